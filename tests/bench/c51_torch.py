@@ -1,7 +1,7 @@
-# The peer of the c51-step benchmarks: the same gradient step in PyTorch, vectorised, in the style of
-# CleanRL's c51.py. Serves steps on request, so that they alternate with ours in one run: each line on
-# standard input is answered with the milliseconds of one step. First line out: "ready" and what
-# multiplies its matrices, or the reason why not.
+# The peer of the c51-step benchmarks: the same gradient step in PyTorch, vectorised, in the style
+# of CleanRL's c51.py. Serves steps on request, so that they alternate with ours in one run: each
+# line on standard input is answered with the milliseconds of one step. First line out: "ready" and
+# what multiplies its matrices, or the reason why not.
 #   python3 c51_torch.py THREADS
 import ctypes
 import os
@@ -79,7 +79,8 @@ def target_distribution(s, r, d):
 
 def gradient_step():
     drawn = torch.randint(0, REPLAY, (BATCH,))
-    s, s2, a, r, d = (t.index_select(0, drawn) for t in (state, next_state, action, reward, terminal))
+    s, s2, a, r, d = (t.index_select(0, drawn) for t in (state, next_state, action, reward,
+                                                         terminal))
     m = target_distribution(s2, r, d)
     log_p = torch.log_softmax(online(s).view(BATCH, ACTIONS, ATOMS)[rows, a], 1)
     loss = -(m * log_p).sum(1).mean()

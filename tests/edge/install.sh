@@ -6,7 +6,8 @@ cmake=$1 build=$2 folder=$3
 shift 3
 fail() { echo "$*"; exit 1; }
 rm -rf "$folder"
-DESTDIR=$folder "$cmake" --install "$build" --component edge >/dev/null || fail "cmake --install failed"
+DESTDIR=$folder "$cmake" --install "$build" --component edge >/dev/null ||
+  fail "cmake --install failed"
 unit=$(find "$folder" -name bess-edge.service)
 program=$(sed -n 's/^ExecStart=\([^ ]*\) .*/\1/p' "$unit")
 [ -x "$folder$program" ] || fail "$unit starts $program, which is not installed"

@@ -16,6 +16,7 @@ refused() {  # signature.sh fails, says $why, and its command mends it
 why="there is no $folder/expected" refused "$@"
 printf '%s\n' "$line" | sed 's/^student=......../student=00000000/' >"$folder/expected"
 why="The compiled student is not the one" refused "$@"
-printf '%s\n' "$line" | sed 's/signature=................/signature=0000000000000000/' >"$folder/expected"
+printf '%s\n' "$line" | sed 's/signature=................/signature=0000000000000000/' \
+  >"$folder/expected"
 why="The same student decides otherwise" refused "$@"
 rm -rf "$folder"

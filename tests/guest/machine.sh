@@ -5,7 +5,8 @@
 #   boot NAME             a machine over a copy of it (made when it is not there) is started
 #   on NAME COMMAND       as root inside;  send NAME FILE PLACE
 #   play OPTION...        the Ansible roll-out; its exit code is in $code, its words in ansible.log
-#   cut_power NAME        every process of the machine is killed at once;  shut_down NAME;  forget NAME
+#   cut_power NAME        every process of the machine is killed at once;  shut_down NAME
+#   forget NAME
 # They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut
 # kills all processes of a machine, but what they had written without waiting for the disk is not
 # lost.
@@ -19,7 +20,8 @@ declare -A container first
 on() {
   local name=$1
   shift
-  nsenter -t "${first[$name]}" -m -u -i -n -p -C -r -w env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 sh -c "$*"
+  nsenter -t "${first[$name]}" -m -u -i -n -p -C -r -w env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+    HOME=/root LC_ALL=C.UTF-8 sh -c "$*"
 }
 send() { on "$1" "cat >$3" <"$2"; }
 
@@ -34,7 +36,8 @@ play() {
 make_base() {
   local program base=$folder/base
   for program in systemd-nspawn mmdebstrap nsenter; do
-    command -v $program >/dev/null || skip "$program is not installed; tools/setup --package installs it"
+    command -v $program >/dev/null ||
+      skip "$program is not installed; tools/setup --package installs it"
   done
   [ "$(id -u)" = 0 ] || skip "machines need root"
   mkdir -p "$folder"
@@ -46,8 +49,11 @@ make_base() {
     return 0
   fi
   if [ ! -f "$folder/root.tar" ]; then
-    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,libcpp-httplib0.11,ca-certificates,adduser,python3,iproute2,procps,unattended-upgrades \
-      bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
+    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1 \
+      --include=libmodbus5,libmosquitto1,libcpp-httplib0.11,ca-certificates,adduser,python3 \
+      --include=iproute2,procps,unattended-upgrades \
+      bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 ||
+      skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
   fi
   rm -rf "$base.new"
   mkdir -p "$base.new"
@@ -58,7 +64,8 @@ make_base() {
   for program in apt-daily.timer apt-daily-upgrade.timer unattended-upgrades.service; do
     ln -sf /dev/null "$base.new/etc/systemd/system/$program"
   done
-  ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' | xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
+  ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' |
+    xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
   rm -rf "$base"
   mv "$base.new" "$base"
 }
@@ -67,16 +74,21 @@ boot() {
   local machine=$folder/$1 i
   if [ ! -d "$machine" ]; then mkdir -p "$machine"/{upper,work,root}; fi
   mountpoint -q "$machine/root" ||
-    mount -t overlay overlay -o "lowerdir=$folder/base,upperdir=$machine/upper,workdir=$machine/work" "$machine/root" ||
+    mount -t overlay overlay \
+      -o "lowerdir=$folder/base,upperdir=$machine/upper,workdir=$machine/work" "$machine/root" ||
     skip "no overlay file system here"
-  systemd-nspawn -q -D "$machine/root" -b --machine="bess-$1-$$" --register=no --keep-unit --private-network --console=pipe \
+  systemd-nspawn -q -D "$machine/root" -b --machine="bess-$1-$$" --register=no \
+    --keep-unit --private-network --console=pipe \
     </dev/null >"$machine/console" 2>&1 &
   container[$1]=$!
   for ((i = 0; i < 600; ++i)); do
     first[$1]=$(pgrep -P "${container[$1]}" -f systemd 2>/dev/null | head -n 1 || true)
     echo "${first[$1]}" >"$machine/first"
-    [ -n "${first[$1]}" ] && on "$1" 'systemctl is-system-running 2>/dev/null | grep -qE "running|degraded"' 2>/dev/null && return 0
-    kill -0 "${container[$1]}" 2>/dev/null || skip "a container with systemd does not start here: $(tail -n 1 "$machine/console")"
+    [ -n "${first[$1]}" ] &&
+      on "$1" 'systemctl is-system-running 2>/dev/null | grep -qE "running|degraded"' 2>/dev/null &&
+      return 0
+    kill -0 "${container[$1]}" 2>/dev/null ||
+      skip "a container with systemd does not start here: $(tail -n 1 "$machine/console")"
     sleep 0.2
   done
   die "$1 did not start within two minutes"

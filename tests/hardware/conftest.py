@@ -12,12 +12,18 @@ TREE = Path(__file__).resolve().parents[2]
 def pytest_addoption(parser):
     group = parser.getgroup("bess", "where the edge runs, and whether a real battery is driven")
     group.addoption("--place", choices=("local", "emulated", "guest", "pi"), default="local")
-    group.addoption("--programs", help="folder of bess-edge and bess-sim, in place of places.yaml's")
-    group.addoption("--real", metavar="CONFIG", help="settings of bess-edge for a real battery, a path on the place")
-    group.addoption("--yes-drive-real-battery", action="store_true", help="without it a real battery is only read")
-    group.addoption("--real-power-w", type=int, default=500, help="no order is larger (default: 500)")
-    group.addoption("--real-soc-min", type=float, default=0.3, help="no discharge below (default: 0.3)")
-    group.addoption("--real-soc-max", type=float, default=0.7, help="no charge above (default: 0.7)")
+    group.addoption("--programs",
+                    help="folder of bess-edge and bess-sim, in place of places.yaml's")
+    group.addoption("--real", metavar="CONFIG",
+                    help="settings of bess-edge for a real battery, a path on the place")
+    group.addoption("--yes-drive-real-battery", action="store_true",
+                    help="without it a real battery is only read")
+    group.addoption("--real-power-w", type=int, default=500,
+                    help="no order is larger (default: 500)")
+    group.addoption("--real-soc-min", type=float, default=0.3,
+                    help="no discharge below (default: 0.3)")
+    group.addoption("--real-soc-max", type=float, default=0.7,
+                    help="no charge above (default: 0.7)")
     group.addoption("--real-cycles", type=int, default=3, help="of two minutes (default: 3)")
 
 
@@ -43,7 +49,8 @@ class Place:
 
     def write(self, path, text):
         """In one line, because a serial console knows nothing else."""
-        self.run(f"echo {base64.b64encode(text.encode()).decode()} | base64 -d > {shlex.quote(path)}")
+        self.run(
+            f"echo {base64.b64encode(text.encode()).decode()} | base64 -d > {shlex.quote(path)}")
 
     def read(self, path):
         return self.run(f"cat {shlex.quote(path)}")
@@ -80,7 +87,8 @@ def place(env, pytestconfig):
         power.on()
     command = target.get_driver("CommandProtocol")
     target.activate(command)
-    programs, map_path = (env.config.get_target_option(name, option) for option in ("programs", "map"))
+    programs, map_path = (env.config.get_target_option(name, option)
+                          for option in ("programs", "map"))
     found = Place(command, pytestconfig.getoption("--programs") or programs, map_path)
     yield found
     found.clean_up()

@@ -1,4 +1,5 @@
-"""A labgrid driver for the machine that the tests run on: its shell, as SSHDriver is that of another machine."""
+"""A labgrid driver for the machine that the tests run on: its shell, as SSHDriver is that of
+another machine."""
 import subprocess
 
 import attr
@@ -20,8 +21,10 @@ class LocalShellDriver(CommandMixin, Driver, CommandProtocol):
         return self._run(cmd, timeout=timeout, codec=codec, decodeerrors=decodeerrors)
 
     def _run(self, cmd, *, timeout=30.0, codec="utf-8", decodeerrors="strict"):
-        done = subprocess.run(["/bin/sh", "-c", cmd], stdin=subprocess.DEVNULL, capture_output=True, timeout=timeout)
-        out, err = (text.decode(codec, decodeerrors).splitlines() for text in (done.stdout, done.stderr))
+        done = subprocess.run(["/bin/sh", "-c", cmd], stdin=subprocess.DEVNULL, capture_output=True,
+                              timeout=timeout)
+        out, err = (text.decode(codec, decodeerrors).splitlines()
+                    for text in (done.stdout, done.stderr))
         return out, err, done.returncode
 
     @Driver.check_active

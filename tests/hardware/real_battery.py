@@ -1,4 +1,5 @@
-"""Driving a battery that can be hurt: limits of its own, somebody who watches, a key that ends it."""
+"""Driving a battery that can be hurt: limits of its own, somebody who watches, a key that ends
+it."""
 import json
 import os
 import re
@@ -35,7 +36,8 @@ def limited(settings, power_w, soc_min, soc_max):
 
 
 class AbortKey:
-    """Q at the terminal, whatever pytest does with its streams. Without a terminal there is Ctrl-C alone."""
+    """Q at the terminal, whatever pytest does with its streams. Without a terminal there is Ctrl-C
+    alone."""
 
     def __enter__(self):
         try:
@@ -63,7 +65,8 @@ class AbortKey:
 def complaint(status, limits):
     """What of a running controller's status breaks the limits; "" when nothing does."""
     last = status.get("last", status)
-    ordered, power, soc = (last.get(key) for key in ("ordered_power_w", "battery_power_w", "soc_e4"))
+    ordered, power, soc = (last.get(key) for key in ("ordered_power_w", "battery_power_w",
+                                                     "soc_e4"))
     if ordered is not None and abs(ordered) > limits.power_w:
         return f"{ordered} W were ordered, more than {limits.power_w} W"
     if power is not None and abs(power) > 1.2 * limits.power_w + 200 and ordered is not None:
@@ -79,8 +82,8 @@ def complaint(status, limits):
 def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
     """Drives the battery of `config` (a path on the place) within the limits; the controller's log.
 
-    However it ends, by itself, the key, Ctrl-C or a broken limit: the controller is stopped, which orders 0 W and
-    releases the battery, and what it said last is checked.
+    However it ends, by itself, the key, Ctrl-C or a broken limit: the controller is stopped, which
+    orders 0 W and releases the battery, and what it said last is checked.
     """
     own = f"{config}.limited.toml"
     place.write(own, limited(place.read(config), limits.power_w, limits.soc_min, limits.soc_max))

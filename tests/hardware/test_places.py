@@ -1,5 +1,6 @@
-"""bess-edge where it will run: on this machine, on an emulated Raspberry Pi, on a real one over ssh; with a simulated
-battery on the same machine, and with a real one if somebody says so. README.md here has the commands."""
+"""bess-edge where it will run: on this machine, on an emulated Raspberry Pi, on a real one over
+ssh; with a simulated battery on the same machine, and with a real one if somebody says so.
+README.md here has the commands."""
 import math
 import re
 from collections import namedtuple
@@ -24,17 +25,23 @@ def prices():
 
 
 class Site:
-    """A simulated battery and a simulated market on the place, and a controller's configuration between them."""
+    """A simulated battery and a simulated market on the place, and a controller's configuration
+    between them."""
 
     def __init__(self, place):
         folder = place.folder
         place.write(f"{folder}/minutes.csv", prices())
-        place.start(f"{place.sim} site --program {place.sim} --folder {folder} --prices {folder}/minutes.csv "
-                    f"--map {place.map} --utc-start {START} --time-scale {SCALE} --set battery.response_timeout_ms=500",
+        place.start(
+            f"{place.sim} site --program {place.sim} --folder {folder} --prices "
+            f"{folder}/minutes.csv "
+                    f"--map {place.map} --utc-start {START} --time-scale {SCALE} --set "
+                    f"battery.response_timeout_ms=500",
                     f"{folder}/site.log")
-        assert place.command.poll_until_success(f"grep -q settings {folder}/site.log", timeout=20.0, sleepduration=0.2)
+        assert place.command.poll_until_success(f"grep -q settings {folder}/site.log", timeout=20.0,
+                                                sleepduration=0.2)
         self.config = f"{folder}/edge.toml"
-        assert "the sign is right" in place.run(f"{place.edge} commission --config {self.config} --yes")
+        assert "the sign is right" in place.run(
+            f"{place.edge} commission --config {self.config} --yes")
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +59,8 @@ def test_drives_a_simulated_battery_and_the_map_fits_what_was_recorded(place, si
     said = place.run(f"{place.edge} --config {site.config} --cycles 4 --record {recording}")
     assert said.count(" mode=running ") == 4
     assert "stopped: battery released" in said
-    assert ": 0 of " in place.run(f"{place.edge} map check --against {recording} --config {site.config}")
+    assert ": 0 of " in place.run(
+        f"{place.edge} map check --against {recording} --config {site.config}")
 
 
 def test_keeps_the_limits_of_a_real_battery(place, site):
@@ -70,9 +78,13 @@ def test_the_abort_key_ends_it_at_once(place, site):
 
 
 def test_limits_replace_those_of_the_settings():
-    text = limited('control = false\n[battery]\nmap = "a"  # power_w = 1\npower_w = 4000\n[[reserve]]\nsoc = 0.2\n', 500,
+    text = limited(
+        'control = false\n[battery]\nmap = "a"  # power_w = 1\npower_w = 4000\n[[reserve]]\nsoc = '
+        '0.2\n', 500,
                    0.3, 0.7)
-    assert text == ('control = true\n[battery]\npower_w = 500\nmap = "a"  # power_w = 1\n[[reserve]]\nsoc = 0.2\n'
+    assert text == (
+        'control = true\n[battery]\npower_w = 500\nmap = "a"  # power_w = 1\n[[reserve]]\nsoc = '
+        '0.2\n'
                     "[guard]\nsoc_min = 0.3\nsoc_max = 0.7\n")
 
 
@@ -87,14 +99,18 @@ def real_config(pytestconfig):
 def test_a_real_battery_is_what_its_map_says(place, real_config):
     """Reads only."""
     recording = f"{place.folder}/real.jsonl"
-    place.run(f"{place.edge} record --config {real_config} --for 1m --every 5s --out {recording}", timeout=120)
-    assert ": 0 of " in place.run(f"{place.edge} map check --against {recording} --config {real_config}")
+    place.run(f"{place.edge} record --config {real_config} --for 1m --every 5s --out {recording}",
+              timeout=120)
+    assert ": 0 of " in place.run(
+        f"{place.edge} map check --against {recording} --config {real_config}")
 
 
 def test_a_real_battery_follows_within_its_limits(place, real_config, pytestconfig):
     if not pytestconfig.getoption("--yes-drive-real-battery"):
         pytest.skip("--yes-drive-real-battery was not said")
-    limits = Limits(*(pytestconfig.getoption(f"--real-{name}") for name in ("power-w", "soc-min", "soc-max")))
+    limits = Limits(*(pytestconfig.getoption(f"--real-{name}")
+                      for name in ("power-w", "soc-min", "soc-max")))
     with AbortKey() as key:
-        said = drive(place, real_config, limits, pytestconfig.getoption("--real-cycles"), is_aborted=key.is_pressed)
+        said = drive(place, real_config, limits, pytestconfig.getoption("--real-cycles"),
+                     is_aborted=key.is_pressed)
     print(said)

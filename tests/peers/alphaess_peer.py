@@ -1,19 +1,24 @@
 #!/usr/bin/python3
-"""An AlphaESS battery as pymodbus serves it: an implementation of Modbus that shares nothing with bess.
+"""An AlphaESS battery as pymodbus serves it: an implementation of Modbus that shares nothing with
+bess.
 
     alphaess_peer.py --soc 435                 # TCP on a free port, which is printed
     alphaess_peer.py --soc 435 --serial DEVICE # RTU, 9600 8N1
-    alphaess_peer.py --soc 435 --scale 60 --fault twice  # misbehaves from the controller's third order on; time runs 60 times as fast
-    alphaess_peer.py --soc 435 --scale 60 --fault reversed --every 2   # in every other two minutes of that only
-    alphaess_peer.py --soc 435 --scale 60 --habits       # no fault: 5 s of lag, 800 W/s, 2 % of noise, slow near full and empty
+    alphaess_peer.py --soc 435 --scale 60 --fault twice  # misbehaves from the controller's third
+                                                         order on; time runs 60 times as fast
+    alphaess_peer.py --soc 435 --scale 60 --fault reversed --every 2   # in every other two minutes
+                                                                       # of that only
+    alphaess_peer.py --soc 435 --scale 60 --habits       # no fault: 5 s of lag, 800 W/s, 2 % of
+                                                         noise, slow near full and empty
 
-Without --scale the state of charge stays as it is. Faults of the power: reversed, twice, third, dead (no power),
-idle-discharge, echo (shows the order, nothing flows), half-flow (shows the order, half flows), drain (1 kW besides, not
-shown). Of the display: soc-stuck, soc-inverted, capacity (100 kWh), wrong-echo (of every write). Besides: other-master
-(orders 4.5 kW of discharge every 30 s). What healthy ones do: recalibrates (6 % up, at once), forced-charge (below 10 %,
-to 11 %), balancing (450 W while full).
-Registers by the vendor's manual V1.23; every write is printed as "write ADDRESS VALUE...". The dispatch block
-starts as the vendor's stop command leaves it. Runs until it is killed.
+Without --scale the state of charge stays as it is. Faults of the power: reversed, twice, third,
+dead (no power), idle-discharge, echo (shows the order, nothing flows), half-flow (shows the order,
+half flows), drain (1 kW besides, not shown). Of the display: soc-stuck, soc-inverted, capacity (100
+kWh), wrong-echo (of every write). Besides: other-master (orders 4.5 kW of discharge every 30 s).
+What healthy ones do: recalibrates (6 % up, at once), forced-charge (below 10 %, to 11 %), balancing
+(450 W while full).
+Registers by the vendor's manual V1.23; every write is printed as "write ADDRESS VALUE...". The
+dispatch block starts as the vendor's stop command leaves it. Runs until it is killed.
 """
 import argparse
 import asyncio
@@ -38,7 +43,8 @@ GAIN = {"reversed": -1, "twice": 2, "third": 0.3, "dead": 0, "echo": 0, "half-fl
 
 
 class Cells:
-    """What flows, in steps of at most a second: - charge, + discharge, in W; the charge in 0.1 %."""
+    """What flows, in steps of at most a second: - charge, + discharge, in W; the charge in 0.1
+    %."""
 
     def __init__(self, soc, has_habits):
         self.soc, self.has_habits = soc, has_habits
@@ -77,7 +83,8 @@ class Registers(ModbusSequentialDataBlock):
         super().__init__(0, [0] * 0x1000)
         self.cells = Cells(options.soc, options.habits)
         self.scale, self.fault, self.every = options.scale, options.fault, options.every
-        self.since, self.orders, self.foreign, self.broke = time.monotonic(), 0, time.monotonic(), None
+        self.since = self.foreign = time.monotonic()
+        self.orders, self.broke = 0, None
         self.is_checked = False  # its sign
         self.flowing, self.mirror = 0, None
         self.values[0x010D] = self.values[0x0110] = 200  # 0.1 degC
@@ -104,7 +111,8 @@ class Registers(ModbusSequentialDataBlock):
         for fault, gain in GAIN.items():
             if self.breaks(fault, now):
                 power *= gain
-        if self.breaks("idle-discharge", now) and self.values[DISPATCH] == 1 and self.ordered() == 0:
+        rests = self.values[DISPATCH] == 1 and self.ordered() == 0
+        if self.breaks("idle-discharge", now) and rests:
             power = 3000
         if self.breaks("forced-charge", now):
             cells.is_forced = cells.soc < 100 or (cells.is_forced and cells.soc < 110)
@@ -174,7 +182,8 @@ async def serve(options):
             response.address += 1
         return response, False
 
-    server = ModbusTcpServer(context, ModbusSocketFramer, address=("127.0.0.1", 0), response_manipulator=spoil)
+    server = ModbusTcpServer(context, ModbusSocketFramer, address=("127.0.0.1", 0),
+                             response_manipulator=spoil)
     serving = asyncio.create_task(server.serve_forever())
     await server.serving
     port = server.server.sockets[0].getsockname()[1]

@@ -1,17 +1,18 @@
 #!/usr/bin/python3
-"""A Modbus master that drives a simulated battery of any shipped map: pymodbus orders, pymodbus and mbpoll look.
+"""A Modbus master that drives a simulated battery of any shipped map: pymodbus orders, pymodbus and
+mbpoll look.
 
     master_peer.py --map alphaess --variant block --port 1502 --scale 60 --anchor-ns N --start-s UTC
 
-Registers by the makers' tables, worked out by hand; shares nothing with bess. Holds 3000 W of charge, then of discharge, for
-150 simulated seconds each, and prints
+Registers by the makers' tables, worked out by hand; shares nothing with bess. Holds 3000 W of
+charge, then of discharge, for 150 simulated seconds each, and prints
 
     soc TENTHS-OF-A-PERCENT
     order WATTS from UTC-S to UTC-S pymodbus WATTS mbpoll WATTS
 
-With --day it orders a day on alphaess instead, each order for its own time. With --interfere it is the second master:
-thirty seconds after every --every-th tick it writes stop, or another mode, in place of what another master has ordered, and
-prints the tick.
+With --day it orders a day on alphaess instead, each order for its own time. With --interfere it is
+the second master: thirty seconds after every --every-th tick it writes stop, or another mode, in
+place of what another master has ordered, and prints the tick.
 """
 import argparse
 import re
@@ -43,14 +44,16 @@ class Master:
         assert not reply.isError(), (unit, address, reply)
 
     def read(self, unit, address, count=1, table=3):
-        read = self.client.read_holding_registers if table == 3 else self.client.read_input_registers
+        client = self.client
+        read = client.read_holding_registers if table == 3 else client.read_input_registers
         reply = read(address, count, slave=unit)
         assert not reply.isError(), (unit, address, reply)
         return reply.registers
 
     def poll(self, unit, address, count=1, table=3):
         text = subprocess.run(
-            ["/usr/bin/mbpoll", "-m", "tcp", "-p", str(self.port), "-a", str(unit), "-0", "-r", str(address), "-c",
+            ["/usr/bin/mbpoll", "-m", "tcp", "-p", str(self.port), "-a", str(unit), "-0", "-r",
+             str(address), "-c",
              str(count), "-t", "4" if table == 3 else "3", "-1", "-o", "5", "127.0.0.1"],
             capture_output=True, text=True, check=True).stdout
         return [int(v) for v in re.findall(r"^\[\d+\]:\s+(\d+)", text, re.M)]
@@ -81,7 +84,8 @@ class AlphaEss:
             write(85, 0x0881, *power, 0, 32000, 2, limit, *words(seconds), 255, 0)
             write(85, 0x0880, 1)
         else:
-            for address, values in ((0x0880, [1]), (0x0881, power), (0x0887, words(seconds)), (0x0886, [limit]),
+            for address, values in ((0x0880, [1]), (0x0881, power), (0x0887, words(seconds)),
+                                    (0x0886, [limit]),
                                     (0x0885, [2])):
                 write(85, address, *values)
 
@@ -120,12 +124,14 @@ class Simulator:
 
 
 class SunSpec124:
-    """A charging limit below 0 is a discharge, and the other way round; 10000 = 100 % of the rating."""
+    """A charging limit below 0 is a discharge, and the other way round; 10000 = 100 % of the
+    rating."""
 
     def __init__(self, master, _):
         self.master, models = master, master.models()
         self.inverter, self.storage = models[103], models[124]
-        self.mode, self.discharge, self.revert = self.storage + 5, self.storage + 12, self.storage + 15
+        self.mode, self.discharge = self.storage + 5, self.storage + 12
+        self.revert = self.storage + 15
         self.grid = self.storage + 17
 
     def order(self, watts):
@@ -269,7 +275,8 @@ class Sma:
             return self.master.write(3, 40149, *words(-watts), *words(802), 0, 0)
         charge, discharge = max(watts, 0), max(-watts, 0)
         self.master.write(3, 40236, *words(2289 if watts > 0 else 2290))
-        for address, value in ((40793, charge), (40795, charge), (40797, discharge), (40799, discharge), (40801, 0)):
+        for address, value in ((40793, charge), (40795, charge), (40797, discharge),
+                               (40799, discharge), (40801, 0)):
             self.master.write(3, address, *words(value))
 
     def stop(self):
@@ -290,7 +297,8 @@ class Sma:
         return (charge[0] << 16 | charge[1]) - (discharge[0] << 16 | discharge[1])
 
 
-DEVICES = {"alphaess": AlphaEss, "simulator": Simulator, "sunspec_124": SunSpec124, "fronius_gen24": FroniusGen24,
+DEVICES = {"alphaess": AlphaEss, "simulator": Simulator, "sunspec_124": SunSpec124,
+           "fronius_gen24": FroniusGen24,
            "sunspec_704": SunSpec704, "victron_ess3": VictronEss3, "sungrow_sh": SungrowSh,
            "huawei_luna2000": HuaweiLuna, "sma": Sma}
 DAY = ((1, 2000, 2), (5, -1500, 2), (9, 4000, 1), (13, -3600, 1))  # hour, W, hours
@@ -307,7 +315,8 @@ def drive(master, device, options, now):
             time.sleep(5 / options.scale)
         seen = device.power(master.read), device.power(master.poll)
         device.order(watts)
-        print("order", watts, "from", begin, "to", now(), "pymodbus", seen[0], "mbpoll", seen[1], flush=True)
+        print("order", watts, "from", begin, "to", now(), "pymodbus", seen[0], "mbpoll", seen[1],
+              flush=True)
 
 
 def drive_a_day(device, options, now):

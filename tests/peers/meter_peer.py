@@ -5,10 +5,10 @@
     meter_peer.py --map sunspec --battery-port 1502 --scale 120 --anchor-ns N --lie inverted \\
         --lie-from-s 900 --truth truth.csv
 
-Registers by the makers' tables, worked out by hand; watts are import, a multiple of 10. With --battery-port it stands
-at the connection of a house that moves (from --seed) and of a battery, whose power it asks bess-sim for (map
-simulator), and may lie about their sum. --truth: second, house, battery, shown, a line each time. Runs until it is
-killed.
+Registers by the makers' tables, worked out by hand; watts are import, a multiple of 10. With
+--battery-port it stands at the connection of a house that moves (from --seed) and of a battery,
+whose power it asks bess-sim for (map simulator), and may lie about their sum. --truth: second,
+house, battery, shown, a line each time. Runs until it is killed.
 """
 import argparse
 import asyncio
@@ -90,8 +90,9 @@ class Connection:
         if not self.lies(second):
             self.frozen = grid
             return grid
-        return {"honest": grid, "frozen": self.frozen, "inverted": -grid, "x0.1": 0.1 * grid, "x0.5": 0.5 * grid,
-                "offset": grid - 1000, "late": self.past[0][1], "phase": house / 3}[self.options.lie]
+        return {"honest": grid, "frozen": self.frozen, "inverted": -grid, "x0.1": 0.1 * grid,
+                "x0.5": 0.5 * grid, "offset": grid - 1000, "late": self.past[0][1],
+                "phase": house / 3}[self.options.lie]
 
     def follow(self, show, truth):
         while True:
@@ -111,7 +112,8 @@ async def serve(options):
         values[address:address + len(block)] = block
     block = ModbusSequentialDataBlock(0, values)
     table = {"ir": block} if options.map == "eastron_sdm630" else {"hr": block}
-    context = ModbusServerContext(slaves={unit: ModbusSlaveContext(zero_mode=True, **table)}, single=False)
+    context = ModbusServerContext(slaves={unit: ModbusSlaveContext(zero_mode=True, **table)},
+                                  single=False)
     server = ModbusTcpServer(context, ModbusSocketFramer, address=("127.0.0.1", 0))
     serving = asyncio.create_task(server.serve_forever())
     await server.serving
@@ -134,7 +136,8 @@ if __name__ == "__main__":
     parser.add_argument("--anchor-ns", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--lie", default="honest",
-                        choices=("honest", "frozen", "inverted", "x0.1", "x0.5", "offset", "late", "phase"))
+                        choices=("honest", "frozen", "inverted", "x0.1", "x0.5", "offset", "late",
+                                 "phase"))
     parser.add_argument("--lie-from-s", type=float, default=0)
     parser.add_argument("--lie-each-s", type=float, default=0)
     parser.add_argument("--lie-for-s", type=float, default=0)

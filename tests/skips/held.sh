@@ -5,7 +5,8 @@ set -eu
 folder=$1
 mkdir -p "$folder"
 here=$(dirname "$0")
-run_of() {  # run_of NAME TEXT: a run of ctest with one test that passed and one that was skipped with TEXT
+# run_of NAME TEXT: a run of ctest with one test that passed and one that was skipped with TEXT
+run_of() {
   cat >"$folder/$1.xml" <<XML
 <testsuite><testcase name="Passes"><system-out>[  SKIPPED ] is only a word here</system-out></testcase>
 <testcase name="Skips"><skipped message="x"/><system-out>$2</system-out></testcase></testsuite>
@@ -16,9 +17,11 @@ needs root, to mount a small disk
 [  SKIPPED ] Skips (0 ms)"
 run_of script "socat is not installed"
 run_of silent ""
-"$here/list_skips.py" "$here/known.txt" "$folder/known.xml" | grep -q '^skipped: needs root, to mount a small disk: Skips$'
+"$here/list_skips.py" "$here/known.txt" "$folder/known.xml" |
+  grep -q '^skipped: needs root, to mount a small disk: Skips$'
 for name in script silent; do
-  if "$here/list_skips.py" "$here/known.txt" "$folder/known.xml" "$folder/$name.xml" >"$folder/said" 2>&1; then
+  if "$here/list_skips.py" "$here/known.txt" "$folder/known.xml" "$folder/$name.xml" \
+    >"$folder/said" 2>&1; then
     echo "the skip \"$name\" was accepted"
     exit 1
   fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """list_skips.py KNOWN JUNIT...: which tests of these runs of ctest were skipped, and why.
 
-KNOWN holds the reasons that are accepted (known.txt beside this file says how); JUNIT is what `ctest --output-junit`
-wrote. Exit code 1 where a test was skipped for another reason, or gave none.
+KNOWN holds the reasons that are accepted (known.txt beside this file says how); JUNIT is what
+`ctest --output-junit` wrote. Exit code 1 where a test was skipped for another reason, or gave none.
 """
 
 import pathlib
@@ -20,7 +20,8 @@ def reason_of(case):
     """The line in which GoogleTest or a script says why; empty where neither does."""
     lines = [line.strip() for line in (case.findtext("system-out") or "").splitlines()]
     after = [lines[i + 1] for i, line in enumerate(lines[:-1]) if line.endswith(": Skipped")]
-    scripts = [line for line in lines if line and not line.startswith(("[", "Note: Google Test filter", "Running main()"))]
+    scripts = [line for line in lines
+               if line and not line.startswith(("[", "Note: Google Test filter", "Running main()"))]
     return (after or scripts or [""])[-1]
 
 
@@ -39,9 +40,12 @@ def main():
         is_known = any(pattern.search(reason) for pattern in known)
         unknown += 0 if is_known else len(names)
         shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-        print(f"{'skipped' if is_known else 'SKIPPED, for no known reason'}: {reason or 'it does not say why'}: {shown}")
+        print(
+            f"{'skipped' if is_known else 'SKIPPED, for no known reason'}: "
+            f"{reason or 'it does not say why'}: {shown}")
     if unknown:
-        print(f"{unknown} tests were skipped for a reason that {sys.argv[1]} does not name", file=sys.stderr)
+        print(f"{unknown} tests were skipped for a reason that {sys.argv[1]} does not name",
+              file=sys.stderr)
     return 1 if unknown else 0
 
 

@@ -1,11 +1,13 @@
 # Quadratic programs through cvxopt, an interior-point solver that shares nothing with ours.
 #   /usr/bin/python3 qp_cvxopt.py PROGRAMS ANSWERS      the solutions, as accurate as it gets them
-#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median CPU microseconds of N solutions of each, on one
-#                                                       thread, at cvxopt's own tolerances, matrices sparse or
-#                                                       dense: the faster
-# min 1/2 x'Px - g'x, first rows a'x = b, others a'x >= b. PROGRAMS is binary, numbers of this machine: how many
-# programs; each: variables, rows, equalities, terms, 1 if a Hessian follows (all 64-bit integers); Hessian;
-# g; the terms' rows, their columns (integers), their factors; bounds (all else double). ANSWERS: doubles.
+#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median CPU microseconds of N solutions of
+#                                                       each, on one thread, at cvxopt's own
+#                                                       tolerances, matrices sparse or dense: the
+#                                                       faster
+# min 1/2 x'Px - g'x, first rows a'x = b, others a'x >= b. PROGRAMS is binary, numbers of this
+# machine: how many programs; each: variables, rows, equalities, terms, 1 if a Hessian follows (all
+# 64-bit integers); Hessian; g; the terms' rows, their columns (integers), their factors; bounds
+# (all else double). ANSWERS: doubles.
 import array
 import os
 import statistics
@@ -18,7 +20,8 @@ try:
 except ImportError:
     sys.exit(77)
 
-ACCURATE = {"show_progress": False, "abstol": 1e-13, "reltol": 1e-13, "feastol": 1e-11, "maxiters": 200}
+ACCURATE = {"show_progress": False, "abstol": 1e-13, "reltol": 1e-13, "feastol": 1e-11,
+            "maxiters": 200}
 
 
 def read(file, kind, count):
@@ -34,7 +37,8 @@ def read_program(file):
     else:
         hessian = spmatrix(1.0, range(n), range(n))
     linear = -matrix(read(file, "d", n), (n, 1))
-    of_row, of_column, factors = read(file, "q", terms), read(file, "q", terms), read(file, "d", terms)
+    of_row, of_column, factors = read(file, "q", terms), read(file, "q",
+                                                              terms), read(file, "d", terms)
     bounds = matrix(read(file, "d", rows), (rows, 1))
     normals = spmatrix(list(factors), list(of_row), list(of_column), (rows, n))
     problem = [hessian, linear, -normals[equalities:, :], -bounds[equalities:]]
@@ -55,7 +59,8 @@ def main():
     if sys.argv[2] == "--time":
         for problem in problems:
             dense = [matrix(part) for part in problem]
-            medians = [statistics.median(seconds_of(p) for _ in range(int(sys.argv[3]))) for p in (problem, dense)]
+            medians = [statistics.median(seconds_of(p) for _ in range(int(sys.argv[3])))
+                       for p in (problem, dense)]
             print(1e6 * min(medians))
         return
     with open(sys.argv[2], "wb") as file:

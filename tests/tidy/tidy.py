@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """tidy.py TREE: the house keeps itself. Fails, naming file and line, on
 
-- a line of more than 100 columns, but in what is generated or data, tables and printed text of READMEs, and what is one
-  word (a URL); files that are longer yet stand in long_lines.txt with how many such lines they have: none may get more
+- a line of more than 100 columns, but in what is generated or data, tables and printed text of
+  READMEs, and what is one word (a URL); files that are longer yet stand in long_lines.txt with how
+  many such lines they have: none may get more
 - a file of a kind that is not known, or at the top of the tree and not named in README.md
 - a README that is longer than it may be, or names a file or a test that is not there
 - a README that repeats a figure of the tree, and it is another by now
@@ -17,14 +18,16 @@ COLUMNS = 100
 README_LINES = {"README.md": 150, "edge/README.md": 250}
 DATA = ("edge/generated/", "tests/data/", "tests/golden/", "tests/fuzz/seeds/",
         "tools/monitoring/grafana_dashboard.json")
-KINDS = set(".c .cmake .conf .cpp .css .csv .gz .h .html .in .js .json .jsonl .md .py .rules .service .sh"
+KINDS = set(
+    ".c .cmake .conf .cpp .css .csv .gz .h .html .in .js .json .jsonl .md .py .rules .service .sh"
             " .sysusers .timer .tmpfiles .toml .txt .xml .yaml .yml".split())
 KNOWN_NAMES = {"copyright", "conffiles", "lintian-overrides"}  # what Debian's packages have
 PLACES = ("edge", "shared", "tests", "toolchains", "tools", "workstation")
 
 
 def tracked(tree):
-    listed = subprocess.run(["git", "-C", tree, "ls-files", "-z"], capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(["git", "-C", tree, "ls-files", "-z"], capture_output=True, text=True,
+                            check=True).stdout
     return [name for name in listed.split("\0") if name and (tree / name).is_file()]
 
 
@@ -48,7 +51,8 @@ def long_lines(name, text):
     lines = text.splitlines()
     counts = prose_only(lines) if name.endswith(".md") else [True] * len(lines)
     return [number for number, (line, counted) in enumerate(zip(lines, counts), 1)
-            if counted and len(line) > COLUMNS and max(len(word) for word in line.split()) < COLUMNS - 8]
+            if counted and len(line) > COLUMNS and max(len(word) for word in line.split()) < COLUMNS
+            - 8]
 
 
 def check_columns(tree, names, allowed, complain):
@@ -67,7 +71,8 @@ def check_kinds(tree, names, complain):
     for name in names:
         path = pathlib.PurePosixPath(name)
         is_script = (tree / name).read_bytes()[:2] == b"#!"
-        known = path.suffix in KINDS or is_script or path.name.startswith(".") or name.startswith(DATA)
+        known = path.suffix in KINDS or is_script or path.name.startswith(".") or name.startswith(
+            DATA)
         if not known and path.name not in KNOWN_NAMES:
             complain(f"{name}: a file of an unknown kind")
     for top in sorted({name.split("/")[0] for name in names} - {"README.md"}):
@@ -130,7 +135,8 @@ def main():
     names = tracked(tree)
     complaints = []
     listed = (tree / "tests/tidy/long_lines.txt").read_text(encoding="utf-8").splitlines()
-    allowed = {line.split()[1]: int(line.split()[0]) for line in listed if line and not line.startswith("#")}
+    allowed = {line.split()[1]: int(line.split()[0]) for line in listed
+               if line and not line.startswith("#")}
     check_columns(tree, names, allowed, complaints.append)
     check_kinds(tree, names, complaints.append)
     check_readmes(tree, names, complaints.append)

@@ -8,7 +8,8 @@ cp "$source"/edge/generated/* "$tree/edge/generated"
 echo "1 edge/long.cpp" >"$tree/tests/tidy/long_lines.txt"
 long="// $(printf 'word %.0s' $(seq 30))"
 echo "$long" >"$tree/edge/long.cpp"
-printf '`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n' >"$tree/README.md"
+printf '`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n' \
+  >"$tree/README.md"
 git -C "$tree" init -q
 says() { git -C "$tree" add -A; "$source/tests/tidy/tidy.py" "$tree" >"$tree/../said" 2>&1; }
 says || { cat "$tree/../said"; echo "a tidy tree is refused"; exit 1; }

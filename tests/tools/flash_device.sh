@@ -15,7 +15,8 @@ mke2fs -q -t ext4 -E offset=$((10240 * 512)) os.img 16M
 truncate -s 32M card.disk
 truncate -s 8M small.disk
 card=$(losetup -f --show card.disk) || { echo "no loop devices here"; exit 77; }
-trap 'umount mounted 2>/dev/null || true; losetup -d "$card"; [ -z "${small:-}" ] || losetup -d "$small"' EXIT
+trap 'umount mounted 2>/dev/null || true; losetup -d "$card"
+  [ -z "${small:-}" ] || losetup -d "$small"' EXIT
 small=$(losetup -f --show small.disk)
 flash() { "$source/tools/flash" device "$@" >said 2>&1; }
 
@@ -25,7 +26,8 @@ cmp -s -n "$(stat -c %s os.img)" os.img "$card" || fail "the card holds somethin
 head -c 4096 card.disk >before
 code=0
 echo no | "$source/tools/flash" device os.img "$card" >said 2>&1 || code=$?
-[ $code -eq 1 ] && grep -q "not written" said || fail "it does not take no for an answer: $(cat said)"
+[ $code -eq 1 ] && grep -q "not written" said ||
+  fail "it does not take no for an answer: $(cat said)"
 
 refuses() {  # refuses WHAT LINE ARGUMENTS...
   local what=$1 line=$2 code=0

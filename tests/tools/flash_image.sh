@@ -14,7 +14,8 @@ enter_folder
 
 image_of() {  # image_of NAME CODENAME: FAT from sector 2048, 16 MiB; ext4 behind it, 64 MiB
   local tree=tree-$1
-  mkdir -p "$tree/usr/lib/raspberrypi-sys-mods" "$tree/usr/bin" "$tree/var/lib/dpkg" "$tree/etc/systemd/system"
+  mkdir -p "$tree/usr/lib/raspberrypi-sys-mods" "$tree/usr/bin" "$tree/var/lib/dpkg" \
+    "$tree/etc/systemd/system"
   printf 'ID=debian\nVERSION_CODENAME=%s\n' "$2" >"$tree/usr/lib/os-release"
   for name in dpkg libc6 libcurl4; do
     printf 'Package: %s\nStatus: install ok installed\nArchitecture: arm64\nVersion: 9\n\n' $name
@@ -22,9 +23,11 @@ image_of() {  # image_of NAME CODENAME: FAT from sector 2048, 16 MiB; ext4 behin
   [ "${3:-}" != init_config ] || touch "$tree/usr/lib/raspberrypi-sys-mods/init_config"
   [ "${3:-}" != cloud-init ] || touch "$tree/usr/bin/cloud-init"
   truncate -s 81M "$1.img"
-  printf 'label: dos\nstart=2048, size=32768, type=c\nstart=34816, size=131072, type=83\n' | sfdisk -q "$1.img"
+  printf 'label: dos\nstart=2048, size=32768, type=c\nstart=34816, size=131072, type=83\n' |
+    sfdisk -q "$1.img"
   mformat -i "$1.img@@1048576" -T 32768 -h 16 -s 63 ::
-  echo "console=tty1 root=PARTUUID=1-02 rootwait init=/usr/lib/raspberrypi-sys-mods/firstboot" | mcopy -i "$1.img@@1048576" - ::cmdline.txt
+  echo "console=tty1 root=PARTUUID=1-02 rootwait init=/usr/lib/raspberrypi-sys-mods/firstboot" |
+    mcopy -i "$1.img@@1048576" - ::cmdline.txt
   mke2fs -q -t ext4 -d "$tree" -E offset=$((34816 * 512)) "$1.img" 64M
 }
 image_of bookworm bookworm init_config
@@ -35,24 +38,31 @@ image_of old_trixie trixie
 package=$(made_up_package packages arm64 1.0)
 echo "ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAIHJ1c3Q= ops" >key.pub
 settings() {  # settings [LINE...]: what the edge takes, and then these lines
-  sed -e 's/^control = true/control = false/' -e '/^\[simulation\]/,$d' "$source/tests/guest/edge.toml.in" >edge.toml
+  sed -e 's/^control = true/control = false/' -e '/^\[simulation\]/,$d' \
+    "$source/tests/guest/edge.toml.in" >edge.toml
   [ $# -eq 0 ] || printf '%s\n' "$@" >>edge.toml
 }
 settings
 echo 'pass "word' >wifi
 
-flash() { "$source/tools/flash" image "$@" --host-name bess1 --user ops --ssh-key key.pub --config edge.toml >said 2>&1; }
+flash() {
+  "$source/tools/flash" image "$@" --host-name bess1 --user ops --ssh-key key.pub \
+    --config edge.toml >said 2>&1
+}
 boot_file() { mcopy -n -i "$1@@1048576" "::$2" - 2>/dev/null; }
 root_file() { debugfs -R "cat $2" "$1?offset=$((34816 * 512))" 2>/dev/null; }
 expect() { grep -qF -- "$2" <<<"$1" || fail "$3: \"$2\" is not in: $1"; }
 
 before=$(sha256sum bookworm.img)
-flash bookworm.img --out out.img --package "$package" --wifi "the house" --wifi-password-file wifi --wifi-country BE --ntp be.pool.ntp.org ||
+flash bookworm.img --out out.img --package "$package" --wifi "the house" --wifi-password-file wifi \
+  --wifi-country BE --ntp be.pool.ntp.org ||
   fail "bookworm: $(cat said)"
 [ "$before" = "$(sha256sum bookworm.img)" ] || fail "the given image was changed"
 custom=$(boot_file out.img custom.toml)
-for line in 'hostname = "bess1"' 'name = "ops"' 'authorized_keys = ["ssh-ed25519 AAAA' 'timezone = "Europe/Brussels"' \
-  'ssid = "the house"' 'password = "pass \"word"' 'country = "BE"'; do expect "$custom" "$line" "bookworm's custom.toml"; done
+for line in 'hostname = "bess1"' 'name = "ops"' 'authorized_keys = ["ssh-ed25519 AAAA' \
+  'timezone = "Europe/Brussels"' \
+  'ssid = "the house"' 'password = "pass \"word"' 'country = "BE"'; do expect "$custom" "$line" \
+  "bookworm's custom.toml"; done
 python3 -c 'import tomllib, sys; tomllib.loads(sys.argv[1])' "$custom" ||
   fail "custom.toml is no TOML"
 [ "$(root_file out.img /etc/bess/edge.toml)" = "$(cat edge.toml)" ] ||
@@ -60,8 +70,9 @@ python3 -c 'import tomllib, sys; tomllib.loads(sys.argv[1])' "$custom" ||
 root_file out.img /var/lib/bess-first-boot/bess-edge_1.0_arm64.deb | cmp -s - "$package" ||
   fail "the package is not inside"
 expect "$(root_file out.img /etc/systemd/timesyncd.conf.d/bess.conf)" "NTP=be.pool.ntp.org" "NTP"
-expect "$(debugfs -R "stat /var/lib/bess-first-boot/install" "out.img?offset=$((34816 * 512))" 2>/dev/null)" "Mode:  0755" "the installer's mode"
-expect "$(debugfs -R "stat /etc/systemd/system/multi-user.target.wants/bess-first-boot.service" "out.img?offset=$((34816 * 512))" 2>/dev/null)" \
+stat_in() { debugfs -R "stat $1" "out.img?offset=$((34816 * 512))" 2>/dev/null; }
+expect "$(stat_in /var/lib/bess-first-boot/install)" "Mode:  0755" "the installer's mode"
+expect "$(stat_in /etc/systemd/system/multi-user.target.wants/bess-first-boot.service)" \
   "symlink" "the unit is enabled"
 
 flash older.img --out out.img --package "$package" ||
@@ -70,7 +81,8 @@ expect "$(boot_file out.img firstrun.sh)" "set_hostname 'bess1'" "firstrun.sh"
 expect "$(boot_file out.img cmdline.txt)" "systemd.run=/boot/firmware/firstrun.sh" "cmdline.txt"
 
 xz -k0 trixie.img
-flash trixie.img.xz --out out.img --package "$package" --wifi "the house" --wifi-password-file wifi --wifi-country BE || fail "trixie: $(cat said)"
+flash trixie.img.xz --out out.img --package "$package" --wifi "the house" \
+  --wifi-password-file wifi --wifi-country BE || fail "trixie: $(cat said)"
 expect "$(boot_file out.img user-data)" 'hostname: "bess1"' "trixie's user-data"
 expect "$(boot_file out.img network-config)" '"the house":' "trixie's network-config"
 expect "$(boot_file out.img meta-data)" 'instance-id: bess-' "trixie's meta-data"
@@ -80,7 +92,8 @@ boot_file out.img bess/bess-edge_1.0_arm64.deb | cmp -s - "$package" ||
 [ "$(boot_file out.img bess/edge.toml)" = "$(cat edge.toml)" ] ||
   fail "trixie: the settings are not on the boot partition"
 expect "$(boot_file out.img bess/install)" "cd /boot/firmware/bess" "trixie's installer"
-expect "$(boot_file out.img user-data)" "/boot/firmware/bess/start" "trixie's user-data starts the installer"
+expect "$(boot_file out.img user-data)" "/boot/firmware/bess/start" \
+  "trixie's user-data starts the installer"
 boot_file out.img bess/install | sh -n || fail "trixie's installer is no shell"
 cmp -s <(tail -c +$((34816 * 512 + 1)) out.img) <(tail -c +$((34816 * 512 + 1)) trixie.img) ||
   fail "trixie: the system partition was written"
@@ -94,7 +107,8 @@ if python3 -c 'import yaml' 2>/dev/null; then
 import sys, yaml
 found = yaml.safe_load(sys.stdin)
 assert found["bootcmd"][0][:2] == ["sh", "-c"] and "bess/start" in found["bootcmd"][0][2], found
-assert found["users"][0]["name"] == "ops" and found["timezone"] == "Europe/Brussels", found' || fail "user-data is no YAML of cloud-init"
+assert found["users"][0]["name"] == "ops" and found["timezone"] == "Europe/Brussels", found' ||
+  fail "user-data is no YAML of cloud-init"
 fi
 
 refuses() {  # refuses WHAT LINE ARGUMENTS...: exit code 1, one line, nothing left
@@ -111,20 +125,25 @@ head -c $(($(stat -c %s trixie.img.xz) / 2)) trixie.img.xz >cut.img.xz
 cp bookworm.img booted.img
 echo "root=PARTUUID=1-02 rootwait" | mcopy -o -i booted.img@@1048576 - ::cmdline.txt
 refuses "no image" "noise.img: is no disk image" noise.img --package "$package"
-refuses "a truncated .xz" "cut.img.xz: cannot be unpacked, it is damaged or not whole" cut.img.xz --package "$package"
+refuses "a truncated .xz" "cut.img.xz: cannot be unpacked, it is damaged or not whole" cut.img.xz \
+  --package "$package"
 head -c 20000000 bookworm.img >cut.img
 refuses "a truncated image" "cut.img: is not whole" cut.img --package "$package"
 refuses "a missing image" "absent.img: no such image" absent.img --package "$package"
 refuses "another release" "holds release bullseye" bullseye.img --package "$package"
 refuses "trixie without cloud-init" "trixie without cloud-init" old_trixie.img --package "$package"
 refuses "an image that was booted" "was booted already" booted.img --package "$package"
-refuses "another architecture" "is for armhf, the machine is arm64" bookworm.img --package "$(made_up_package packages armhf 1.0)"
+refuses "another architecture" "is for armhf, the machine is arm64" bookworm.img \
+  --package "$(made_up_package packages armhf 1.0)"
 spoil='echo >>student_weights.h'
-refuses "a header that was not proved" "not what was proved" bookworm.img --package "$(made_up_package spoilt arm64 1.1)"
+refuses "a header that was not proved" "not what was proved" bookworm.img \
+  --package "$(made_up_package spoilt arm64 1.1)"
 spoil='rm certificate.json'
-refuses "no certificate" "a package without a certificate is not installed" bookworm.img --package "$(made_up_package spoilt arm64 1.2)"
+refuses "no certificate" "a package without a certificate is not installed" bookworm.img \
+  --package "$(made_up_package spoilt arm64 1.2)"
 spoil='sed -i "s/PROPERTY_3 0/PROPERTY_3 7/" student_weights.h'
-refuses "violations" "violations of properties 1 / 2 / 3: [0, 0, 7]" bookworm.img --package "$(made_up_package spoilt arm64 1.3)"
+refuses "violations" "violations of properties 1 / 2 / 3: [0, 0, 7]" bookworm.img \
+  --package "$(made_up_package spoilt arm64 1.3)"
 spoil=''
 settings_refused() {  # settings_refused WHAT LINE: by the edge's reader, before anything is written
   refuses "$1" "$2" bookworm.img --package "$package"
@@ -138,17 +157,20 @@ if [ -x "${BESS_PROGRAMS:-$source/build}/bess-edge" ]; then
 fi
 wifi_refused() {  # wifi_refused WHAT LINE PASSWORD COUNTRY
   printf '%s\n' "$3" >wifi
-  refuses "$1" "$2" bookworm.img --package "$package" --wifi house --wifi-password-file wifi --wifi-country "$4"
+  refuses "$1" "$2" bookworm.img --package "$package" --wifi house --wifi-password-file wifi \
+    --wifi-country "$4"
 }
 wifi_refused "a short Wi-Fi password" "7 characters are no password of WPA" seven77 BE
 wifi_refused "a country of three letters" "--wifi-country BEL: is no country" "long enough" BEL
 wifi_refused "a country in small letters" "--wifi-country be: is no country" "long enough" be
 code=0
-"$source/tools/flash" image bookworm.img --out none.img --host-name bess1 --user root --ssh-key key.pub --config edge.toml >said 2>&1 || code=$?
+"$source/tools/flash" image bookworm.img --out none.img --host-name bess1 --user root \
+  --ssh-key key.pub --config edge.toml >said 2>&1 || code=$?
 [ $code -eq 2 ] && grep -q -- "--user root: Raspberry Pi OS gives root no key" said ||
   fail "user root, exit code $code: $(cat said)"
 printf 'control = = true\n' >edge.toml
-refuses "settings that are no TOML" "edge.toml: Invalid value (at line 1" bookworm.img --package "$package"
+refuses "settings that are no TOML" "edge.toml: Invalid value (at line 1" bookworm.img \
+  --package "$package"
 settings
 cp bookworm.img none.img
 before=$(sha256sum none.img)
@@ -165,12 +187,14 @@ flash bookworm.img --out absent/out.img --package "$package" || code=$?
 sed -i '/^Package: libcurl4$/,/^$/d' tree-bookworm/var/lib/dpkg/status
 image_of lacking bookworm init_config 2>/dev/null || true
 debugfs -w -R "rm /var/lib/dpkg/status" "lacking.img?offset=$((34816 * 512))" 2>/dev/null
-debugfs -w -R "write tree-bookworm/var/lib/dpkg/status /var/lib/dpkg/status" "lacking.img?offset=$((34816 * 512))" 2>/dev/null
+debugfs -w -R "write tree-bookworm/var/lib/dpkg/status /var/lib/dpkg/status" \
+  "lacking.img?offset=$((34816 * 512))" 2>/dev/null
 export http_proxy=http://127.0.0.1:9
 code=0
 flash lacking.img --out none2.img --package "$package" || code=$?
 unset http_proxy
-[ $code -eq 1 ] && grep -q "Debian's archive does not answer: E: .*--debs FOLDER" said || fail "no network, exit code $code: $(cat said)"
+[ $code -eq 1 ] && grep -q "Debian's archive does not answer: E: .*--debs FOLDER" said ||
+  fail "no network, exit code $code: $(cat said)"
 [ ! -e none2.img ] && [ ! -e none2.img.new ] || fail "no network: something is left"
 echo "-----BEGIN OPENSSH PRIVATE KEY-----" >key.pub
 refuses "a private key" "key.pub: is no public ssh key" bookworm.img --package "$package"

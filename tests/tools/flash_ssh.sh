@@ -32,7 +32,8 @@ stand_in there/dpkg-query <<'SH'
 SH
 stand_in there/df <<'SH'
 #!/bin/sh
-printf 'Filesystem 1024-blocks Used Available Capacity Mounted\n/dev/x 9 9 %s 9%% /\n' "$(cat "$MACHINE/free_kb")"
+echo "Filesystem 1024-blocks Used Available Capacity Mounted"
+echo "/dev/x 9 9 $(cat "$MACHINE/free_kb") 9% /"
 SH
 stand_in there/systemctl <<'SH'
 #!/bin/sh
@@ -72,7 +73,8 @@ flash() { "$source/tools/flash" ssh ops@edge "$@" >said 2>&1; }
 
 printf 'phase=confirmed\nversion=2.0\n' >machine/state
 flash --package "$package" --config edge.toml || fail "an installation: $(cat said)"
-grep -q -- "--force-confold /var/tmp/bess-edge-" machine/installed || fail "apt-get was not asked: $(cat machine/installed)"
+grep -q -- "--force-confold /var/tmp/bess-edge-" machine/installed ||
+  fail "apt-get was not asked: $(cat machine/installed)"
 grep -q "2.0 has confirmed itself" said || fail "the confirmation is not told: $(cat said)"
 [ "$(cat machine/settings)" = "control = false" ] || fail "the settings were not sent"
 
@@ -80,7 +82,8 @@ rm machine/installed
 printf 'phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=the unit failed\n' >machine/state
 code=0
 flash --package "$package" --config edge.toml || code=$?
-[ $code -eq 1 ] && grep -q "2.0 was rolled back to 1.0: the unit failed" said || fail "a roll-back, exit code $code: $(cat said)"
+[ $code -eq 1 ] && grep -q "2.0 was rolled back to 1.0: the unit failed" said ||
+  fail "a roll-back, exit code $code: $(cat said)"
 
 # Broken while apt-get works; a machine that does not come back; what is left here.
 mv bin/there/apt-get apt-get
@@ -88,12 +91,14 @@ printf '#!/bin/sh\nexit 255\n' >bin/there/apt-get
 chmod 755 bin/there/apt-get
 code=0
 flash --package "$package" || code=$?
-[ $code -eq 1 ] && grep -q "the connection broke while apt-get worked; it goes on there" said || fail "a cut: exit code $code: $(cat said)"
+[ $code -eq 1 ] && grep -q "the connection broke while apt-get worked; it goes on there" said ||
+  fail "a cut: exit code $code: $(cat said)"
 mv apt-get bin/there/apt-get
 rm machine/state
 code=0
 BESS_FLASH_POLL_S=0 TMPDIR=$folder/tmp flash --package "$package" --config edge.toml || code=$?
-[ $code -eq 1 ] && grep -q "has not answered for 60 looks; 2.0 is on trial there" said || fail "a host that dies: exit code $code: $(cat said)"
+[ $code -eq 1 ] && grep -q "has not answered for 60 looks; 2.0 is on trial there" said ||
+  fail "a host that dies: exit code $code: $(cat said)"
 [ -z "$(ls tmp)" ] || fail "left behind: $(ls tmp)"
 printf 'phase=confirmed\nversion=2.0\n' >machine/state
 
@@ -110,7 +115,8 @@ touch machine/refuses
 refuses "refused ssh" "Permission denied (publickey).; nothing was changed" --package "$package"
 rm machine/refuses
 echo armhf >machine/architecture
-refuses "another architecture" "is for arm64, the machine is armhf; make it with: tools/package armhf" --package "$package"
+refuses "another architecture" \
+  "is for arm64, the machine is armhf; make it with: tools/package armhf" --package "$package"
 echo arm64 >machine/architecture
 echo 9000 >machine/free_kb
 refuses "a full disk" "has 8 MB free" --package "$package"
@@ -121,16 +127,19 @@ printf 'phase=confirmed\nversion=1.0\n' >machine/state
 flash --package "$old" --force --no-wait || fail "--force: $(cat said)"
 grep -q -- --allow-downgrades machine/installed || fail "--force does not reach apt-get"
 spoil='echo >>student_weights.h'
-refuses "a foreign certificate" "not what was proved" --package "$(made_up_package spoilt arm64 3.0)"
+refuses "a foreign certificate" "not what was proved" \
+  --package "$(made_up_package spoilt arm64 3.0)"
 spoil='rm certificate.json'
 spoil=''
 truncated=$(made_up_package spoilt arm64 3.2)
 truncate -s -200 "$truncated"
 refuses "a truncated package" "its archive cannot be read to the end" --package "$truncated"
-"$source/tools/packaging/check_package" "$truncated" >said 2>&1 && fail "a truncated package is handed on"
+"$source/tools/packaging/check_package" "$truncated" >said 2>&1 &&
+  fail "a truncated package is handed on"
 "$source/tools/packaging/check_package" "$package" || fail "a good package is not handed on"
 spoil='rm certificate.json'
-refuses "no certificate" "a package without a certificate is not installed" --package "$(made_up_package spoilt arm64 3.1)"
+refuses "no certificate" "a package without a certificate is not installed" \
+  --package "$(made_up_package spoilt arm64 3.1)"
 spoil=''
 echo "no package" >noise.deb
 refuses "no package" "noise.deb: is no package of bess-edge" --package noise.deb

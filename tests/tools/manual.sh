@@ -3,7 +3,9 @@
 source=$1 folder=$2
 shift 2
 fail() { echo "$*"; exit 1; }
-command -v help2man >/dev/null || { echo "skipped: help2man is absent (tools/setup --test)"; exit 77; }
+command -v help2man >/dev/null || {
+  echo "skipped: help2man is absent (tools/setup --test)"; exit 77
+}
 rm -rf "$folder"
 export SOURCE_DATE_EPOCH=1700000000
 "$source/tools/manual" --out "$folder/a" "$@" || fail "tools/manual fails"
@@ -19,7 +21,8 @@ check_page() {  # check_page COMMAND...: its page has every option of its help
     grep -qF -e "${option//-/\\-}" "$page" || fail "$name.1 does not know $option"
   done
   if command -v man >/dev/null; then
-    [ -z "$(man --warnings -l "$page" 2>&1 >/dev/null)" ] || fail "$name.1 is not clean: $(man --warnings -l "$page" 2>&1 >/dev/null)"
+    [ -z "$(man --warnings -l "$page" 2>&1 >/dev/null)" ] ||
+      fail "$name.1 is not clean: $(man --warnings -l "$page" 2>&1 >/dev/null)"
   fi
 }
 pages=0
@@ -44,7 +47,9 @@ expect() {  # expect WANTED WORDS...
   got=$(offered "$@")
   [ "$got" = "$wanted" ] || fail "'$*': offers '$got', not '$wanted'"
 }
-for program in "$@"; do . "$folder/a/completions/$(basename "$program")" || fail "a completion is no bash"; done
+for program in "$@"; do
+  . "$folder/a/completions/$(basename "$program")" || fail "a completion is no bash"
+done
 expect "train" bess-train trai
 expect "prices" bess-train pr
 expect "fetch" bess-train prices fe

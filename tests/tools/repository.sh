@@ -14,7 +14,8 @@ GNUPGHOME=$(mktemp -d)  # a short path: gpg's agent listens at a socket in it
 export GNUPGHOME
 trap 'gpgconf --kill gpg-agent; rm -rf "$GNUPGHOME"' EXIT
 for name in first second; do
-  gpg --batch --quiet --pinentry-mode loopback --passphrase '' --quick-generate-key "$name@example.org" ed25519 sign 2>/dev/null
+  gpg --batch --quiet --pinentry-mode loopback --passphrase '' \
+    --quick-generate-key "$name@example.org" ed25519 sign 2>/dev/null
 done
 made_up_package packages amd64 1.0 >/dev/null
 export BESS_PACKAGES=$folder/packages
@@ -51,9 +52,12 @@ refuses "the same version with other bytes" "version 2.0 is there with other byt
 made_up_package spoilt amd64 0.9 >/dev/null
 refuses "an older version" "is older than bess-edge_2.0_amd64.deb; --older"
 made_up_package spoilt amd64 3.0 >/dev/null
-mkdir no_gpg && printf '#!/bin/sh\ncase "$*" in *--clearsign*) exit 2 ;; esac\nexec %s "$@"\n' "$(command -v gpg)" >no_gpg/gpg && chmod 755 no_gpg/gpg
+mkdir no_gpg && printf '#!/bin/sh\ncase "$*" in *--clearsign*) exit 2 ;; esac\nexec %s "$@"\n' \
+  "$(command -v gpg)" >no_gpg/gpg && chmod 755 no_gpg/gpg
 PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" "what is served is as it was"
-packages_now() { grep -h ^Version: repository/dists/stable/main/binary-amd64/Packages | sort | tr '\n' ' '; }
+packages_now() {
+  grep -h ^Version: repository/dists/stable/main/binary-amd64/Packages | sort | tr '\n' ' '
+}
 made_up_package spoilt amd64 0.8 >/dev/null
 repository --key first@example.org --older --phased 30 ||
   fail "an older version, with the word: $(cat said)"
@@ -66,25 +70,39 @@ repository --key first@example.org --phased 130 || code=$?
 
 # A machine that has 1.0, with this machine id; what would apt do?
 mkdir -p apt/{lists/partial,archives/partial,parts}
-printf 'Package: bess-edge\nStatus: install ok installed\nVersion: 1.0\nArchitecture: amd64\nMaintainer: x <x@example.org>\nDescription: x\n\n' >apt/status
+installed() {  # installed NAME VERSION: a paragraph of dpkg's status
+  printf '%s\n' "Package: $1" "Status: install ok installed" "Version: $2" "Architecture: amd64" \
+    "Maintainer: x <x@example.org>" "Description: x" ""
+}
+installed bess-edge 1.0 >apt/status
 for name in libc6 libcurl4; do
-  printf 'Package: %s\nStatus: install ok installed\nVersion: 9\nArchitecture: amd64\nMaintainer: x <x@example.org>\nDescription: x\n\n' $name >>apt/status
+  installed $name 9 >>apt/status
 done
-sources() { echo "deb [signed-by=$folder/$1] file:$folder/repository ${2:-stable} main" >apt/sources.list; }
+sources() {
+  echo "deb [signed-by=$folder/$1] file:$folder/repository ${2:-stable} main" >apt/sources.list
+}
 apt() {
-  apt-get -o Dir::Etc::SourceList="$folder/apt/sources.list" -o Dir::Etc::SourceParts="$folder/apt/parts" -o Dir::State="$folder/apt" \
-    -o Dir::State::Lists="$folder/apt/lists" -o Dir::State::Status="$folder/apt/status" -o Dir::Cache="$folder/apt" -o APT::Sandbox::User=root \
-    -o Dir::Etc::Preferences=/dev/null -o Dir::Etc::PreferencesParts="$folder/apt/parts" -o APT::Architecture=amd64 "$@"
+  apt-get -o Dir::Etc::SourceList="$folder/apt/sources.list" \
+    -o Dir::Etc::SourceParts="$folder/apt/parts" -o Dir::State="$folder/apt" \
+    -o Dir::State::Lists="$folder/apt/lists" -o Dir::State::Status="$folder/apt/status" \
+    -o Dir::Cache="$folder/apt" -o APT::Sandbox::User=root \
+    -o Dir::Etc::Preferences=/dev/null -o Dir::Etc::PreferencesParts="$folder/apt/parts" \
+    -o APT::Architecture=amd64 "$@"
 }
 gpg --batch --export second@example.org >other.gpg
 sources other.gpg
-if apt update -o APT::Update::Error-Mode=any >said 2>&1; then fail "apt takes a repository of a foreign key"; fi
+if apt update -o APT::Update::Error-Mode=any >said 2>&1; then
+  fail "apt takes a repository of a foreign key"
+fi
 sources repository/bess.gpg
 apt update >said 2>&1 || fail "apt does not take the repository: $(tail -n 2 said)"
 upgrades() {  # of twenty machines
   local number=0 id
   for id in $(seq 1 20); do
-    if apt upgrade -s -o APT::Machine-ID="$(printf '%032x' "$id")" 2>/dev/null | grep -q '^Inst bess-edge'; then number=$((number + 1)); fi
+    if apt upgrade -s -o APT::Machine-ID="$(printf '%032x' "$id")" 2>/dev/null |
+      grep -q '^Inst bess-edge'; then
+      number=$((number + 1))
+    fi
   done
   echo $number
 }
@@ -97,7 +115,8 @@ awk 'BEGIN { RS = ""; ORS = "\n\n" } !/^Package: bess-edge\n/' apt/status.kept >
 for suite in stable full; do
   sources repository/bess.gpg $suite
   apt update >said 2>&1 || fail "apt does not take $suite: $(tail -n 2 said)"
-  apt install -s bess-edge 2>/dev/null | sed -n "s/^Inst bess-edge (\([^ ]*\).*/$suite \1/p" >>new_machines
+  apt install -s bess-edge 2>/dev/null |
+    sed -n "s/^Inst bess-edge (\([^ ]*\).*/$suite \1/p" >>new_machines
 done
 [ "$(cat new_machines)" = "stable 2.0
 full 1.0" ] || fail "new machines get $(tr '\n' ' ' <new_machines)"
@@ -126,4 +145,5 @@ for _ in 1 2 3 4 5 6 7 8; do repository --key first@example.org --back || { code
 
 [ $failures -eq 0 ] || exit 1
 cd / && rm -rf "$folder"
-echo "repository: at 0, 30, 100 % $none, $some, $all of 20 machines would upgrade; a foreign key is refused"
+echo "repository: at 0, 30, 100 % $none, $some, $all of 20 machines would upgrade;" \
+  "a foreign key is refused"

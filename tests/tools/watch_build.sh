@@ -17,9 +17,11 @@ echo "one.cpp:3:5: error: no such thing"
 exit 1
 END
 
-WATCH_BUILD_EVERY_S=1 "$source/tools/watch_build" log sh slow >said 2>&1 || fail "a build that succeeds is called failed"
+WATCH_BUILD_EVERY_S=1 "$source/tools/watch_build" log sh slow >said 2>&1 ||
+  fail "a build that succeeds is called failed"
 grep -q '^\[1/2\] compiled, ' said || fail "it does not tell how far it is"
-[ "$(tail -n 1 said)" = "[2/2] Linking CXX executable two" ] || fail "it does not end with the build's last line"
+[ "$(tail -n 1 said)" = "[2/2] Linking CXX executable two" ] ||
+  fail "it does not end with the build's last line"
 
 "$source/tools/watch_build" log sh slow >said 2>&1 || fail "a build that succeeds is called failed"
 [ "$(wc -l <said)" -eq 1 ] || fail "more than a line a minute where there is no terminal"
@@ -29,7 +31,8 @@ grep -q '^one.cpp:3:5: error: no such thing' said || fail "the compiler's words 
 grep -q '^\[1/2\]' said && fail "the steps before a failure are shown"
 
 # On a terminal: one row, drawn again and again.
-script -qec "'$source/tools/watch_build' log sh slow" /dev/null >said 2>&1 || fail "it fails on a terminal"
+script -qec "'$source/tools/watch_build' log sh slow" /dev/null >said 2>&1 ||
+  fail "it fails on a terminal"
 [ "$(grep -c . said)" -le 2 ] || fail "more than one row on a terminal"
 grep -q "$(printf '\r')" said || fail "the row is not drawn again"
 exit 0

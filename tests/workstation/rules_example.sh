@@ -13,14 +13,18 @@ sed -n '/^```sh$/,/^```$/{/^```/d;p}' "$source/workstation/README.md" |
   sed 's/\(train --prices.*\)/\1 \&\& cp teacher.bin before.bin/' >"$folder/example.sh"
 grep -q "rules check" "$folder/example.sh" || fail "workstation/README.md shows no example"
 cd "$folder" || exit 1
-grep -q "^build/bess-train export .*student_weights.h" example.sh || fail "the example ends with no header"
+grep -q "^build/bess-train export .*student_weights.h" example.sh ||
+  fail "the example ends with no header"
 [ -n "$BESS_README_FULL" ] || sed -i '/^build\/bess-train distil /,$d' example.sh
 sh -e example.sh >said 2>&1 || fail "the example fails"
 cmp -s teacher.bin before.bin || fail "the teacher was touched"
-grep -q '^no dear charging  *student and guard  *price at least 301' said || fail "the rule binds student and guard"
+grep -q '^no dear charging  *student and guard  *price at least 301' said ||
+  fail "the rule binds student and guard"
 grep -q '^no dear charging  *[-+][0-9.]* ' said || fail "the rule has no price"
 [ -n "$BESS_README_FULL" ] || exit 0
 header=student/student_weights.h
-grep -q -- "-  no dear charging: .*(the guard's too)" $header || fail "the certificate does not name the rule"
+grep -q -- "-  no dear charging: .*(the guard's too)" $header ||
+  fail "the certificate does not name the rule"
 grep -q "BESS_STUDENT_GUARD_RULE_COUNT 1" $header || fail "the guard has no table"
-grep -q 'rule "no dear charging".*: 0 violations in 4167936000' said || fail "the rule was not proved"
+grep -q 'rule "no dear charging".*: 0 violations in 4167936000' said ||
+  fail "the rule was not proved"

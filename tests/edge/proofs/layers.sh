@@ -17,18 +17,21 @@ layer() {
   shift
   [ -e "$place" ] || { echo "$place is not there: was it renamed?"; status=1; return; }
   allowed=$(printf '|%s' "$@")
-  blame "$(includes '"' "$place" | grep -vE ":#include \"(${allowed#|})(/|\")")" "$place may include: $*"
+  blame "$(includes '"' "$place" | grep -vE ":#include \"(${allowed#|})(/|\")")" \
+    "$place may include: $*"
 }
 layer shared                        shared
 layer shared/host                   shared
-blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" "the integer part of shared knows no host"
+blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" \
+  "the integer part of shared knows no host"
 # The edge, from the ground up. What uses the heap at start-up is named: the control path may not.
 layer edge/base                     edge/base shared
 layer edge/memory                   edge/memory edge/base shared
 layer edge/control                  edge/control edge/base shared
 layer edge/supervision              edge/supervision edge/control edge/base shared
 layer edge/site                     edge/site edge/control edge/base shared
-layer edge/loop                     edge/loop edge/supervision edge/site edge/control edge/base shared
+layer edge/loop                     edge/loop edge/supervision edge/site edge/control edge/base \
+  shared
 layer edge/registers                edge/registers edge/control/power_order.h edge/base shared
 layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
 layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
@@ -42,14 +45,17 @@ layer edge/recording                edge/recording $grounds
 layer edge/storage                  edge/storage edge/settings $grounds
 layer edge/program                  edge/program edge/storage edge/recording edge/settings $grounds
 layer edge/update                   edge/update edge/log edge/control edge/base shared
-layer edge/commands                 edge/commands edge/update edge/account edge/why edge/program edge/storage edge/recording edge/settings $grounds
+layer edge/commands                 edge/commands edge/update edge/account edge/why edge/program \
+  edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # Beside the controller: they read what the log wrote.
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/beside                   edge/beside edge/log edge/control edge/base shared
-layer edge/notify                   edge/notify edge/beside edge/account edge/log edge/control edge/prices/http_secrets.h edge/base shared
-layer edge/page         edge/page edge/beside edge/why edge/log edge/loop edge/control edge/base shared
+layer edge/notify                   edge/notify edge/beside edge/account edge/log edge/control \
+  edge/prices/http_secrets.h edge/base shared
+layer edge/page         edge/page edge/beside edge/why edge/log edge/loop edge/control edge/base \
+  shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
   grep -vE '^edge/(why/|update/|beside/|notify/|page/)')" \
@@ -61,7 +67,8 @@ layer tools/settle                  tools shared
 layer tools/sim                     tools shared
 layer tools/site                    tools/site tools/sim shared
 # Independent of the simulators, whose mistakes it must not share.
-layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h edge/loop edge/control edge/base shared
+layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h \
+  edge/loop edge/control edge/base shared
 # Beside the real programs it runs the edge's own objects in virtual time.
 h=tools/hil_runner
 around="tools/sim tools/site tools/battery_sim tools/market_sim edge shared"
@@ -89,7 +96,8 @@ layer $w/nn                         $w/nn $w/base shared
 layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base shared
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
-layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
+layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base \
+  shared student_weights.h
 taught="$w/student $w/correction $w/rl $w/rules $w/env $w/market/series $w/base"
 layer $w/report/figures  $w/report/figures $w/backtest $w/market/statistics $taught shared
 shown="$w/planners/foresight.h $w/planners/baselines.h"
@@ -112,9 +120,11 @@ only curl/   'edge/prices/|edge/notify/curl_handle.h:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-only pugixml '(workstation/market/feed/entsoe_element.h|(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp):' 'edge shared workstation tools'
+reports='(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp'
+only pugixml "(workstation/market/feed/entsoe_element.h|$reports):" 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'
-blame "$(grep -rnHE "^#include $io" edge/control edge/supervision edge/site edge/loop)" "the control layer knows no io"
+blame "$(grep -rnHE "^#include $io" edge/control edge/supervision edge/site edge/loop)" \
+  "the control layer knows no io"
 exit $status

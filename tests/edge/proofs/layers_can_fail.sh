@@ -3,7 +3,8 @@
 # FOLDER gets wrong lines, and each must be named; without them the copy must pass.
 tree=$1 copy=$2
 proof=$tree/tests/edge/proofs/layers.sh
-rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" "$tree/workstation" "$copy" || exit 1
+rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" \
+  "$tree/workstation" "$copy" || exit 1
 mkdir "$copy/tests" && cp -R "$tree/tests/trial" "$copy/tests" || exit 1
 sh "$proof" "$copy" || { echo "layers.sh complains about a right copy"; exit 1; }
 places=$copy/places

@@ -16,14 +16,18 @@ aarch64="$aarch64|[su]cvtf"
 armhf='v(add|sub|mul|nmul|div|mla|mls|nmla|nmls|fma|fms|sqrt|abs|neg|cmp|cmpe|cvt[a-z]?)(eq|ne|cs|cc|mi|pl|ge|lt|gt|le)?\.[a-z0-9.]*f(16|32|64)[a-z0-9.]*'
 for name in $names; do
   own=$(printf '%s\n' "$code" | awk -v name="$name.cpp.o" '
-    /file format/ { inside = match($0, /[A-Za-z0-9_]+\.cpp\.o/) && substr($0, RSTART, RLENGTH) == name; next }
+    /file format/ {
+      inside = match($0, /[A-Za-z0-9_]+\.cpp\.o/) && substr($0, RSTART, RLENGTH) == name
+      next
+    }
     inside')
   if [ -z "$own" ]; then
     echo "$name.cpp.o is in none of the files: was it renamed?"
     status=1
     continue
   fi
-  found=$(printf '%s\n' "$own" | grep -E "^ *[0-9a-f]+:[[:space:]]+($sse|$x87|$aarch64|$armhf)([[:space:]]|\$)" | head -n 10)
+  found=$(printf '%s\n' "$own" |
+    grep -E "^ *[0-9a-f]+:[[:space:]]+($sse|$x87|$aarch64|$armhf)([[:space:]]|\$)" | head -n 10)
   if [ -n "$found" ]; then
     echo "$name.cpp.o holds floating-point instructions:"
     printf '%s\n' "$found"

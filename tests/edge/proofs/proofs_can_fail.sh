@@ -12,7 +12,8 @@ if found=$(sh "$folder/no_allocator.sh" "$nm" guilty_object "$guilty"); then
   echo "no_allocator.sh passed the guilty object"
   exit 1
 fi
-for symbol in malloc 'operator new' 'basic_string' __cxa_throw fprintf '__throw_bad_function_call'; do
+for symbol in malloc 'operator new' 'basic_string' __cxa_throw fprintf \
+  '__throw_bad_function_call'; do
   expect "$symbol" "$found"
 done
 if found=$(sh "$folder/no_float.sh" "$objdump" guilty_object "$guilty"); then

@@ -15,7 +15,10 @@ stand_in systemctl <<'SH'
 #!/bin/sh
 cd "$BESS_ROOT/fake" || exit 1
 echo "$*" >>systemctl
-started() { basename "$(readlink "$BESS_ROOT/var/lib/bess-edge/current")" >running; echo 0 >cycle; echo active >active; }
+started() {
+  basename "$(readlink "$BESS_ROOT/var/lib/bess-edge/current")" >running
+  echo 0 >cycle; echo active >active
+}
 case "$*" in
   *MainPID*)
     mkdir -p "$BESS_ROOT/proc/7"
@@ -24,7 +27,10 @@ case "$*" in
     echo MainPID=7 ;;
   show*)
     # What crashes is started again and again.
-    if [ "$(cat "does_$(cat running)" 2>/dev/null)" = crash ]; then echo $(($(cat restarts) + 3)) >restarts; started; fi
+    if [ "$(cat "does_$(cat running)" 2>/dev/null)" = crash ]; then
+      echo $(($(cat restarts) + 3)) >restarts
+      started
+    fi
     echo "ActiveState=$(cat active)"; echo "NRestarts=$(cat restarts)" ;;
   *is-active*) [ "$(cat active)" = active ] ;;
   reload*) echo $(($(cat restarts) + 1)) >restarts; started ;;
@@ -68,7 +74,8 @@ SH
   chmod 755 "$1/bin/bess-edge"
   echo "map of $2" >"$1/share/maps/alphaess.toml"
   echo "header of $2" >"$1/share/student_weights.h"
-  printf '{"version": "%s", "student": "45d2cbe3", "signature": "1b13", "header_sha256": "%s"}\n' "$2" \
+  printf '{"version": "%s", "student": "45d2cbe3", "signature": "1b13", "header_sha256": "%s"}\n' \
+    "$2" \
     "$(sha256sum <"$1/share/student_weights.h" | cut -d' ' -f1)" >"$1/share/certificate.json"
   echo "unit of $2" >"$1/systemd/bess-edge.service"
   (cd "$1" && sh -c "${3:-true}")
@@ -81,17 +88,23 @@ machine() {  # with 1.0 confirmed and in control
   BESS_ROOT=$folder/machine$machines
   export BESS_ROOT
   store=$BESS_ROOT/var/lib/bess-edge state=$BESS_ROOT/var/lib/bess-update/state
-  mkdir -p "$BESS_ROOT/fake" "$BESS_ROOT/etc/bess" "$BESS_ROOT/etc/apt/preferences.d" "$BESS_ROOT/run/systemd/system" \
-    "$store/versions" "$BESS_ROOT/var/lib/bess-update" "$BESS_ROOT/usr/lib/systemd/system" "$BESS_ROOT/etc/systemd/system"
-  printf 'good_cycles = 3  # few\ndeadline_s = 300\npoll_s = 20\n' >"$BESS_ROOT/etc/bess/update.conf"
-  printf 'control = true\nmap = "%s/usr/share/bess/maps/alphaess.toml"\n' "$BESS_ROOT" >"$BESS_ROOT/etc/bess/edge.toml"
+  mkdir -p "$BESS_ROOT/fake" "$BESS_ROOT/etc/bess" "$BESS_ROOT/etc/apt/preferences.d" \
+    "$BESS_ROOT/run/systemd/system" \
+    "$store/versions" "$BESS_ROOT/var/lib/bess-update" "$BESS_ROOT/usr/lib/systemd/system" \
+    "$BESS_ROOT/etc/systemd/system"
+  printf 'good_cycles = 3  # few\ndeadline_s = 300\npoll_s = 20\n' \
+    >"$BESS_ROOT/etc/bess/update.conf"
+  printf 'control = true\nmap = "%s/usr/share/bess/maps/alphaess.toml"\n' "$BESS_ROOT" \
+    >"$BESS_ROOT/etc/bess/edge.toml"
   version_into "$store/versions/1.0" 1.0
   ln -s versions/1.0 "$store/current"
   ln -s versions/1.0 "$store/confirmed"
   printf 'phase=confirmed\nversion=1.0\nneeded=3\n' >"$state"
   cd "$BESS_ROOT/fake" || exit 1
-  : >systemctl; echo 1.0 >running; echo active >active; echo 0 >restarts; echo 50 >cycle; echo "ii 1.0" >dpkg
-  echo 'utc,cycle,mode,price_minute_utc,reason,battery_status,price_status,written,missed_ticks,trip,hold_until_utc' >log.csv
+  : >systemctl; echo 1.0 >running; echo active >active; echo 0 >restarts; echo 50 >cycle
+  echo "ii 1.0" >dpkg
+  columns='utc,cycle,mode,price_minute_utc,reason,battery_status,price_status,written,missed_ticks'
+  echo "$columns,trip,hold_until_utc" >log.csv
   minute=0
   for _ in 1 2 3; do tick; done
 }
@@ -133,7 +146,10 @@ judge() {  # until the phase stands, at most so many looks
 expect() {  # expect WHAT PHASE RUNNING [REASON]
   found="$(value phase) $(cat running) $(basename "$(readlink "$store/current")")"
   [ "$found" = "$2 $3 $3" ] || fail "$1: $found, not $2 $3; $(value reason); $(cat said)"
-  case $(value reason) in *"${4:-}"*) ;; *) fail "$1: the reason is \"$(value reason)\", not $4" ;; esac
+  case $(value reason) in
+    *"${4:-}"*) ;;
+    *) fail "$1: the reason is \"$(value reason)\", not $4" ;;
+  esac
   printf '%-46s %-12s %-4s %s\n' "$1" "$2" "$3" "$(value reason | cut -c1-70)"
 }
 
@@ -179,11 +195,14 @@ refused() {  # refused WHAT REASON: the version that ran runs on, untouched
   expect "$1" rolled_back 1.0 "$2"
   grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: what runs was touched"
 }
-machine; upgrade 2.0 'echo x >>share/student_weights.h'; refused "a certificate of another header" "another header"
-machine; upgrade 2.0 "sed -i s/1b13/ffff/ share/certificate.json"; refused "a program that decides otherwise" "signature 1b13"
+machine; upgrade 2.0 'echo x >>share/student_weights.h'
+refused "a certificate of another header" "another header"
+machine; upgrade 2.0 "sed -i s/1b13/ffff/ share/certificate.json"
+refused "a program that decides otherwise" "signature 1b13"
 machine; upgrade 2.0 "" "rm share/maps/alphaess.toml"; refused "a file is missing" "alphaess.toml"
 machine; upgrade 2.0 "" "echo torn >bin/bess-edge"; refused "a torn program" "bin/bess-edge"
-machine; upgrade 2.0 "printf '#!/bin/sh\nexit 139\n' >bin/bess-edge"; refused "a program that does not run" "does not run"
+machine; upgrade 2.0 "printf '#!/bin/sh\nexit 139\n' >bin/bess-edge"
+refused "a program that does not run" "does not run"
 machine; upgrade 2.0 "rm share/certificate.json"; refused "no certificate" "certificate"
 machine; echo unknown_key=1 >>"$BESS_ROOT/etc/bess/edge.toml"; upgrade 2.0
 refused "settings that the new version refuses" "refuses this machine's settings"
@@ -217,12 +236,14 @@ trial announce 1.0; deliver 1.0; trial begin; trial announce 3.0; trial withdraw
 expect "dpkg gives up, what it broke before is mended" confirmed 1.0
 machine; trial announce 2.0; trial withdraw 1.9; [ "$(value phase)" = upgrading ] ||
   fail "another version is withdrawn: $(value phase)"
-machine; echo crash >does_2.0; upgrade 2.0; judge; trial announce 3.0; : >systemctl; trial withdraw 3.0
+machine; echo crash >does_2.0; upgrade 2.0; judge; trial announce 3.0; : >systemctl
+trial withdraw 3.0
 expect "dpkg gives up after a roll-back" rolled_back 1.0 "last"
 trial announce 2.0 && fail "what was rolled back is let in by another's withdrawal"
 trial withdraw 2.0; trial announce 2.0 &&
   fail "what was rolled back is let in by its own withdrawal"
-machine; upgrade 2.0; trial announce 3.0; trial withdraw 3.0; judge; expect "dpkg gives up in a trial" confirmed 2.0
+machine; upgrade 2.0; trial announce 3.0; trial withdraw 3.0; judge
+expect "dpkg gives up in a trial" confirmed 2.0
 machine; touch no_room; upgrade 2.0 &&
   fail "a disk that does not take the version: dpkg is told that all is well"
 grep -q "2.0 cannot be kept: cp: No space left" said ||
@@ -267,31 +288,41 @@ machine; echo crash >does_2.0; echo hang >does_3.0
 upgrade 2.0; upgrade 3.0; judge; expect "two in a row, neither works" rolled_back 1.0
 trial announce 2.0 || fail "a version that was never judged is refused"
 machine; echo every_second >does_2.0; echo every_second >does_3.0
-upgrade 2.0; judge 5; upgrade 3.0; judge 60; expect "two in a row that lose every second" rolled_back 1.0
+upgrade 2.0; judge 5; upgrade 3.0; judge 60
+expect "two in a row that lose every second" rolled_back 1.0
 machine; echo every_second >does_2.0; echo every_second >does_3.0
-upgrade 2.0; judge 60; upgrade 3.0; judge 60; expect "one that does after one that did" rolled_back 1.0
+upgrade 2.0; judge 60; upgrade 3.0; judge 60
+expect "one that does after one that did" rolled_back 1.0
 machine; echo crash >does_3.0
-upgrade 2.0 "sed -i 's/log) cat/log) exit 1; cat/' bin/bess-edge"; upgrade 3.0; judge; expect "the first of two cannot tell" rolled_back 1.0
+upgrade 2.0 "sed -i 's/log) cat/log) exit 1; cat/' bin/bess-edge"; upgrade 3.0; judge
+expect "the first of two cannot tell" rolled_back 1.0
 machine; echo crash >does_2.0; echo crash >does_3.0
 upgrade 2.0; judge; upgrade 3.0; judge; expect "two that are rolled back" rolled_back 1.0
 for version in 2.0 3.0; do trial announce $version &&
   fail "$version is let in again after two"; done
 trial allow 2.0; rm does_2.0; upgrade 2.0; judge; expect "allowed again, and mended" confirmed 2.0
 machine; upgrade 2.0; judge; upgrade 1.0; judge; expect "a downgrade" confirmed 1.0
-machine; upgrade 2.0; judge; trial go-back "it trades too much"; expect "back by hand" rolled_back 1.0 "trades too much"
-machine; upgrade 2.0; echo inactive >active; for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18; do trial look; done
+machine; upgrade 2.0; judge; trial go-back "it trades too much"
+expect "back by hand" rolled_back 1.0 "trades too much"
+machine; upgrade 2.0; echo inactive >active
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18; do trial look; done
 [ "$(value phase)" = trying ] || fail "stopped by a person: $(value phase)"
 machine; trial announce 1.0; deliver 1.0; echo inactive >active; trial begin
 expect "removed, and installed again" confirmed 1.0
 [ "$(cat active)" = active ] || fail "removed, and installed again: the controller does not run"
-machine; upgrade 2.0 "" ""; echo "unit of 2.0, spoilt" >"$BESS_ROOT/usr/lib/systemd/system/bess-edge.service"
+machine; upgrade 2.0 "" ""
+echo "unit of 2.0, spoilt" >"$BESS_ROOT/usr/lib/systemd/system/bess-edge.service"
 echo crash >does_2.0; judge; expect "a unit that is spoilt" rolled_back 1.0
 grep -q "unit of 1.0" "$BESS_ROOT/etc/systemd/system/bess-edge.service" ||
   fail "the version before runs by the new unit"
-machine; upgrade 2.0; judge; echo torn >"$store/versions/2.0/bin/bess-edge"; echo 1.0 >running; trial recover
+machine; upgrade 2.0; judge; echo torn >"$store/versions/2.0/bin/bess-edge"; echo 1.0 >running
+trial recover
 expect "a card that damages what runs" rolled_back 1.0 "damaged"
 # As the service runs it: looks of a second each, and time that is not on the disk at each of them.
-short() { sed -i "s/^poll_s.*/poll_s = 1/; s/^deadline_s.*/deadline_s = 4\nupgrade_s = 4/" "$BESS_ROOT/etc/bess/update.conf"; }
+short() {
+  sed -i "s/^poll_s.*/poll_s = 1/; s/^deadline_s.*/deadline_s = 4\nupgrade_s = 4/" \
+    "$BESS_ROOT/etc/bess/update.conf"
+}
 machine; short; echo hang >does_2.0; upgrade 2.0; timeout 60 "$edge" trial supervise >said 2>&1
 expect "a service that hangs, by the clock" rolled_back 1.0 "0 of 3 good cycles in"
 machine; short; trial announce 2.0; timeout 60 "$edge" trial supervise >said 2>&1
@@ -301,8 +332,11 @@ BESS_CUT_AT=1 BESS_CUT_KIND=full LD_PRELOAD=$cut timeout 10 "$edge" trial superv
 [ $? = 124 ] || fail "a disk that takes nothing: the supervisor has ended: $(cat said)"
 grep -q '^stop' systemctl && fail "a disk that takes nothing: what runs is stopped"
 grep -q "good cycles in" said || fail "a disk that takes nothing: the deadline does not count"
-timeout 60 "$edge" trial supervise >said 2>&1; expect "a disk that takes nothing for a while" rolled_back 1.0
-old_state() { printf 'phase=%s\nversion=1.0\nprevious=0.9\nneeded=3\n' "$1" >"$state"; : >systemctl; }
+timeout 60 "$edge" trial supervise >said 2>&1
+expect "a disk that takes nothing for a while" rolled_back 1.0
+old_state() {
+  printf 'phase=%s\nversion=1.0\nprevious=0.9\nneeded=3\n' "$1" >"$state"; : >systemctl
+}
 for phase in trying going_back; do
   machine; old_state $phase; trial look; trial look
   [ "$(readlink "$store/current") $(cat running)" = "versions/1.0 1.0" ] ||
@@ -312,19 +346,24 @@ done
 # The power between the decision and the start: the cycles in the log are not those of the version
 # that is started.
 machine; echo crash >does_2.0; upgrade 2.0; rm "$state.copy"
-sed -i '/^# crc32/d; s/^mark=.*/mark=/; s/^handed_over=.*/handed_over=0/; s/^fresh=.*/fresh=0/' "$state"
+sed -i '/^# crc32/d; s/^mark=.*/mark=/; s/^handed_over=.*/handed_over=0/; s/^fresh=.*/fresh=0/' \
+  "$state"
 trial recover; judge; expect "the power before a version is started" rolled_back 1.0
 moved_script() { sed "s|/var/lib|$BESS_ROOT&|g; s|/usr/|$BESS_ROOT&|g" "$script" >x; }
 machine; rm "$store/current" "$store/confirmed"; moved_script
 sh x announce 2.0 2>said || fail "where nothing can judge, nothing can be installed: $(cat said)"
 sh x begin 2>said && fail "where nothing can judge, a version is let in"
-machine; moved_script; mkdir "$BESS_ROOT/usr/bin"; ln -s "$store/current/bin/bess-edge" "$BESS_ROOT/usr/bin/"
+machine; moved_script; mkdir "$BESS_ROOT/usr/bin"
+ln -s "$store/current/bin/bess-edge" "$BESS_ROOT/usr/bin/"
 echo "iUR2.0" >dpkg; sh x recover >said 2>&1
-cmp -s "$BESS_ROOT/usr/share/bess/maps/alphaess.toml" "$store/versions/1.0/share/maps/alphaess.toml" ||
+cmp -s "$BESS_ROOT/usr/share/bess/maps/alphaess.toml" \
+  "$store/versions/1.0/share/maps/alphaess.toml" ||
   fail "cut in the first upgrade of an old package: its maps are gone: $(cat said)"
-machine; upgrade 2.0; head -c 40 "$state" >x; mv x "$state"; judge; expect "a damaged state" confirmed 2.0
+machine; upgrade 2.0; head -c 40 "$state" >x; mv x "$state"; judge
+expect "a damaged state" confirmed 2.0
 for file in state state.copy history; do
-  machine; upgrade 2.0; rm "$BESS_ROOT/var/lib/bess-update/$file"; mkdir "$BESS_ROOT/var/lib/bess-update/$file"
+  machine; upgrade 2.0; rm "$BESS_ROOT/var/lib/bess-update/$file"
+  mkdir "$BESS_ROOT/var/lib/bess-update/$file"
   judge; expect "a folder in place of $file" confirmed 2.0
   grep -q confirmed "$BESS_ROOT/var/lib/bess-update/history" ||
     fail "a folder in place of $file: no history"
@@ -337,7 +376,9 @@ machine; upgrade 2.0; : >"$state"; : >"$state.copy"; trial look
 ends() {
   case "$(value phase):$(cat running):$(basename "$(readlink "$store/current")"):$1" in
     confirmed:1.0:1.0:* | confirmed:2.0:2.0:good | rolled_back:1.0:1.0:*) ;;
-    *) fail "$2: $(value phase), $(cat running) runs, $(readlink "$store/current"); $(value reason)" ;;
+    *)
+      fail "$2: $(value phase), $(cat running) runs," \
+        "$(readlink "$store/current"); $(value reason)" ;;
   esac
 }
 steps=0
@@ -348,7 +389,9 @@ for does in good crash; do
       while [ $((n += 1)) -le "${BESS_CUTS:-3}" ]; do
         machine
         echo $does >does_2.0
-        cut_now() { BESS_CUT_AT=$n BESS_CUT_KIND=$kind LD_PRELOAD=$cut "$edge" trial "$@" >said 2>&1; }
+        cut_now() {
+          BESS_CUT_AT=$n BESS_CUT_KIND=$kind LD_PRELOAD=$cut "$edge" trial "$@" >said 2>&1
+        }
         if [ $where = announce ]; then cut_now announce 2.0; else trial announce 2.0; fi
         if [ $? = 0 ] || [ $kind = kill ]; then
           deliver 2.0

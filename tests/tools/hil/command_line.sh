@@ -6,17 +6,21 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 complain() { echo "$*"; exit 1; }
 
-"$program" run --help | grep -q 'bess-hil run tests/scenarios --time both' || complain "no example in --help"
-"$program" run "$scenarios" --list | grep -q '^quiet_hour .*An hour in which nothing goes wrong' || complain "--list"
+"$program" run --help | grep -q 'bess-hil run tests/scenarios --time both' ||
+  complain "no example in --help"
+"$program" run "$scenarios" --list | grep -q '^quiet_hour .*An hour in which nothing goes wrong' ||
+  complain "--list"
 "$program" run "$scenarios" --list --json |
   grep -q '"scenario": *"quiet_hour",.*"time": *"both","real"' || complain "--list --json"
 "$program" run "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" --json >"$work/skip.json" ||
   complain "a skipped run fails"
 grep -q '"disk_full","time": *"virtual","passed": *false,"verdict": *"skipped"' "$work/skip.json" ||
   complain "skipped is passed: $(cat "$work/skip.json")"
-"$program" run "$scenarios/quiet_hour.toml" --json --junit "$work/a.xml" >"$work/a.json" || complain "quiet_hour failed"
+"$program" run "$scenarios/quiet_hour.toml" --json --junit "$work/a.xml" >"$work/a.json" ||
+  complain "quiet_hour failed"
 grep -q '"passed": *1' "$work/a.json" || complain "--json: $(cat "$work/a.json")"
-grep -q '<testcase classname="virtual" name="quiet_hour"' "$work/a.xml" || complain "--junit: $(cat "$work/a.xml")"
+grep -q '<testcase classname="virtual" name="quiet_hour"' "$work/a.xml" ||
+  complain "--junit: $(cat "$work/a.xml")"
 
 # A run repeats to the bit.
 signature() { sed 's/.*"signature": *"\([0-9a-f]*\)".*/\1/'; }
@@ -25,16 +29,22 @@ second=$("$program" run "$scenarios/quiet_hour.toml" --json | signature)
 [ "$first" = "$second" ] || complain "two runs differ: $first $second"
 
 # A scenario that fails says what was expected, what was seen and when, in one line; exit code 1.
-{ cat "$scenarios/quiet_hour.toml"; printf '\n[[expect]]\nfrom_min = 10\ncommand = "none"\n'; } >"$work/wrong.toml"
-"$program" run "$work/wrong.toml" --junit "$work/b.xml" >"$work/wrong.txt" 2>"$work/wrong.err" && complain "wrong.toml passed"
-grep -q '^FAIL .*expect 1: expected no order in force, seen .* W, at 2023-03-26T00:10:25Z (minute 10.4)' "$work/wrong.txt" ||
+{ cat "$scenarios/quiet_hour.toml"; printf '\n[[expect]]\nfrom_min = 10\ncommand = "none"\n'; } \
+  >"$work/wrong.toml"
+"$program" run "$work/wrong.toml" --junit "$work/b.xml" >"$work/wrong.txt" 2>"$work/wrong.err" &&
+  complain "wrong.toml passed"
+told='expect 1: expected no order in force, seen .* W, at 2023-03-26T00:10:25Z (minute 10.4)'
+grep -q "^FAIL .*$told" "$work/wrong.txt" ||
   complain "$(cat "$work/wrong.txt")"
-grep -q '<failure message="expect 1: expected no order' "$work/b.xml" || complain "$(cat "$work/b.xml")"
+grep -q '<failure message="expect 1: expected no order' "$work/b.xml" ||
+  complain "$(cat "$work/b.xml")"
 
 # A page with pictures: what went wrong by its name, the axis in UTC.
 if command -v gnuplot >/dev/null; then
-  "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" --report "$work/page.html" >/dev/null || complain "--report"
-  for text in 'battery: silence' 'edge_kill' 'UTC, from 2023-03-26T00:00:00Z' 'power, W' 'SoC, %' 'EUR/MWh'; do
+  "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" \
+    --report "$work/page.html" >/dev/null || complain "--report"
+  for text in 'battery: silence' 'edge_kill' 'UTC, from 2023-03-26T00:00:00Z' 'power, W' 'SoC, %' \
+    'EUR/MWh'; do
     grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
   done
   # In a dark room, on a narrow screen, by the keyboard and by ear; a minus is no hyphen.
@@ -56,12 +66,15 @@ printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
 grep -q 'bad.toml:2: .*minuts' "$work/bad.err" || complain "$(cat "$work/bad.err")"
 [ "$(wc -l <"$work/bad.err")" -eq 1 ] || complain "more than one line: $(cat "$work/bad.err")"
 printf 'title = "x"\n[edge]\nguard = "soc_minn = 0.2"\n' >"$work/edge.toml"
-"$program" run "$work/edge.toml" 2>/dev/null | grep -q 'edge.toml: \[edge\], read as .*: \[guard\] soc_minn' || complain "[edge]'s mistake"
-TMPDIR=/nowhere "$program" run "$scenarios/quiet_hour.toml" 2>&1 | grep -q 'set TMPDIR' || complain "no TMPDIR"
+"$program" run "$work/edge.toml" 2>/dev/null |
+  grep -q 'edge.toml: \[edge\], read as .*: \[guard\] soc_minn' || complain "[edge]'s mistake"
+TMPDIR=/nowhere "$program" run "$scenarios/quiet_hour.toml" 2>&1 | grep -q 'set TMPDIR' ||
+  complain "no TMPDIR"
 
 # Ctrl-C: exit code 3, and nothing is left.
 mkdir "$work/tmp"
-TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null 2>"$work/stop.err" & run=$!
+TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null \
+  2>"$work/stop.err" & run=$!
 while [ -z "$(ls "$work/tmp")" ] && kill -0 $run; do sleep 0.01; done
 kill -INT $run
 wait $run

@@ -4,4 +4,6 @@
 found=$("$1" run "$2" --json 2>/dev/null)
 code=$?
 [ $code -eq 1 ] || { echo "exit code $code: the defect was not caught by $2"; exit 1; }
-printf '%s\n' "$found" | grep -q "\"rule\": *\"$3\"" || { echo "caught, but not by \"$3\": $found"; exit 1; }
+printf '%s\n' "$found" | grep -q "\"rule\": *\"$3\"" || {
+  echo "caught, but not by \"$3\": $found"; exit 1
+}

@@ -47,7 +47,8 @@ minutes = 180
 [prices]
 steps = [[0, -300]]
 END
-limits=(--real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3 --real-soc-max 0.7
+limits=(--real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3
+  --real-soc-max 0.7
         --real-time-scale $scale)
 real=(--real "$address" "${line[@]}" --yes-drive-real-battery "${limits[@]}")
 
@@ -57,14 +58,17 @@ refused() {  # refused TEXT CODE OPTIONS...: one line that holds TEXT
   shift 2
   "$hil" run "$@" >"$work/out.txt" 2>"$work/err.txt"
   [ $? -eq "$code" ] || complain "not exit code $code: $*"
-  [ "$(wc -l <"$work/err.txt")" -eq 1 ] && grep -q -e "$text" "$work/err.txt" || complain "not \"$text\": $*"
+  [ "$(wc -l <"$work/err.txt")" -eq 1 ] && grep -q -e "$text" "$work/err.txt" ||
+    complain "not \"$text\": $*"
 }
 refused "requires --yes-drive-real-battery" 2 "$work/short.toml" --real "$address" "${limits[@]}"
-refused "requires --real-power-w" 2 "$work/short.toml" --real "$address" --yes-drive-real-battery --real-map alphaess \
+refused "requires --real-power-w" 2 "$work/short.toml" --real "$address" \
+  --yes-drive-real-battery --real-map alphaess \
   --real-capacity-wh 8000 --real-soc-min 0.3 --real-soc-max 0.7
 refused "must be above --real-soc-min" 1 "$work/short.toml" "${real[@]/0.7/0.2}"
 printf 'title = "x"\n[battery_fault]\nkinds = ["silence"]\n' >"$work/fault.toml"
-refused "fault.toml: not for a real battery: only a simulated battery has the fault silence" 1 "$work/fault.toml" "${real[@]}"
+refused "fault.toml: not for a real battery: only a simulated battery has the fault silence" 1 \
+  "$work/fault.toml" "${real[@]}"
 
 # It runs, judged, within its limits.
 "$hil" run "$work/short.toml" "${real[@]}" >"$work/run.txt" 2>&1 || complain "it failed"
@@ -73,12 +77,15 @@ grep -q 'stopped: battery released' "$work/run.txt" || complain "not told that i
 
 # await TEXT: until the edge of the run that goes on has logged it.
 await() {
-  for _ in {1..1200}; do grep -qs -e "$1" "$TMPDIR"/bess-hil-*/edge-*.log && return; sleep 0.05; done
+  for _ in {1..1200}; do
+    grep -qs -e "$1" "$TMPDIR"/bess-hil-*/edge-*.log && return; sleep 0.05
+  done
   complain "the edge never logged \"$1\""
 }
 ends_released() {  # ends_released CODE TEXT: what ended it, and how
   [ "$1" -eq 3 ] || complain "$2: exit code $1"
-  grep -q 'stopped: battery released' "$work/run.txt" || complain "$2: not told that it was released"
+  grep -q 'stopped: battery released' "$work/run.txt" ||
+    complain "$2: not told that it was released"
 }
 # A signal ends it at once; so does the key, at a terminal.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
@@ -86,7 +93,8 @@ await 'mode=running'
 kill -INT $run
 wait $run
 ends_released $? "Ctrl-C"
-(await 'mode=running' >&2; printf q) | setsid script -qec "$hil run $work/long.toml ${real[*]}" /dev/null >"$work/run.txt" 2>&1
+(await 'mode=running' >&2; printf q) | setsid script -qec "$hil run $work/long.toml ${real[*]}" \
+  /dev/null >"$work/run.txt" 2>&1
 ends_released $? "the key"
 # Killed, it takes the edge along, which releases the battery.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
@@ -98,9 +106,12 @@ kill -TERM $battery
 wait $battery
 
 # By the battery's own record: what it was given, and that each of the runs gave it back.
-awk -F, 'NR > 1 && ($3 > 500 || $3 < -500) { exit 1 }' "$work/events.csv" || complain "beyond 500 W: $(cat "$work/events.csv")"
-grep -q ',order,500,' "$work/events.csv" && grep -q ',order,-500,' "$work/events.csv" || complain "never driven"
-[ "$(tail -n 1 "$work/events.csv" | cut -d, -f2)" = stop ] || complain "not released: $(tail -n 3 "$work/events.csv")"
+awk -F, 'NR > 1 && ($3 > 500 || $3 < -500) { exit 1 }' "$work/events.csv" ||
+  complain "beyond 500 W: $(cat "$work/events.csv")"
+grep -q ',order,500,' "$work/events.csv" && grep -q ',order,-500,' "$work/events.csv" ||
+  complain "never driven"
+[ "$(tail -n 1 "$work/events.csv" | cut -d, -f2)" = stop ] ||
+  complain "not released: $(tail -n 3 "$work/events.csv")"
 # A run that passed, or was ended, leaves nothing; one that was killed could not help it.
 [ "$(ls "$TMPDIR" | wc -l)" -eq 1 ] || complain "left behind: $(ls "$TMPDIR")"
 exit 0

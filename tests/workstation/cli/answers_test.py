@@ -1,4 +1,5 @@
-"""Every answer of --json and every table of bess-train, held against the schema that it prints, by jsonschema.
+"""Every answer of --json and every table of bess-train, held against the schema that it prints, by
+jsonschema.
 
 answers_test.py PROGRAM          commands that take seconds
 answers_test.py PROGRAM --full   and those that prove or distil a student: every one that has --json
@@ -34,7 +35,9 @@ class Minutes(http.server.BaseHTTPRequestHandler):
         dataset = self.path.split("/datasets/")[1].split("/")[0]
         query = urllib.parse.parse_qs(urllib.parse.urlparse(self.path).query)
         now = datetime.datetime.now(datetime.timezone.utc).replace(second=0, microsecond=0)
-        rows = [] if query.get("offset", ["0"])[0] != "0" else [self.row(dataset, now, m) for m in range(2, 7)]
+        rows = [] if query.get("offset",
+                               ["0"])[0] != "0" else [self.row(dataset, now, m)
+                                                      for m in range(2, 7)]
         body = json.dumps({"total_count": 5, "results": rows}).encode()
         self.send_response(200)
         self.send_header("Content-Type", "application/json")
@@ -56,7 +59,8 @@ class Minutes(http.server.BaseHTTPRequestHandler):
 class Answers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.schema = json.loads(subprocess.run([PROGRAM, "schema"], check=True, capture_output=True).stdout)
+        cls.schema = json.loads(subprocess.run([PROGRAM, "schema"], check=True,
+                                               capture_output=True).stdout)
         jsonschema.Draft202012Validator.check_schema(cls.schema)
         cls.folder = tempfile.TemporaryDirectory()
         cls.seen, cls.run_commands, cls.tables = set(), set(), set()
@@ -82,12 +86,14 @@ class Answers(unittest.TestCase):
         return done.stdout
 
     def validator(self, name):
-        return jsonschema.Draft202012Validator({"$ref": f"#/$defs/{name}", "$defs": self.schema["$defs"]})
+        return jsonschema.Draft202012Validator({"$ref": f"#/$defs/{name}",
+                                                "$defs": self.schema["$defs"]})
 
     def answers(self, *arguments, code=0):
         """What a command answers, each line held; all keys of a kind are always there."""
         arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
-        self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery) )?\S+", " ".join(arguments))[0])
+        self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery) )?\S+",
+                                       " ".join(arguments))[0])
         lines = [json.loads(line) for line in self.bess([*arguments, "--json"], code).splitlines()]
         self.assertTrue(lines, arguments)
         for line in lines:
@@ -99,7 +105,8 @@ class Answers(unittest.TestCase):
         return lines
 
     def table(self, path, name=None):
-        """A table's columns are those of the schema in their order, and its rows are as described."""
+        """A table's columns are those of the schema in their order, and its rows are as
+        described."""
         name = name or os.path.basename(path)
         with open(path, newline="") as file:
             rows = csv.reader(line for line in file if not line.startswith("#"))
@@ -108,7 +115,8 @@ class Answers(unittest.TestCase):
             validator = self.validator(name)
             for number, row in enumerate(rows):
                 if number < 50:
-                    validator.validate({key: self.value(text) for key, text in zip(header, row, strict=True)})
+                    validator.validate({key: self.value(text) for key,
+                                        text in zip(header, row, strict=True)})
         self.tables.add(name)
 
     @staticmethod
@@ -129,7 +137,9 @@ class Answers(unittest.TestCase):
         with open(self.file("quarter.csv"), "w") as file:  # no minutes, no imbalance
             file.write("Datetime;Resolution code;Imbalance Price\n")
             for quarter in range(8):
-                file.write(f"2023-01-01T{quarter // 4:02}:{quarter % 4 * 15:02}:00+00:00;PT15M;{40 + quarter}\n")
+                file.write(
+                    f"2023-01-01T{quarter // 4:02}:{quarter % 4 * 15:02}:00+00:00;PT15M;"
+                    f"{40 + quarter}\n")
         self.assertIsNone(self.answers("prices", "stats", "@quarter.csv")[0]["convergence"])
         self.table(self.file("market.csv"), "minutes.csv")
 
@@ -145,8 +155,10 @@ class Answers(unittest.TestCase):
     def test_3_teacher_and_plain_student(self):
         self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--steps", "20",
                      "--curve-out", "@curve.csv")
-        self.answers("distil", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@plain.json",
-                     "--plain", "--config", "@few.toml", "--curve-out", "@distil.csv", "--rules", "@rules.toml")
+        self.answers("distil", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out",
+                     "@plain.json",
+                     "--plain", "--config", "@few.toml", "--curve-out", "@distil.csv", "--rules",
+                     "@rules.toml")
         self.table(self.file("curve.csv"), "training_curve.csv")
         self.table(self.file("distil.csv"), "distil_curve.csv")
 
@@ -155,17 +167,21 @@ class Answers(unittest.TestCase):
         alone = self.answers("evaluate", *common, "rbc")[0]
         self.assertIsNone(alone["gain_over"])
         self.assertIsNone(alone["carried_over"])
-        several = self.answers("evaluate", *common, "rbc", "rbc-tuned", "@plain.json", "foresight", "--csv",
-                               "@evaluation.csv", "--days-out", "@days.csv", "--steps-out", "@steps.csv")
+        several = self.answers("evaluate", *common, "rbc", "rbc-tuned", "@plain.json", "foresight",
+                               "--csv",
+                               "@evaluation.csv", "--days-out", "@days.csv", "--steps-out",
+                               "@steps.csv")
         self.assertEqual(several[1]["gain_over"], "rbc")
         self.assertEqual(several[3]["share_of_foresight"], 1)
         self.assertEqual(set(several[1]["carried_over"]) - {"carry_soc"}, set(several[1]) & set(
             several[1]["carried_over"]) - {"carry_soc"})
         carried = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--carry-soc")[1]
-        self.assertEqual(carried["gain_eur_per_day_per_mwh"], several[1]["carried_over"]["gain_eur_per_day_per_mwh"])
+        self.assertEqual(carried["gain_eur_per_day_per_mwh"],
+                         several[1]["carried_over"]["gain_eur_per_day_per_mwh"])
         day = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--date", "widest")[1]
         self.assertIsNone(day["gain_standard_error"])
-        self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular", "--carry-soc")
+        self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular",
+                     "--carry-soc")
         ramps = self.answers("delays", "--prices", "@market.csv", "--policy", "rbc",
                              "--ramps", "0", "20", "--html", "@delays.html")
         self.assertEqual([r["run_delay_min"] for r in ramps], [0, 1, 2, 3, 4, 5, 6] * 2)
@@ -194,11 +210,14 @@ class Answers(unittest.TestCase):
         self.assertIsNone(self.answers(*check)[0]["decisions"])
         with_policy = self.answers(*check, "--policy", "rbc", "--prices", "@market.csv")
         self.assertEqual([r["rule"] for r in with_policy][-2:], ["no dear charging", "steady"])
-        price = self.answers("rules", "price", "--rules", "@rules.toml", "--prices", "@market.csv", "--policy", "rbc")
-        self.assertIsNone(price[1]["gain_eur_per_day_per_mwh"], "steady says nothing of single states")
+        price = self.answers("rules", "price", "--rules", "@rules.toml", "--prices", "@market.csv",
+                             "--policy", "rbc")
+        self.assertIsNone(price[1]["gain_eur_per_day_per_mwh"],
+                          "steady says nothing of single states")
 
     def test_6_backtest(self):
-        backtest = ["--prices", "@market.csv", "--out", "@backtest", "--window-days", "30", "--policy", "rbc", "tabular"]
+        backtest = ["--prices", "@market.csv", "--out", "@backtest", "--window-days", "30",
+                    "--policy", "rbc", "tabular"]
         line = self.answers("backtest", *backtest)[0]
         with open(self.file("backtest/backtest.json")) as file:
             self.assertEqual(json.load(file), line)
@@ -213,18 +232,22 @@ class Answers(unittest.TestCase):
         proof = self.answers("verify", "--student", "@student.json")[0]
         self.assertTrue(proof["proved"])
         self.answers("verify", "--student", "@plain.json", "--rules", "@rules.toml", code=1)
-        self.answers("omega-sweep", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@sweep",
+        self.answers("omega-sweep", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out",
+                     "@sweep",
                      "--omega", "1e-3", "--epochs", "1")
         self.table(self.file("sweep/omega_sweep.csv"))
 
     @unittest.skipUnless(FULL, "minutes: with --full")
     def test_8_runs(self):
-        lines = self.answers("run", "--prices", "@market.csv", "--config", "@few.toml", "--rules", "@rules.toml",
+        lines = self.answers("run", "--prices", "@market.csv", "--config", "@few.toml", "--rules",
+                             "@rules.toml",
                              "--out", "@runs/first")
         self.assertEqual(self.answers("runs", "compare", "@runs"), lines)
         run = self.file("runs/first/")
-        for name in ("evaluation.csv", "evaluation_days.csv", "training_curve.csv", "distil_curve.csv",
-                     "proof_rounds.csv", "student_checkpoints.csv", "lost_days.csv", "lost_causes.csv",
+        for name in ("evaluation.csv", "evaluation_days.csv", "training_curve.csv",
+                     "distil_curve.csv",
+                     "proof_rounds.csv", "student_checkpoints.csv", "lost_days.csv",
+                     "lost_causes.csv",
                      "lost_hours.csv"):
             self.table(run + name)
         self.table(run + "student_plain_violations.csv", "violations.csv")
@@ -238,20 +261,24 @@ class Answers(unittest.TestCase):
 
     def test_8_size(self):
         with open(self.file("plan.toml"), "w") as plan:
-            plan.write('[size]\npower_kw = [5, 10]\ncapacity_kwh = [10]\nwindow_days = 30\npolicy = "rbc"\n'
+            plan.write(
+                '[size]\npower_kw = [5, 10]\ncapacity_kwh = [10]\nwindow_days = 30\npolicy = '
+                '"rbc"\n'
                        '[[contract]]\nname = "a, b"\n[purchase]\neur_per_kwh = 300\n')
         self.answers("size", "--prices", "@market.csv", "--plan", "@plan.toml", "--out", "@sizes")
         self.table(self.file("sizes/size.csv"))
 
     def test_8_impact(self):
-        answer = self.answers("impact", "--fleet-mw", "300", "0", "--policy", "rbc", "--train-days", "10", "--test-days",
+        answer = self.answers("impact", "--fleet-mw", "300", "0", "--policy", "rbc", "--train-days",
+                              "10", "--test-days",
                               "2", "--seeds", "1", "--rounds", "1", "--out", "@impact")[0]
         self.assertEqual(len(answer["fleets"]), 3 * 2 * 5)
         self.table(self.file("impact/impact.csv"))
 
     def test_9_nothing_is_left_out(self):
         """Every command that knows --json was asked, and every kind of answer and table was met."""
-        kinds = {name.removeprefix("answer_") for name in self.schema["$defs"] if name.startswith("answer_")}
+        kinds = {name.removeprefix("answer_") for name in self.schema["$defs"]
+                 if name.startswith("answer_")}
         tables = {name for name in self.schema["$defs"] if name.endswith(".csv")}
         commands = self.commands_with_json([])
         slow = (set(), set(), set()) if FULL else (SLOW_ANSWERS, SLOW_COMMANDS, SLOW_TABLES)

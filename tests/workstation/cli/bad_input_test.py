@@ -1,5 +1,5 @@
-"""Bad inputs that once hung, were taken, or were told in a library's words: each ends with its code and one clear line
-that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
+"""Bad inputs that once hung, were taken, or were told in a library's words: each ends with its code
+and one clear line that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
 """
 
 import fcntl
@@ -19,21 +19,26 @@ RULE = '[[rule]]\nname = "a"\nis = "idle"\nhours = "22:00-06:00"\n'
 LONG = "x" * 300
 # Arguments, exit code, what the line must say.
 CASES = [
-    # A pipe that nobody writes into, a link to itself, a name that is too long: of every kind of file.
-    ("evaluate --policy rbc --prices pipe", 1, "nobody has written into it for 10 s; start its writer"),
+    # A pipe that nobody writes into, a link to itself, a name that is too long: of every kind of
+    # file.
+    ("evaluate --policy rbc --prices pipe", 1,
+     "nobody has written into it for 10 s; start its writer"),
     ("config --config loop", 1, "a link that leads back to itself; name the file itself"),
     ("rules check --rules loop", 1, "a link that leads back to itself"),
     ("evaluate --prices market.csv --policy loop", 1, "a link that leads back to itself"),
     ("runs compare loop", 1, "a link that leads back to itself"),
-    ("run --prices market.csv --out new --from-teacher loop", 1, "a link that leads back to itself"),
+    ("run --prices market.csv --out new --from-teacher loop", 1,
+     "a link that leads back to itself"),
     ("train --prices market.csv --out loop", 1, "a link that leads back to itself"),
     (f"config --config {LONG}", 1, "the name is too long for a file"),
     (f"evaluate --prices market.csv --policy {LONG}", 1, "the name is too long for a file"),
     (f"train --prices market.csv --out {LONG}", 1, "the name is too long for a file"),
     (f"verify --student {LONG}", 1, "the name is too long for a file"),
     # Said once, and by the right name.
-    ("evaluate --policy rbc --prices market.csv --accept gapss", 2, 'bess-train: --accept: no finding is called "gapss"'),
-    ("config --config scalar.toml", 1, 'scalar.toml:1: "battery" is a section: write [battery] on a line of its own'),
+    ("evaluate --policy rbc --prices market.csv --accept gapss", 2,
+     'bess-train: --accept: no finding is called "gapss"'),
+    ("config --config scalar.toml", 1,
+     'scalar.toml:1: "battery" is a section: write [battery] on a line of its own'),
     ("config --config list.toml", 1, 'list.toml:1: "battery" is a section'),
     # Twice: nobody knows which is meant.
     ("verify --student twice.json", 1, '"version" stands twice'),
@@ -45,26 +50,33 @@ CASES = [
     ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "is over; give an instant to come"),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
      '--base-url "http://" is not a web address'),
-    ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://127.0.0.1:99999/a", 1,
+    ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url "
+     "http://127.0.0.1:99999/a", 1,
      "is not a web address"),
     ("prices record --out new --for 1s --url http://:80/", 1, "is not a web address"),
     # Told before the work, and by name.
-    ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1, "--policy nope: neither a file"),
+    ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1,
+     "--policy nope: neither a file"),
     ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
      "scalar.toml: not a student file"),
     ("delays --prices market.csv --policy rbc nope", 1, "--policy nope: neither a file"),
     ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW not above HIGH"),
-    ("run --prices few.csv --out new", 1, "few.csv: no test days (local days 26 to the end); add some"),
-    ("evaluate --policy rbc --prices hour.csv", 1, "hour.csv: the prices hold no complete local day"),
+    ("run --prices few.csv --out new", 1,
+     "few.csv: no test days (local days 26 to the end); add some"),
+    ("evaluate --policy rbc --prices hour.csv", 1,
+     "hour.csv: the prices hold no complete local day"),
     ("run --prices hour.csv --out new", 1, "hour.csv: the prices hold no complete local day"),
-    ("backtest --prices market.csv --out new", 1, "no month has 60 complete days in the 120 before it"),
+    ("backtest --prices market.csv --out new", 1,
+     "no month has 60 complete days in the 120 before it"),
     ("battery fit --log few.csv", 1, 'few.csv: has no column "utc"'),
     ("battery fit --log log.csv", 1, "log.csv: 2 cycles show nothing of the battery"),
     ("battery fit --log log.csv --out log.csv", 1, "would replace the input --log log.csv"),
     ("battery fit --log nowhere.csv", 1, "nowhere.csv"),
     # Not as TOML writes it.
-    ("config --config cr.toml", 1, "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
-    ("rules check --rules single.toml", 1, "single.toml:1: [rule] is written [[rule]], as there may be many"),
+    ("config --config cr.toml", 1,
+     "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
+    ("rules check --rules single.toml", 1,
+     "single.toml:1: [rule] is written [[rule]], as there may be many"),
     # What was right already, and stays so.
     ("evaluate --policy rbc --prices /dev/zero", 1, "holds more than 512 MiB"),
     ("evaluate --policy rbc --prices folder", 1, "is a folder"),
@@ -93,7 +105,8 @@ class BadInputs(unittest.TestCase):
             "cr.csv": market.replace("\n", "\r"),
             "february.csv": head + "2023-02-30T00:00:00Z,1,1\n" + "".join(rows),
             "doubled.csv": head + rows[0] + "".join(rows),
-            "swapped.csv": head.replace("indicative_eur_mwh,settled_eur_mwh", "settled_eur_mwh,indicative_eur_mwh"),
+            "swapped.csv": head.replace("indicative_eur_mwh,settled_eur_mwh",
+                                        "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
             "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w\n"
@@ -112,7 +125,8 @@ class BadInputs(unittest.TestCase):
         for name, text in texts.items():
             with open(self.path(name), "w", newline="") as file:
                 file.write(text)
-        packed = subprocess.run(["gzip"], input=market.encode(), capture_output=True, check=True).stdout
+        packed = subprocess.run(["gzip"], input=market.encode(), capture_output=True,
+                                check=True).stdout
         with open(self.path("trailing.csv.gz"), "wb") as file:
             file.write(packed + b"more")
         os.mkfifo(self.path("pipe"))
@@ -122,32 +136,41 @@ class BadInputs(unittest.TestCase):
         return os.path.join(self.folder, name)
 
     def bess(self, arguments, before=None):
-        return subprocess.run([PROGRAM, *arguments.split()], cwd=self.folder, capture_output=True, text=True, timeout=120,
+        return subprocess.run([PROGRAM, *arguments.split()], cwd=self.folder, capture_output=True,
+                              text=True, timeout=120,
                               preexec_fn=before)
 
     def names(self):
-        return {os.path.join(where, name) for where, folders, files in os.walk(self.folder) for name in folders + files}
+        return {os.path.join(where, name) for where, folders, files in os.walk(self.folder)
+                for name in folders + files}
 
     def test_each_is_one_clear_line_and_nothing_is_left(self):
         before = self.names()
         for arguments, code, said in CASES:
             with self.subTest(arguments[:90]):
                 done = self.bess(arguments)
-                lines = [line for line in done.stderr.splitlines() if not line.startswith("bess-train: warning")]
+                lines = [line for line in done.stderr.splitlines()
+                         if not line.startswith("bess-train: warning")]
                 self.assertEqual(done.returncode, code, done.stderr)
                 self.assertIn(said, done.stderr)
                 self.assertEqual(len(lines), 1, done.stderr)
                 self.assertEqual(self.names() - before, set())
 
     def test_a_name_of_two_lines_or_colours_is_refused_in_one(self):
-        for name in ("a\nb.csv", "\x1b[31mred.csv", "bell\a", "back\b", "del\x7f", "carriage\r", "csi\u009bm"):
-            for arguments in (["evaluate", "--policy", "rbc", "--prices", name], ["runs", "compare", name],
+        for name in ("a\nb.csv", "\x1b[31mred.csv", "bell\a", "back\b", "del\x7f", "carriage\r",
+                     "csi\u009bm"):
+            for arguments in (["evaluate", "--policy", "rbc", "--prices", name],
+                              ["runs", "compare", name],
                               ["verify", "--student", name], ["config", "--config=" + name]):
                 with self.subTest(arguments):
-                    done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True)
+                    done = subprocess.run([PROGRAM, *arguments], cwd=self.folder,
+                                          capture_output=True, text=True)
                     self.assertEqual(done.returncode, 2)
-                    self.assertRegex(done.stderr, r'\Abess-train: ".*" holds a line end or another control character: '
-                                                  r"leave it out, or rename the file \(see bess-train --help\)\n\Z")
+                    self.assertRegex(done.stderr,
+                                     r'\Abess-train: ".*" holds a line end or another control '
+                                     r'character: '
+                                                  r"leave it out, or rename the file \(see "
+                                                  r"bess-train --help\)\n\Z")
                     self.assertTrue(done.stderr[:-1].isprintable(), done.stderr)
 
     def test_a_pipe_with_a_writer_is_read(self):
@@ -157,10 +180,13 @@ class BadInputs(unittest.TestCase):
 
     def test_a_file_that_may_not_grow_is_an_error(self):
         before = self.names()
-        for arguments in ("prices simulate --days 62 --out new.csv", "train --prices market.csv --out new.bin",
-                          "backtest --prices market.csv --window-days 30 --policy rbc --out new/backtest"):
+        for arguments in ("prices simulate --days 62 --out new.csv",
+                          "train --prices market.csv --out new.bin",
+                          "backtest --prices market.csv --window-days 30 --policy rbc --out "
+                          "new/backtest"):
             with self.subTest(arguments):
-                done = self.bess(arguments, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+                done = self.bess(arguments,
+                                 lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
                 self.assertEqual(done.returncode, 1, done.stderr)
                 self.assertIn("writing failed: File too large; nothing was changed", done.stderr)
                 self.assertEqual({n for n in self.names() - before if os.path.isfile(n)}, set())
@@ -172,7 +198,8 @@ class BadInputs(unittest.TestCase):
         backtest = "backtest --prices market.csv --window-days 30 --policy rbc --out new"
         done = self.bess(backtest)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("new: another bess-train is at work here; wait for it, or give another --out", done.stderr)
+        self.assertIn("new: another bess-train is at work here; wait for it, or give another --out",
+                      done.stderr)
         self.assertEqual(os.listdir(self.path("new")), [])
         os.close(folder)
         self.assertEqual(self.bess(backtest).returncode, 0)
@@ -181,7 +208,8 @@ class BadInputs(unittest.TestCase):
         train = "train --prices market.csv --method dqn --out t.bin --threads 1 --config a.toml"
         with open(self.path("a.toml"), "w") as file:
             file.write("[train]\nsteps = 100000\nbatch_size = 64\nvalidate_every = 20\n")
-        with subprocess.Popen([PROGRAM, *train.split()], cwd=self.folder, stderr=subprocess.PIPE, text=True) as program:
+        with subprocess.Popen([PROGRAM, *train.split()], cwd=self.folder, stderr=subprocess.PIPE,
+                              text=True) as program:
             for line in program.stderr:
                 if "steps" in line:  # it is at work
                     program.send_signal(signal.SIGINT)
@@ -192,16 +220,22 @@ class BadInputs(unittest.TestCase):
             file.write("gamma = 0.5\n")
         done = self.bess(train + " --resume")
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertRegex(done.stderr, r"is of another run: \[train\] gamma [0-9.]+ there and \[train\] gamma 0.5 here")
+        self.assertRegex(done.stderr,
+                         r"is of another run: \[train\] gamma [0-9.]+ there and \[train\] gamma "
+                         r"0.5 here")
 
     def test_absurd_sizes_are_told_before_they_start(self):
         with open(self.path("years.toml"), "w") as file:
             file.write("[train]\nmethod = \"c51\"\nsteps = 10000000\nbatch_size = 1048576\n")
-        with subprocess.Popen([PROGRAM, *"train --prices market.csv --out t.bin --threads 1 --config years.toml".split()],
+        with subprocess.Popen([PROGRAM,
+                               *"train --prices market.csv --out t.bin --threads 1 --config "
+                                "years.toml".split()],
                               cwd=self.folder, stderr=subprocess.PIPE, text=True) as program:
             first = program.stderr.readline()
             program.kill()
-        self.assertRegex(first, r"warning: 10000000 steps of 1048576 transitions take about [0-9]+ (days|years) on 1 core")
+        self.assertRegex(first,
+                         r"warning: 10000000 steps of 1048576 transitions take about [0-9]+ "
+                         r"(days|years) on 1 core")
 
 
 if __name__ == "__main__":

@@ -11,18 +11,22 @@ mkdir -p "$folder/build"
 for part in CMakeLists.txt edge shared toolchains; do cp -r "$source/$part" "$folder"; done
 mkdir "$folder/tools" && cp -r "$source/tools/packaging" "$folder/tools"
 cd "$folder" || exit 1
-cmake -G Ninja -C toolchains/release.cmake -DBESS_WORKSTATION=OFF -DBESS_TESTS=OFF -DBESS_NOTIFY=OFF -S . -B build >said 2>&1 ||
+cmake -G Ninja -C toolchains/release.cmake -DBESS_WORKSTATION=OFF -DBESS_TESTS=OFF \
+  -DBESS_NOTIFY=OFF -S . -B build >said 2>&1 ||
   fail "cannot be configured"
 ln -s "$build/bess-train" build
 cp "$source/tests/data/benchmark_minutes_2023.csv.gz" 2023.csv.gz
 header_before=$(cksum edge/generated/student_weights.h)
 
 # The commands: what is indented between the two headings.
-sed -n '/^\*\*To retrain on your prices/,/^\*\*What trading costs you/s/^    //p' "$source/workstation/cli/README.md" |
+sed -n '/^\*\*To retrain on your prices/,/^\*\*What trading costs you/s/^    //p' \
+  "$source/workstation/cli/README.md" |
   grep -v 'prices fetch' >flow.sh
-[ "$(grep -c '^build/bess-train run ' flow.sh)" -eq 2 ] || fail "workstation/cli/README.md shows not two runs, but: $(cat flow.sh)"
+[ "$(grep -c '^build/bess-train run ' flow.sh)" -eq 2 ] ||
+  fail "workstation/cli/README.md shows not two runs, but: $(cat flow.sh)"
 build/bess-train config >my.toml 2>said || fail "config fails"
-sed -i 's/^low_price_eur_per_mwh = .*/low_price_eur_per_mwh = -300/; s/^high_price_eur_per_mwh = .*/high_price_eur_per_mwh = 1200/' my.toml
+sed -i -e 's/^low_price_eur_per_mwh = .*/low_price_eur_per_mwh = -300/' \
+  -e 's/^high_price_eur_per_mwh = .*/high_price_eur_per_mwh = 1200/' my.toml
 if [ -z "$BESS_README_FULL" ]; then
   printf '[distil]\nepochs = 60\n' >quick.toml
   sed -i 's/^epochs = .*/epochs = 60/' my.toml
@@ -32,9 +36,14 @@ start=$(date +%s)
 sh -e flow.sh >said 2>&1 || fail "the flow fails"
 echo "the flow took $(($(date +%s) - start)) s"
 
-[ "$(cksum edge/generated/student_weights.h)" != "$header_before" ] || fail "no new header was exported"
-grep -q 'signature=[0-9a-f]\{16\}$' edge/generated/decision_signature.txt || fail "no signature: $(cat edge/generated/decision_signature.txt)"
-[ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] || fail "bess-edge decides as before"
-grep -q 'low_price_eur_per_mwh: -500 | -300' said || fail "'runs compare' does not tell what differs"
-grep -q '"low_price_eur_per_mwh":[[:space:]]*-300' runs/mine/student.json || fail "the student is not bound to the new thresholds"
+[ "$(cksum edge/generated/student_weights.h)" != "$header_before" ] ||
+  fail "no new header was exported"
+grep -q 'signature=[0-9a-f]\{16\}$' edge/generated/decision_signature.txt ||
+  fail "no signature: $(cat edge/generated/decision_signature.txt)"
+[ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] ||
+  fail "bess-edge decides as before"
+grep -q 'low_price_eur_per_mwh: -500 | -300' said ||
+  fail "'runs compare' does not tell what differs"
+grep -q '"low_price_eur_per_mwh":[[:space:]]*-300' runs/mine/student.json ||
+  fail "the student is not bound to the new thresholds"
 cmp -s runs/2023/teacher.bin runs/mine/teacher.bin || fail "another teacher was used"

@@ -1,6 +1,8 @@
-"""A headless Chromium, driven through its debugging pipe (Chrome DevTools Protocol): nothing to install besides it.
+"""A headless Chromium, driven through its debugging pipe (Chrome DevTools Protocol): nothing to
+install besides it.
 
-Used by page_test.py. One Browser is one process with a profile of its own; one Page is one tab of it.
+Used by page_test.py. One Browser is one process with a profile of its own; one Page is one tab of
+it.
 """
 import base64
 import fcntl
@@ -106,11 +108,13 @@ class Page:
 
     def resize(self, width_px, height_px):
         self.call("Emulation.setDeviceMetricsOverride",
-                  {"width": width_px, "height": height_px, "deviceScaleFactor": 1, "mobile": width_px < 600})
+                  {"width": width_px, "height": height_px, "deviceScaleFactor": 1,
+                   "mobile": width_px < 600})
 
     def set_dark(self, dark):
         self.call("Emulation.setEmulatedMedia",
-                  {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
+                  {"features": [{"name": "prefers-color-scheme",
+                                 "value": "dark" if dark else "light"}]})
 
     def open(self, path):
         self.call("Page.navigate", {"url": "file://" + os.path.abspath(path)})
@@ -129,7 +133,8 @@ class Page:
         end = time.monotonic() + TIME_OUT_S
         while not self.run(f"Boolean({condition})"):
             if time.monotonic() > end:
-                raise RuntimeError(f"never came true: {condition}; the page says: {self.complaints()}")
+                raise RuntimeError(
+                    f"never came true: {condition}; the page says: {self.complaints()}")
             time.sleep(0.05)
 
     def set_value(self, element_id, value):
@@ -137,7 +142,9 @@ class Page:
         self.run(f"""(() => {{
           const element = document.getElementById({json.dumps(element_id)});
           element.value = {json.dumps(str(value))};
-          for (const kind of ["input", "change"]) element.dispatchEvent(new Event(kind, {{bubbles: true}}));
+          for (const kind of ["input", "change"]) {{
+            element.dispatchEvent(new Event(kind, {{bubbles: true}}));
+          }}
         }})()""")
 
     def events_of(self, *methods):
@@ -146,7 +153,8 @@ class Page:
 
     def complaints(self):
         """Errors and warnings of the console, uncaught exceptions."""
-        found = [event["params"]["exceptionDetails"] for event in self.events_of("Runtime.exceptionThrown")]
+        found = [event["params"]["exceptionDetails"]
+                 for event in self.events_of("Runtime.exceptionThrown")]
         found += [event["params"] for event in self.events_of("Runtime.consoleAPICalled")
                   if event["params"]["type"] in ("error", "warning", "assert")]
         found += [event["params"]["entry"] for event in self.events_of("Log.entryAdded")

@@ -1,4 +1,5 @@
-"""What a page looks like, found out in the browser: what hangs over an edge, what is hard to read, what is cut off.
+"""What a page looks like, found out in the browser: what hangs over an edge, what is hard to read,
+what is cut off.
 
 Each function gives a list of what is wrong, for people; empty is good. `page` is a browser.Page.
 """
@@ -12,14 +13,17 @@ def settle(page):
 
 
 def off_the_screen(page):
-    """Elements beyond the window or their card that no scroller of their own holds, and the window's own scrolling."""
+    """Elements beyond the window or their card that no scroller of their own holds, and the
+    window's own scrolling."""
     return page.run("""(() => {
-      const inScroller = (element) => element.closest(".wide") !== null && !element.matches(".wide");
+      const inScroller = (element) =>
+        element.closest(".wide") !== null && !element.matches(".wide");
       const found = [...document.body.querySelectorAll("*")].filter((element) => {
         const box = element.getBoundingClientRect(), card = element.closest(".card");
         const right = card ? Math.min(innerWidth, card.getBoundingClientRect().right) : innerWidth;
         return box.width > 0 && !inScroller(element) && (box.right > right + .5 || box.left < -.5);
-      }).map((element) => `${element.tagName}#${element.id}.${element.getAttribute("class")} is off the screen`);
+      }).map((element) =>
+        `${element.tagName}#${element.id}.${element.getAttribute("class")} is off the screen`);
       const width = document.documentElement.scrollWidth;
       return width > innerWidth ? [...found, `the page is ${width} px wide`] : found;
     })()""")
@@ -41,7 +45,8 @@ def low_contrast(page):
         return matchMedia("(prefers-color-scheme: dark)").matches ? [0, 0, 0] : [255, 255, 255];
       };
       const luminance = (rgb) => {
-        const [r, g, b] = rgb.map((c) => c / 255 <= .04045 ? c / 255 / 12.92 : ((c / 255 + .055) / 1.055) ** 2.4);
+        const [r, g, b] = rgb.map((c) => c / 255 <= .04045 ? c / 255 / 12.92
+                                  : ((c / 255 + .055) / 1.055) ** 2.4);
         return .2126 * r + .7152 * g + .0722 * b;
       };
       const contrast = (a, b) => {
@@ -50,12 +55,16 @@ def low_contrast(page):
       };
       const found = [];
       for (const element of document.body.querySelectorAll("*")) {
-        const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
-        if (!own || element.closest("script, noscript, option, [disabled]") || !element.checkVisibility()) continue;
+        const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE
+                                                 && node.data.trim());
+        if (!own || element.closest("script, noscript, option, [disabled]")
+            || !element.checkVisibility()) continue;
         const style = getComputedStyle(element);
         const ink = parse(element instanceof SVGElement ? style.fill : style.color).rgb;
-        const ratio = contrast(ink, behind(element)), least = parseFloat(style.fontSize) >= %d ? 3 : 4.5;
-        if (ratio < least) found.push(`${element.textContent.trim().slice(0, 40)}: contrast ${ratio.toFixed(2)}`);
+        const ratio = contrast(ink, behind(element));
+        const least = parseFloat(style.fontSize) >= %d ? 3 : 4.5;
+        if (ratio < least) found.push(
+          `${element.textContent.trim().slice(0, 40)}: contrast ${ratio.toFixed(2)}`);
       }
       return found;
     })()""" % LARGE_TEXT_PX)
@@ -67,13 +76,15 @@ def cut_off(page):
       const found = [];
       for (const element of document.body.querySelectorAll("*")) {
         const style = getComputedStyle(element);
-        if (["hidden", "clip"].includes(style.overflowX) && element.scrollWidth > element.clientWidth + 1 &&
+        if (["hidden", "clip"].includes(style.overflowX)
+            && element.scrollWidth > element.clientWidth + 1 &&
             element.innerText?.trim()) {
           found.push(element.textContent.trim().slice(0, 40));
         }
       }
       for (const text of document.querySelectorAll("svg text")) {
-        const box = text.getBoundingClientRect(), frame = text.closest("svg").getBoundingClientRect();
+        const box = text.getBoundingClientRect();
+        const frame = text.closest("svg").getBoundingClientRect();
         if (box.left < frame.left - 1 || box.right > frame.right + 1) found.push(text.textContent);
       }
       return found;
@@ -87,10 +98,13 @@ def cut_off_in_canvases(page):
       const watch = (proto) => {
         const real = proto.fillText;
         proto.fillText = function (text, x, y, most) {
-          const width = Math.min(this.measureText(text).width, most ?? Infinity), at = this.getTransform();
+          const width = Math.min(this.measureText(text).width, most ?? Infinity);
+          const at = this.getTransform();
           const before = {center: width / 2, right: width, end: width}[this.textAlign] ?? 0;
-          const ends = [x - before, x - before + width].map((end) => at.transformPoint({x: end, y}).x);
-          if (Math.abs(at.b) < .01 && (Math.min(...ends) < -1 || Math.max(...ends) > this.canvas.width + 1)) {
+          const ends = [x - before, x - before + width]
+            .map((end) => at.transformPoint({x: end, y}).x);
+          if (Math.abs(at.b) < .01
+              && (Math.min(...ends) < -1 || Math.max(...ends) > this.canvas.width + 1)) {
             found.push(`${this.canvas.id || this.canvas.getAttribute("aria-label")}: ${text}`);
           }
           return real.apply(this, arguments);
@@ -106,11 +120,13 @@ def cut_off_in_canvases(page):
 
 
 def not_read_aloud(page):
-    """What somebody who hears the page would miss: a step of headings, heads of tables, words for pictures."""
+    """What somebody who hears the page would miss: a step of headings, heads of tables, words for
+    pictures."""
     return page.run("""(() => {
       const found = [];
       const say = (element, text) =>
-        found.push(`${element.tagName}#${element.id} ${element.textContent.trim().slice(0, 40)}: ${text}`);
+        found.push(
+          `${element.tagName}#${element.id} ${element.textContent.trim().slice(0, 40)}: ${text}`);
       if (!document.documentElement.lang || !document.title) found.push("no language or no title");
       let level = 0;
       for (const heading of document.querySelectorAll("h1, h2, h3, h4, h5, h6")) {
@@ -151,8 +167,10 @@ def unseen_focus(page):
         if (control.disabled || !control.checkVisibility()) continue;
         control.focus({focusVisible: true, preventScroll: true});
         const {outline, outlineStyle, outlineWidth} = getComputedStyle(control);
-        if (document.activeElement !== control || outlineStyle === "none" || parseFloat(outlineWidth) < 2) {
-          found.push(`${control.tagName}#${control.id} ${control.textContent.trim().slice(0, 30)}: ${outline}`);
+        if (document.activeElement !== control || outlineStyle === "none"
+            || parseFloat(outlineWidth) < 2) {
+          const text = control.textContent.trim().slice(0, 30);
+          found.push(`${control.tagName}#${control.id} ${text}: ${outline}`);
         }
       }
       document.activeElement.blur();

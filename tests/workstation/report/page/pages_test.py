@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""pages_test.py FIXTURE_PROGRAM BESS_TRAIN: every page that bess-train writes, in a headless Chromium: of
-a run, of one with rules, of one whose proof failed, of a backtest and of many runs. What they look
-like, narrow and wide, light and dark; that every number in their tables is that of their JSON; how many runs
-are sorted; and the rules on the maps, held against what the C++ counts.
+"""pages_test.py FIXTURE_PROGRAM BESS_TRAIN: every page that bess-train writes, in a headless
+Chromium: of a run, of one with rules, of one whose proof failed, of a backtest and of many runs.
+What they look like, narrow and wide, light and dark; that every number in their tables is that of
+their JSON; how many runs are sorted; and the rules on the maps, held against what the C++ counts.
 
 Exit code 77 where Chromium is not installed (tools/setup --test installs it).
 """
@@ -31,7 +31,8 @@ GAIN = "gain_eur_per_day_per_mwh"
 WEAR = "profit_at_wear_10_eur_per_day_per_mwh"
 ERRORS = ("profit_standard_error", "profit_standard_error_by_month")
 GAIN_AND_ERRORS = (GAIN, "gain_standard_error", "gain_standard_error_by_month")
-COMPLETE = "[...document.querySelectorAll('canvas.map')].every((canvas) => canvas.dataset.complete === 'true')"
+COMPLETE = ("[...document.querySelectorAll('canvas.map')]"
+            ".every((canvas) => canvas.dataset.complete === 'true')")
 NUMBER = re.compile(r"[-+\u2212]?\d[\d,]*(?:\.\d+)?")
 
 
@@ -80,8 +81,10 @@ class Pages(unittest.TestCase):
             cls.tabs[name].wait(COMPLETE)
         for name, path in OTHERS.items():
             cls.tabs[name] = browser.Page(cls.browser)
-            cls.tabs[name].call("Page.navigate", {"url": "file://" + os.path.join(cls.folder.name, path)})
-            cls.tabs[name].wait("document.readyState === 'complete' && document.querySelector('table')")
+            cls.tabs[name].call("Page.navigate",
+                                {"url": "file://" + os.path.join(cls.folder.name, path)})
+            cls.tabs[name].wait(
+                "document.readyState === 'complete' && document.querySelector('table')")
 
     @classmethod
     def tearDownClass(cls):
@@ -92,7 +95,8 @@ class Pages(unittest.TestCase):
     def compare_runs(cls, names, *options):
         """Standard output of bess-train runs compare."""
         folders = ["many/" + name for name in names]
-        return subprocess.run([BESS_TRAIN, "runs", "compare", *folders, *options], cwd=cls.folder.name,
+        return subprocess.run([BESS_TRAIN, "runs", "compare", *folders, *options],
+                              cwd=cls.folder.name,
                               check=True, capture_output=True, text=True).stdout
 
     def tearDown(self):
@@ -110,9 +114,11 @@ class Pages(unittest.TestCase):
 
     def rows_of(self, tab, selector):
         """[[name, {label: text} in order as list of pairs]] of a table's body."""
-        return tab.run(f"""[...document.querySelectorAll({json.dumps(selector)} + " tbody tr")].map((row) => [
+        return tab.run(f"""[...document.querySelectorAll({json.dumps(selector)} + " tbody tr")]
+          .map((row) => [
           row.querySelector("th").textContent,
-          [...row.querySelectorAll("td")].map((cell) => [cell.dataset.label, cell.textContent])])""")
+          [...row.querySelectorAll("td")].map((cell) =>
+            [cell.dataset.label, cell.textContent])])""")
 
     # What they look like.
 
@@ -143,20 +149,24 @@ class Pages(unittest.TestCase):
         gain = [a - b for a, b in zip(own, self.profits(name, "rbc", carried))]
         is_first = policy == "rbc"
         return [mean(own), error_of_mean(own), error_by_month(dates, own),
-                *([None] * 3 if is_first else [mean(gain), error_of_mean(gain), error_by_month(dates, gain)]),
-                min(own), mean([day["cycles"] for day in days]), mean([day["switches"] for day in days]),
+                *([None] * 3 if is_first else [mean(gain), error_of_mean(gain),
+                                               error_by_month(dates, gain)]),
+                min(own), mean([day["cycles"] for day in days]),
+                mean([day["switches"] for day in days]),
                 100 * mean(own) / mean(self.profits(name, "foresight", carried)),
                 mean(self.profits(name, policy, carried, 10))]
 
     def test_comparisons_are_those_of_the_days(self):
         for name in RUNS:
             rows = self.rows_of(self.tab(name), "#comparison")
-            policies = [policy for policy in self.expected[name]["days"] if not policy.startswith("plain student under")]
+            policies = [policy for policy in self.expected[name]["days"]
+                        if not policy.startswith("plain student under")]
             self.assertEqual([row[0] for row in rows], policies * 3)
             for at, (policy, cells) in enumerate(rows):
                 table = at // len(policies)
                 capacity = self.expected[name]["capacity_mwh"]
-                wanted = ([capacity * mean(self.profits(name, policy, carried)) for carried in (False, True)]
+                wanted = ([capacity * mean(self.profits(name, policy, carried))
+                           for carried in (False, True)]
                           if table == 2 else self.comparison_of(name, policy, table == 0))
                 self.assertEqual(len(cells), len(wanted), [label for label, _ in cells])
                 for (label, text), value in zip(cells, wanted):
@@ -168,26 +178,34 @@ class Pages(unittest.TestCase):
                             self.assertAlmostEqual(shown, value, delta=.5001 * 10 ** -decimals)
 
     def test_the_head_is_about_the_student_that_the_run_ended_with(self):
-        for name, student in (("run", "corrected student"), ("ruled", "corrected student"), ("failed", "unproved student")):
+        for name, student in (("run", "corrected student"), ("ruled", "corrected student"),
+                              ("failed", "unproved student")):
             tab = self.tab(name)
-            self.assertEqual(float(tab.run("document.getElementById('headline-profit').textContent")),
+            self.assertEqual(
+                float(tab.run("document.getElementById('headline-profit').textContent")),
                              round(mean(self.profits(name, student)), 1))
-            self.assertIn("the " + student, tab.run("document.querySelector('.hero .figure').textContent"))
+            self.assertIn("the " + student,
+                          tab.run("document.querySelector('.hero .figure').textContent"))
             for row in tab.run("""[...document.querySelectorAll(".gains tbody tr")].map((row) => [
-                row.querySelector("th").firstChild.data, [...row.querySelectorAll(".number")].map((c) => c.textContent)])"""):
+                row.querySelector("th").firstChild.data,
+                [...row.querySelectorAll(".number")].map((c) => c.textContent)])"""):
                 for wear, text in zip((0, 10), row[1]):
                     gains = [a - b for a, b in zip(self.profits(name, student, wear=wear),
                                                    self.profits(name, row[0], wear=wear))]
                     shown, decimals = numbers_of(text)[0]
-                    self.assertAlmostEqual(shown, mean(gains), delta=.5001 * 10 ** -decimals, msg=f"{name}, {row[0]}")
+                    self.assertAlmostEqual(shown, mean(gains), delta=.5001 * 10 ** -decimals,
+                                           msg=f"{name}, {row[0]}")
                     error, decimals = numbers_of(text)[1]
-                    self.assertAlmostEqual(error, error_of_mean(gains), delta=.5001 * 10 ** -decimals)
+                    self.assertAlmostEqual(error, error_of_mean(gains),
+                                           delta=.5001 * 10 ** -decimals)
 
     def test_rules_and_their_prices_are_those_of_the_days_and_of_the_proof(self):
         for name, student in (("ruled", "corrected student"), ("failed", "unproved student")):
             tab = self.tab(name)
             demands = {demand["text"]: demand for demand in self.expected[name]["demands"]}
-            tables = tab.run("[...document.querySelectorAll('#rules table')].map((table, i) => table.id = 'rules-' + i)")
+            tables = tab.run(
+                "[...document.querySelectorAll('#rules table')].map((table, i) => table.id = "
+                "'rules-' + i)")
             self.assertEqual(len(tables), 2)
             rules = self.rows_of(tab, "#rules-0")
             self.assertEqual(len(rules), len(demands) - 3, "and three properties")
@@ -201,15 +219,18 @@ class Pages(unittest.TestCase):
                 self.assertEqual(numbers_of(of["States"])[0][0], demand["states"])
                 self.assertEqual(numbers_of(count)[0][0], demand["violations"])
             for part, cells in self.rows_of(tab, "#rules-1"):
-                others = {"all rules together": ("plain student under all rules", "plain student"), "both": (student, "plain student")}
+                others = {"all rules together": ("plain student under all rules", "plain student"),
+                          "both": (student, "plain student")}
                 with_it, without = others.get(part) or (
                     (student, "plain student under all rules") if "correction" in part
-                    else ("plain student under \"%s\"" % part.removesuffix(", alone"), "plain student"))
+                    else ("plain student under \"%s\"" % part.removesuffix(", alone"),
+                          "plain student"))
                 for wear, (_, text) in zip((0, 10), cells):
                     wanted = mean([a - b for a, b in zip(self.profits(name, with_it, wear=wear),
                                                          self.profits(name, without, wear=wear))])
                     shown, decimals = numbers_of(text)[0]
-                    self.assertAlmostEqual(shown, wanted, delta=.5001 * 10 ** -decimals, msg=f"{name}, {part}")
+                    self.assertAlmostEqual(shown, wanted, delta=.5001 * 10 ** -decimals,
+                                           msg=f"{name}, {part}")
 
     def json_of(self, path):
         with open(os.path.join(self.folder.name, path), encoding="utf-8") as file:
@@ -258,7 +279,8 @@ class Pages(unittest.TestCase):
                 "Profit": of[PROFIT], "s.e. over days": of[ERRORS[0]], "By month": of[ERRORS[1]],
                 "Gain": gain, "Its s.e.": error, "Gain by month": by_months, "At wear 10": of[WEAR],
                 "Cycles a day": of["cycles_per_day"], "Drawdown": of["drawdown_eur_per_mwh"]})
-        with open(os.path.join(self.folder.name, "backtest/backtest.csv"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder.name, "backtest/backtest.csv"),
+                  encoding="utf-8") as file:
             lines = {(line["policy"], line["month"]): line for line in csv.DictReader(file)}
         fitted = {month["month"]: month["fitted_days"] for month in result["months"]}
         self.assertEqual([name for name, _ in by_month], [*policies, "fitted on days"])
@@ -281,10 +303,12 @@ class Pages(unittest.TestCase):
         self.assertIn(f"valued at {result['policies'][0]['charge_price_eur_per_mwh']:.2f} EUR/MWh",
                       tab.run("document.querySelector('.note').textContent"))
         def items(of):
-            return tab.run(f"[...document.querySelectorAll('{of} li')].map((item) => item.textContent)")
+            return tab.run(
+                f"[...document.querySelectorAll('{of} li')].map((item) => item.textContent)")
         self.assertEqual(items("ul.note"), [f"{month['month']} is not traded: {month['reason']}"
                                             for month in result["not_traded"]])
-        self.assertEqual(tab.run("shownCharts.get('profit').chart.data.datasets.map((line) => line.label)"),
+        self.assertEqual(
+            tab.run("shownCharts.get('profit').chart.data.datasets.map((line) => line.label)"),
                          [policy["policy"] for policy in result["policies"]])
 
     # Many runs.
@@ -313,7 +337,8 @@ class Pages(unittest.TestCase):
             self.assertEqual(name, run["run"])
             text = dict(rows[name])
             carried, reset = [next(row for row in run["policies"]
-                                   if row["policy"] == "corrected student" and row["carry_soc"] == way)
+                                   if row["policy"] == "corrected student"
+                                   and row["carry_soc"] == way)
                               for way in (True, False)]
             errors = [carried[key] for key in ERRORS if carried[key] is not None]
             self.says(text["Carried over"], [carried[PROFIT], *errors], name)
@@ -335,12 +360,15 @@ class Pages(unittest.TestCase):
 
     def test_runs_without_figures_say_why(self):
         rows = {name: dict(cells) for name, cells in self.rows_of(self.tab("many"), "#runs")}
-        for name, state, proof in (("failed", "ended without a proof", "not proved: property 3: 23994"),
+        for name, state, proof in (("failed", "ended without a proof",
+                                    "not proved: property 3: 23994"),
                                    ("stopped", "stopped after the teacher", NOTHING)):
             self.assertEqual(rows["many/" + name]["State"], state)
             self.assertEqual(rows["many/" + name]["Proof"], proof)
-        self.assertIn("evaluation_days.csv: is not what the run wrote", rows["many/edited"]["State"])
-        self.assertIn("'bess-train report --run many/edited' makes it again", rows["many/edited"]["State"])
+        self.assertIn("evaluation_days.csv: is not what the run wrote",
+                      rows["many/edited"]["State"])
+        self.assertIn("'bess-train report --run many/edited' makes it again",
+                      rows["many/edited"]["State"])
         for name in UNFINISHED:
             for label in ("Days", "Carried over", "Gain", "EUR/day, whole battery", "At wear 10",
                           "% of foresight", "Same charge each day"):
@@ -351,7 +379,8 @@ class Pages(unittest.TestCase):
         links = tab.run("""[...document.querySelectorAll("#runs a")].map(
           (link) => [link.textContent, link.getAttribute("href")])""")
         self.assertEqual(sorted(links), [[f"many/{name}", f"many/{name}/report.html"]
-                                         for name in sorted(FINISHED + UNFINISHED) if name != "stopped"])
+                                         for name in sorted(FINISHED + UNFINISHED)
+                                         if name != "stopped"])
         for _, link in links:
             self.assertTrue(os.path.exists(os.path.join(self.folder.name, link)), link)
 
@@ -376,7 +405,8 @@ class Pages(unittest.TestCase):
         self.assertEqual(arrows, [[label, "descending" if descending else "ascending"]])
 
     def heads(self, tab):
-        return tab.run("[...document.querySelectorAll('#runs thead th')].map((head) => head.textContent)")
+        return tab.run(
+            "[...document.querySelectorAll('#runs thead th')].map((head) => head.textContent)")
 
     def test_heads_sort_both_ways(self):
         tab = self.tab("many")
@@ -387,7 +417,8 @@ class Pages(unittest.TestCase):
                 tab.run(f"document.querySelectorAll('#runs thead button')[{at}].click()")
                 self.order_holds(tab, label, descending)
                 orders.add(str(self.column(tab, "Run")))
-        self.assertEqual(sorted(map(str, self.rows_of(tab, "#runs"))), before, "rows keep their cells")
+        self.assertEqual(sorted(map(str, self.rows_of(tab, "#runs"))), before,
+                         "rows keep their cells")
         self.assertGreater(len(orders), 8)
         tab.run("document.querySelector('#runs thead button').click()")
         names = self.column(tab, "Run")
@@ -406,7 +437,8 @@ class Pages(unittest.TestCase):
         for at, label in enumerate(heads):
             self.assertEqual(tab.run("document.activeElement.textContent"), label, "Tab goes on")
             if at % 4 == 1:
-                descending = tab.run("document.activeElement.closest('[aria-sort=ascending]') !== null")
+                descending = tab.run(
+                    "document.activeElement.closest('[aria-sort=ascending]') !== null")
                 for key, code in (("Enter", 13), (" ", 32)):
                     self.press(tab, key, code)
                     self.order_holds(tab, label, descending)
@@ -431,7 +463,8 @@ class Pages(unittest.TestCase):
             `<tr><td data-sort="${value}">${value}</td></tr>`).join("")}</tbody></table>`)""")
         def sorted_by(descending):
             tab.run(f"sortTable(document.getElementById('odd'), 0, {json.dumps(descending)})")
-            return tab.run("[...document.querySelectorAll('#odd td')].map((cell) => cell.textContent)")
+            return tab.run(
+                "[...document.querySelectorAll('#odd td')].map((cell) => cell.textContent)")
         self.assertEqual(sorted_by(False), ["-2", "0.5", "9", "10", "1e2", ""])
         self.assertEqual(sorted_by(True), ["1e2", "10", "9", "0.5", "-2", ""])
         tab.run("document.querySelector('#odd td').dataset.sort = 'b 10'")
@@ -457,27 +490,31 @@ class Pages(unittest.TestCase):
         tab = self.tab("failed")
         self.assertNotIn("orrected student", tab.run("document.body.innerText"))
         self.assertIn("where its proof failed", tab.run("document.querySelector('h1').textContent"))
-        broken = [demand for demand in self.expected["failed"]["demands"] if demand["violations"] > 0]
+        broken = [demand for demand in self.expected["failed"]["demands"]
+                  if demand["violations"] > 0]
         shown = tab.run("[...document.querySelectorAll('#broken dd')].map((dd) => dd.textContent)")
         self.assertEqual(len(shown), len(broken))
         for text, demand in zip(shown, broken):
             self.assertIn(f"{demand['violations']:,} violations", text)
             self.assertIn("To mend: ", text)
-        buttons = tab.run("[...document.querySelectorAll('[data-broken]')].map((b) => Number(b.dataset.broken))")
+        buttons = tab.run(
+            "[...document.querySelectorAll('[data-broken]')].map((b) => Number(b.dataset.broken))")
         self.assertTrue(buttons)
         for button in buttons:
             tab.run(f"document.querySelector('[data-broken=\"{button}\"]').click()")
             tab.wait(COMPLETE)
             minute, quarter_hour, context_class, soc, price = tab.run(f"page.data.broken[{button}]")
             self.assertEqual(tab.run("page.map.context"),
-                             {"minute": minute, "quarterHour": quarter_hour, "contextClass": context_class})
+                             {"minute": minute, "quarterHour": quarter_hour,
+                              "contextClass": context_class})
             self.assertEqual(tab.run("page.map.marked"), {"price": price, "soc": soc / 200})
             self.assertIn("states against", tab.run("page.map.maps[0].found.textContent"))
 
     # Rules on the maps.
 
     def show_map(self, tab, context_class, quarter_hour, minute):
-        for name, value in (("context", context_class), ("quarter", quarter_hour), ("minute", minute)):
+        for name, value in (("context", context_class), ("quarter", quarter_hour),
+                            ("minute", minute)):
             tab.set_value(name + "-slider", value)
         tab.wait(COMPLETE)
 
@@ -488,24 +525,32 @@ class Pages(unittest.TestCase):
             tab.run("document.querySelector('[data-window=all]').click()")
             students = list(self.expected[name]["students"].values())
             for at, wanted in enumerate(students[0]["maps"]):
-                self.show_map(tab, wanted["context_class"], wanted["quarter_hour"], wanted["minute"])
+                self.show_map(tab, wanted["context_class"], wanted["quarter_hour"],
+                              wanted["minute"])
                 for index, student in enumerate(students):
-                    found = tab.run(f"""Object.fromEntries(page.map.maps[{index}].violations.rules.map(
-                      ({{rule, cells}}) => [rule.name, cells.length]))""")
-                    counts = {rule: n for rule, n in student["broken_rules"][at].items() if n > 0 and rule != "falls with price"}
+                    found = tab.run(f"""Object.fromEntries(
+                      page.map.maps[{index}].violations.rules.map(
+                        ({{rule, cells}}) => [rule.name, cells.length]))""")
+                    counts = {rule: n for rule, n in student["broken_rules"][at].items()
+                              if n > 0 and rule != "falls with price"}
                     self.assertEqual(found, counts, f"{name}, student {index}, map {at}")
-                    order = tab.run(f"page.map.maps[{index}].violations.order.filter((v) => v.towards === 'price').length")
+                    order = tab.run(
+                        f"page.map.maps[{index}].violations.order.filter((v) => v.towards === "
+                        f"'price').length")
                     self.assertEqual(order, student["broken_rules"][at]["falls with price"])
                     seen += sum(counts.values())
             tab.run("document.querySelector('[data-window=decisions]').click()")
         self.assertGreater(seen, 1000)
 
     def pixel(self, tab, price, soc):
-        """Colour of the first map at a state, and where the pointer must be for it, in the window."""
+        """Colour of the first map at a state, and where the pointer must be for it, in the
+        window."""
         return tab.run(f"""(() => {{
-          const map = page.map.maps[0], {{xOf, yOf}} = page.map.frame(map), x = xOf({price}), y = yOf({soc});
+          const map = page.map.maps[0], {{xOf, yOf}} = page.map.frame(map);
+          const x = xOf({price}), y = yOf({soc});
           const box = map.canvas.getBoundingClientRect();
-          const copy = new OffscreenCanvas(map.canvas.width, map.canvas.height).getContext("2d", {{willReadFrequently: true}});
+          const copy = new OffscreenCanvas(map.canvas.width, map.canvas.height)
+            .getContext("2d", {{willReadFrequently: true}});
           copy.drawImage(map.canvas, 0, 0);
           return {{rgb: [...copy.getImageData(Math.round(x), Math.round(y), 1, 1).data].slice(0, 3),
                    x: box.left + x, y: box.top + y}};
@@ -527,9 +572,11 @@ class Pages(unittest.TestCase):
         edge = tab.run("""(() => { const {xOf, yOf} = page.map.frame(page.map.maps[0]);
           return {left: (xOf(-51) + xOf(-50)) / 2, y: yOf(60)}; })()""")
         colours = tab.run(f"""(() => {{ const canvas = page.map.maps[0].canvas;
-          const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {{willReadFrequently: true}});
+          const copy = new OffscreenCanvas(canvas.width, canvas.height)
+            .getContext("2d", {{willReadFrequently: true}});
           copy.drawImage(canvas, 0, 0);
-          return [-1, 0].map((dx) => [...copy.getImageData(Math.round({edge["left"]}) + dx, Math.round({edge["y"]}), 1, 1).data].slice(0, 3));
+          return [-1, 0].map((dx) => [...copy.getImageData(
+            Math.round({edge["left"]}) + dx, Math.round({edge["y"]}), 1, 1).data].slice(0, 3));
         }})()""")
         self.assertIn(wanted, colours, "the left edge of the box, -50 EUR/MWh, is drawn")
         inside, outside = self.pixel(tab, 200, 100), self.pixel(tab, -150, 190)
@@ -546,15 +593,19 @@ class Pages(unittest.TestCase):
     def test_the_legend_says_who_is_held_and_leads_to_where_a_rule_holds(self):
         tab = self.tab("failed")
         self.show_map(tab, 6, 12, 0)
-        keys = tab.run("[...document.querySelectorAll('#rule-keys button')].map((b) => [b.textContent, b.disabled])")
+        keys = tab.run(
+            "[...document.querySelectorAll('#rule-keys button')].map((b) => [b.textContent, "
+            "b.disabled])")
         self.assertEqual(len(keys), 5)
         self.assertIn("Held to it: student; does not hold at this time", keys[0][0])
         self.assertEqual([disabled for _, disabled in keys], [False, True, False, True, True])
         tab.run("document.querySelectorAll('#rule-keys button')[0].click()")
         tab.wait(COMPLETE)
         self.assertEqual(tab.run("page.map.context.quarterHour"), 40, "10:00")
-        self.assertIn("holds on this map", tab.run("document.querySelector('#rule-keys button').textContent"))
-        self.assertTrue(self.tab("run").run("document.getElementById('rule-keys').hidden"), "no rules, no legend")
+        self.assertIn("holds on this map",
+                      tab.run("document.querySelector('#rule-keys button').textContent"))
+        self.assertTrue(self.tab("run").run("document.getElementById('rule-keys').hidden"),
+                        "no rules, no legend")
 
 
 if __name__ == "__main__":
