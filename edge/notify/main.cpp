@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "edge/beside/stop_signals.h"
+#include "edge/companion/stop_signals.h"
 #include "edge/notify/journal_line.h"
 #include "edge/notify/notifier.h"
 #include "edge/notify/notify_lock.h"

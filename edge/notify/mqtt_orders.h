@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "edge/beside/orders.h"
+#include "edge/companion/orders.h"
 #include "edge/notify/bell.h"
 
 namespace bess {

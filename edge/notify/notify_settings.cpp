@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "edge/beside/numeric_address.h"
-#include "edge/beside/secret_file.h"
+#include "edge/companion/numeric_address.h"
+#include "edge/companion/secret_file.h"
 #include "edge/log/installed_folders.h"
 #include "edge/notify/webhook.h"
 #include "edge/prices/http_secrets.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "edge/account/money_settings.h"
-#include "edge/beside/controller_places.h"
+#include "edge/companion/controller_places.h"
 #include "edge/notify/settled_fetch.h"
 
 namespace bess {

@@ -34,7 +34,7 @@ struct Ledger {
 std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
                        const Ledger& ledger);
 std::string alarms_json(const std::vector<Alarm>& alarms);
-/// `beside`: what others would have earned (rivals.h); left out where nothing is known of them.
+/// `companion`: what others would have earned (rivals.h); left out where nothing is known of them.
 std::string day_json(const DayAccount& day, JsonValue beside);
 
 /// Home Assistant's discovery: one message for the device and all its entities (since 2024.11).

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "edge/beside/stop_signals.h"
+#include "edge/companion/stop_signals.h"
 #include "edge/page/page_server.h"
 #include "edge/page/page_settings.h"
 #include "shared/local_time.h"

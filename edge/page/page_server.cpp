@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "edge/beside/orders.h"
+#include "edge/companion/orders.h"
 #include "edge/log/journal.h"
 #include "edge/page/front_door.h"
 #include "edge/page/page_files.h"

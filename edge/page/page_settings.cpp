@@ -1,7 +1,7 @@
 #include "edge/page/page_settings.h"
 
-#include "edge/beside/numeric_address.h"
-#include "edge/beside/secret_file.h"
+#include "edge/companion/numeric_address.h"
+#include "edge/companion/secret_file.h"
 
 namespace bess {
 namespace {

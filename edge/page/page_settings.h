@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/beside/controller_places.h"
+#include "edge/companion/controller_places.h"
 #include "edge/page/access_tokens.h"
 
 namespace bess {

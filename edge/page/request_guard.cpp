@@ -1,6 +1,6 @@
 #include "edge/page/request_guard.h"
 
-#include "edge/beside/numeric_address.h"
+#include "edge/companion/numeric_address.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

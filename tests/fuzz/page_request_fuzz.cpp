@@ -1,6 +1,6 @@
 // What reaches bess-page from outside: a host, an origin, an order's fields, and the file of
 // tokens. Lines: host, origin, fields as name=value&..., a token, then the file.
-#include "edge/beside/orders.h"
+#include "edge/companion/orders.h"
 #include "edge/page/access_tokens.h"
 #include "edge/page/request_guard.h"
 #include "shared/host/text.h"

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "edge/beside/orders.h"
+#include "edge/companion/orders.h"
 #include "edge/control/policy.h"
 #include "edge/page/access_tokens.h"
 #include "edge/page/day_chart.h"

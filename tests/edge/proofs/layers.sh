@@ -51,15 +51,15 @@ layer edge/main.cpp                 edge shared
 # Beside the controller: they read what the log wrote.
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
-layer edge/beside                   edge/beside edge/log edge/control edge/base shared
-layer edge/notify                   edge/notify edge/beside edge/account edge/log edge/control \
+layer edge/companion                edge/companion edge/log edge/control edge/base shared
+layer edge/notify                   edge/notify edge/companion edge/account edge/log edge/control \
   edge/prices/http_secrets.h edge/base shared
-layer edge/page         edge/page edge/beside edge/why edge/log edge/loop edge/control edge/base \
-  shared
+layer edge/page                     edge/page edge/companion edge/why edge/log edge/loop \
+  edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
-  grep -vE '^edge/(why/|update/|beside/|notify/|page/)')" \
-  "the heap is of start-up, commands, programs beside, and the reader of register maps"
+  grep -vE '^edge/(why/|update/|companion/|notify/|page/)')" \
+  "the heap is of start-up, commands, companion programs, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared

@@ -1,4 +1,4 @@
-// SIGTERM and SIGINT of a program beside the controller: blocked before any thread is there, and
+// SIGTERM and SIGINT of a companion program: blocked before any thread is there, and
 // taken where it waits, so that nothing is cut in the middle.
 #pragma once
 

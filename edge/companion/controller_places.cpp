@@ -1,4 +1,4 @@
-#include "edge/beside/controller_places.h"
+#include "edge/companion/controller_places.h"
 
 #include <unistd.h>
 

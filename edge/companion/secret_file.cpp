@@ -1,4 +1,4 @@
-#include "edge/beside/secret_file.h"
+#include "edge/companion/secret_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

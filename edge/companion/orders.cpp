@@ -1,4 +1,4 @@
-#include "edge/beside/orders.h"
+#include "edge/companion/orders.h"
 
 #include <charconv>
 #include <cstdint>

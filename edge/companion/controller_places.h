@@ -1,4 +1,4 @@
-// What programs beside the controller know of it by its configuration: which program answers, and
+// What a companion program knows of the controller by its configuration: which program answers, and
 // where its decision log lies. Read apart from the controller's own reader: a configuration that
 // keeps the controller from starting must still be seen, and told.
 #pragma once
