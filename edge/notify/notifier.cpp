@@ -60,12 +60,12 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
       desk_(settings.mqtt.hold_minutes, settings.power_w),
       kept_(notifier_state_text(told_)) {
   if (!settings_.mail_to.empty()) {
-    open_lane("mail", [this](const Message& message, const std::stop_token& stop) {
+    open_outbox("mail", [this](const Message& message, const std::stop_token& stop) {
       return send_mail(settings_, message, stop);
     });
   }
   if (!settings_.webhook_url.empty()) {
-    open_lane("webhook", [this](const Message& message, const std::stop_token& stop) {
+    open_outbox("webhook", [this](const Message& message, const std::stop_token& stop) {
       return post_webhook(settings_, message, stop);
     });
   }
@@ -79,20 +79,20 @@ void Notifier::open_mqtt(MqttPresence presence) {
   if (!settings_.mqtt.discovery_prefix.empty()) {
     mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
   }
-  open_lane("mqtt", [this](const Message& message, const std::stop_token& stop) {
+  open_outbox("mqtt", [this](const Message& message, const std::stop_token& stop) {
     if (!mqtt_->trouble().empty()) return mqtt_->trouble();
     return mqtt_->send(topic(settings_.node, "event"), message_json(settings_.node, message), stop);
   });
 }
 
-void Notifier::open_lane(const char* name, Channel way) {
-  lanes_.try_emplace(name, name, std::move(way), std::move(told_.owed[name]), taken_);
+void Notifier::open_outbox(const char* name, Channel way) {
+  outboxes_.try_emplace(name, name, std::move(way), std::move(told_.owed[name]), taken_);
 }
 
 Notifier::~Notifier() {
   constexpr std::chrono::seconds kGrace(2);
   static_cast<void>(wait_for_channels(kGrace));
-  for (auto& [name, lane] : lanes_) lane.stop();
+  for (auto& [name, outbox] : outboxes_) outbox.stop();
   keep();
 }
 
@@ -106,7 +106,7 @@ void Notifier::run_round(std::int64_t now_utc_s) {
   read_log(newest_utc_of(status), now_utc_s);
   publish(status);
   keep();  // before it is sent: killed in between, a message is sent late and not never
-  for (auto& [name, lane] : lanes_) lane.begin_round(now_utc_s);
+  for (auto& [name, outbox] : outboxes_) outbox.begin_round(now_utc_s);
 }
 
 void Notifier::look_at_settled(std::int64_t now_utc_s) {
@@ -143,7 +143,8 @@ bool Notifier::wait_for_channels(std::chrono::milliseconds patience) {
     return duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now());
   };
   bool are_done = true;
-  for (const auto& [name, lane] : lanes_) are_done = lane.wait_until_done(left()) && are_done;
+  for (const auto& [name, outbox] : outboxes_)
+    are_done = outbox.wait_until_done(left()) && are_done;
   if (mqtt_ != nullptr) static_cast<void>(mqtt_->wait_until_retained(left()));
   keep();
   return are_done;
@@ -151,11 +152,11 @@ bool Notifier::wait_for_channels(std::chrono::milliseconds patience) {
 
 bool Notifier::send_test(std::int64_t now_utc_s) {
   bool all = true;
-  for (const auto& [name, lane] : lanes_) {
-    const std::string trouble = lane.send_now({.kind = MessageKind::kTest,
-                                               .key = "test",
-                                               .text = "bess-notify can reach you by " + name,
-                                               .utc_s = now_utc_s});
+  for (const auto& [name, outbox] : outboxes_) {
+    const std::string trouble = outbox.send_now({.kind = MessageKind::kTest,
+                                                 .key = "test",
+                                                 .text = "bess-notify can reach you by " + name,
+                                                 .utc_s = now_utc_s});
     all = all && trouble.empty();
     say(trouble.empty() ? JournalLevel::kInfo : JournalLevel::kError,
         trouble.empty() ? name + ": sent" : trouble);
@@ -166,7 +167,7 @@ bool Notifier::send_test(std::int64_t now_utc_s) {
 void Notifier::tell(const Message& message) {
   say(message.kind == MessageKind::kAlarm ? JournalLevel::kWarning : JournalLevel::kNotice,
       headline(message));
-  for (auto& [name, lane] : lanes_) lane.add(message);
+  for (auto& [name, outbox] : outboxes_) outbox.add(message);
 }
 
 void Notifier::tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s) {
@@ -243,7 +244,7 @@ void Notifier::keep() {
   taken_.hush();
   told_.alarms = book_.alarms();
   told_.owed.clear();  // of ways that are not configured any more
-  for (const auto& [name, lane] : lanes_) told_.owed[name] = lane.owed();
+  for (const auto& [name, outbox] : outboxes_) told_.owed[name] = outbox.owed();
   // Its growth can be counted again from the log: alone it is not worth a write to the card.
   const bool is_energy_due =
       energy_.counted_utc_s - told_.energy.counted_utc_s >= kKeepEnergyEveryS;

@@ -1,8 +1,9 @@
-// One round of the notifier: ask, compare with what was told, hand the rest to every way's lane.
+// One round of the notifier: ask, compare with what was told, hand the rest to every way's outbox.
 //   bess-edge status, decision log -> AlarmBook, DayAccount -> messages
-//   messages -> lanes: mail, webhook, MQTT
+//   messages -> outboxes: mail, webhook, MQTT
 // It reads files and asks a program; nothing here holds what the controller needs. A round waits
-// for no way: what a way does not take is tried again every round, for three days, in its own lane.
+// for no way: what a way does not take is tried again every round, for three days, from its own
+// outbox.
 #pragma once
 
 #include <map>
@@ -15,12 +16,12 @@
 #include "edge/notify/bell.h"
 #include "edge/notify/controller_status.h"
 #include "edge/notify/energy_totals.h"
-#include "edge/notify/lane.h"
 #include "edge/notify/message.h"
 #include "edge/notify/mqtt_client.h"
 #include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notifier_state.h"
 #include "edge/notify/notify_settings.h"
+#include "edge/notify/outbox.h"
 
 namespace bess {
 
@@ -50,7 +51,7 @@ class Notifier {
 
  private:
   void open_mqtt(MqttPresence presence);
-  void open_lane(const char* name, Channel way);
+  void open_outbox(const char* name, Channel way);
   void tell(const Message& message);
   void tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s);
   void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
@@ -70,9 +71,9 @@ class Notifier {
   HoldDesk desk_;
   bool is_held_ = false;  ///< by the newest status
   std::unique_ptr<MqttClient> mqtt_;
-  std::map<std::string, Lane> lanes_;  ///< after what their threads use
-  std::string kept_;                   ///< the text that was written last
-  std::string settled_trouble_;        ///< why nobody knows what is billed; empty = it is known
+  std::map<std::string, Outbox> outboxes_;  ///< after what their threads use
+  std::string kept_;                        ///< the text that was written last
+  std::string settled_trouble_;  ///< why nobody knows what is billed; empty = it is known
   std::int64_t settled_due_utc_s_ = 0;
   std::string memory_trouble_;  ///< why what is told cannot be kept; empty = it is
 };

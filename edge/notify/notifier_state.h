@@ -11,7 +11,7 @@
 
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/energy_totals.h"
-#include "edge/notify/lane.h"
+#include "edge/notify/outbox.h"
 
 namespace bess {
 

@@ -1,4 +1,4 @@
-#include "edge/notify/lane.h"
+#include "edge/notify/outbox.h"
 
 #include <algorithm>
 #include <utility>
@@ -35,42 +35,42 @@ void Dropped::forget(const Dropped& told) {
   if (count == 0) *this = {};
 }
 
-Lane::Lane(std::string name, Channel way, Owed owed, const Bell& taken)
+Outbox::Outbox(std::string name, Channel way, Owed owed, const Bell& taken)
     : name_(std::move(name)), way_(std::move(way)), taken_(taken), owed_(std::move(owed)) {
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-void Lane::stop() {
+void Outbox::stop() {
   thread_.request_stop();
   thread_.join();
 }
 
-void Lane::add(const Message& message) {
+void Outbox::add(const Message& message) {
   const std::lock_guard lock(mutex_);
   owed_.messages.push_back(message);
   if (owed_.messages.size() > kMessagesMax) drop_oldest();
 }
 
-void Lane::begin_round(std::int64_t now_utc_s) {
+void Outbox::begin_round(std::int64_t now_utc_s) {
   const std::lock_guard lock(mutex_);
   now_utc_s_ = now_utc_s;
   is_due_ = true;
   changed_.notify_all();
 }
 
-Owed Lane::owed() const {
+Owed Outbox::owed() const {
   const std::lock_guard lock(mutex_);
   return owed_;
 }
 
-bool Lane::wait_until_done(std::chrono::milliseconds patience) const {
+bool Outbox::wait_until_done(std::chrono::milliseconds patience) const {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, patience, [this] { return !is_due_; });
 }
 
-std::string Lane::send_now(const Message& message) const { return way_(message, {}); }
+std::string Outbox::send_now(const Message& message) const { return way_(message, {}); }
 
-void Lane::work(const std::stop_token& stop) {
+void Outbox::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return is_due_; })) {
     if (stop.stop_requested()) return;
@@ -81,7 +81,7 @@ void Lane::work(const std::stop_token& stop) {
 }
 
 /// A way that has just failed would only cost its time-out again: the rest waits for a round.
-void Lane::send_all(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+void Outbox::send_all(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
   drop_too_old();
   while (owed_.dropped.count > 0 || !owed_.messages.empty()) {
     const Dropped dropped = owed_.dropped;
@@ -101,13 +101,13 @@ void Lane::send_all(std::unique_lock<std::mutex>& lock, const std::stop_token& s
 }
 
 /// What is on its way just now is not given up.
-void Lane::drop_oldest() {
+void Outbox::drop_oldest() {
   const auto oldest = owed_.messages.begin() + (is_oldest_sent_ ? 1 : 0);
   owed_.dropped.add(*oldest);
   owed_.messages.erase(oldest);
 }
 
-void Lane::drop_too_old() {
+void Outbox::drop_too_old() {
   std::erase_if(owed_.messages, [this](const Message& message) {
     const bool is_too_old = now_utc_s_ - message.utc_s > kPatienceS;
     if (is_too_old) owed_.dropped.add(message);
@@ -115,7 +115,7 @@ void Lane::drop_too_old() {
   });
 }
 
-void Lane::note(const std::string& trouble) {
+void Outbox::note(const std::string& trouble) {
   if (trouble == trouble_) return;
   say(JournalLevel::kWarning, trouble + "; tried again every round");
   trouble_ = trouble;

@@ -27,7 +27,7 @@ bool drip(TestConnection& connection, const std::string&) {
   return false;
 }
 
-class Lanes : public Mqtt {
+class Outboxes : public Mqtt {
  protected:
   void SetUp() override {
     Mqtt::SetUp();
@@ -76,7 +76,7 @@ class Lanes : public Mqtt {
 
 /// Stuck ways cost 80 s a round when all were served one after the other: alarms that came and went
 /// were never told, and the others far too late.
-TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
+TEST_F(Outboxes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
   TestServer silent([&silent](TestConnection&, const std::string&) {
@@ -108,7 +108,7 @@ TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
 
 /// Two rounds of margin for a busy machine: told with stuck ways it had been five seconds, whatever
 /// it was.
-TEST_F(Lanes, AnOutageIsToldAsLongAsItWas) {
+TEST_F(Outboxes, AnOutageIsToldAsLongAsItWas) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
   TestServer dripping(drip);
@@ -130,7 +130,7 @@ TEST_F(Lanes, AnOutageIsToldAsLongAsItWas) {
 }
 
 /// In moved time, exactly: seen from 5 to 45 s, it lasted between 40 and 50 s.
-TEST_F(Lanes, FortyFiveSecondsAreFortyFiveSeconds) {
+TEST_F(Outboxes, FortyFiveSecondsAreFortyFiveSeconds) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
   settings_.every_s = 5;
@@ -145,7 +145,7 @@ TEST_F(Lanes, FortyFiveSecondsAreFortyFiveSeconds) {
 
 /// The broker stands still for longer than a delivery waits, goes away, and is there again: each
 /// event comes once and in order, and the mail goes out meanwhile.
-TEST_F(Lanes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
+TEST_F(Outboxes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   Broker broker(folder_, port());
   auto all = std::make_unique<Listener>(port(), "bess/#");
   use_mail();
@@ -172,7 +172,7 @@ TEST_F(Lanes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   EXPECT_EQ(all->count("/event"), 2U);  // since it is there again
 }
 
-TEST_F(Lanes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
+TEST_F(Outboxes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
@@ -190,7 +190,7 @@ TEST_F(Lanes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
 
 /// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole
 /// each time.
-TEST_F(Lanes, AKillLosesNothing) {
+TEST_F(Outboxes, AKillLosesNothing) {
   settings_.mail_to = "a@b.example";
   settings_.sendmail = write_script("slow", "echo x >>" + folder_.file("mailer_began") +
                                                 "; sleep 0.3; cat >>" + folder_.file("mails"));
@@ -230,7 +230,7 @@ Said run(std::vector<std::string> arguments) {
   return {child.wait(), std::move(text)};
 }
 
-TEST_F(Lanes, ASecondNotifierOfOneMemoryIsRefused) {
+TEST_F(Outboxes, ASecondNotifierOfOneMemoryIsRefused) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
   const std::string file = config();
@@ -263,7 +263,7 @@ TEST_F(Lanes, ASecondNotifierOfOneMemoryIsRefused) {
 }
 
 /// Where nothing can be kept, something must be told all the same.
-TEST_F(Lanes, ANotifierThatCannotLockStillTells) {
+TEST_F(Outboxes, ANotifierThatCannotLockStillTells) {
   const std::string file =
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
                                      settings_.program + "\"\n");

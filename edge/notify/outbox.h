@@ -1,6 +1,6 @@
-// A way in a lane of its own: what is owed waits in order in its queue, and its own thread sends
-// it. However long a way takes to accept, to fail or to be silent, no other way waits, and no look
-// at the controller.
+// A way's outbox: what is owed waits in order in its queue, and its own thread sends it. However
+// long a way takes to accept, to fail or to be silent, no other way waits, and no look at the
+// controller.
 //
 //   add         owed from now on; nothing is sent yet, so that it can be kept in a file first
 //   begin_round an attempt at everything that is owed; it ends with the first message that is not
@@ -45,16 +45,16 @@ struct Owed {
   Dropped dropped{};
 };
 
-class Lane {
+class Outbox {
  public:
   static constexpr std::size_t kMessagesMax = 200;
   static constexpr std::int64_t kPatienceS = 3 * 86'400;
 
   /// `taken` rings after each message that was taken.
-  Lane(std::string name, Channel way, Owed owed, const Bell& taken);
-  Lane(const Lane&) = delete;
-  Lane& operator=(const Lane&) = delete;
-  ~Lane() = default;  // jthread asks its thread to stop, and waits for it
+  Outbox(std::string name, Channel way, Owed owed, const Bell& taken);
+  Outbox(const Outbox&) = delete;
+  Outbox& operator=(const Outbox&) = delete;
+  ~Outbox() = default;  // jthread asks its thread to stop, and waits for it
 
   void add(const Message& message);
   void begin_round(std::int64_t now_utc_s);

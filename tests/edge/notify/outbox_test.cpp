@@ -1,5 +1,5 @@
-// One way's lane: order, rounds, what is given up and said so, and that nobody waits for it.
-#include "edge/notify/lane.h"
+// One way's outbox: order, rounds, what is given up and said so, and that nobody waits for it.
+#include "edge/notify/outbox.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,91 +63,91 @@ class Recorder {
   std::vector<std::string> taken_;
 };
 
-class LaneTest : public ::testing::Test {
+class OutboxTest : public ::testing::Test {
  protected:
-  std::unique_ptr<Lane> lane_with(Owed owed = {}) {
-    return std::make_unique<Lane>("mail", way_.way(), std::move(owed), bell_);
+  std::unique_ptr<Outbox> outbox_with(Owed owed = {}) {
+    return std::make_unique<Outbox>("mail", way_.way(), std::move(owed), bell_);
   }
-  static void run_round(Lane& lane, std::int64_t now_utc_s = kNow) {
-    lane.begin_round(now_utc_s);
-    EXPECT_TRUE(lane.wait_until_done(std::chrono::minutes(1)));
+  static void run_round(Outbox& outbox, std::int64_t now_utc_s = kNow) {
+    outbox.begin_round(now_utc_s);
+    EXPECT_TRUE(outbox.wait_until_done(std::chrono::minutes(1)));
   }
 
   Bell bell_;
   Recorder way_;
 };
 
-TEST_F(LaneTest, SendsInOrderOnceARoundBegins) {
-  const auto lane = lane_with({.messages = {alarm("a")}});
-  lane->add(alarm("b"));
-  lane->add(alarm("c"));
-  EXPECT_EQ(lane->owed().messages.size(), 3U);
+TEST_F(OutboxTest, SendsInOrderOnceARoundBegins) {
+  const auto outbox = outbox_with({.messages = {alarm("a")}});
+  outbox->add(alarm("b"));
+  outbox->add(alarm("c"));
+  EXPECT_EQ(outbox->owed().messages.size(), 3U);
   EXPECT_THAT(way_.tried(), IsEmpty());  // kept in a file before it is sent
-  run_round(*lane);
+  run_round(*outbox);
   EXPECT_THAT(way_.taken(), ElementsAre("a", "b", "c"));
-  EXPECT_TRUE(lane->owed().messages.empty());
+  EXPECT_TRUE(outbox->owed().messages.empty());
 }
 
-TEST_F(LaneTest, WhatIsNotTakenIsTriedAgainEveryRoundAndTheRestWaitsBehindIt) {
-  const auto lane = lane_with({.messages = {alarm("a"), alarm("b")}});
+TEST_F(OutboxTest, WhatIsNotTakenIsTriedAgainEveryRoundAndTheRestWaitsBehindIt) {
+  const auto outbox = outbox_with({.messages = {alarm("a"), alarm("b")}});
   way_.refuse(true);
-  run_round(*lane);
-  run_round(*lane);
+  run_round(*outbox);
+  run_round(*outbox);
   EXPECT_THAT(way_.tried(), ElementsAre("a", "a"));
-  EXPECT_EQ(lane->owed().messages.size(), 2U);
+  EXPECT_EQ(outbox->owed().messages.size(), 2U);
   way_.refuse(false);
-  run_round(*lane);
+  run_round(*outbox);
   EXPECT_THAT(way_.taken(), ElementsAre("a", "b"));
 }
 
-TEST_F(LaneTest, AStuckWayHoldsUpNeitherAnotherOneNorWhoAsks) {
+TEST_F(OutboxTest, AStuckWayHoldsUpNeitherAnotherOneNorWhoAsks) {
   Recorder quick;
-  Lane other("mqtt", quick.way(), {}, bell_);
-  const auto lane = lane_with({.messages = {alarm("a")}});
+  Outbox other("mqtt", quick.way(), {}, bell_);
+  const auto outbox = outbox_with({.messages = {alarm("a")}});
   way_.get_stuck(true);
-  lane->begin_round(kNow);
+  outbox->begin_round(kNow);
   way_.await_tries(1);
   for (int i = 0; i < 100; ++i) {
     const Message message = alarm(std::to_string(i));
-    lane->add(message);
+    outbox->add(message);
     other.add(message);
-    lane->begin_round(kNow + i);
+    outbox->begin_round(kNow + i);
     run_round(other, kNow + i);
   }
   EXPECT_EQ(quick.taken().size(), 100U);
-  EXPECT_EQ(lane->owed().messages.size(), 101U);
+  EXPECT_EQ(outbox->owed().messages.size(), 101U);
   way_.get_stuck(false);
-  run_round(*lane);
+  run_round(*outbox);
   EXPECT_EQ(way_.taken().size(), 101U);
 }
 
 /// The queue ends at 200: the oldest go, and the way is told how many before anything else.
-TEST_F(LaneTest, WhatDoesNotFitIsCountedAndTold) {
-  const auto lane = lane_with();
-  for (int i = 0; i < 205; ++i) lane->add(alarm("m" + std::to_string(i), kNow + 60 * i));
-  EXPECT_EQ(lane->owed().messages.size(), Lane::kMessagesMax);
-  EXPECT_EQ(lane->owed().dropped.count, 5);
-  run_round(*lane);
+TEST_F(OutboxTest, WhatDoesNotFitIsCountedAndTold) {
+  const auto outbox = outbox_with();
+  for (int i = 0; i < 205; ++i) outbox->add(alarm("m" + std::to_string(i), kNow + 60 * i));
+  EXPECT_EQ(outbox->owed().messages.size(), Outbox::kMessagesMax);
+  EXPECT_EQ(outbox->owed().dropped.count, 5);
+  run_round(*outbox);
   const std::vector<std::string> taken = way_.taken();
-  ASSERT_EQ(taken.size(), Lane::kMessagesMax + 1);
+  ASSERT_EQ(taken.size(), Outbox::kMessagesMax + 1);
   EXPECT_EQ(taken[0],
             "5 messages of 2023-03-27T00:02:00Z to 2023-03-27T00:06:00Z dropped: mail took "
             "none for too long; the journal of bess-notify has them");
   EXPECT_EQ(taken[1], "m5");
   EXPECT_EQ(taken.back(), "m204");
-  EXPECT_EQ(lane->owed().dropped.count, 0);
+  EXPECT_EQ(outbox->owed().dropped.count, 0);
 }
 
 /// Full while the oldest is on its way: that one is not lost, and none is told twice.
-TEST_F(LaneTest, WhatIsOnItsWayIsNotGivenUp) {
-  const auto lane = lane_with({.messages = {alarm("first")}});
+TEST_F(OutboxTest, WhatIsOnItsWayIsNotGivenUp) {
+  const auto outbox = outbox_with({.messages = {alarm("first")}});
   way_.get_stuck(true);
-  lane->begin_round(kNow);
+  outbox->begin_round(kNow);
   way_.await_tries(1);
-  for (int i = 0; i < 201; ++i) lane->add(alarm("m" + std::to_string(i)));
-  EXPECT_EQ(lane->owed().messages.front().text, "first");
+  for (int i = 0; i < 201; ++i) outbox->add(alarm("m" + std::to_string(i)));
+  EXPECT_EQ(outbox->owed().messages.front().text, "first");
   way_.get_stuck(false);
-  run_round(*lane);
+  run_round(*outbox);
   const std::vector<std::string> taken = way_.taken();
   ASSERT_EQ(taken.size(), 201U);
   EXPECT_EQ(taken[0], "first");
@@ -157,49 +157,50 @@ TEST_F(LaneTest, WhatIsOnItsWayIsNotGivenUp) {
 }
 
 /// More is dropped while the count is on its way: the next count has the rest.
-TEST_F(LaneTest, NoDroppedMessageIsForgottenOrCountedTwice) {
-  const auto lane = lane_with({.dropped = {.count = 3, .first_utc_s = kNow, .last_utc_s = kNow}});
+TEST_F(OutboxTest, NoDroppedMessageIsForgottenOrCountedTwice) {
+  const auto outbox =
+      outbox_with({.dropped = {.count = 3, .first_utc_s = kNow, .last_utc_s = kNow}});
   way_.get_stuck(true);
-  lane->begin_round(kNow);
+  outbox->begin_round(kNow);
   way_.await_tries(1);
-  for (int i = 0; i < 204; ++i) lane->add(alarm("m" + std::to_string(i)));
+  for (int i = 0; i < 204; ++i) outbox->add(alarm("m" + std::to_string(i)));
   way_.get_stuck(false);
-  run_round(*lane);
+  run_round(*outbox);
   const std::vector<std::string> taken = way_.taken();
   EXPECT_THAT(taken[0], HasSubstr("3 messages"));
   EXPECT_THAT(taken[1], HasSubstr("4 messages"));
   EXPECT_EQ(taken[2], "m4");
 }
 
-TEST_F(LaneTest, AfterThreeDaysAMessageIsGivenUpAndCounted) {
-  const auto lane = lane_with({.messages = {alarm("old", kNow - Lane::kPatienceS - 1),
-                                            alarm("young", kNow - Lane::kPatienceS)}});
-  run_round(*lane);
+TEST_F(OutboxTest, AfterThreeDaysAMessageIsGivenUpAndCounted) {
+  const auto outbox = outbox_with({.messages = {alarm("old", kNow - Outbox::kPatienceS - 1),
+                                                alarm("young", kNow - Outbox::kPatienceS)}});
+  run_round(*outbox);
   ASSERT_EQ(way_.taken().size(), 2U);
   EXPECT_THAT(way_.taken()[0], HasSubstr("1 message of 2023-03-24T00:01:59Z dropped"));
   EXPECT_EQ(way_.taken()[1], "young");
 }
 
-TEST_F(LaneTest, TheEndCutsWhatIsStuckAndItStaysOwed) {
-  const auto lane = lane_with({.messages = {alarm("a"), alarm("b")}});
+TEST_F(OutboxTest, TheEndCutsWhatIsStuckAndItStaysOwed) {
+  const auto outbox = outbox_with({.messages = {alarm("a"), alarm("b")}});
   way_.get_stuck(true);
-  lane->begin_round(kNow);
+  outbox->begin_round(kNow);
   way_.await_tries(1);
-  lane->stop();
-  EXPECT_EQ(lane->owed().messages.size(), 2U);
+  outbox->stop();
+  EXPECT_EQ(outbox->owed().messages.size(), 2U);
   EXPECT_THAT(way_.tried(), ElementsAre("a"));
 }
 
-TEST_F(LaneTest, TheBellRingsForEachThatWasTaken) {
-  const auto lane = lane_with({.messages = {alarm("a")}});
+TEST_F(OutboxTest, TheBellRingsForEachThatWasTaken) {
+  const auto outbox = outbox_with({.messages = {alarm("a")}});
   const auto rings = [this] {
     std::uint64_t count = 0;
     return read(bell_.fd(), &count, sizeof count) == sizeof count;
   };
   EXPECT_FALSE(rings());
-  run_round(*lane);
+  run_round(*outbox);
   EXPECT_TRUE(rings());
-  run_round(*lane);
+  run_round(*outbox);
   EXPECT_FALSE(rings());
 }
 
