@@ -8,7 +8,7 @@
 
 #include "edge/control/control_types.h"
 #include "tools/battery_sim/simulated_battery.h"
-#include "tools/hil_runner/evidence/wire_sight.h"
+#include "tools/hil_runner/evidence/wire_reading.h"
 
 namespace bess {
 
@@ -16,7 +16,7 @@ struct Evidence {
   std::vector<DispatchEvent> orders;  ///< that the battery was given, and how each ended
   std::vector<MinuteRecord> minutes;  ///< that it exchanged
   std::vector<CycleRecord> log;       ///< as the edge's ring keeps it, the oldest first
-  std::vector<WireSight> wire;        ///< as a witness reads it; empty: nobody was asked
+  std::vector<WireReading> wire;      ///< as a witness reads it; empty: nobody was asked
   std::uint64_t sent = 0;             ///< all frames of the edge and when, in one number; virtual
   bool order_ends_by_itself = true;   ///< the device has a timer, by its map
   std::int32_t order_duration_s = 0;  ///< of that timer

@@ -18,9 +18,9 @@ bool is_near(const std::optional<double>& value, double other, double tolerance)
 }
 
 /// What stood on the wire at an instant.
-WireSight sight_at(const std::vector<WireSight>& wire, std::int64_t utc_ns) {
-  const auto next = std::ranges::upper_bound(wire, utc_ns, {}, &WireSight::utc_ns);
-  return next == wire.begin() ? WireSight{} : *(next - 1);
+WireReading reading_at(const std::vector<WireReading>& wire, std::int64_t utc_ns) {
+  const auto next = std::ranges::upper_bound(wire, utc_ns, {}, &WireReading::utc_ns);
+  return next == wire.begin() ? WireReading{} : *(next - 1);
 }
 
 /// What the edge says that it read must have stood there in the cycle.
@@ -28,18 +28,18 @@ void judge_reading(Bench& bench, const CycleRecord& cycle, std::int64_t tick_ns)
   const std::int64_t by_ns = bench.settled_ns(tick_ns);
   constexpr std::int64_t kReadBeforeNs = 30 * kSecondNs;  // by the cycle before, or between two
   const std::int64_t from_ns = tick_ns - kReadBeforeNs;
-  const WireSight before = sight_at(bench.evidence.wire, from_ns);
+  const WireReading before = reading_at(bench.evidence.wire, from_ns);
   bool has_soc = false;
   bool has_power = false;
-  const auto look = [&](const WireSight& sight) {
-    has_soc |= is_near(sight.soc_frac, 1e-4 * cycle.measurement.soc_e4, kSocTolerance);
-    has_power |= is_near(sight.power_w, cycle.measurement.power_w, kWatts);
+  const auto look = [&](const WireReading& reading) {
+    has_soc |= is_near(reading.soc_frac, 1e-4 * cycle.measurement.soc_e4, kSocTolerance);
+    has_power |= is_near(reading.power_w, cycle.measurement.power_w, kWatts);
   };
   look(before);
-  for (const WireSight& sight : bench.evidence.wire) {
-    if (sight.utc_ns > from_ns && sight.utc_ns <= by_ns) look(sight);
+  for (const WireReading& reading : bench.evidence.wire) {
+    if (reading.utc_ns > from_ns && reading.utc_ns <= by_ns) look(reading);
   }
-  const WireSight after = sight_at(bench.evidence.wire, by_ns);
+  const WireReading after = reading_at(bench.evidence.wire, by_ns);
   if (!has_soc) {
     bench.find(by_ns, fmt::format("a SoC of {} on the wire", text_of(after.soc_frac)),
                fmt::format("{:.4f}", 1e-4 * cycle.measurement.soc_e4));
@@ -53,19 +53,19 @@ void judge_reading(Bench& bench, const CycleRecord& cycle, std::int64_t tick_ns)
 /// What stands on the wire, and what the battery does by its own record.
 void judge_truth(Bench& bench, std::int64_t utc_ns) {
   constexpr double kWholePercent = 0.0101;  // some makers show no more
-  const WireSight sight = sight_at(bench.evidence.wire, utc_ns);
+  const WireReading reading = reading_at(bench.evidence.wire, utc_ns);
   const double soc_frac = bench.soc_at(utc_ns);
   const double rated_w = bench.scenario.battery.physics.power_w_max;
   const double flow_frac = rated_w / 30 / bench.scenario.battery.physics.capacity_wh;
-  if (!is_near(sight.soc_frac, soc_frac, kWholePercent + flow_frac)) {
+  if (!is_near(reading.soc_frac, soc_frac, kWholePercent + flow_frac)) {
     bench.find(utc_ns, fmt::format("a SoC near {:.4f} on the wire", soc_frac),
-               text_of(sight.soc_frac));
+               text_of(reading.soc_frac));
   }
   const CommandInForce command = bench.commands.at(utc_ns);
   const double tolerance_w = kWatts + 0.001 * rated_w;
-  if (command.is_driven && !is_near(sight.ordered_w, command.power_w, tolerance_w)) {
+  if (command.is_driven && !is_near(reading.ordered_w, command.power_w, tolerance_w)) {
     bench.find(utc_ns, fmt::format("{:.0f} W ordered on the wire", command.power_w),
-               text_of(sight.ordered_w));
+               text_of(reading.ordered_w));
   }
 }
 
@@ -83,10 +83,10 @@ void judge_witness(Bench& bench) {
     }
     judge_reading(bench, cycle, tick_ns);
     judge_truth(bench, by_ns);
-    const WireSight sight = sight_at(bench.evidence.wire, by_ns);
-    if (cycle.written && !is_near(sight.ordered_w, cycle.ordered_power_w, tolerance_w)) {
+    const WireReading reading = reading_at(bench.evidence.wire, by_ns);
+    if (cycle.written && !is_near(reading.ordered_w, cycle.ordered_power_w, tolerance_w)) {
       bench.find(by_ns, fmt::format("{} W ordered on the wire, as logged", cycle.ordered_power_w),
-                 text_of(sight.ordered_w));
+                 text_of(reading.ordered_w));
     }
   }
 }

@@ -34,8 +34,8 @@ class KeptSignalMask {
 /// Who reads the wire by the maker's table alone.
 class Witness {
  public:
-  Witness(const RegisterMap& map, std::vector<WireSight>& sights)
-      : table_(maker_table(map.name.view(), map.variant.view())), sights_(sights) {
+  Witness(const RegisterMap& map, std::vector<WireReading>& readings)
+      : table_(maker_table(map.name.view(), map.variant.view())), readings_(readings) {
     if (table_ == nullptr) {
       fail("witness: nobody has written down the maker's table of the map \"{}\"", map.name.view());
     }
@@ -43,17 +43,18 @@ class Witness {
 
   void see(WireMemory::Frame request, WireMemory::Frame answer, std::int64_t utc_ns) {
     if (!wire_.exchanged(request, answer)) return;
-    const WireSight sight{.utc_ns = utc_ns,
-                          .soc_frac = table_->soc_frac(wire_),
-                          .power_w = table_->power_w(wire_),
-                          .ordered_w = table_->ordered_w(wire_)};
-    if (sights_.empty() || !sight.shows_the_same(sights_.back())) sights_.push_back(sight);
+    const WireReading reading{.utc_ns = utc_ns,
+                              .soc_frac = table_->soc_frac(wire_),
+                              .power_w = table_->power_w(wire_),
+                              .ordered_w = table_->ordered_w(wire_)};
+    if (readings_.empty() || !reading.shows_the_same(readings_.back()))
+      readings_.push_back(reading);
   }
 
  private:
   const MakerTable* table_;
   WireMemory wire_;
-  std::vector<WireSight>& sights_;
+  std::vector<WireReading>& readings_;
 };
 
 /// From its start to its end; the exit code.
