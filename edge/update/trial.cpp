@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "edge/update/words.h"
+#include "edge/update/texts.h"
 
 namespace bess {
 namespace {

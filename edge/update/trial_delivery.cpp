@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "edge/log/journal.h"
+#include "edge/update/texts.h"
 #include "edge/update/trial_cycles.h"
 #include "edge/update/version_proof.h"
-#include "edge/update/words.h"
 #include "shared/host/text.h"
 
 namespace bess {

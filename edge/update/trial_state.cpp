@@ -16,7 +16,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/text_checksum.h"
 #include "edge/log/whole_file.h"
-#include "edge/update/words.h"
+#include "edge/update/texts.h"
 #include "shared/host/text.h"
 #include "shared/utc_text.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "edge/log/journal.h"
+#include "edge/update/texts.h"
 #include "edge/update/trial_cycles.h"
-#include "edge/update/words.h"
 
 namespace bess {
 namespace {

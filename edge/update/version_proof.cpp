@@ -6,8 +6,8 @@
 
 #include <string_view>
 
+#include "edge/update/texts.h"
 #include "edge/update/version_store.h"
-#include "edge/update/words.h"
 #include "shared/file_descriptor.h"
 #include "shared/host/json.h"
 #include "shared/host/run_program.h"

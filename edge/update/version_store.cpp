@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "edge/log/whole_file.h"
-#include "edge/update/words.h"
+#include "edge/update/texts.h"
 #include "shared/host/errno_text.h"
 #include "shared/host/run_program.h"
 
