@@ -1,5 +1,6 @@
 // A price that does not move although its stamps do: a source that hangs behind a clock that goes
-// on. Told after a while, after a longer one no price at all. Pure integers.
+// on. After a while it is called frozen, which is told; after a longer one it is no price at all.
+// Pure integers.
 //
 // How long honest prices stand still, to the cent, measured on 23 November 2026 on Elia's data:
 //   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes at most (22 between the
@@ -22,7 +23,7 @@
 namespace bess {
 
 struct FrozenPriceSettings {
-  std::int32_t told_s = 1'800;   ///< 0 = never
+  std::int32_t frozen_s = 1'800;  ///< after this long it is called frozen; 0 = never
   std::int32_t stop_s = 10'800;  ///< after this long the price counts as none; 0 = it always counts
 };
 
@@ -66,9 +67,10 @@ class FrozenPrice {
   }
 
   [[nodiscard]] constexpr const StandingPrice& price() const { return price_; }
-  [[nodiscard]] constexpr bool is_told() const {
-    const std::int64_t told_s = settings_.told_s;
-    return told_s > 0 && (price_.unchanged_s >= told_s || few_values_.lasted_s() >= 4 * told_s);
+  [[nodiscard]] constexpr bool is_frozen() const {
+    const std::int64_t frozen_s = settings_.frozen_s;
+    return frozen_s > 0 &&
+           (price_.unchanged_s >= frozen_s || few_values_.lasted_s() >= 4 * frozen_s);
   }
   [[nodiscard]] constexpr bool is_no_price() const {
     const std::int64_t stop_s = settings_.stop_s;

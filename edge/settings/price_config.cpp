@@ -60,7 +60,7 @@ void read_price(TomlTable table, PriceConfig& price, FrozenPriceSettings& frozen
   table.integer("wait_s", price.feed.wait_s, 1, 60);
   table.scaled("step_flag_eur_per_mwh", price.feed.step_flag_centi_eur_per_mwh, kCentiPerEur, 0,
                2 * kPlausiblePriceMaxEurPerMwh);
-  table.integer("frozen_price_s", frozen.told_s, 0, 86'400);
+  table.integer("frozen_price_s", frozen.frozen_s, 0, 86'400);
   read_history(table, price);
   table.boolean("allow_http", transport.allow_http);
   table.boolean("hold_flagged_step", price.feed.hold_flagged_step);

@@ -168,7 +168,7 @@ TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
 
 TEST(PriceLies, SwitchedOffAFrozenPriceIsTradedOn) {
   Hung hung;
-  Loop loop({.control = true, .guard = {}, .frozen_price = {.told_s = 0, .stop_s = 0}},
+  Loop loop({.control = true, .guard = {}, .frozen_price = {.frozen_s = 0, .stop_s = 0}},
             hung.battery, hung.prices, hung.clock);
   CycleRecord record;
   for (int cycle = 0; cycle < 120; ++cycle) ASSERT_TRUE(loop.run_cycle(record));

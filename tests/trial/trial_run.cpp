@@ -153,7 +153,7 @@ FaultResult try_fault(const FaultCase& c) {
   ControlSettings settings = trial_settings(
       {.name = "", .nature = c.nature, .told_soc_refresh_s = std::max(60, c.nature.soc_refresh_s)});
   if (c.orders != Orders::kRealDay) settings.reversals_per_hour_max = 0;
-  if (c.cycles_max > 0) settings.frozen_price = {.told_s = 0, .stop_s = 0};  // of two, for days
+  if (c.cycles_max > 0) settings.frozen_price = {.frozen_s = 0, .stop_s = 0};  // of two, for days
   TrialSite site(c.nature, c.soc_frac, settings, c.seed);
   // In balance, so that the fault begins where it was wanted.
   for (int i = 0; i < 3; ++i) site.cycle(Orders::kZero);

@@ -1,8 +1,8 @@
-// The one face of whatever has a say in a cycle besides price and student: site, hold, reserve,
-// full charge, frozen price, budget, cap, supervision. The loop asks them all, in the order of
-// cycle_parts.h, and the record that a part reports to is the state that the next run restores it
-// from. One more is one file here and one row there; it derives from CyclePart and hides what it
-// needs. Nothing is virtual, nothing allocates.
+// A part of the cycle is whatever has a say in it besides price and student: site, hold, reserve,
+// full charge, frozen price, budget, cap, supervision. This is the face of all. The loop asks them
+// in the order of cycle_parts.h, and the record that a part reports to is the state that the next
+// run restores it from. One more is one file here and one row there; it derives from CyclePart and
+// hides what it needs. Nothing is virtual, nothing allocates.
 #pragma once
 
 #include <cstdint>

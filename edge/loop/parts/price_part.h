@@ -68,7 +68,7 @@ struct FrozenPricePart : CyclePart {
   }
   void report(CycleRecord& record) const {
     record.standing_price = frozen.price();
-    record.price_frozen = frozen.is_told();
+    record.price_frozen = frozen.is_frozen();
   }
 
   FrozenPrice frozen;

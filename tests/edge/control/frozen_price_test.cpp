@@ -24,16 +24,16 @@ TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
   Rows rows;
   rows.add(15, 5'550);
   EXPECT_EQ(rows.frozen.price().unchanged_s, 28 * 60);
-  EXPECT_FALSE(rows.frozen.is_told());
+  EXPECT_FALSE(rows.frozen.is_frozen());
   rows.add(1, 5'550);
-  EXPECT_TRUE(rows.frozen.is_told()) << "30 minutes from stamp to stamp";
+  EXPECT_TRUE(rows.frozen.is_frozen()) << "30 minutes from stamp to stamp";
   rows.add(74, 5'550);
   EXPECT_FALSE(rows.frozen.is_no_price());
   rows.add(1, 5'550);
   EXPECT_TRUE(rows.frozen.is_no_price());
   rows.add(1, 5'551);  // a cent is enough
   EXPECT_EQ(rows.frozen.price().unchanged_s, 0);
-  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+  EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
 }
 
 TEST(FrozenPrice, OneSecondIsALimitAndZeroIsNone) {
@@ -48,7 +48,7 @@ TEST(FrozenPrice, ZeroAndTheEndsOfTheRangeArePricesLikeOthers) {
   for (const std::int32_t centi : {0, -1, 9'999'900, -9'999'900, 10'000'000, -10'000'000}) {
     Rows rows;
     rows.add(16, centi);
-    EXPECT_TRUE(rows.frozen.is_told()) << centi;
+    EXPECT_TRUE(rows.frozen.is_frozen()) << centi;
   }
 }
 
@@ -70,7 +70,7 @@ TEST(FrozenPrice, AnOutageCountsAsOneStepAndAFewMinutes) {
     rows.minute_utc_s += 3'600;
     rows.add(1, 700);
   }
-  EXPECT_TRUE(rows.frozen.is_told());
+  EXPECT_TRUE(rows.frozen.is_frozen());
 }
 
 TEST(FrozenPrice, ARestartDoesNotThawIt) {
@@ -81,7 +81,7 @@ TEST(FrozenPrice, ARestartDoesNotThawIt) {
     rows.frozen = next;
     rows.add(3, 700);
   }
-  EXPECT_TRUE(rows.frozen.is_told());
+  EXPECT_TRUE(rows.frozen.is_frozen());
   EXPECT_EQ(rows.frozen.price().unchanged_s, 17 * kSecondsPerStep);
   FrozenPrice moved{FrozenPriceSettings{}};
   moved.restore(rows.frozen.price());
@@ -117,24 +117,24 @@ Rows rows_among(int values, int each, int rows) {
 TEST(FrozenPrice, ToAndFroAmongFourValuesIsToldAfterTwoHoursAndNoneAfterSevenAndAHalf) {
   for (const int values : {2, 3, 4}) {
     for (const int each : {1, 2, 7}) {
-      EXPECT_FALSE(rows_among(values, each, 60).frozen.is_told()) << values << ' ' << each;
-      EXPECT_TRUE(rows_among(values, each, 61).frozen.is_told()) << values << ' ' << each;
+      EXPECT_FALSE(rows_among(values, each, 60).frozen.is_frozen()) << values << ' ' << each;
+      EXPECT_TRUE(rows_among(values, each, 61).frozen.is_frozen()) << values << ' ' << each;
       EXPECT_FALSE(rows_among(values, each, 225).frozen.is_no_price()) << values << ' ' << each;
       EXPECT_TRUE(rows_among(values, each, 226).frozen.is_no_price()) << values << ' ' << each;
     }
   }
-  EXPECT_FALSE(rows_among(5, 1, 2'000).frozen.is_told());
-  EXPECT_FALSE(rows_among(5, 7, 2'000).frozen.is_told());
+  EXPECT_FALSE(rows_among(5, 1, 2'000).frozen.is_frozen());
+  EXPECT_FALSE(rows_among(5, 7, 2'000).frozen.is_frozen());
 }
 
 TEST(FrozenPrice, AFifthValueThawsItAndTheOthersCountFromWhenTheyWereAlone) {
   Rows rows = rows_among(4, 1, 226);  // ends with the second of the four
   rows.add(1, 9'999);
-  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+  EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
   for (int i = 0; i < 55; ++i) rows.add(1, 5'000 + i % 2);
-  EXPECT_FALSE(rows.frozen.is_told());
+  EXPECT_FALSE(rows.frozen.is_frozen());
   rows.add(1, 5'000);
-  EXPECT_TRUE(rows.frozen.is_told());
+  EXPECT_TRUE(rows.frozen.is_frozen());
 }
 
 TEST(FrozenPrice, WhatStoodStillForHoursAndMovesIsNoToAndFro) {
@@ -142,13 +142,13 @@ TEST(FrozenPrice, WhatStoodStillForHoursAndMovesIsNoToAndFro) {
     Rows rows;
     for (int i = 0; i < 40; ++i) rows.add(1, 5'000 + i % 3);
     rows.add(rows_frozen, 5'000);
-    EXPECT_TRUE(rows.frozen.is_told());
+    EXPECT_TRUE(rows.frozen.is_frozen());
     rows.add(1, 5'001);
-    EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price()) << rows_frozen;
+    EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price()) << rows_frozen;
     for (int i = 0; i < 59; ++i) rows.add(1, 5'000 + i % 2);
-    EXPECT_FALSE(rows.frozen.is_told());
+    EXPECT_FALSE(rows.frozen.is_frozen());
     rows.add(1, 5'001);
-    EXPECT_TRUE(rows.frozen.is_told());
+    EXPECT_TRUE(rows.frozen.is_frozen());
   }
 }
 
@@ -158,24 +158,24 @@ TEST(FrozenPrice, ToAndFroIsRecalledByTheLogAndAnOutageIsAFewMinutes) {
   for (int i = 0; i < 60; ++i) next.recall(minute_utc_s += 120, 700 + i % 2);
   EXPECT_EQ(next.price().unchanged_s, 0);
   next.restore({.minute_utc_s = minute_utc_s, .centi_eur_per_mwh = 701, .unchanged_s = 0});
-  EXPECT_FALSE(next.is_told());
+  EXPECT_FALSE(next.is_frozen());
   next.observe(minute_utc_s += 120, 700);
-  EXPECT_TRUE(next.is_told());
+  EXPECT_TRUE(next.is_frozen());
 
   FrozenPrice gaps{FrozenPriceSettings{}};
   for (int i = 0; i < 30; ++i) gaps.recall(minute_utc_s += 9 * 3'600, 700 + i % 2);
-  EXPECT_FALSE(gaps.is_told()) << "29 times four minutes";
+  EXPECT_FALSE(gaps.is_frozen()) << "29 times four minutes";
   for (int i = 0; i < 2; ++i) gaps.recall(minute_utc_s += 9 * 3'600, 700 + i % 2);
-  EXPECT_TRUE(gaps.is_told());
+  EXPECT_TRUE(gaps.is_frozen());
   gaps.observe(INT64_MIN, 700);
   gaps.observe(INT64_MAX, 701);
   gaps.observe(kFirstMinute, 700);
 }
 
 TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
-  Rows rows({.told_s = 0, .stop_s = 0});
+  Rows rows({.frozen_s = 0, .stop_s = 0});
   rows.add(2'000, 0);
-  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+  EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
 }
 
 }  // namespace

@@ -341,7 +341,7 @@ TEST(ControlWalk, FrozenPrices) {
   Walk walk("frozen_prices");
   for (int block = 0; block < 40; ++block) {
     FrozenPrice frozen(
-        {.told_s = block % 5 == 0 ? 0 : 1'800,
+        {.frozen_s = block % 5 == 0 ? 0 : 1'800,
          .stop_s =
              block % 7 == 0 ? 0 : static_cast<std::int32_t>(walk.one_of({1'800, 3'600, 10'800}))});
     std::int64_t minute_utc_s = kNowUtcS;
@@ -361,7 +361,7 @@ TEST(ControlWalk, FrozenPrices) {
       } else {
         frozen.observe(minute_utc_s, centi);
       }
-      walk.see(frozen.is_told(), frozen.is_no_price(), frozen.price().unchanged_s,
+      walk.see(frozen.is_frozen(), frozen.is_no_price(), frozen.price().unchanged_s,
                frozen.price().minute_utc_s, frozen.price().centi_eur_per_mwh);
     }
     walk.end_line(block);
