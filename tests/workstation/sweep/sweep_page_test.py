@@ -16,6 +16,7 @@ import unittest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../report/page"))
 import browser
 import looks
+import tabs
 
 WORKER = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 NOTHING = "\u2013"
@@ -27,7 +28,7 @@ def number(text):
     return float(text.split(" ")[0].replace(",", "").replace("\u2212", "-"))
 
 
-class SweepPage(unittest.TestCase):
+class SweepPage(tabs.Tabs):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -44,24 +45,6 @@ class SweepPage(unittest.TestCase):
             size = os.path.getsize(os.path.join(path, "sweep.html"))
             print(f"{count} tasks: {size / 1e6:.1f} MB, open after "
                   f"{time.monotonic() - began_s:.1f} s", flush=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.folder.cleanup()
-
-    def tearDown(self):
-        for count, tab in self.tabs.items():
-            self.assertEqual(tab.complaints(), [], count)
-
-    def tab(self, count, width_px=1440, dark=False):
-        tab = self.tabs[count]
-        tab.bring_to_front()
-        tab.resize(width_px, 900)
-        tab.set_dark(dark)
-        tab.wait(f"innerWidth === {width_px}")
-        looks.settle(tab)
-        return tab
 
     def rows_of(self, tab, table):
         """[[head, {label: text}]] of a table's body, as it stands."""

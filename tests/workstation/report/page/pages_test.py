@@ -17,6 +17,7 @@ import unittest
 
 import browser
 import looks
+import tabs
 
 FIXTURE = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 BESS_TRAIN = sys.argv.pop(1) if len(sys.argv) > 1 else ""
@@ -64,7 +65,7 @@ def error_by_month(dates, values):
     return (g / (g - 1) * sum(s * s for s in sums.values())) ** .5 / len(values)
 
 
-class Pages(unittest.TestCase):
+class Pages(tabs.Tabs):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -87,30 +88,12 @@ class Pages(unittest.TestCase):
                 "document.readyState === 'complete' && document.querySelector('table')")
 
     @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.folder.cleanup()
-
-    @classmethod
     def compare_runs(cls, names, *options):
         """Standard output of bess-train runs compare."""
         folders = ["many/" + name for name in names]
         return subprocess.run([BESS_TRAIN, "runs", "compare", *folders, *options],
                               cwd=cls.folder.name,
                               check=True, capture_output=True, text=True).stdout
-
-    def tearDown(self):
-        for name, tab in self.tabs.items():
-            self.assertEqual(tab.complaints(), [], name)
-
-    def tab(self, name, width_px=1440, dark=False):
-        tab = self.tabs[name]
-        tab.bring_to_front()
-        tab.resize(width_px, 900)
-        tab.set_dark(dark)
-        tab.wait(f"innerWidth === {width_px}")
-        looks.settle(tab)
-        return tab
 
     def rows_of(self, tab, selector):
         """[[name, {label: text} in order as list of pairs]] of a table's body."""
