@@ -132,10 +132,6 @@ KeptTold read_place(const std::string& path) {
 
 }  // namespace
 
-NotifierState read_notifier_state(const std::string& path) {
-  return read_newest_notifier_state({path}).told;
-}
-
 NotifierStateReading read_newest_notifier_state(const std::vector<std::string>& paths) {
   NotifierStateReading reading;
   std::vector<KeptTold> places;

@@ -23,14 +23,12 @@ struct NotifierState {
   EnergyTotals energy{};
 };
 
-/// A file that is missing, damaged or not ours is as if nothing had been told.
-NotifierState read_notifier_state(const std::string& path);
-
 struct NotifierStateReading {
   NotifierState told{};
   std::vector<std::string> losses{};  ///< one line each
 };
-/// Of all files the one that was kept last.
+/// Of all files the one that was kept last; one that is missing, damaged or not ours is as if
+/// nothing had been told.
 NotifierStateReading read_newest_notifier_state(const std::vector<std::string>& paths);
 
 std::string notifier_state_text(const NotifierState& told);

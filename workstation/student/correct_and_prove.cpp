@@ -200,21 +200,16 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     options.rules = with_outlook_rule(given.rules);
   }
   require_consistent(options.rules, options.correction.thresholds, teacher.context.kind);
-  if (options.method == CorrectionMethod::kConstruction) {
-    StudentFile student{};
-    student.certificate.rules = options.rules;
-    student.certificate.thresholds = options.correction.thresholds;
-    student.provenance = provenance_of(teacher, options);
-    student.learnt_for = teacher.learnt_for;
-    student.outlook = teacher.book;
-    return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
-  }
-  Distiller distiller(teacher, visited, options);
   StudentFile student{};
   student.certificate.rules = options.rules;
   student.certificate.thresholds = options.correction.thresholds;
   student.provenance = provenance_of(teacher, options);
   student.learnt_for = teacher.learnt_for;
+  if (options.method == CorrectionMethod::kConstruction) {
+    student.outlook = teacher.book;
+    return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
+  }
+  Distiller distiller(teacher, visited, options);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   double margin_scale = 1;
   int epochs_done = 0;

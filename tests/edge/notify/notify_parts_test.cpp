@@ -306,7 +306,7 @@ TEST(NotifierStateFile, OutlastsARestart) {
   told.energy.counted_number = 25'200;
   told.energy.counted_utc_s = 1'679'875'320;
   ASSERT_EQ(write_notifier_state({path}, notifier_state_text(told)), "");
-  const NotifierState read = read_notifier_state(path);
+  const NotifierState read = read_newest_notifier_state({path}).told;
   EXPECT_EQ(read.local_day, 20'231'126);
   ASSERT_EQ(read.alarms.size(), 1U);
   EXPECT_EQ(read.alarms[0].key, "k");
@@ -327,7 +327,7 @@ TEST(NotifierStateFile, ADamagedFileIsAsIfNothingWasTold) {
   const TemporaryFolder folder;
   for (const char* text : {"", "x", "{}", "[1]", R"({"version": 2, "local_day": 7})",
                            R"({"version": 1, "alarms": 5, "pending": [1]})"}) {
-    const NotifierState told = read_notifier_state(folder.write("told.json", text));
+    const NotifierState told = read_newest_notifier_state({folder.write("told.json", text)}).told;
     EXPECT_EQ(told.local_day, 0);
     EXPECT_TRUE(told.alarms.empty());
   }

@@ -138,7 +138,8 @@ TEST_F(Rounds, WhatWasToldIsWrittenWhenItChanges) {
   EXPECT_EQ(written(), first);
   cycle(30);
   EXPECT_NE(written(), first);
-  EXPECT_EQ(read_notifier_state(settings_.memory).energy.charged_ws, 30 * 120 * 4'000);
+  EXPECT_EQ(read_newest_notifier_state({settings_.memory}).told.energy.charged_ws,
+            30 * 120 * 4'000);
 }
 
 TEST_F(Rounds, AWebhookIsPostedAsJsonAndNothingButASuccessCounts) {

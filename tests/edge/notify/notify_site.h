@@ -60,7 +60,7 @@ class Rounds : public ::testing::Test {
   }
   /// As it was kept.
   [[nodiscard]] Owed owed(const char* way) const {
-    return read_notifier_state(settings_.memory).owed[way];
+    return read_newest_notifier_state({settings_.memory}).told.owed[way];
   }
   [[nodiscard]] std::string mails() const { return text_of_file(folder_.file("mails")); }
 

@@ -39,33 +39,13 @@ void add_day_ahead_period(const EntsoeElement& element, bool repeats,
   }
 }
 
-void require_day_ahead_document(const pugi::xml_node& root, std::string_view name) {
-  if (xml_local_name(root) == "Acknowledgement_MarketDocument") {
-    std::string reason;
-    for (const pugi::xpath_node& text : root.select_nodes(".//*[local-name()='text']")) {
-      reason += std::string(text.node().child_value()) + " ";
-    }
-    fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", name, one_line(reason, 200));
-  }
-  if (xml_local_name(root) != "Publication_MarketDocument") {
-    fail("{}: not an ENTSO-E document of day-ahead prices (A44) but \"{}\"", name,
-         one_line(xml_local_name(root), 60));
-  }
-}
-
 }  // namespace
 
 std::vector<DayAheadRow> parse_entsoe_day_ahead(std::string_view text, std::string_view name) {
   const EntsoeSource source{text, name};
   pugi::xml_document document;
-  // UTF-8 whatever the declaration says: a converted text would have other offsets.
-  const pugi::xml_parse_result parsed =
-      document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  for (const pugi::xml_node& root : document) require_day_ahead_document(root, name);
-  if (!parsed) {
-    fail("{}: cut short or damaged ({}); download it again", source.place(parsed.offset),
-         parsed.description());
-  }
+  load_entsoe_document(document, source, "Publication_MarketDocument",
+                       "document of day-ahead prices (A44)");
   std::vector<DayAheadRow> rows;
   for (const pugi::xml_node& root : document) {
     for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {

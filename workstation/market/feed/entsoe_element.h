@@ -98,6 +98,33 @@ inline std::int64_t entsoe_resolution_s_of(const EntsoeElement& element) {
        one_line(text, 20));
 }
 
+/// Reads a document whose roots are of `kind`, which is `what` in words. Throws UserError when they
+/// are not, or when ENTSO-E sent only the reason why there are no prices.
+inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSource& source,
+                                 std::string_view kind, std::string_view what) {
+  // UTF-8 whatever the declaration says: a converted text would have other offsets.
+  const pugi::xml_parse_result parsed = document.load_buffer(
+      source.text.data(), source.text.size(), pugi::parse_default, pugi::encoding_utf8);
+  // What a broken document began as tells more than where it breaks.
+  for (const pugi::xml_node& root : document) {
+    const std::string_view found = xml_local_name(root);
+    if (found == kind) continue;
+    if (found == "Acknowledgement_MarketDocument") {
+      std::string reason;
+      for (const pugi::xpath_node& text : root.select_nodes(".//*[local-name()='text']")) {
+        reason += std::string(text.node().child_value()) + " ";
+      }
+      fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", source.name, one_line(reason, 200));
+    }
+    fail("{}: not an ENTSO-E {} but \"{}\"{}", source.name, what, one_line(found, 60),
+         found == "Publication_MarketDocument" ? "; import day-ahead prices with --day-ahead" : "");
+  }
+  if (!parsed) {
+    fail("{}: cut short or damaged ({}); download it again", source.place(parsed.offset),
+         parsed.description());
+  }
+}
+
 /// Everything here reckons in EUR/MWh.
 inline void require_entsoe_unit(const EntsoeElement& unit, std::string_view wanted) {
   if (!unit.node || unit.text() == wanted) return;

@@ -108,35 +108,9 @@ void add_series(const EntsoeElement& series, QuarterHourPrices& prices) {
   }
 }
 
-/// ENTSO-E may answer with a document that holds only the reason why there are no prices.
-void require_balancing_document(const pugi::xml_node& root, std::string_view name) {
-  if (xml_local_name(root) == "Acknowledgement_MarketDocument") {
-    std::string reason;
-    for (const pugi::xpath_node& text : root.select_nodes(".//*[local-name()='text']")) {
-      reason += std::string(text.node().child_value()) + " ";
-    }
-    fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", name, one_line(reason, 200));
-  }
-  if (xml_local_name(root) != "Balancing_MarketDocument") {
-    fail("{}: not an ENTSO-E balancing document (A85) but \"{}\"{}", name,
-         one_line(xml_local_name(root), 60),
-         xml_local_name(root) == "Publication_MarketDocument"
-             ? "; import day-ahead prices with --day-ahead"
-             : "");
-  }
-}
-
 QuarterHourPrices prices_of(const EntsoeSource& source) {
   pugi::xml_document document;
-  // UTF-8 whatever the declaration says: a converted text would have other offsets.
-  const pugi::xml_parse_result parsed = document.load_buffer(
-      source.text.data(), source.text.size(), pugi::parse_default, pugi::encoding_utf8);
-  // What a broken document began as tells more than where it breaks.
-  for (const pugi::xml_node& root : document) require_balancing_document(root, source.name);
-  if (!parsed) {
-    fail("{}: cut short or damaged ({}); download it again", source.place(parsed.offset),
-         parsed.description());
-  }
+  load_entsoe_document(document, source, "Balancing_MarketDocument", "balancing document (A85)");
   QuarterHourPrices prices;
   for (const pugi::xml_node& root : document) {
     for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
