@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # flash_image.sh SOURCE FOLDER: tools/flash image on made-up images: the two partitions of Raspberry
-# Pi OS with the few
-# files that tell bookworm from trixie (the real images are not here). Needs no root. Exit 77 =
-# skipped.
+# Pi OS with the few files that tell bookworm from trixie (the real images are not here). Needs no
+# root. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # repository.sh SOURCE FOLDER: tools/repository with a throw-away key: apt takes what it signed, as
-# many of twenty
-# machines as the phase says upgrade, and a foreign key is refused. Exit 77 = skipped.
+# many of twenty machines as the phase says upgrade, and a foreign key is refused. Exit 77 =
+# skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh

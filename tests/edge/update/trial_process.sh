@@ -1,10 +1,9 @@
 #!/bin/sh
 # trial_process.sh BESS_EDGE CUT_AT_LIBRARY FOLDER: the supervisor of upgrades as a process, on
-# machines of folders, between
-# stand-ins for systemd, dpkg and the versions' programs. Bad packages and bad moments: whatever
-# happens, the version
-# that worked runs, or the new one has shown that it works. Prints a table.
-edge=$1 cut=$2 folder=$3
+# machines of folders, between stand-ins for systemd, dpkg and the versions' programs. Bad packages
+# and bad moments: whatever happens, the version that worked runs, or the new one has shown that it
+# works. Prints a table.
+edge=$1 cut=$2 folder=${3:?the folder is missing: without it the stand-ins would go into /bin}
 script=$(cd "$(dirname "$0")/../../.." && pwd)/edge/update/trial
 failures=0
 rm -rf "$folder"

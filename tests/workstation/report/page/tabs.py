@@ -1,4 +1,4 @@
-"""Tests with a tab for each page: `cls.tabs` by name, of `cls.browser`, the files in `cls.folder`."""
+"""Tests with a tab for each page: `cls.tabs` by name, of `cls.browser`; files in `cls.folder`."""
 import unittest
 
 import looks
