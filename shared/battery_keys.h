@@ -46,6 +46,21 @@ inline constexpr auto kBatteryKeys = std::to_array<BatteryKey>({
      "of its power; 0: at once"},
     {"time_constant_s", [](auto& b) -> double& { return b.response.time_constant_s; }, 0, 600,
      "of a first-order lag behind the ramp; planned as if there were none of the three"},
+    {"cold_power_share", [](auto& b) -> double& { return b.cold.power_share; }, 0.001, 1,
+     "of the power, left in the cold hours of each local day; 1: there are none"},
+    {"cold_from_hour", [](auto& b) -> double& { return b.cold.from_hour; }, 0, 24,
+     "local, 22.5 is half past ten"},
+    {"cold_to_hour", [](auto& b) -> double& { return b.cold.to_hour; }, 0, 24,
+     "local; before cold_from_hour: they go over midnight"},
 });
+
+/// What keys that are each in range say against each other; null: nothing.
+constexpr const char* battery_contradiction(const BatteryParameters& battery) {
+  if (battery.soc_min_frac >= battery.soc_max_frac) return "soc_min must be below soc_max";
+  if (battery.cold.exist() && battery.cold.from_hour == battery.cold.to_hour) {
+    return "cold_power_share is below 1: set cold_from_hour and cold_to_hour, which differ";
+  }
+  return nullptr;
+}
 
 }  // namespace bess

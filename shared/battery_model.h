@@ -24,6 +24,24 @@ struct PowerTaper {
   }
 };
 
+/// Less power in cold hours of the local day, which may go over midnight.
+struct ColdHours {
+  double power_share = 1;  ///< of the power, left both ways; 1: none are cold
+  double from_hour = 0;
+  double to_hour = 0;
+
+  [[nodiscard]] constexpr bool exist() const { return power_share < 1; }
+  /// A local quarter-hour of the day, 0 to 95, by when it begins.
+  [[nodiscard]] constexpr bool hold(int quarter_hour) const {
+    const double hour = quarter_hour / 4.0;
+    const bool is_after = hour >= from_hour, is_before = hour < to_hour;
+    return exist() && (from_hour <= to_hour ? is_after && is_before : is_after || is_before);
+  }
+  [[nodiscard]] constexpr double share_at(int quarter_hour) const {
+    return hold(quarter_hour) ? power_share : 1;
+  }
+};
+
 struct BatteryParameters {
   double power_w_max = 4e6;                       ///< P, grid side, both directions
   double capacity_wh = 8e6;                       ///< C
@@ -37,14 +55,24 @@ struct BatteryParameters {
   double full_power_loss_frac = 0;  ///< r: lost besides, of the power, at full power; by its square
   double standby_w = 0;             ///< own consumption, from the grid at any time
   PowerResponse response{};         ///< from an order to its power
-  // What using it costs, and how much it may be used: battery_step knows nothing of these three,
+  ColdHours cold{};                 ///< what calls battery_step knows the hour
+  // What using it costs, and how much it may be used: battery_step knows nothing of these,
   // accounting and planning do (exchange_cost.h).
   double wear_eur_per_mwh = 0;    ///< of throughput: charged and discharged energy, grid side
   TradingCosts costs{};           ///< beside the price
   double cycles_per_day_max = 0;  ///< equivalent full cycles a local day; 0 = no limit
+  // Known to the environment alone: plans and learning are of a battery without them.
+  double fade_percent_per_1000_cycles = 0;  ///< of the capacity that is left
+  double minimum_run_min = 0;               ///< that a direction is kept once it was ordered
+
+  /// All that can be ordered in a local quarter-hour of the day.
+  [[nodiscard]] constexpr double power_w_at(int quarter_hour) const {
+    return power_w_max * cold.share_at(quarter_hour);
+  }
 };
 
-/// Whether each step of full power moves the same, wherever it does not meet a bound.
+/// Whether each step of full power of the same hour moves the same, wherever it does not meet a
+/// bound.
 constexpr bool has_constant_power(const BatteryParameters& battery) {
   return battery.charge_taper.width_frac == 0 && battery.discharge_taper.width_frac == 0 &&
          battery.full_power_loss_frac == 0;

@@ -9,6 +9,7 @@
 #include "edge/program/device_session.h"
 #include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
+#include "edge/recording/exchange_recorder.h"
 #include "edge/site/house_watch.h"
 #include "edge/storage/commission_file.h"
 #include "edge/storage/limit_file.h"
@@ -18,19 +19,22 @@ namespace {
 
 struct CommissionGiven {
   bool yes = false;
+  std::string record_path;
 };
 
 using O = OptionsOf<CommissionGiven>;
 constexpr CommandOption kOptions[] = {
     O::flag<&CommissionGiven::yes>("--yes"),
+    O::text<&CommissionGiven::record_path>("--record"),
 };
 
 constexpr const char* kHelp =
     R"(bess-edge commission: checks once that a battery goes the way it is told
 
-  bess-edge commission [--config FILE] --yes
+  bess-edge commission [--config FILE] [--record FILE] --yes
 
   --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --record FILE  what went over the bus: map check --steps reads delay, ramp and lag from it
   --yes          really order it: without it only what would be ordered is said
 
 The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
@@ -46,6 +50,7 @@ map, variant and address; bess-edge refuses to control a battery without it.
 Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
 
   bess-edge commission --config /etc/bess/edge.toml --yes
+  bess-edge commission --record steps.jsonl --yes
 )";
 
 /// The meter of [meter], a device of its own or the battery's grid point.
@@ -230,6 +235,17 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   if (!given.yes) return ask_for_yes(config, test);
   static ModbusBattery battery(config.battery.link, config.battery.map,
                                config.clock);  // outlives a failed check
+  static ExchangeRecorder recorder;            // as long as its listener may be told
+  FileMessage message;
+  if (!given.record_path.empty()) {
+    if (!recorder.start(given.record_path.c_str(),
+                        recording_head_of(config.battery.map, config.battery.link, config.clock),
+                        config.battery.map, config.clock, message)) {
+      report(JournalLevel::kError, "%s", message.c_str());
+      return 1;
+    }
+    battery.link().tell_exchanges(recorder.listener());
+  }
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   release_if_a_check_fails(battery);
   if (!reach_battery(config, battery, clock)) return 1;
@@ -241,6 +257,8 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   const CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
                                       test, battery, clock, SiteMeter(config.site.settings, meter))
                                       .run();
+  battery.link().tell_exchanges({});
+  if (!recorder.finish(message)) report(JournalLevel::kError, "%s", message.c_str());
   if (result.release_status != Status::kOk) complain_about_release(config, result);
   print_measured(config, result);
   std::fflush(stdout);

@@ -1,11 +1,14 @@
 // bess-edge map check: a register map held against a recording of a device, without the device.
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "edge/battery/step_fit.h"
 #include "edge/commands/command_list.h"
 #include "edge/recording/map_check.h"
+#include "edge/recording/recorded_steps.h"
 #include "edge/registers/map_file.h"
 #include "shared/host/bus_recording.h"
 #include "shared/host/json.h"
@@ -18,6 +21,7 @@ struct MapCheckGiven {
   std::string variant;
   std::string against_path;
   bool accept_cut = false;
+  bool steps = false;
   bool json = false;
 };
 
@@ -27,20 +31,23 @@ constexpr CommandOption kOptions[] = {
     O::text<&MapCheckGiven::variant>("--variant"),
     O::text<&MapCheckGiven::against_path>("--against"),
     O::flag<&MapCheckGiven::accept_cut>("--accept-cut"),
+    O::flag<&MapCheckGiven::steps>("--steps"),
     O::flag<&MapCheckGiven::json>("--json"),
 };
 
 constexpr const char* kHelp =
     R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
 
-  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE] [--json])"
-    R"( [--accept-cut]
+  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE])"
+    R"( [--json | --steps] [--accept-cut]
 
   --against FILE  a recording: bess-edge record, or bess-edge run --record
   --map FILE      the register map; default: that of the configuration
   --variant NAME  of the map; default: its first
   --config FILE   the controller's settings; default /etc/bess/edge.toml
   --json          one JSON object
+  --steps         delay, ramp and lag instead, of the orders that were recorded: [battery] as TOML
+                  for bess-train and bess-sim. bess-edge commission --record FILE records such steps
   --accept-cut    take a recording without its last line up to where it was cut
 
 Names every point whose values cannot be true, with what would fit: never answered,)"
@@ -53,6 +60,7 @@ Exit codes: 0 all points are plausible   1 not all, or a file cannot be read)"
     R"(   2 the command line is bad
 
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
+  bess-edge map check --against steps.jsonl --steps > response.toml
 )";
 
 /// Unit ids are the recorded device's, not the map's: they are settings of an installation.
@@ -117,6 +125,7 @@ void print_text(const RegisterMap& map, const Result& result) {
 std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) {
   const auto complain = [](const char* why) { return usage_error(kMapCheckCommand, why); };
   if (given.against_path.empty()) return complain("map check needs --against FILE");
+  if (given.json && given.steps) return complain("--steps is TOML: leave --json out");
   if (given.map_path.empty()) {
     if (given.variant.empty()) return load_settings(kMapCheckCommand, settings);
     return complain("--variant needs --map: a configuration says it itself");
@@ -126,6 +135,33 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
   RegisterMap& map = settings.config.battery.map;
   if (load_register_map(given.map_path, given.variant, map, error)) return std::nullopt;
   return failed(error);
+}
+
+/// Of the largest step: shorter than readings are apart it has no shape, and delays by half of it.
+constexpr double kRampS = 1;
+
+/// As keys of [battery], and what the map's [response] may have to say.
+int print_steps(const MapCheckGiven& given, const RegisterMap& map, const RecordedSteps& steps) {
+  const std::vector<const AnswerCurve*> whole = steps.whole();
+  if (whole.empty()) {
+    return failed(given.against_path + ": of " + std::to_string(steps.orders()) +
+                  " changes of the order none was read until its power had come: record steps with "
+                  "bess-edge commission --record FILE --yes");
+  }
+  const StepFit fit(whole);
+  const auto [least, most] = std::ranges::minmax(whole, {}, &AnswerCurve::step_w);
+  const double ramp_s = fit.best().ramp_s_per_w * most->step_w();
+  const bool has_ramp = fit.has_ramp() && ramp_s >= kRampS;
+  std::printf("[battery]   # %zu steps of %d to %d W\n", whole.size(), least->step_w(),
+              most->step_w());
+  std::printf("delay_s = %.2f\n", fit.best().dead_time_s + (has_ramp ? 0 : ramp_s / 2));
+  std::printf("ramp_w_per_s = %.0f%s\n", has_ramp ? 1 / fit.best().ramp_s_per_w : 0,
+              has_ramp ? "" : "   # none is seen for certain");
+  std::printf("time_constant_s = %.2f\n", fit.best().time_constant_s);
+  const double come_s = fit.seconds_until(most->step_w(), most->band_w()).most;
+  std::printf("# %s, [response]: settle_s = %d, for %d W; it says %d\n", map.name.c_str(),
+              static_cast<int>(std::ceil(come_s)), most->step_w(), map.response.settle_s);
+  return 0;
 }
 
 }  // namespace
@@ -139,12 +175,16 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
   if (!recording.open(given.against_path, cut, error)) return failed(error);
   take_units(recording.head(), map);
   const auto check = std::make_unique<MapCheck>(map, recording.head().unit);
+  const auto steps =
+      std::make_unique<RecordedSteps>(map, recording.head().unit, recording.head().time_scale);
   BusExchange exchange;
   auto next = recording.next(exchange, error);
   for (; next == BusRecordingReader::Next::kExchange; next = recording.next(exchange, error)) {
     check->add(exchange);
+    steps->add(exchange);
   }
   if (next == BusRecordingReader::Next::kDamaged) return failed(error);
+  if (given.steps) return print_steps(given, map, *steps);
   Result result{.points = check->verdicts(),
                 .unjudged = check->unjudged(),
                 .exchanges = recording.exchanges()};

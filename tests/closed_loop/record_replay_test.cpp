@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -290,6 +293,48 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
   }
   ChildProcess accepted(replay(cut, {"--accept-cut"}));
   EXPECT_THAT(accepted.read_line(), HasSubstr("listening on"));
+}
+
+/// What the line `key = number` of a command's answer says.
+double number_of(const std::string& key, const std::string& text) {
+  const std::size_t at = text.find(key + " = ");
+  return at == std::string::npos ? NAN : std::atof(text.c_str() + at + key.size() + 3);
+}
+
+TEST_F(RecordCommand, StepsOfACommissionTellDelayRampAndLag) {
+  SimulatedSite site(12);  // a slow clock: a bus that is held up for 10 ms blurs 0.1 s
+  site.start_battery({"--map", shipped_map("simulator"), "--battery",
+                      site.folder.write("real.toml",
+                                        "[battery]\npower_w = 4000\ncapacity_wh = 8000\n"
+                                        "soc_min = 0\ndelay_s = 2\nramp_w_per_s = 600\n"
+                                        "time_constant_s = 3\nstandby_w = 35\n")});
+  const std::string config = site.write_config(
+      {.battery_keys = "map = \"" + shipped_map("simulator") + "\"\nstart_timeout_s = 2\n"});
+  const Outcome driven =
+      run({edge_program(), "commission", "--config", config, "--record", path_, "--yes"});
+  ASSERT_EQ(driven.exit_code, 0) << driven.text;
+  const auto steps = [&](const std::string& path) {
+    return run({edge_program(), "map", "check", "--against", path, "--steps", "--config", config});
+  };
+  const Outcome told = steps(path_);
+  ASSERT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_NEAR(number_of("delay_s", told.text), 2, 0.2) << told.text;
+  EXPECT_NEAR(number_of("ramp_w_per_s", told.text), 600, 60);
+  EXPECT_NEAR(number_of("time_constant_s", told.text), 3, 0.3);
+  EXPECT_THAT(told.text, HasSubstr("[response]: settle_s = "));
+  const std::string text = text_of(path_);
+  const std::string begin = text.substr(0, text.find('\n', text.size() / 8) + 1);
+  const std::string few = site.folder.write(
+      "few.jsonl", begin + "{\"end\":\"2026-11-22T07:00:00Z\",\"exchanges\":" +
+                       std::to_string(std::ranges::count(begin, '\n') - 1) + ",\"dropped\":0}\n");
+  const std::string cut = site.folder.write("cut.jsonl", text.substr(0, text.size() / 2));
+  for (const auto& [path, why] :
+       {std::pair(few, "few.jsonl: of "), std::pair(cut, "the recording was cut here")}) {
+    const Outcome refused = steps(path);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.text, HasSubstr(why));
+    EXPECT_EQ(std::count(refused.text.begin(), refused.text.end(), '\n'), 1) << refused.text;
+  }
 }
 
 TEST_F(RecordCommand, TheCommandLineIsChecked) {

@@ -19,7 +19,9 @@ TEST(BatteryFile, EveryKeyIsTakenAndWhatIsNotThereStays) {
   BatteryParameters wanted;
   for (const BatteryKey& key : kBatteryKeys) {
     double& field = key.of(wanted);
-    field = std::string_view(key.name) == "soc_max" ? 0.9 : key.low + (key.high - key.low) / 64;
+    const std::string_view name = key.name;
+    const bool is_end = name == "soc_max" || name == "cold_to_hour";  // above its beginning
+    field = is_end ? 0.9 : key.low + (key.high - key.low) / 64;
     text += std::string(key.name) + " = " + std::to_string(field) + "\n";
   }
   BatteryParameters battery;
@@ -43,6 +45,7 @@ TEST(BatteryFile, MistakesAreOneLineThatNamesThePlace) {
                {"[battery]\n\nstandby_w = -1\n", "battery.toml:3"},
                {"[battery]\ndelay_s = \"two\"\n", "battery.toml:2"},
                {"[battery]\nsoc_min = 0.9\nsoc_max = 0.5\n", "soc_min must be below soc_max"},
+               {"[battery]\ncold_power_share = 0.6\n", "set cold_from_hour and cold_to_hour"},
                {"[battery\n", "battery.toml:1"}};
   for (const auto& row : table) {
     BatteryParameters battery;

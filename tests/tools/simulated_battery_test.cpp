@@ -8,6 +8,7 @@
 #include <random>
 
 #include "edge/registers/codec.h"
+#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/shipped_maps.h"
 #include "tools/battery_sim/register_image.h"
@@ -41,6 +42,21 @@ TEST(SimulatedBattery, TellsOfEveryOrderAndOfHowItEnded) {
   EXPECT_EQ(events[1].power_w, -2'000);
   EXPECT_EQ(events[1].duration_s, 300);
   EXPECT_EQ(events[4].utc_ns, after_s(150));
+}
+
+TEST(SimulatedBattery, KnowsItsColdHoursByItsOwnClock) {
+  set_market_time_zone();
+  BatteryParameters cold = kHouse;
+  cold.cold = {.power_share = 0.6, .from_hour = 23, .to_hour = 1.25};
+  SimulatedBattery battery(cold, 0.5, kStartNs);
+  ASSERT_EQ(local_minute_of(kStartS).minute_of_day, 60);
+  battery.start_dispatch(4'000, 1.0, 3'600);
+  EXPECT_EQ(battery.power_w(), 2'400);
+  EXPECT_EQ(battery.derating(), 0.6);
+  battery.advance(after_s(900));
+  EXPECT_NEAR(battery.soc_frac(), 0.5 + 2'400 * 0.25 * kHouse.charge_efficiency / 8'000, 1e-9);
+  EXPECT_EQ(battery.derating(), 1);
+  EXPECT_EQ(battery.power_w(), 4'000);
 }
 
 TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheWeatherLeaves) {

@@ -15,15 +15,14 @@ void read_battery_file(const std::string& path, BatteryParameters& battery) {
   for (const BatteryKey& key : kBatteryKeys) {
     table.number(key.name, key.of(battery), key.low, key.high);
   }
-  for (const char* of_money : {"wear_eur_per_mwh", "cycles_per_day_max", "initial_soc"}) {
+  for (const char* of_workstation : {"wear_eur_per_mwh", "cycles_per_day_max", "initial_soc",
+                                     "fade_percent_per_1000_cycles", "minimum_run_min"}) {
     double ignored = 0;  // a simulator has none of it, and the workstation's file may
-    table.number(of_money, ignored, 0, 1'000);
+    table.number(of_workstation, ignored, 0, 1'000);
   }
   table.finish();
   if (!error.empty()) throw UserError(error);
-  if (battery.soc_min_frac >= battery.soc_max_frac) {
-    fail("{}: [battery] soc_min must be below soc_max", path);
-  }
+  if (const char* wrong = battery_contradiction(battery)) fail("{}: [battery] {}", path, wrong);
 }
 
 }  // namespace bess

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -125,7 +126,16 @@ double SimulatedBattery::burnt_w() const {
 double SimulatedBattery::ordered_flow_w() const {
   const double ordered_w = now_ns_ < change_ns_ ? power_before_w_ : power_w_;
   if (ordered_w == 0) return habits_.idle_power_w;
-  return ordered_w * habits_.gain * noise_factor();
+  const double flow_w = ordered_w * habits_.gain * noise_factor();
+  if (!parameters_.cold.exist()) return flow_w;
+  const double most_w = parameters_.power_w_max * cold_share();
+  return std::clamp(flow_w, -most_w, most_w);
+}
+
+/// By its own clock: what its cold hours leave now.
+double SimulatedBattery::cold_share() const {
+  if (!parameters_.cold.exist()) return 1;
+  return parameters_.cold.share_at(local_minute_of(now_ns_ / kNanosecondsPerSecond).quarter_hour);
 }
 
 /// Of the minute: the same whenever it is asked.

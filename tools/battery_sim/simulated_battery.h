@@ -64,7 +64,7 @@ class SimulatedBattery {
   void set_habits(const BatteryHabits& habits) { habits_ = habits; }
   /// The share of its rated power that it can give, by heat or cold; it shows that. From now on.
   void set_derating(double power_frac) { derating_ = power_frac; }
-  [[nodiscard]] double derating() const { return derating_; }
+  [[nodiscard]] double derating() const { return derating_ * cold_share(); }
   /// Its power follows as a first-order lag, behind delay and ramp; 0 = at once. From now on.
   void set_time_constant(double seconds) { parameters_.response.time_constant_s = seconds; }
 
@@ -82,6 +82,7 @@ class SimulatedBattery {
 
  private:
   void note(DispatchEvent::Kind kind, double power_w = 0, std::int64_t duration_s = 0);
+  [[nodiscard]] double cold_share() const;
   [[nodiscard]] BatteryParameters limited() const;
   [[nodiscard]] bool changes_by_the_second() const;
   [[nodiscard]] bool is_lagging() const;

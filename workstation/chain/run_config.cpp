@@ -127,6 +127,11 @@ void KeyList::list(RunConfig& c) {
          "cost of throughput, charged and discharged; every profit and reward is net of it");
   number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,
          "equivalent full cycles a local day, then no further order that day; 0 is no limit");
+  number("fade_percent_per_1000_cycles", kEvaluation, c.battery.fade_percent_per_1000_cycles, 0,
+         100,
+         "of capacity, as [ageing] cycle_percent_per_1000 of bess-train size; no plan knows it");
+  number("minimum_run_min", kEvaluation, c.battery.minimum_run_min, 0, 240,
+         "that charging or discharging is kept, whatever is decided; no plan knows it");
   number("initial_soc", kLearning, c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
 
   section("costs");
@@ -222,8 +227,8 @@ void KeyList::list(RunConfig& c) {
 }
 
 void check_relations(const RunConfig& config, const std::string& name) {
-  if (config.battery.soc_min_frac >= config.battery.soc_max_frac) {
-    fail("{}: [battery] soc_min must be below soc_max", name);
+  if (const char* wrong = battery_contradiction(config.battery)) {
+    fail("{}: [battery] {}", name, wrong);
   }
   if (config.initial_soc_frac < config.battery.soc_min_frac ||
       config.initial_soc_frac > config.battery.soc_max_frac) {

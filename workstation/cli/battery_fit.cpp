@@ -7,6 +7,7 @@
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/chain/run_config.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct FitArguments {
   std::vector<std::string> logs;
+  std::string steps;
   std::string config;
   std::string out;
   bool json = false;
@@ -37,7 +39,29 @@ std::vector<std::pair<std::string, Fitted>> named(const BatteryFit& fit) {
   add("discharge_taper_share", fit.discharge_taper_share);
   add("full_power_loss", fit.full_power_loss);
   add("standby_w", fit.standby_w);
+  add("cold_power_share", fit.cold_power_share);
+  add("cold_from_hour", fit.cold_from_hour);
+  add("cold_to_hour", fit.cold_to_hour);
   return found;
+}
+
+/// Delay, ramp and lag, as `bess-edge map check --steps` prints them; nothing else.
+void take_steps(const std::string& path, BatteryParameters& battery) {
+  std::string error;
+  TomlValue document;
+  if (!parse_toml_file(path, document, error)) throw UserError(error);
+  if (document.find("battery") == nullptr) {
+    fail("{}: has no [battery]: it is what bess-edge map check --steps prints", path);
+  }
+  TomlTable table(document.find("battery"), path, "[battery]", error);
+  for (const BatteryKey& key : kBatteryKeys) {
+    const std::string_view name = key.name;
+    if (name != "delay_s" && name != "ramp_w_per_s" && name != "time_constant_s") continue;
+    table.require(key.name);
+    table.number(key.name, key.of(battery), key.low, key.high);
+  }
+  table.finish();
+  if (!error.empty()) throw UserError(error);
 }
 
 std::string toml_of(const BatteryFit& fit, BatteryParameters battery) {
@@ -71,34 +95,44 @@ void print_found(const std::vector<std::pair<std::string, Fitted>>& found, bool 
   }
 }
 
-void fit_from_logs(const FitArguments& options) {
-  std::vector<GivenPath> inputs = given_paths("--log", options.logs);
-  inputs.push_back({"--config", options.config});
-  require_distinct({{"--out", options.out}}, inputs);
+BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& nameplate) {
+  if (options.logs.empty()) return {};
   std::vector<LoggedCycle> cycles;
   for (const std::string& log : options.logs)
     std::ranges::copy(read_cycle_log(log), std::back_inserter(cycles));
   std::ranges::sort(cycles, {}, &LoggedCycle::utc_s);
-  const RunConfig config = load_run_config(options.config);
-  const BatteryFit fit = fit_battery(cycles, config.battery);
-  const auto found = named(fit);
-  if (found.empty()) {
+  const BatteryFit fit = fit_battery(cycles, nameplate);
+  if (named(fit).empty()) {
     fail(
         "{}: {} cycles show nothing of the battery: a log of some days, with orders in both "
         "directions and rests between, does",
         options.logs.front(), cycles.size());
   }
-  print_found(found, options.json);
+  return fit;
+}
+
+void write_fit(const FitArguments& options) {
+  if (options.logs.empty() && options.steps.empty()) fail("battery fit needs --log or --steps");
+  std::vector<GivenPath> inputs = given_paths("--log", options.logs);
+  inputs.push_back({"--config", options.config});
+  inputs.push_back({"--steps", options.steps});
+  require_distinct({{"--out", options.out}}, inputs);
+  RunConfig config = load_run_config(options.config);
+  if (!options.steps.empty()) take_steps(options.steps, config.battery);
+  const BatteryFit found = fit_from_logs(options, config.battery);
+  print_found(named(found), options.json);
   if (options.out.empty()) return;
-  write_file(options.out, toml_of(fit, config.battery));
+  write_file(options.out, toml_of(found, config.battery));
   if (!options.json) fmt::print("{}\n", options.out);
 }
 
 void add_battery_fit(ProgramCommand& battery) {
   auto options = std::make_shared<FitArguments>();
-  ProgramCommand command =
-      battery.subcommand("fit", "Efficiency, taper and own consumption, from its controller's log");
-  command.option("--log", options->logs, "Of bess-edge log --csv; several are one log").required();
+  ProgramCommand command = battery.subcommand(
+      "fit", "Efficiency, taper, cold and own consumption, from its controller's log");
+  command.option("--log", options->logs, "Of bess-edge log --csv; several are one log");
+  command.option("--steps", options->steps,
+                 "Delay, ramp and lag, of bess-edge map check --steps; --out has them too");
   command.option("--config", options->config,
                  "Its [battery] has power_w, capacity_wh, soc_min and soc_max of the nameplate");
   command.option("--out", options->out,
@@ -107,13 +141,16 @@ void add_battery_fit(ProgramCommand& battery) {
   command.flag("--json", options->json, "One JSON object a line, a key each");
   command.footer(
       "What a log does not show keeps the value of --config: a battery that never rested tells\n"
-      "nothing of its own consumption. delay_s, ramp_w_per_s and time_constant_s need readings\n"
-      "within a cycle: bess-edge commission measures and prints them.\n"
+      "nothing of its own consumption, and a summer nothing of the cold. Delay, ramp and lag need\n"
+      "readings within a cycle: bess-edge commission --record takes them.\n"
       "Examples:\n"
       "  bess-edge log --csv > june.csv     # on the controller\n"
-      "  bess-train battery fit --log june.csv --config house.toml --out battery.toml\n"
+      "  bess-edge commission --record steps.jsonl --yes && \\\n"
+      "    bess-edge map check --against steps.jsonl --steps > steps.toml\n"
+      "  bess-train battery fit --log june.csv --steps steps.toml --config house.toml --out "
+      "battery.toml\n"
       "  bess-train evaluate --prices market.csv.gz --config battery.toml --policy sdp");
-  command.runs([options] { fit_from_logs(*options); });
+  command.runs([options] { write_fit(*options); });
 }
 
 }  // namespace

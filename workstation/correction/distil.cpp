@@ -94,9 +94,9 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
       if (random.uniform() < kVisitedExploration) {
         action = static_cast<Action>(random.index(kActionCount));
       }
-      episode.soc_frac = battery_step(battery, episode.soc_frac,
-                                      power_sign(action) * battery.power_w_max, kHoursPerStep)
-                             .soc_frac;
+      const double wanted_w =
+          power_sign(action) * battery.power_w_at(episode.steps[step].quarter_hour);
+      episode.soc_frac = battery_step(battery, episode.soc_frac, wanted_w, kHoursPerStep).soc_frac;
     }
   }
   return visited;

@@ -85,9 +85,8 @@ void trade_day(std::span<const MarketStep> steps, const BatteryParameters& batte
         add(other, battery.soc_min_frac + random.uniform() * window_frac, pass.shift_eur_per_mwh);
       }
       if (random.uniform() < kExploration) action = static_cast<Action>(random.index(kActionCount));
-      pass.soc_frac = battery_step(battery, pass.soc_frac, power_sign(action) * battery.power_w_max,
-                                   kHoursPerStep)
-                          .soc_frac;
+      const double wanted_w = power_sign(action) * battery.power_w_at(step.quarter_hour);
+      pass.soc_frac = battery_step(battery, pass.soc_frac, wanted_w, kHoursPerStep).soc_frac;
     }
   }
 }

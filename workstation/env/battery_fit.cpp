@@ -2,10 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "shared/host/csv.h"
 #include "shared/host/user_error.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -17,7 +20,10 @@ constexpr int kRunsMin = 6;        ///< of each direction
 constexpr int kRunCyclesMax = 15;  ///< half an hour: short against a day, long against a reading
 constexpr double kRestingFrac = 0.02;  ///< of the power: less of it is none
 constexpr double kTaperShown = 0.02;   ///< of the power, missing at the bound
-constexpr double kSure = 3;            ///< standard errors
+constexpr double kColdShown = 0.05;    ///< of the power, missing all the time
+constexpr double kColdRoomFrac = 0.2;  ///< of the SoC window: no taper reaches there
+constexpr int kColdQuarterHoursMax = 72;
+constexpr double kSure = 3;  ///< standard errors
 
 /// From one tick to the next, with the order of both known.
 struct Interval {
@@ -69,6 +75,80 @@ std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
   std::optional<Fitted> found = middle_mean(std::move(rests_w), kRestsMin);
   if (found && found->value <= kSure * found->standard_error) found.reset();
   return found;
+}
+
+/// Of full power that was ordered at mid charge, what was missing: what did not come, or what the
+/// order was cut by, as the battery said.
+struct Missing {
+  int quarter_hour;
+  double share;
+};
+
+std::vector<Missing> missing_of(const std::vector<Interval>& intervals,
+                                const BatteryParameters& nameplate, double standby_w) {
+  const double room_frac = kColdRoomFrac * (nameplate.soc_max_frac - nameplate.soc_min_frac);
+  std::vector<Missing> missing;
+  for (const Interval& i : intervals) {
+    const double ordered_w = i.begin.ordered_w;
+    const bool is_full = std::fabs(ordered_w) == nameplate.power_w_max || i.begin.is_cut;
+    if (ordered_w == 0 || !is_full || i.before_w != ordered_w) continue;
+    const double left_frac = ordered_w > 0 ? nameplate.soc_max_frac - i.end.soc_frac
+                                           : i.end.soc_frac - nameplate.soc_min_frac;
+    if (left_frac < room_frac) continue;
+    const double came_w = std::fabs(i.end.power_w - standby_w);
+    missing.push_back({local_minute_of(i.end.utc_s).quarter_hour,
+                       std::max(1 - came_w / nameplate.power_w_max, 0.0)});
+  }
+  return missing;
+}
+
+/// One stretch of the day misses the same share and the rest nothing: the stretch that explains
+/// most squares is the best, and its ends are known as far as others explain as much.
+void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
+  std::array<double, 2 * kQuarterHourCount + 1> sum{}, count{};  // before each, over two days
+  double squares = 0;
+  for (const Missing& m : missing) {
+    squares += m.share * m.share;
+    for (const int day : {0, kQuarterHourCount}) {
+      sum[static_cast<std::size_t>(m.quarter_hour + day + 1)] += m.share;
+      count[static_cast<std::size_t>(m.quarter_hour + day + 1)] += 1;
+    }
+  }
+  std::partial_sum(sum.begin(), sum.end(), sum.begin());
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  struct Stretch {
+    int from = 0, to = 0;
+    double share = 0, count = 0, explained = 0;
+  };
+  std::vector<Stretch> stretches;
+  for (int from = 0; from < kQuarterHourCount; ++from) {
+    for (int to = from + 1; to <= from + kColdQuarterHoursMax; ++to) {
+      const double inside =
+          count[static_cast<std::size_t>(to)] - count[static_cast<std::size_t>(from)];
+      if (inside < kTaperedMin) continue;
+      const double mean =
+          (sum[static_cast<std::size_t>(to)] - sum[static_cast<std::size_t>(from)]) / inside;
+      stretches.push_back({from, to, mean, inside, inside * mean * mean});
+    }
+  }
+  if (stretches.empty()) return;
+  const Stretch best = *std::ranges::max_element(stretches, {}, &Stretch::explained);
+  const double variance = std::max(squares - best.explained, 1e-9) /
+                          static_cast<double>(std::max<std::size_t>(missing.size(), 2) - 1);
+  const double error = std::sqrt(variance / best.count);
+  if (best.share < kColdShown || best.share < kSure * error) return;
+  double from_error = 0, to_error = 0;
+  for (const Stretch& s : stretches) {
+    if (s.explained < best.explained - variance) continue;
+    from_error = std::max(from_error, std::abs(s.from - best.from) / 4.0);
+    to_error = std::max(to_error, std::abs(s.to - best.to) / 4.0);
+  }
+  const auto inside = static_cast<int>(best.count);
+  const double quarter_hour = 1 / 8.0;  // half of one, at least
+  fit.cold_power_share = Fitted{1 - best.share, error, inside};
+  fit.cold_from_hour = Fitted{best.from / 4.0, std::max(from_error, quarter_hour), inside};
+  fit.cold_to_hour =
+      Fitted{best.to % kQuarterHourCount / 4.0, std::max(to_error, quarter_hour), inside};
 }
 
 /// A reading of full power: how far from the bound, and which share came.
@@ -123,11 +203,13 @@ std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
 }
 
 std::optional<TaperFit> taper_of(const std::vector<Interval>& intervals,
-                                 const BatteryParameters& nameplate, double standby_w, int sign) {
+                                 const BatteryParameters& nameplate, double standby_w, int sign,
+                                 const ColdHours& cold) {
   std::vector<Reach> reaches;
   for (const Interval& i : intervals) {
     const double full_w = sign * nameplate.power_w_max;
     if (i.before_w != full_w || i.begin.ordered_w != full_w) continue;
+    if (cold.hold(local_minute_of(i.end.utc_s).quarter_hour)) continue;
     const double room_frac = sign > 0 ? nameplate.soc_max_frac - i.end.soc_frac
                                       : i.end.soc_frac - nameplate.soc_min_frac;
     if (room_frac <= 0.001) continue;  // at the bound it rests
@@ -236,12 +318,12 @@ std::vector<LoggedCycle> read_cycle_log(const std::string& path) {
   const CsvTable table = CsvTable::read(path);
   const std::size_t utc = table.column("utc"), soc = table.column("soc_e4");
   const std::size_t power = table.column("battery_power_w");
-  const std::size_t ordered = table.column("ordered_power_w");
+  const std::size_t ordered = table.column("ordered_power_w"), reason = table.column("reason");
   std::vector<LoggedCycle> cycles;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.text(row, soc).empty() || table.text(row, power).empty()) continue;
     cycles.push_back({table.utc_s(row, utc), table.number(row, soc) / 1e4, table.number(row, power),
-                      table.number(row, ordered)});
+                      table.number(row, ordered), table.text(row, reason) == "power_limit"});
   }
   return cycles;
 }
@@ -258,6 +340,9 @@ BatteryParameters BatteryFit::applied_to(BatteryParameters battery) const {
   set(battery.charge_efficiency, charge_efficiency);
   set(battery.discharge_efficiency, discharge_efficiency);
   set(battery.full_power_loss_frac, full_power_loss);
+  set(battery.cold.power_share, cold_power_share);
+  set(battery.cold.from_hour, cold_from_hour);
+  set(battery.cold.to_hour, cold_to_hour);
   battery.charge_efficiency = std::min(battery.charge_efficiency, 1.0);
   battery.discharge_efficiency = std::min(battery.discharge_efficiency, 1.0);
   return battery;
@@ -269,11 +354,13 @@ BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryPara
   BatteryFit fit;
   fit.standby_w = standby_of(intervals);
   const double standby_w = fit.standby_w ? fit.standby_w->value : 0;
-  if (const auto taper = taper_of(intervals, nameplate, standby_w, 1)) {
+  fit_cold(missing_of(intervals, nameplate, standby_w), fit);
+  const ColdHours cold = fit.applied_to(nameplate).cold;
+  if (const auto taper = taper_of(intervals, nameplate, standby_w, 1, cold)) {
     fit.charge_taper_width = taper->width;
     fit.charge_taper_share = taper->share;
   }
-  if (const auto taper = taper_of(intervals, nameplate, standby_w, -1)) {
+  if (const auto taper = taper_of(intervals, nameplate, standby_w, -1, cold)) {
     fit.discharge_taper_width = taper->width;
     fit.discharge_taper_share = taper->share;
   }

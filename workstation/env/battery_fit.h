@@ -1,7 +1,8 @@
 // What a battery really does, learnt from the log of its controller (`bess-edge log --csv`): own
-// consumption, taper towards full and empty, efficiency and how it falls with power. A tick's
-// reading shows the order of the cycle before, long settled; what happens within a cycle, delay,
-// ramp and lag, such a log cannot show: `bess-edge commission` measures those.
+// consumption, taper towards full and empty, efficiency and how it falls with power, cold hours. A
+// tick's reading shows the order of the cycle before, long settled; what happens within a cycle,
+// delay, ramp and lag, such a log cannot show: `bess-edge map check --steps` reads those from a
+// recording.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,9 @@ namespace bess {
 struct LoggedCycle {
   std::int64_t utc_s;
   double soc_frac;
-  double power_w;    ///< measured at the tick, before its order
-  double ordered_w;  ///< from this tick on
+  double power_w;       ///< measured at the tick, before its order
+  double ordered_w;     ///< from this tick on
+  bool is_cut = false;  ///< that order, to what the battery said it could
 };
 
 /// Of `bess-edge log --csv`, cycles without a reading left out. Throws UserError naming file and
@@ -37,6 +39,7 @@ struct BatteryFit {
   std::optional<Fitted> discharge_taper_width, discharge_taper_share;
   std::optional<Fitted> charge_efficiency, discharge_efficiency;
   std::optional<Fitted> full_power_loss;
+  std::optional<Fitted> cold_power_share, cold_from_hour, cold_to_hour;
 
   /// `battery` with what was found.
   [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;

@@ -21,11 +21,15 @@ double mean_over_days(const std::vector<DayResult>& days, Field field) {
 class Runner {
  public:
   Runner(Policy& policy, const EvaluationOptions& options)
-      : policy_(policy), options_(options), soc_frac_(options.initial_soc_frac) {}
+      : policy_(policy),
+        options_(options),
+        battery_(options.battery),
+        soc_frac_(options.initial_soc_frac) {}
 
   void reset_soc() {
     soc_frac_ = options_.initial_soc_frac;
     last_action_ = Action::kIdle;
+    run_steps_ = 0;
     power_ = {};
   }
 
@@ -34,8 +38,8 @@ class Runner {
   /// Runs steps of one day; `index` is that of the first since the policy's begin().
   DayResult run(const std::string& date, std::span<const MarketStep> steps, std::size_t index,
                 std::vector<StepRecord>* records) {
-    const BatteryParameters& battery = options_.battery;
-    const double two_capacities_mwh = 2 * battery.capacity_wh / kWattsPerMegawatt;
+    const BatteryParameters& battery = battery_;
+    const double two_capacities_mwh = 2 * options_.battery.capacity_wh / kWattsPerMegawatt;
     const double energy_mwh_max = battery.cycles_per_day_max > 0
                                       ? battery.cycles_per_day_max * two_capacities_mwh
                                       : std::numeric_limits<double>::infinity();
@@ -44,9 +48,11 @@ class Runner {
     double energy_mwh = 0;
     for (const MarketStep& step : steps) {
       Action action = policy_.decide(step, index++, soc_frac_);
+      if (must_go_on()) action = last_action_;
       if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
-      const double power_w =
-          power_sign(action) * battery.power_w_max * policy_.power_share_max(step, soc_frac_);
+      const double share = std::min(policy_.power_share_max(step, soc_frac_),
+                                    battery.cold.share_at(step.quarter_hour));
+      const double power_w = power_sign(action) * battery.power_w_max * share;
       const auto [moved, power] = followed_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
       const double profit_eur = step_profit_eur(battery, mwh, kHoursPerStep, step.paid_eur_per_mwh);
@@ -58,9 +64,11 @@ class Runner {
                             step.level_eur_per_mwh(), soc_frac_, action, moved.power_w,
                             profit_eur});
       }
+      run_steps_ = action == last_action_ ? run_steps_ + 1 : 1;
       last_action_ = action;
       soc_frac_ = moved.soc_frac;
       power_ = power;
+      fade(mwh);
     }
     result.cycles = energy_mwh / two_capacities_mwh;
     result.throughput_mwh = energy_mwh;
@@ -69,11 +77,22 @@ class Runner {
   }
 
  private:
+  [[nodiscard]] bool must_go_on() const {
+    return last_action_ != Action::kIdle && run_steps_ * kMinutesPerStep < battery_.minimum_run_min;
+  }
+  /// By the throughput over what is left of the capacity, as bess-train size ages one.
+  void fade(double mwh) {
+    const double cycles = std::fabs(mwh) * kWattsPerMegawatt / (2 * battery_.capacity_wh);
+    battery_.capacity_wh *= 1 - battery_.fade_percent_per_1000_cycles / 100 / 1000 * cycles;
+  }
+
   Policy& policy_;
   const EvaluationOptions& options_;
+  BatteryParameters battery_;  ///< with what is left of its capacity
   double soc_frac_;
   PowerState power_;  ///< at the end of the step before
   Action last_action_ = Action::kIdle;
+  int run_steps_ = 0;  ///< of it, without a change
 };
 
 /// The carried-over bound: one plan and one run over the whole series, of which `days` count.

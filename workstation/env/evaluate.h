@@ -11,7 +11,8 @@
 // price of its two minutes, and a percentage is taken of that mean: where a quarter-hour ends
 // inside a step and the price changes its sign, a bill by quarter-hours takes a little more. Once a
 // local day has used up cycles_per_day_max no further order is given until midnight, whatever the
-// policy says.
+// policy says; before that, a direction is kept for minimum_run_min. Capacity that fades is that of
+// the steps that are run, and a profit stays one by the capacity that was bought.
 #pragma once
 
 #include <cmath>

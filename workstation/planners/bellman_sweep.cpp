@@ -19,16 +19,22 @@ void improve_run(const float* __restrict from, float weight, float cost_eur, int
 
 BellmanSweep::BellmanSweep(const BatteryParameters& battery, const SocGrid& grid)
     : grid_(grid),
+      cold_(battery.cold),
       costs_(battery.costs),
-      wear_eur_per_mwh_(static_cast<float>(battery.wear_eur_per_mwh)),
-      directions_{make_direction(battery, Action::kDischarge),
-                  make_direction(battery, Action::kCharge)} {}
+      wear_eur_per_mwh_(static_cast<float>(battery.wear_eur_per_mwh)) {
+  for (const bool is_cold : {false, true}) {
+    const double share = is_cold ? cold_.power_share : 1;
+    directions_[is_cold] = {make_direction(battery, Action::kDischarge, share),
+                            make_direction(battery, Action::kCharge, share)};
+  }
+}
 
 BellmanSweep::Direction BellmanSweep::make_direction(const BatteryParameters& battery,
-                                                     Action action) const {
-  const double full_mwh = power_sign(action) * battery.power_w_max / 1e6 * kHoursPerStep;
+                                                     Action action, double power_share) const {
+  const double full_w = battery.power_w_max * power_share;
+  const double full_mwh = power_sign(action) * full_w / 1e6 * kHoursPerStep;
   const double stored_wh =
-      power_sign(action) * battery.power_w_max * kHoursPerStep *
+      power_sign(action) * full_w * kHoursPerStep *
       (action == Action::kCharge ? battery.charge_efficiency : 1 / battery.discharge_efficiency);
   const double distance = stored_wh / battery.capacity_wh / grid_.step;
   const double whole = std::clamp(std::floor(distance), -1e6, 1e6);
@@ -38,7 +44,7 @@ BellmanSweep::Direction BellmanSweep::make_direction(const BatteryParameters& ba
               .first_unbounded = 0,
               .end_unbounded = 0,
               .moves = {}};
-  const std::vector<GridMove> moves = tabulate_moves(battery, grid_);
+  const std::vector<GridMove> moves = tabulate_moves(battery, grid_, power_share);
   const auto row = moves.begin() + static_cast<std::ptrdiff_t>(action) * grid_.count;
   d.moves.assign(row, row + grid_.count);
   if (!has_constant_power(battery)) return d;
@@ -67,12 +73,12 @@ void BellmanSweep::improve(const Direction& d, const float* next, float price, f
   improve_bounded(d.end_unbounded, grid_.count);
 }
 
-void BellmanSweep::run(const float* next, float price_eur_per_mwh, float* now,
+void BellmanSweep::run(const float* next, int quarter_hour, float price_eur_per_mwh, float* now,
                        float shadow_eur_per_mwh) const {
   std::copy(next, next + grid_.count, now);  // idle
   const float wear = wear_eur_per_mwh_ + shadow_eur_per_mwh;
   const auto market = static_cast<double>(price_eur_per_mwh);
-  for (const Direction& direction : directions_) {
+  for (const Direction& direction : directions_[cold_.hold(quarter_hour)]) {
     const double paid_eur_per_mwh = direction.energy_mwh > 0 ? costs_.import_eur_per_mwh(market)
                                                              : costs_.export_eur_per_mwh(market);
     improve(direction, next, static_cast<float>(paid_eur_per_mwh), wear, now);
@@ -80,10 +86,10 @@ void BellmanSweep::run(const float* next, float price_eur_per_mwh, float* now,
 }
 
 Action best_action(const BatteryParameters& battery, const SocGrid& grid, const float* next,
-                   double price_eur_per_mwh, double soc_frac) {
+                   int quarter_hour, double price_eur_per_mwh, double soc_frac) {
   float worth[kActionCount];
   for (int a = 0; a < kActionCount; ++a) {
-    const double wanted_w = power_sign(static_cast<Action>(a)) * battery.power_w_max;
+    const double wanted_w = power_sign(static_cast<Action>(a)) * battery.power_w_at(quarter_hour);
     const BatteryStep moved = battery_step(battery, soc_frac, wanted_w, kHoursPerStep);
     const double mwh = moved.power_w / 1e6 * kHoursPerStep;
     worth[a] = interpolate(next, grid.position(moved.soc_frac)) -

@@ -17,10 +17,11 @@ class BellmanSweep {
  public:
   BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
 
+  /// Of a step in a local quarter-hour of the day.
   /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
   /// `price_eur_per_mwh` is the market's: trading costs and wear come on top, and
   /// `shadow_eur_per_mwh` is counted like wear.
-  void run(const float* next, float price_eur_per_mwh, float* now,
+  void run(const float* next, int quarter_hour, float price_eur_per_mwh, float* now,
            float shadow_eur_per_mwh = 0) const;
 
  private:
@@ -33,18 +34,20 @@ class BellmanSweep {
     int end_unbounded;
     std::vector<GridMove> moves;  ///< [point]
   };
-  [[nodiscard]] Direction make_direction(const BatteryParameters& battery, Action action) const;
+  [[nodiscard]] Direction make_direction(const BatteryParameters& battery, Action action,
+                                         double power_share) const;
   void improve(const Direction& direction, const float* next, float price, float wear,
                float* now) const;
 
   SocGrid grid_;
+  ColdHours cold_;
   TradingCosts costs_;
   float wear_eur_per_mwh_;
-  std::array<Direction, 2> directions_;
+  std::array<std::array<Direction, 2>, 2> directions_;  ///< of usual and of cold hours
 };
 
 /// The action from any SoC when `next` values the grid's points after it.
 Action best_action(const BatteryParameters& battery, const SocGrid& grid, const float* next,
-                   double price_eur_per_mwh, double soc_frac);
+                   int quarter_hour, double price_eur_per_mwh, double soc_frac);
 
 }  // namespace bess

@@ -1,5 +1,6 @@
 #include "workstation/planners/foresight.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/exchange_cost.h"
@@ -32,7 +33,11 @@ ForesightPolicy::ForesightPolicy(const BatteryParameters& battery)
 
 void ForesightPolicy::begin(std::span<const MarketStep> ahead, double soc_frac) {
   paid_.clear();
-  for (const MarketStep& step : ahead) paid_.push_back(static_cast<float>(step.paid_eur_per_mwh));
+  quarter_hour_.clear();
+  for (const MarketStep& step : ahead) {
+    paid_.push_back(static_cast<float>(step.paid_eur_per_mwh));
+    quarter_hour_.push_back(step.quarter_hour);
+  }
   shadow_.assign(paid_.size(), 0.0F);
   if (battery_.cycles_per_day_max > 0) find_shadow_prices(ahead, soc_frac);
   plan();
@@ -73,8 +78,9 @@ void ForesightPolicy::find_shadow_prices(std::span<const MarketStep> ahead, doub
     for (std::size_t day = 0; day < ends.size(); ++day) {
       double energy_mwh = 0;
       for (; step < ends[day]; ++step) {
-        const BatteryStep moved = battery_step(
-            battery_, soc, power_sign(best(step, soc)) * battery_.power_w_max, kHoursPerStep);
+        const double wanted_w =
+            power_sign(best(step, soc)) * battery_.power_w_at(quarter_hour_[step]);
+        const BatteryStep moved = battery_step(battery_, soc, wanted_w, kHoursPerStep);
         energy_mwh += std::fabs(moved.power_w) / kWattsPerMegawatt * kHoursPerStep;
         soc = moved.soc_frac;
       }
@@ -89,8 +95,8 @@ void ForesightPolicy::solve_block(std::size_t block) const {
   const std::size_t count = std::min(kBlockSteps, paid_.size() - first);
   std::copy_n(&border_[(block + 1) * kSocPoints], kSocPoints, &value_[count * kSocPoints]);
   for (std::size_t t = count; t-- > 0;) {
-    sweep_.run(&value_[(t + 1) * kSocPoints], paid_[first + t], &value_[t * kSocPoints],
-               shadow_[first + t]);
+    sweep_.run(&value_[(t + 1) * kSocPoints], quarter_hour_[first + t], paid_[first + t],
+               &value_[t * kSocPoints], shadow_[first + t]);
   }
   solved_block_ = block;
 }
@@ -107,12 +113,14 @@ const float* ForesightPolicy::values_after(std::size_t index) const {
 }
 
 Action ForesightPolicy::best(std::size_t index, double soc_frac) const {
-  return best_action(shadowed(index), grid_, values_after(index), static_cast<double>(paid_[index]),
-                     soc_frac);
+  return best_action(shadowed(index), grid_, values_after(index), quarter_hour_[index],
+                     static_cast<double>(paid_[index]), soc_frac);
 }
 
 double ForesightPolicy::worth_eur(std::size_t index, double soc_frac, double wanted_power_w) const {
-  const BatteryStep moved = battery_step(battery_, soc_frac, wanted_power_w, kHoursPerStep);
+  const double most_w = battery_.power_w_at(quarter_hour_[index]);
+  const BatteryStep moved =
+      battery_step(battery_, soc_frac, std::clamp(wanted_power_w, -most_w, most_w), kHoursPerStep);
   const double energy_mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
   return static_cast<double>(interpolate(values_after(index), grid_.position(moved.soc_frac))) -
          exchange_cost_eur(shadowed(index), energy_mwh, static_cast<double>(paid_[index]));

@@ -25,9 +25,10 @@ class ForesightPolicy final : public Policy {
   [[nodiscard]] bool sees_future() const override { return true; }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
-  /// What exchanging `wanted_power_w` (charge positive) at this step and SoC is worth when every
-  /// later decision is the best one: EUR of the step and of what is left to earn. Within a local
-  /// day two of them can be compared; under a limit on cycles throughput costs its shadow price.
+  /// What exchanging `wanted_power_w` (charge positive), or what the cold leaves of it, is worth at
+  /// this step and SoC when every later decision is the best one: EUR of the step and of what is
+  /// left to earn. Within a local day two of them can be compared; under a limit on cycles
+  /// throughput costs its shadow price.
   [[nodiscard]] double worth_eur(std::size_t index, double soc_frac, double wanted_power_w) const;
 
  private:
@@ -41,8 +42,9 @@ class ForesightPolicy final : public Policy {
   BatteryParameters battery_;
   SocGrid grid_;
   BellmanSweep sweep_;
-  std::vector<float> paid_;    ///< [step] EUR/MWh
-  std::vector<float> shadow_;  ///< [step] EUR/MWh of throughput, one value a local day
+  std::vector<float> paid_;                ///< [step] EUR/MWh
+  std::vector<std::int8_t> quarter_hour_;  ///< [step] local
+  std::vector<float> shadow_;              ///< [step] EUR/MWh of throughput, one value a local day
   std::vector<float> border_;  ///< [block + 1][SoC point] EUR still to earn, up to a constant
   mutable std::size_t solved_block_ = 0;
   mutable std::vector<float> value_;  ///< [step of the block + 1][SoC point]

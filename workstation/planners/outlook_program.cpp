@@ -278,7 +278,7 @@ void OutlookProgram::solve_usual_days() {
         const int q = at_minute / kMinutesPerQuarterHour;
         return usual(day_ahead_mean_[static_cast<std::size_t>(q)], q, level);
       };
-      recursion_.step_back(chain_, step % DeviationChain::kPhases,
+      recursion_.step_back(chain_, step % DeviationChain::kPhases, minute / kMinutesPerQuarterHour,
                            0.5 * (usual_of(minute) + usual_of(minute + 1)), ahead.data(),
                            value.data());
     }
@@ -356,7 +356,8 @@ const std::vector<float>& OutlookProgram::continuation_of(int level, Plan& plan)
     const std::int64_t utc_s = plan.from_utc_s + step * kSecondsPerStep;
     const int phase = static_cast<int>(utc_s / 60 % 30) / kMinutesPerStep;
     float* to = step < steps ? &continuation[static_cast<std::size_t>(step) * kRow] : ahead.data();
-    recursion_.step_back(chain_, phase, usual_paid(plan, utc_s, levels_[l]), to, value.data());
+    recursion_.step_back(chain_, phase, quarter_hour_of(utc_s), usual_paid(plan, utc_s, levels_[l]),
+                         to, value.data());
   }
   return continuation;
 }
@@ -381,7 +382,8 @@ OutlookProgram::Sight OutlookProgram::sight_of(const MarketStep& step, Plan& pla
            anchors.weight > 0 ? &continuation_of(anchors.lower + 1, plan)[row] : nullptr},
           bins,
           anchors,
-          chain_.paid(step.half_hour_phase, bins) + usual_paid(plan, step.utc_s, level)};
+          chain_.paid(step.half_hour_phase, bins) + usual_paid(plan, step.utc_s, level),
+          battery_.power_w_at(step.quarter_hour)};
 }
 
 std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep& step,
@@ -416,10 +418,10 @@ void OutlookProgram::prepare(const MarketSteps& market, const std::vector<Market
 }
 
 std::array<double, kActionCount> OutlookProgram::worth(const Sight& sees, double soc_frac) const {
-  const auto& [ahead, bins, anchors, price] = sees;
+  const auto& [ahead, bins, anchors, price, full_w] = sees;
   std::array<double, kActionCount> values_eur{};
   for (int a = 0; a < kActionCount; ++a) {
-    const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
+    const double wanted_w = power_sign(static_cast<Action>(a)) * full_w;
     const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
     const SocGrid::Position soc = grid_.position(moved.soc_frac);
     const auto of_level = [&, bins = bins](const float* values) {

@@ -107,6 +107,7 @@ class OutlookProgram {
     std::array<const float*, 2> ahead;  ///< by level, at the lower bin; null: without weight
     DeviationChain::Between bins, levels;
     double price_eur_per_mwh;  ///< expected
+    double full_power_w;       ///< of the step
   };
   struct Kept;
   [[nodiscard]] Sight sight_of(const MarketStep& step, Plan& plan) const;

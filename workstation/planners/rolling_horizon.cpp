@@ -150,7 +150,7 @@ void RollingHorizonPolicy::tabulate_values() {
         const auto price = static_cast<float>(usual_eur_per_mwh_[q] + deviation);
         value_from(shorter, (q + 1) % kQuarterHours, persistence_ * deviation, next.data());
         for (int s = 0; s < steps_of(q); ++s) {
-          sweep_.run(next.data(), price, now.data());
+          sweep_.run(next.data(), q, price, now.data());
           std::swap(next, now);
         }
         std::copy(next.begin(), next.end(), value_.begin() + row_of(q, d));
@@ -167,7 +167,7 @@ RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& s
   value_from(value_, (step.quarter_hour + 1) % kQuarterHours, persistence_ * deviation,
              next.data());
   for (int s = 0; s < steps; ++s) {
-    sweep_.run(next.data(), price, now.data());
+    sweep_.run(next.data(), step.quarter_hour, price, now.data());
     std::swap(next, now);
   }
   return next;
@@ -181,7 +181,7 @@ Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double 
   const double deviation = deviation_now(step);
   const Values next = plan_rest(step, deviation, steps_left(step) - 1);
   const double price = usual_eur_per_mwh_[step.quarter_hour] + deviation;
-  return best_action(battery_, grid_, next.data(), price, soc_frac);
+  return best_action(battery_, grid_, next.data(), step.quarter_hour, price, soc_frac);
 }
 
 }  // namespace bess

@@ -49,11 +49,12 @@ struct GridMove {
   float energy_mwh;  ///< grid side, charge positive
 };
 
-/// [action][point]
-inline std::vector<GridMove> tabulate_moves(const BatteryParameters& battery, const SocGrid& grid) {
+/// [action][point], of so much of the power
+inline std::vector<GridMove> tabulate_moves(const BatteryParameters& battery, const SocGrid& grid,
+                                            double power_share = 1) {
   std::vector<GridMove> moves;
   for (int a = 0; a < kActionCount; ++a) {
-    const double wanted_w = power_sign(static_cast<Action>(a)) * battery.power_w_max;
+    const double wanted_w = power_sign(static_cast<Action>(a)) * battery.power_w_max * power_share;
     for (int i = 0; i < grid.count; ++i) {
       const BatteryStep moved = battery_step(battery, grid.at(i), wanted_w, kHoursPerStep);
       moves.push_back(

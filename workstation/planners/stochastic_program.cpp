@@ -19,6 +19,9 @@ int step_of_day(const MarketStep& step) {
          kMinutesPerStep;
 }
 
+/// In which it begins.
+int quarter_hour_of(int step) { return step * kMinutesPerStep / kMinutesPerQuarterHour; }
+
 /// The quarter-hours at whose prices the step's two minutes are paid: 2 does not divide 15.
 std::array<int, 2> paid_quarter_hours(int step) {
   const int minute = step * kMinutesPerStep;
@@ -151,9 +154,9 @@ void StochasticProgram::solve() {
     std::vector<float> value(std::size_t{kBins} * kSocPoints, 0.0F);
     for (int step = kDays * kStepsPerDay - 1; step >= 0; --step) {
       const int of_day = step % kStepsPerDay;
-      recursion.step_back(chain_, of_day % kPhases, usual_paid(of_day, levels_[l]),
-                          &continuation_[continuation_at(static_cast<int>(l), of_day, 0)],
-                          value.data());
+      recursion.step_back(
+          chain_, of_day % kPhases, quarter_hour_of(of_day), usual_paid(of_day, levels_[l]),
+          &continuation_[continuation_at(static_cast<int>(l), of_day, 0)], value.data());
     }
   }
 }
@@ -180,9 +183,10 @@ StochasticProgram::Outlook StochasticProgram::outlook(const Situation& at) const
 std::array<double, kActionCount> StochasticProgram::action_values(const Situation& at,
                                                                   double soc_frac) const {
   const Outlook sees = outlook(at);
+  const double full_w = battery_.power_w_at(quarter_hour_of(at.step_of_day));
   std::array<double, kActionCount> worth{};
   for (int a = 0; a < kActionCount; ++a) {
-    const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
+    const double wanted_w = power_sign(static_cast<Action>(a)) * full_w;
     const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
     const SocGrid::Position soc = grid_.position(moved.soc_frac);
     double ahead = 0;

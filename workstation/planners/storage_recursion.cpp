@@ -27,9 +27,12 @@ void improve_run(const float* __restrict lower, const float* __restrict upper,
 StorageRecursion::StorageRecursion(const BatteryParameters& battery, const SocGrid& grid,
                                    double gamma)
     : battery_(battery), points_(grid.count), gamma_(gamma) {
-  const std::vector<GridMove> moves = tabulate_moves(battery, grid);
-  directions_ = {make_direction(moves, Action::kDischarge, points_),
-                 make_direction(moves, Action::kCharge, points_)};
+  for (const bool is_cold : {false, true}) {
+    const std::vector<GridMove> moves =
+        tabulate_moves(battery, grid, is_cold ? battery.cold.power_share : 1);
+    directions_[is_cold] = {make_direction(moves, Action::kDischarge, points_),
+                            make_direction(moves, Action::kCharge, points_)};
+  }
 }
 
 StorageRecursion::Direction StorageRecursion::make_direction(const std::vector<GridMove>& moves,
@@ -67,8 +70,9 @@ void StorageRecursion::improve(const Direction& d, double price_eur_per_mwh, con
   improve_each(d.end, points_);
 }
 
-void StorageRecursion::step_back(const DeviationChain& chain, int phase, double usual_eur_per_mwh,
-                                 float* ahead_eur, float* value_eur) const {
+void StorageRecursion::step_back(const DeviationChain& chain, int phase, int quarter_hour,
+                                 double usual_eur_per_mwh, float* ahead_eur,
+                                 float* value_eur) const {
   Eigen::Map<Rows> ahead(ahead_eur, kBins, points_);
   Eigen::Map<Rows> value(value_eur, kBins, points_);
   const Eigen::Map<const Rows> transition(chain.transition(phase), kBins, kBins);
@@ -76,7 +80,7 @@ void StorageRecursion::step_back(const DeviationChain& chain, int phase, double 
   value = ahead;  // idle
   for (int b = 0; b < kBins; ++b) {
     const double price = chain.paid(phase, b) + usual_eur_per_mwh;
-    for (const Direction& direction : directions_) {
+    for (const Direction& direction : directions_[battery_.cold.hold(quarter_hour)]) {
       improve(direction, price, &ahead(b, 0), &value(b, 0));
     }
   }

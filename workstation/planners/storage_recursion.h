@@ -22,10 +22,10 @@ class StorageRecursion {
  public:
   StorageRecursion(const BatteryParameters& battery, const SocGrid& grid, double gamma);
 
-  /// `value` [bin][SoC point] of the next step becomes this step's; `ahead`, of the same shape, is
-  /// written. EUR.
-  void step_back(const DeviationChain& chain, int phase, double usual_eur_per_mwh, float* ahead,
-                 float* value) const;
+  /// Of a step in a local quarter-hour of the day: `value` [bin][SoC point] of the next step
+  /// becomes this step's; `ahead`, of the same shape, is written. EUR.
+  void step_back(const DeviationChain& chain, int phase, int quarter_hour, double usual_eur_per_mwh,
+                 float* ahead, float* value) const;
 
  private:
   /// What charging or discharging does, by point of the grid.
@@ -45,7 +45,7 @@ class StorageRecursion {
   BatteryParameters battery_;
   int points_;
   double gamma_;
-  std::array<Direction, 2> directions_;
+  std::array<std::array<Direction, 2>, 2> directions_;  ///< of usual and of cold hours
 };
 
 }  // namespace bess

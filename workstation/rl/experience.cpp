@@ -46,9 +46,12 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       const bool terminal = last && horizon == Horizon::kDay;
       if (!follows && !terminal) continue;
       const NetworkContext here = network_context(steps[i], price_map, context);
-      Step step{here, follows ? network_context(*next, price_map, context) : here,
+      Step step{here,
+                follows ? network_context(*next, price_map, context) : here,
                 static_cast<float>(costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh)),
-                static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)), terminal};
+                static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)),
+                terminal,
+                steps[i].quarter_hour};
       const auto add = [&](const MarketStep& of) {
         return program_ ? program_->add(of) : add_potential(shaping.potential, of);
       };
@@ -86,8 +89,8 @@ float TrainingMarket::potential_at(std::uint32_t row, double soc_frac) const {
 double TrainingMarket::make_transition(std::size_t index, double soc_frac, Action action,
                                        Transition& out) const {
   const Step& step = steps_[index];
-  const BatteryStep moved =
-      battery_step(battery_, soc_frac, power_sign(action) * battery_.power_w_max, kHoursPerStep);
+  const double wanted_w = power_sign(action) * battery_.power_w_at(step.quarter_hour);
+  const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
   write_input(seen(step.context, step.potential, soc_frac), soc_frac, out.state);
   write_input(seen(step.next, step.next_potential, moved.soc_frac), moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same

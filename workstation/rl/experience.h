@@ -80,6 +80,7 @@ class TrainingMarket {
     NetworkContext next;
     float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
+    std::int8_t quarter_hour;                         ///< local
     std::uint32_t potential = 0, next_potential = 0;  ///< rows of potential_, or of program_
     bool begins_anew = false;                         ///< the program's values do, at the successor
     float centre = 0;                                 ///< of r', where it has one of its own

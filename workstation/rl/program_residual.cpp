@@ -31,6 +31,7 @@ std::uint32_t ProgramRows::add(const MarketStep& step) {
     const auto at = StochasticProgram::situation_of(step);
     foundation_.program->continuation(at, &*(continuation_.end() - kSocPoints));
     price_eur_per_mwh_.push_back(foundation_.program->expected_price(at));
+    full_power_w_.push_back(foundation_.battery().power_w_at(step.quarter_hour));
     utc_s_.push_back(step.utc_s);
   }
   return static_cast<std::uint32_t>(utc_s_.size() - 1);
@@ -45,6 +46,7 @@ void ProgramRows::plan(const MarketSteps& market, const std::vector<MarketDay>& 
   continuation_.resize(utc_s_.size() * kSocPoints);
   break_even_.resize(utc_s_.size() * static_cast<std::size_t>(break_even_grid_.count));
   price_eur_per_mwh_.resize(utc_s_.size());
+  full_power_w_.resize(utc_s_.size());
   begins_plan_.resize(utc_s_.size());
   in_parallel(days.size(), threads,
               [&](std::size_t d) { plan_day(market.of(days[d]), first_row[d]); });
@@ -59,6 +61,7 @@ void ProgramRows::plan_day(std::span<const MarketStep> steps, std::size_t row) {
     if (begins_plan_[row] != 0) plan = foundation_.outlook->plan_of(step);
     price_eur_per_mwh_[row] =
         foundation_.outlook->continuation(step, plan, &continuation_[row * kSocPoints]);
+    full_power_w_[row] = foundation_.battery().power_w_at(step.quarter_hour);
     const auto integers = foundation_.book->plan_for(step);
     for (std::size_t p = 0; p < points; ++p) {
       const double soc_frac = break_even_grid_.at(static_cast<int>(p));
@@ -82,7 +85,7 @@ ProgramRows::Values ProgramRows::at(std::uint32_t row, double soc_frac) const {
   const float* ahead = &continuation_[std::size_t{row} * kSocPoints];
   Values values{};
   for (int a = 0; a < kActionCount; ++a) {
-    const double wanted_w = power_sign(static_cast<Action>(a)) * battery.power_w_max;
+    const double wanted_w = power_sign(static_cast<Action>(a)) * full_power_w_[row];
     const BatteryStep moved = battery_step(battery, soc_frac, wanted_w, kHoursPerStep);
     const double cost_eur = exchange_cost_eur(
         battery, moved.power_w / kWattsPerMegawatt * kHoursPerStep, price_eur_per_mwh_[row]);

@@ -80,6 +80,7 @@ class ProgramRows {
   double unit_per_eur_;
   std::vector<float> continuation_;        ///< [row][SoC point], EUR
   std::vector<double> price_eur_per_mwh_;  ///< [row] expected
+  std::vector<double> full_power_w_;       ///< [row]
   std::vector<float> break_even_;          ///< [row][SoC point], EUR/MWh
   std::vector<std::uint8_t> begins_plan_;  ///< [row]
   std::vector<std::int64_t> utc_s_;        ///< [row] step

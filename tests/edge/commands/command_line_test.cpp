@@ -99,6 +99,7 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
       {{"map", "check", "--against", "a", "--map", "m", "--config", "c"},
        "--map and --config exclude each other"},
       {{"map", "check", "--against", "a", "--variant", "v"}, "--variant needs --map"},
+      {{"map", "check", "--against", "a", "--map", "m", "--steps", "--json"}, "leave --json out"},
       {{"log", "--last", "0"}, "--last needs a whole number above 0, not 0"},
       {{"log", "--since", "now"}, "--since needs a moment such as 14:32, "},
       {{"log", "--at", "14:32", "--last", "3"}, "--at is one cycle"},

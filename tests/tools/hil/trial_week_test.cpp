@@ -68,6 +68,17 @@ TEST(TrialWeek, AnOldPriceThatStandsInIsJudgedAsEveryOther) {
   EXPECT_GT(loss_of({week}, 3).percent, loss_of({week}, 0).percent) << disturbances()[3].text;
 }
 
+TEST(TrialWeek, ColdHoursThatTheBatteryKnowsAreNoLossOfTheLoop) {
+  const MinuteSeries prices =
+      read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
+  TrialHouse house;
+  house.physics.cold = {.power_share = 0.6, .from_hour = 2, .to_hour = 7};
+  const TrialWeek week = run_trial(prices, 1, house, [](int, int) {})[0];
+  for (const Finding& f : week.findings) ADD_FAILURE() << f.rule << ' ' << f.expected;
+  EXPECT_NEAR(loss_of({week}, 0).percent, 0, 2) << "the loop alone";
+  EXPECT_EQ(week.loop_eur[4], week.loop_eur[0]) << "they are not switched on once more";
+}
+
 TEST(TrialWeek, MoreWeeksThanTheFileHoldsAreRefused) {
   const MinuteSeries prices =
       read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");

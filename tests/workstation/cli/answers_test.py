@@ -195,12 +195,17 @@ class Answers(unittest.TestCase):
 
     def test_4_battery(self):
         with open(self.file("log.csv"), "w") as log:
-            print("utc,soc_e4,battery_power_w,ordered_power_w", file=log)
+            print("utc,soc_e4,battery_power_w,ordered_power_w,reason", file=log)
             for cycle in range(40):
                 at = f"2026-06-01T{cycle // 30:02}:{2 * cycle % 60:02}:00Z"
-                print(f"{at},5000,{30 + cycle % 3},0", file=log)
-        keys = self.answers("battery", "fit", "--log", "@log.csv", "--out", "@battery.toml")
+                print(f"{at},5000,{30 + cycle % 3},0,student", file=log)
+        with open(self.file("steps.toml"), "w") as steps:
+            print("[battery]\ndelay_s = 2.5\nramp_w_per_s = 0\ntime_constant_s = 3", file=steps)
+        keys = self.answers("battery", "fit", "--log", "@log.csv", "--steps", "@steps.toml", "--out",
+                            "@battery.toml")
         self.assertEqual([(k["key"], k["observations"]) for k in keys], [("standby_w", 38)])
+        with open(self.file("battery.toml")) as both:
+            self.assertIn("delay_s = 2.5\n", both.read())
         shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc",
                              "--config", "@battery.toml")
         self.assertEqual(len(shown), 1)

@@ -210,6 +210,7 @@ constexpr ConfigMistake kConfigMistakes[] = {
     {"[battery]\npower_w = -1\n", "out of range"},
     {"[battery]\npower_w = true\n", "expected a number"},
     {"[battery]\nsoc_min = 0.9\nsoc_max = 0.1\n", "soc_min must be below soc_max"},
+    {"[battery]\ncold_power_share = 0.6\n", "set cold_from_hour and cold_to_hour"},
     {"[battery]\ncharge_efficiency = 1.1\n", "out of range"},
     {"[costs]\nimport_percent = 101\n", "out of range"},
     {"[costs]\nimport_percent = -1\n", "out of range"},

@@ -72,6 +72,9 @@ CASES = [
     ("battery fit --log log.csv", 1, "log.csv: 2 cycles show nothing of the battery"),
     ("battery fit --log log.csv --out log.csv", 1, "would replace the input --log log.csv"),
     ("battery fit --log nowhere.csv", 1, "nowhere.csv"),
+    ("battery fit --out new.toml", 1, "battery fit needs --log or --steps"),
+    ("battery fit --steps steps.toml", 1, "ramp_w_per_s"),
+    ("battery fit --steps single.toml", 1, "single.toml: has no [battery]: it is what"),
     # Not as TOML writes it.
     ("config --config cr.toml", 1,
      "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
@@ -109,8 +112,10 @@ class BadInputs(unittest.TestCase):
                                         "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
-            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w\n"
-                       "2026-06-01T00:00:00Z,5000,0,0\n2026-06-01T00:02:00Z,5000,0,0\n",
+            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w,reason\n"
+                       "2026-06-01T00:00:00Z,5000,0,0,student\n"
+                       "2026-06-01T00:02:00Z,5000,0,0,student\n",
+            "steps.toml": "[battery]\ndelay_s = 2\n",
             "few.csv": head + "".join(rows[: 15 * 1440]),
             "hour.csv": head + "".join(rows[:60]),
             "cr.toml": "[train]\rsteps = 100\r",

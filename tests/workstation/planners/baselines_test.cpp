@@ -91,13 +91,15 @@ TEST(BellmanSweep, EqualsThePlainMaximumForAnyBattery) {
     b.wear_eur_per_mwh = 20 * random.uniform();
     b.costs = {50 * random.uniform(), 10 * random.uniform(), 10 * random.uniform(),
                10 * random.uniform()};
+    b.cold = {.power_share = 0.1 + 0.9 * random.uniform(), .from_hour = 0, .to_hour = 5};
     const SocGrid grid(b, 101);
-    const auto moves = tabulate_moves(b, grid);
+    const int quarter_hour = n % 2 == 0 ? 19 : 20;
+    const auto moves = tabulate_moves(b, grid, b.cold.share_at(quarter_hour));
     std::vector<float> next(101);
     std::vector<float> now(101);
     for (float& v : next) v = static_cast<float>(500 * random.normal());
     const auto price = static_cast<float>(100 * random.normal());
-    BellmanSweep(b, grid).run(next.data(), price, now.data());
+    BellmanSweep(b, grid).run(next.data(), quarter_hour, price, now.data());
     for (int i = 0; i < 101; ++i) {
       double best = next[i];
       for (const int a : {0, 2}) {

@@ -100,8 +100,10 @@ void run(const TrialOptions& options) {
       prices, options.weeks, house, [&](int done, int all) { tell_progress(begin, done, all); });
   const std::string text = fmt::format(
       "{} weeks of {} days from {}, house battery of 4 kW and 8 kWh; loss against the plain "
-      "simulation,\nin percent of it, with the standard error of the paired difference\n{}",
-      weeks.size(), kTrialDays, utc_text(weeks.front().start_utc_s).view(), table(weeks));
+      "simulation,\nin percent of it, with the standard error of the paired difference\n{}{}",
+      weeks.size(), kTrialDays, utc_text(weeks.front().start_utc_s).view(),
+      physics.cold.exist() ? "cold are its own hours alone, all through, for both\n" : "",
+      table(weeks));
   fmt::print("{}", options.json ? json_of(weeks).line() + "\n" : text);
   if (!options.report.empty()) {
     write_file(

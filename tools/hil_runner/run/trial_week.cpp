@@ -149,8 +149,9 @@ WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const Tri
   const WorkFolder folder;
   run.config = load_edge_settings(run.scenario, folder.file("edge.toml"),
                                   edge_settings(run.scenario, run.prices, {}));
+  const bool is_chilled = on.temperature && !physics.cold.exist();  // else it knows its own hours
   run.evidence =
-      run_virtual(run.scenario, run.prices, run.config, on.temperature ? cold_nights : nullptr);
+      run_virtual(run.scenario, run.prices, run.config, is_chilled ? cold_nights : nullptr);
   run.evidence.order_ends_by_itself = run.config.control.has_watchdog;
   run.evidence.order_duration_s = run.config.battery.map.watchdog.duration_s;
   return run;
@@ -187,8 +188,9 @@ double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s,
     const GuardInputs in =
         undisturbed_inputs(now_utc_s, static_cast<std::int32_t>(std::lround(1e4 * soc)),
                            level.centi_eur_per_mwh(), now_utc_s - 60, centi);
-    const FollowedStep moved =
-        followed_step(battery, soc, power, guard.decide(in).power_w, kHoursPerStep);
+    const double most_w = battery.power_w_at(local_minute_of(now_utc_s).quarter_hour);
+    const double wanted_w = std::clamp<double>(guard.decide(in).power_w, -most_w, most_w);
+    const FollowedStep moved = followed_step(battery, soc, power, wanted_w, kHoursPerStep);
     soc = moved.step.soc_frac;
     power = moved.power;
     const double minute_wh = (moved.step.power_w + battery.standby_w) / 60;
