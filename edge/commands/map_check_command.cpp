@@ -1,7 +1,6 @@
 // bess-edge map check: a register map held against a recording of a device, without the device.
 #include <algorithm>
 #include <cinttypes>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -60,7 +59,7 @@ Exit codes: 0 all points are plausible   1 not all, or a file cannot be read)"
     R"(   2 the command line is bad
 
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
-  bess-edge map check --against steps.jsonl --steps > response.toml
+  bess-edge map check --against steps.jsonl --steps > steps.toml
 )";
 
 /// Unit ids are the recorded device's, not the map's: they are settings of an installation.
@@ -139,6 +138,7 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
 
 /// Of the largest step: shorter than readings are apart it has no shape, and delays by half of it.
 constexpr double kRampS = 1;
+constexpr double kSpare = 1.2;  ///< as commission proposes a settle_s
 
 /// As keys of [battery], and what the map's [response] may have to say.
 int print_steps(const MapCheckGiven& given, const RegisterMap& map, const RecordedSteps& steps) {
@@ -160,7 +160,7 @@ int print_steps(const MapCheckGiven& given, const RegisterMap& map, const Record
   std::printf("time_constant_s = %.2f\n", fit.best().time_constant_s);
   const double come_s = fit.seconds_until(most->step_w(), most->band_w()).most;
   std::printf("# %s, [response]: settle_s = %d, for %d W; it says %d\n", map.name.c_str(),
-              static_cast<int>(std::ceil(come_s)), most->step_w(), map.response.settle_s);
+              static_cast<int>(kSpare * come_s) + 1, most->step_w(), map.response.settle_s);
   return 0;
 }
 

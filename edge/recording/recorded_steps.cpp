@@ -62,16 +62,13 @@ void RecordedSteps::begin_step(std::int64_t order_w) {
   step_ = nullptr;
   const bool is_known = order_w_.has_value() && power_w_.has_value();
   const std::int64_t change_w = order_w - order_w_.value_or(0);
-  const auto had_come = [&] {
-    const auto before_w = static_cast<std::int32_t>(std::abs(*order_w_));
-    return std::abs(*power_w_ - *order_w_) <= band_w(before_w);
-  };
+  const auto had_come = [&] { return std::abs(*power_w_ - *order_w_) <= band_w(*order_w_); };
   if (is_known) ++orders_;
   if (is_known && had_come()) {
     const auto step_w = static_cast<std::int32_t>(std::abs(change_w));
     sign_ = change_w > 0 ? 1 : -1;
     from_w_ = *power_w_;
-    step_ = &curves_.emplace_back(step_w, band_w(step_w));
+    step_ = &curves_.emplace_back(step_w, band_w(order_w));
   }
   order_w_ = order_w;
   power_w_.reset();
@@ -87,8 +84,8 @@ void RecordedSteps::take_reading(std::int64_t begin_ns, std::int64_t end_ns) {
               .along_w = static_cast<std::int32_t>(sign_ * (power_w - from_w_))});
 }
 
-std::int32_t RecordedSteps::band_w(std::int32_t step_w) const {
-  return map_.response.tolerance_of_w(0, step_w);
+std::int32_t RecordedSteps::band_w(std::int64_t order_w) const {
+  return map_.response.tolerance_of_w(0, static_cast<std::int32_t>(std::abs(order_w)));
 }
 
 std::vector<const AnswerCurve*> RecordedSteps::whole() const {

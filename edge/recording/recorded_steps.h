@@ -30,7 +30,7 @@ class RecordedSteps {
   [[nodiscard]] int orders() const { return orders_; }  ///< that asked for another power
 
  private:
-  [[nodiscard]] std::int32_t band_w(std::int32_t step_w) const;
+  [[nodiscard]] std::int32_t band_w(std::int64_t order_w) const;
   void take_order(std::int64_t end_ns);
   void begin_step(std::int64_t order_w);
   void take_reading(std::int64_t begin_ns, std::int64_t end_ns);
