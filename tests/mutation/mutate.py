@@ -5,6 +5,8 @@
   mutate.py run [--sample N --seed S] [--only TEXT]   each, against scenarios and unit tests
   mutate.py run --each N --rooms control,loop         so many of each of these rooms
   mutate.py report       the score by folder, and who survived
+  mutate.py draw         the keys of those that run would try, one a line, for run --keys FILE
+  mutate.py compare --than FOLDER   of what both trees tried, which tree's tests found what
 
 survivors.txt says of those that are known to survive why. Exit codes: 0 done; 1 fewer than
 --at-least are caught of those that are not equivalent, or something could not be built; 2 the
@@ -176,8 +178,7 @@ class Runner:
         self.out = options.out
         self.build = os.path.join(options.out, "build")
         self.source = os.path.join(options.out, "source")
-        with open(os.path.join(options.out, "mutants.json")) as f:
-            self.mutants = json.load(f)
+        self.mutants = mutants_of(options.out)
         self.passed = os.path.join(options.out, f"passed-{os.getpid()}.txt")
         self.kinds = options.kinds.split(",") if options.kinds else ["scenario"] + UNIT_TESTS
         self.kills = collections.Counter()
@@ -279,7 +280,22 @@ class Runner:
         return None
 
 
+def mutants_of(folder):
+    with open(os.path.join(folder, "mutants.json")) as f:
+        return json.load(f)
+
+
 def chosen(mutants, options):
+    if options.also_in:
+        elsewhere = {key_of(m) for m in mutants_of(options.also_in)}
+        mutants = [m for m in mutants if key_of(m) in elsewhere]
+    if options.keys:
+        asked = set(lines_of(options.keys))
+        mutants = [m for m in mutants if key_of(m) in asked]
+        missing = asked - {key_of(m) for m in mutants}
+        if missing:
+            sys.exit(f"mutate.py: {options.keys}: this tree has no \"{min(missing)}\": draw with "
+                     "--also-in what both have")
     by_room = {room: [] for room in options.rooms}
     for mutant in mutants:
         room = mutant["file"].split("/")[1]
@@ -297,6 +313,13 @@ def chosen(mutants, options):
 
 def drawn(numbers, count, seed):
     return sorted(random.Random(seed).sample(numbers, min(count, len(numbers))))
+
+
+def draw(options):
+    mutants = mutants_of(options.out)
+    key = {m["number"]: key_of(m) for m in mutants}
+    print(*(key[number] for number in chosen(mutants, options)), sep="\n")
+    return 0
 
 
 def rooms_of(text):
@@ -337,9 +360,41 @@ def run(options):
 
 
 # --- report ---
+def results_of(folder, options):
+    """What was found last of each mutant, by its key."""
+    with open(os.path.join(folder, options.results)) as f:
+        return {r["key"]: r for r in map(json.loads, f)}
+
+
+def compare(options):
+    """Nothing that the tests of another tree find may be lost: exit code 1 where it is."""
+    old, new = results_of(options.than, options), results_of(options.out, options)
+    known = survivors_known()
+    rooms = collections.defaultdict(collections.Counter)
+    lost = []
+    for key in sorted(old.keys() & new.keys()):
+        by = old[key]["by"], new[key]["by"]
+        found = {(True, True): "both", (True, False): "there", (False, True): "here",
+                 (False, False): "neither"}[by[0] is not None, by[1] is not None]
+        if found == "neither" and known.get(key, "").startswith("equivalent"):
+            found = "equivalent"
+        rooms["/".join(key.split("/")[:2])][found] += 1
+        if found == "there":
+            lost.append(f"lost: {key}, found there by {' '.join(by[0])}")
+    total = sum(rooms.values(), collections.Counter())
+    print("| room | mutants | equivalent | found by both | there alone | here alone | by neither "
+          "| there | here |\n|---|---|---|---|---|---|---|---|---|")
+    for name, c in sorted(rooms.items()) + [("all", total)]:
+        percent = [100 * (c["both"] + c[side]) / max(1, c.total() - c["equivalent"])
+                   for side in ("there", "here")]
+        print(f"| {name} | {c.total()} | {c['equivalent']} | {c['both']} | {c['there']} "
+              f"| {c['here']} | {c['neither']} | {percent[0]:.1f} % | {percent[1]:.1f} % |")
+    print(*lost, sep="\n", end="\n" if lost else "")
+    return 1 if lost else 0
+
+
 def report(options):
-    with open(os.path.join(options.out, options.results)) as f:
-        results = list({r["key"]: r for r in map(json.loads, f)}.values())
+    results = results_of(options.out, options).values()
     known = survivors_known()
     rooms = collections.defaultdict(collections.Counter)
     unknown = []
@@ -382,7 +437,8 @@ def caught_percent(counts):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
             formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["make", "run", "report"])
+    what = {"make": make, "run": run, "report": report, "draw": draw, "compare": compare}
+    parser.add_argument("what", choices=what)
     parser.add_argument("--out", default=os.path.join(ROOT, "build-mutation"),
             help="default: build-mutation")
     parser.add_argument("--jobs", type=int, default=2, help="compilations beside each other")
@@ -397,6 +453,10 @@ def main():
     parser.add_argument("--survivors", default="",
             help="a file for those whose reason survivors.txt does not know")
     parser.add_argument("--only", default="", help="only those whose line holds this text")
+    parser.add_argument("--keys", default="", help="only those whose keys this file lists")
+    parser.add_argument("--also-in", default="",
+            help="only those that the mutated tree in this folder has too")
+    parser.add_argument("--than", default="", help="compare: the other tree's folder")
     parser.add_argument("--kinds", default="",
             help="by these alone, in this order: scenario, edge_walks_test, edge_test, ...")
     parser.add_argument("--at-least", type=float, default=0, help="percent that must be caught")
@@ -407,7 +467,9 @@ def main():
     options = parser.parse_args()
     options.out = os.path.abspath(options.out)
     os.makedirs(options.out, exist_ok=True)
-    return {"make": make, "run": run, "report": report}[options.what](options)
+    if options.what == "compare" and not options.than:
+        parser.error("compare needs --than FOLDER, another tree's build-mutation")
+    return what[options.what](options)
 
 
 if __name__ == "__main__":

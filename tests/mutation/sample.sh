@@ -1,6 +1,6 @@
 #!/bin/sh
-# sample.sh FOLDER: mutate.py draws so many of each room by its seed, and lists who survives, of ten
-# made-up mutants in each of two rooms, of which a made-up test finds those of even numbers.
+# sample.sh FOLDER: mutate.py draws so many of each room by its seed, lists survivors and compares
+# two trees, of ten made-up mutants in each of two rooms, of which a test finds the even ones.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$1"
@@ -35,3 +35,29 @@ grep -q '^| all | 10 | 0 | 5 | 0 | 5 | 50.0 % |' "$1/said" || fail "$(cat "$1/sa
 ! run "$1" --rooms loop --at-least 51 >/dev/null 2>&1 || fail "half is taken for 51 %"
 ! run "$1" --rooms lop >/dev/null 2>"$1/said" || fail "a room that is none is taken"
 grep -q '"lop" is none of control' "$1/said" || fail "$(cat "$1/said")"
+
+# Of another tree, which has the room loop alone and whose test finds the odd numbers: what is drawn
+# is in both, and what that test alone finds is told as lost.
+rm -rf "$1-there"
+mkdir -p "$1-there/build"
+python3 - "$1/mutants.json" >"$1-there/mutants.json" <<'PY'
+import json, sys
+print(json.dumps([m for m in json.load(open(sys.argv[1])) if "loop" in m["file"]]))
+PY
+sed 's/MUTANT:-1/MUTANT:-0/; s/= 1 /= 0 /' "$1/build/edge_test" >"$1-there/build/edge_test"
+chmod +x "$1-there/build/edge_test"
+python3 -B "$here/mutate.py" draw --out "$1" --also-in "$1-there" --sample 6 --seed 5 >"$1/keys"
+[ "$(grep -c '^edge/loop/x.h | f | . -> -$' "$1/keys")" = 6 ] || fail "drawn: $(cat "$1/keys")"
+run "$1" --keys "$1/keys" >/dev/null
+run "$1-there" --keys "$1/keys" >/dev/null
+! python3 -B "$here/mutate.py" compare --out "$1" --than "$1-there" >"$1/said" ||
+  fail "what is lost is not: $(cat "$1/said")"
+odd=$(grep -c '[13579] -> -$' "$1/keys")
+grep -q "^| edge/loop | 6 | 0 | 0 | $odd | $((6 - odd)) | 0 |" "$1/said" || fail "$(cat "$1/said")"
+[ "$(grep -c '^lost: .*, found there by edge_test Suite.Name$' "$1/said")" = "$odd" ] ||
+  fail "$(cat "$1/said")"
+python3 -B "$here/mutate.py" compare --out "$1" --than "$1" >/dev/null || fail "lost to itself"
+echo 'edge/loop/x.h | f | none -> -' >>"$1/keys"
+! run "$1" --keys "$1/keys" >/dev/null 2>"$1/said" || fail "a key of no mutant is taken"
+grep -q 'keys: this tree has no "edge/loop/x.h | f | none -> -"' "$1/said" ||
+  fail "$(cat "$1/said")"
