@@ -35,7 +35,7 @@ class DayBook {
       : first_day_(first_day), last_day_(last_day), terms_(terms), prices_(terms.settled) {}
 
   /// The oldest first.
-  void add(const CycleRecord& record);
+  void add(const CycleRecord& as_logged);
   /// The days that had a cycle, oldest first.
   [[nodiscard]] std::vector<DayAccount> accounts() const;
 

@@ -181,6 +181,7 @@ class Runner:
         self.mutants = mutants_of(options.out)
         self.passed = os.path.join(options.out, f"passed-{os.getpid()}.txt")
         self.kinds = options.kinds.split(",") if options.kinds else ["scenario"] + UNIT_TESTS
+        self.from_s, self.to_s = options.seconds
         self.kills = collections.Counter()
         self.key = {m["number"]: key_of(m) for m in self.mutants}
         self.covered = self.coverage()
@@ -240,6 +241,8 @@ class Runner:
             with open(path, "w") as f:
                 json.dump(kept, f)
             for name, (took_s, numbers) in kept.items():
+                if not self.from_s < took_s <= self.to_s:
+                    continue
                 for number in numbers:
                     covered[number].append([kind, name, took_s])
         return covered
@@ -328,6 +331,14 @@ def rooms_of(text):
         if room not in ROOMS:
             raise argparse.ArgumentTypeError(f'"{room}" is none of ' + ", ".join(ROOMS))
     return rooms
+
+
+def seconds_of(text):
+    """Above the first, up to the second; from 0 on those of no time too."""
+    bounds = re.fullmatch(r"(\d+)-(\d*)", text)
+    if not bounds:
+        raise argparse.ArgumentTypeError(f'"{text}" is not as 0-4 or 4-')
+    return float(bounds[1]) or -1.0, float(bounds[2] or 1e9)
 
 
 def survivors_known():
@@ -459,6 +470,9 @@ def main():
     parser.add_argument("--than", default="", help="compare: the other tree's folder")
     parser.add_argument("--kinds", default="",
             help="by these alone, in this order: scenario, edge_walks_test, edge_test, ...")
+    parser.add_argument("--seconds", type=seconds_of, default=(-1.0, 1e9),
+            help="by tests that take so long alone: 0-4 for a first look, then --resume --again "
+                 "--seconds 4- for who is left")
     parser.add_argument("--at-least", type=float, default=0, help="percent that must be caught")
     parser.add_argument("--results", default="results.jsonl",
             help="the file in --out that keeps what was found")
