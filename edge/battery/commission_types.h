@@ -49,30 +49,30 @@ enum class CommissionVerdict : std::uint8_t {
   kInterrupted
 };
 
-/// What it means and what mends it.
+/// What it means and what mends it. In brackets where two lines are one text.
 constexpr std::string_view commission_text(CommissionVerdict verdict) {
   constexpr std::string_view kTexts[] = {
       "passed",
       "the battery did not answer or refused",
       "the battery reports an alarm or is off-grid: clear that first",
       "the battery follows an order already: stop the other controller, or wait for its timer",
-      "neither direction can be tested: SoC, soc_min and soc_max leave no room, or the battery's "
-      "own limits",
+      ("neither direction can be tested: SoC, soc_min and soc_max leave no room, or the battery's "
+       "own limits"),
       "power flows although 0 W is ordered: is the map right, does another controller interfere?",
       "hardly any power flows: is external control enabled on the device, is the battery ready?",
       "power flows the wrong way: the sign of battery_power or of the order is wrong in the map",
-      "more power flows than ordered: unit or scale of the order or of battery_power is wrong in "
-      "the map, or something "
-      "else drives the battery",
-      "less power flows than [response] of the map allows: is its scale right? If this is how the "
-      "battery is, set",
+      ("more power flows than ordered: unit or scale of the order or of battery_power is wrong in "
+       "the map, or something else drives the battery"),
+      ("less power flows than [response] of the map allows: is its scale right? If this is how the "
+       "battery is, set"),
       "the battery follows more slowly than [response] of the map says; set",
       "the meter cannot be read",
-      "the meter does not step with the battery: frozen, inverted, of another phase or ratio, or "
-      "not at the connection",
-      "the house moved too much to tell whether the meter follows: repeat it when the house is "
-      "quiet",
+      ("the meter does not step with the battery: frozen, inverted, of another phase or ratio, or "
+       "not at the connection"),
+      ("the house moved too much to tell whether the meter follows: repeat it when the house is "
+       "quiet"),
       "interrupted; the battery was released"};
+  static_assert(std::size(kTexts) == static_cast<int>(CommissionVerdict::kInterrupted) + 1);
   return kTexts[static_cast<int>(verdict)];
 }
 
