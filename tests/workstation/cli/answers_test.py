@@ -201,8 +201,8 @@ class Answers(unittest.TestCase):
                 print(f"{at},5000,{30 + cycle % 3},0,student", file=log)
         with open(self.file("steps.toml"), "w") as steps:
             print("[battery]\ndelay_s = 2.5\nramp_w_per_s = 0\ntime_constant_s = 3", file=steps)
-        keys = self.answers("battery", "fit", "--log", "@log.csv", "--steps", "@steps.toml", "--out",
-                            "@battery.toml")
+        keys = self.answers("battery", "fit", "--log", "@log.csv", "--steps", "@steps.toml",
+                            "--out", "@battery.toml")
         self.assertEqual([(k["key"], k["observations"]) for k in keys], [("standby_w", 38)])
         with open(self.file("battery.toml")) as both:
             self.assertIn("delay_s = 2.5\n", both.read())

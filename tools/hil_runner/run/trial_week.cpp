@@ -149,7 +149,8 @@ WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const Tri
   const WorkFolder folder;
   run.config = load_edge_settings(run.scenario, folder.file("edge.toml"),
                                   edge_settings(run.scenario, run.prices, {}));
-  const bool is_chilled = on.temperature && !physics.cold.exist();  // else it knows its own hours
+  const bool is_chilled =
+      on.temperature && !house.physics.cold.exist();  // else it knows its own hours
   run.evidence =
       run_virtual(run.scenario, run.prices, run.config, is_chilled ? cold_nights : nullptr);
   run.evidence.order_ends_by_itself = run.config.control.has_watchdog;
