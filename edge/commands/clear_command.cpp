@@ -29,12 +29,12 @@ constexpr const char* kHelp =
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --yes          let it be driven again; without it only the trip is told
 
-After wrong_direction, uncontrolled_power,)"
-    R"( soc_mismatch or state_lost the battery is in its own mode until this is
-said, over restarts too. A running controller goes on at its next cycle.
-Exit codes: 0 cleared, or nothing to clear   1 log or state cannot be accessed)"
-    R"(   2 the command line is
-bad, or --yes is missing
+After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its own
+mode until this is said, over restarts too. A running controller goes on at its next cycle.
+Exit codes:
+  0 cleared, or nothing to clear
+  1 log or state cannot be accessed
+  2 the command line is bad, or --yes is missing
 
   bess-edge log --last 10; bess-edge clear --yes
 )";

@@ -42,12 +42,14 @@ The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the
 than [response] of its map allows, and so must the meter of [meter]. Then, where SoC, limits and
 connection leave room, it follows half the largest step that the controller may order, for some
 seconds each way: a lag takes as long for any step, a ramp does not. A battery whose largest step
-surely takes longer than settle_s is refused with the lines to set; what one step alone leaves open
-is a warning with its figures. A direction that its SoC leaves no room for is not tested, and said.
-At the end the battery is released.
-The result is kept in the [state] folder and holds for this
-map, variant and address; bess-edge refuses to control a battery without it.
-Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
+surely takes longer than settle_s is refused with the lines to set; what one step alone leaves
+open is a warning with its figures. A direction that its SoC leaves no room for is not tested, and
+said. At the end the battery is released. The result is kept in the [state] folder and holds for
+this map, variant and address; bess-edge refuses to control a battery without it.
+Exit codes:
+  0 passed
+  1 refused: the line says why
+  2 the command line is bad, or --yes is missing
 
   bess-edge commission --config /etc/bess/edge.toml --yes
   bess-edge commission --record steps.jsonl --yes

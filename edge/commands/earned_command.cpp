@@ -34,12 +34,12 @@ constexpr const char* kHelp =
 
   bess-edge earned [PERIOD] [--config FILE] [--beside] [--csv | --json | --html]
 
-  PERIOD         today, yesterday, week, month, last-month, a month as 2026-10, a day as 2026-11-23,
-                 or 2026-11-01..2026-11-23; local days, default today; week and month are those that
-                 today lies in
+  PERIOD         today, yesterday, week, month, last-month, a month as 2026-10, a day as
+                 2026-11-23, or 2026-11-01..2026-11-23; local days, default today; week and month
+                 are those that today lies in
   --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --beside       and what rest, a rule, the student undisturbed, and foresight would have been paid
-                 with this battery (90 % there and back), from the same charge on; the rule's
+  --beside       and what rest, a rule, the student undisturbed, and foresight would have been
+                 paid with this battery (90 % there and back), from the same charge on; the rule's
                  thresholds are the quartiles of the 30 days before
   --csv          one line a day, with a header
   --json         one JSON object: the days, and all of them together

@@ -30,12 +30,10 @@ constexpr const char* kHelp =
   --folder FOLDER  where it is kept; default /var/lib/bess-update
   --config FILE    as every command has it; the history is the machine's, and needs none
 
-Events: trying (on trial), confirmed, comparing (the version before runs: does it do better?),)"
-    R"( going_back and
-rolled_back (with the reason), refused (not let in), failed (nothing to go back to),)"
-    R"( broken_off (the power went while
-dpkg was at it), withdrawn (dpkg gave it up), dismissed, allowed.)"
-    R"( The column "certificate" is the beginning of header_sha256, of the exported header.
+Events: trying (on trial), confirmed, comparing (the version before runs: does it do better?),
+going_back and rolled_back (with the reason), refused (not let in), failed (nothing to go back
+to), broken_off (the power went while dpkg was at it), withdrawn (dpkg gave it up), dismissed,
+allowed. The column "certificate" is the beginning of header_sha256, of the exported header.
 Exit codes: 0 done   1 no history   2 the command line is bad
 
   bess-edge history

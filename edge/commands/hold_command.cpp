@@ -38,22 +38,18 @@ constexpr const char* kHelp =
   bess-edge hold [--config FILE] WATTS --for DURATION
   bess-edge hold [--config FILE] --release
 
-  WATTS           power to hold: positive charges, negative discharges, 0 rests;)"
-    R"( up to [battery] power_w
+  WATTS           power to hold: positive charges, negative discharges, 0 rests; up to [battery]
+                  power_w
   --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
   --release       end the hold before its time
   --config FILE   the controller's settings; default /etc/bess/edge.toml
 
-The running controller follows from its next cycle on, restarts included,)"
-    R"( and trades again when the end has
-passed. A hold stands for the student and the price thresholds, and needs no price.)"
-    R"( Everything else of the
-guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals,)"
-    R"( power and connection limits,
-ramp. While the supervision has tripped nothing is driven, and so no hold is followed:)"
-    R"( that is said, see
-bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it as the
-controller's user, or as root.
+The running controller follows from its next cycle on, restarts included, and trades again when
+the end has passed. A hold stands for the student and the price thresholds, and needs no price.
+Everything else of the guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals,
+power and connection limits, ramp. While the supervision has tripped nothing is driven, and so no
+hold is followed: that is said, see bess-edge clear. A new hold replaces the one before. It lies
+in the [state] folder: run it as the controller's user, or as root.
 Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
 
   bess-edge hold 0 --for 30m

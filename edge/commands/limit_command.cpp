@@ -40,13 +40,10 @@ constexpr const char* kHelp =
   --for DURATION  then the limit has lapsed: 90s, 15m, 1h30m, up to 7d
   --clear         takes the limit away
 
-Writes one line, "charge_w discharge_w utc_until", into the file of [limits],)"
-    R"( in place of the one before; any
-program may write it itself, beside and renamed.)"
-    R"( A running controller looks every few seconds and cuts an order
-that is too large at once. After its time the limit is gone,)"
-    R"( or with on_timeout = "idle" the battery is left at
-0 W until a new one comes: then --clear does that too.
+Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the one
+before; any program may write it itself, beside and renamed. A running controller looks every few
+seconds and cuts an order that is too large at once. After its time the limit is gone, or with
+on_timeout = "idle" the battery is left at 0 W until a new one comes: then --clear does that too.
 Exit codes: 0 done   1 no [limits], or the file cannot be written   2 the command line is bad
 
   bess-edge limit --charge 0 --for 15m

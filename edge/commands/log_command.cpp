@@ -39,7 +39,8 @@ constexpr const char* kHelp =
 
   --config FILE   the controller's settings; default /etc/bess/edge.toml
   --csv           comma-separated with a header; otherwise one key=value line a cycle
-  --local         and local time, energy in Wh (charged is positive) and money in EUR of each cycle
+  --local         and local time, energy in Wh (charged is positive) and money in EUR of each
+                  cycle
   --explain       and the price up to which the student would have charged in each cycle, and that
                   from which it would have discharged (bess-edge why tells more of one cycle)
   --last N        only the newest N cycles
@@ -47,10 +48,10 @@ constexpr const char* kHelp =
   --until MOMENT  only up to then
   --at MOMENT     only the cycle whose order was in force then
 
-A moment is the market's wall clock, 14:32 (the newest that has been) or "2026-11-23 14:32", or UTC:
-2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power
-measured at the tick, for two minutes, at the price decided on.
-Read from the ring in [state] folder, oldest first, while the controller runs or not.
+A moment is the market's wall clock, 14:32 (the newest that has been) or "2026-11-23 14:32", or
+UTC: 2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power
+measured at the tick, for two minutes, at the price decided on. Read from the ring in [state]
+folder, oldest first, while the controller runs or not.
 Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
 
   bess-edge log --last 10

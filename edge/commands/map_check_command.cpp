@@ -37,8 +37,8 @@ constexpr CommandOption kOptions[] = {
 constexpr const char* kHelp =
     R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
 
-  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE])"
-    R"( [--json | --steps] [--accept-cut]
+  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE]
+                      [--json | --steps] [--accept-cut]
 
   --against FILE  a recording: bess-edge record, or bess-edge run --record
   --map FILE      the register map; default: that of the configuration
@@ -46,17 +46,18 @@ constexpr const char* kHelp =
   --config FILE   the controller's settings; default /etc/bess/edge.toml
   --json          one JSON object
   --steps         delay, ramp and lag instead, of the orders that were recorded: [battery] as TOML
-                  for bess-train and bess-sim. bess-edge commission --record FILE records such steps
+                  for bess-train and bess-sim. bess-edge commission --record FILE records such
+                  steps
   --accept-cut    take a recording without its last line up to where it was cut
 
-Names every point whose values cannot be true, with what would fit: never answered,)"
-    R"( outside its range, another
-scale, word order or type; a state of charge that stands still or does not follow the measured)"
-    R"( power; power that
-flows against the order. For the last three the battery must have moved energy while it was)"
-    R"( recorded.
-Exit codes: 0 all points are plausible   1 not all, or a file cannot be read)"
-    R"(   2 the command line is bad
+Names every point whose values cannot be true, with what would fit: never answered, outside its
+range, another scale, word order or type; a state of charge that stands still or does not follow
+the measured power; power that flows against the order. For the last three the battery must have
+moved energy while it was recorded.
+Exit codes:
+  0 all points are plausible
+  1 not all, or a file cannot be read
+  2 the command line is bad
 
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
   bess-edge map check --against steps.jsonl --steps > steps.toml

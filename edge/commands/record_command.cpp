@@ -36,22 +36,23 @@ constexpr const char* kHelp =
 
   bess-edge record --for DURATION [--every DURATION] [--out FILE] [--config FILE]
 
-  --for DURATION    how long, 1s to 7d: 90s, 1h, 1d12h; Ctrl-C ends it before, and the file is whole
-  --every DURATION  between two readings of what is measured; default 10s. Everything else that the
-                    register map names, and what it would write, is read every 10 minutes
+  --for DURATION    how long, 1s to 7d: 90s, 1h, 1d12h; Ctrl-C ends it before, and the file is
+                    whole
+  --every DURATION  between two readings of what is measured; default 10s. Everything else that
+                    the register map names, and what it would write, is read every 10 minutes
   --out FILE        default: bess-TIME.jsonl in the current folder
   --config FILE     the controller's settings; default /etc/bess/edge.toml
 
-One JSON object a line: request, values or error, latency. Hidden (0, of a text X))"
-    R"( is what the map marks as
-private, texts beyond what the map's identity check asks for,)"
-    R"( and every register that the map does not name: the
-file can be given away. It holds neither addresses of the network nor prices.)"
-    R"( Refused while another bess-edge
-has the battery: record that one with bess-edge run --record FILE, which has the orders too.
-What is made of it: bess-sim battery --replay FILE, and bess-edge map check --against FILE.
-Exit codes: 0 recorded   1 the file cannot be written, nobody answered, or the battery is in use
-2 the command line is bad
+One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what the map
+marks as private, texts beyond what the map's identity check asks for, and every register that the
+map does not name: the file can be given away. It holds neither addresses of the network nor
+prices. Refused while another bess-edge has the battery: record that one with bess-edge run
+--record FILE, which has the orders too. What is made of it: bess-sim battery --replay FILE, and
+bess-edge map check --against FILE.
+Exit codes:
+  0 recorded
+  1 the file cannot be written, nobody answered, or the battery is in use
+  2 the command line is bad
 
   bess-edge record --for 1h
   bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml

@@ -30,18 +30,22 @@ constexpr const char* kHelp =
 
   bess-edge replay [PERIOD] [--config FILE] [--limit PERCENT] [--each | --json]
 
-  PERIOD           as bess-edge earned takes it: week, month, 2026-11-01..2026-11-23; default month
+  PERIOD           as bess-edge earned takes it: week, month, 2026-11-01..2026-11-23; default
+                   month
   --config FILE    the controller's settings; default /etc/bess/edge.toml
   --limit PERCENT  exit code 3 when more of the decisions would be others
   --each           and each decision that would be another one, in a line of its own
   --json           one JSON object: all days together, each, and each decision that would differ
 
-Asked of a new version before it may drive: with its program, on the log of the version before. Each
-cycle in which the student was asked is decided again with the same price, state of charge and
-context; stops, limits and holds are of the settings, and are not replayed. Writes nothing, and the
-controller may run.
-Exit codes: 0 done   1 the log cannot be read, or has no decision of these days   2 bad command line
-3 more than --limit would be decided otherwise
+Asked of a new version before it may drive: with its program, on the log of the version before.
+Each cycle in which the student was asked is decided again with the same price, state of charge
+and context; stops, limits and holds are of the settings, and are not replayed. Writes nothing,
+and the controller may run.
+Exit codes:
+  0 done
+  1 the log cannot be read, or has no decision of these days
+  2 bad command line
+  3 more than --limit would be decided otherwise
 
   bess-edge replay week
   dpkg-deb -x bess-edge_2.deb new && new/usr/bin/bess-edge replay --limit 10

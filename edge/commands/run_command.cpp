@@ -39,13 +39,12 @@ constexpr const char* kHelp =
   bess-edge [--config FILE] --self-test                 can this machine run the controller here?
 (commands)
 
-  --config FILE  settings in TOML; edge/bess-edge.toml documents every key;)"
-    R"( default /etc/bess/edge.toml
+  --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default
+                 /etc/bess/edge.toml
   --check        check settings, map, student and sign check, print the registers that would be
                  written, read the battery and the newest price once, write nothing, exit
-  --self-test    try student, signature, memory, seal, clock, certificates, price server,)"
-    R"( storage and
-                 battery once; a table, nothing is written to the battery
+  --self-test    try student, signature, memory, seal, clock, certificates, price server, storage
+                 and battery once; a table, nothing is written to the battery
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
   --record FILE  besides, write every request to the battery and its reply to FILE (see bess-edge
@@ -53,20 +52,18 @@ constexpr const char* kHelp =
   --help         this text; behind a command, more on that one
   --version      version and the student that is built in
 
-Options may stand before the command or behind it.)"
-    R"( A run writes nothing to the battery unless the file
-says control = true and `bess-edge commission` has found its sign right.)"
-    R"( One controller to one battery: a
-second one is refused, also one that only reads (--check too),)"
-    R"( because many batteries serve one connection.
-SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP:)"
-    R"( exit 0 and leave the order
-in force for the next start, which takes over; the battery's own timer ends it if there is none.
-Exit codes: 0 done   1 settings or battery are bad, the sign is not checked,)"
-    R"( the battery is in use, or was
-not released at the end; with --check also: no price, clock not set by NTP; with --self-test:)"
-    R"( a part fails
-2 the command line is bad
+Options may stand before the command or behind it. A run writes nothing to the battery unless the
+file says control = true and `bess-edge commission` has found its sign right. One controller to
+one battery: a second one is refused, also one that only reads (--check too), because many
+batteries serve one connection. SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit
+0. SIGHUP: exit 0 and leave the order in force for the next start, which takes over; the battery's
+own timer ends it if there is none.
+Exit codes:
+  0 done
+  1 settings or battery are bad, the sign is not checked, the battery is in use, or was not
+    released at the end; with --check also: no price, clock not set by NTP; with --self-test: a
+    part fails
+  2 the command line is bad
 
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5

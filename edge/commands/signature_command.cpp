@@ -11,11 +11,10 @@ constexpr const char* kHelp =
 
   bess-edge signature
 
-Student and guard replay two recorded days of prices in each month of a year,)"
-    R"( those of the clock changes
-among them, in integers. The signature is over every order: builds with the same student that print
-different ones do not decide the same. edge/generated/decision_signature.txt holds the expected)"
-    R"( line.
+Student and guard replay two recorded days of prices in each month of a year, those of the clock
+changes among them, in integers. The signature is over every order: builds with the same student
+that print different ones do not decide the same. edge/generated/decision_signature.txt holds the
+expected line.
 Exit codes: 0 done   2 the command line is bad
 )";
 

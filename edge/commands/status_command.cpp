@@ -49,11 +49,14 @@ constexpr const char* kHelp =
   --no-lock      whether it runs is told by its process number alone: its lock is not even tried
 
 What comes next is told while it runs: the next decision if price and SoC stay, reserves and full
-charges of the plan, and keys of the settings that have no effect.
-Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
-older than four CRITICAL. Of a controller that has ended, what it was last and when that was.
-Exit codes: 0 ok   1 degraded, or the files cannot be read   2 the command line is bad)"
-    R"(   3 not running
+charges of the plan, and keys of the settings that have no effect. Health is ok, degraded (with
+the reasons) or not running. A status older than two cycles is a WARN, older than four CRITICAL.
+Of a controller that has ended, what it was last and when that was.
+Exit codes:
+  0 ok
+  1 degraded, or the files cannot be read
+  2 the command line is bad
+  3 not running
 
   bess-edge status
   bess-edge status --json | jq .health

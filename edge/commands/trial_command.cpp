@@ -24,22 +24,22 @@ constexpr CommandOption kOptions[] = {{"", false, take_word<&TrialGiven::verb>},
 constexpr const char* kHelp =
     R"(bess-edge trial: judges a new version on this machine, and goes back to the one before
 
-  bess-edge trial announce VERSION    before dpkg unpacks it (preinst); exit code 1:)"
-    R"( it was rolled back here
-  bess-edge trial withdraw VERSION    dpkg has given that up (postrm, postinst): no fault of its own
-  bess-edge trial begin               after dpkg has delivered it (postinst): proved, kept,)"
-    R"( handed over to
-  bess-edge trial supervise           until it has confirmed itself or is rolled back)"
-    R"( (bess-trial.service)
+  bess-edge trial announce VERSION    before dpkg unpacks it (preinst); exit code 1: it was rolled
+                                      back here
+  bess-edge trial withdraw VERSION    dpkg has given that up (postrm, postinst): no fault of its
+                                      own
+  bess-edge trial begin               after dpkg has delivered it (postinst): proved, kept, handed
+                                      over to
+  bess-edge trial supervise           until it has confirmed itself or is rolled back
+                                      (bess-trial.service)
   bess-edge trial look                one look of that, for a supervisor of one's own
   bess-edge trial recover             at boot, before the controller (bess-recover.service)
   bess-edge trial go-back REASON      by hand, to the version before
   bess-edge trial dismiss             after a roll-back: health tells of it no longer
   bess-edge trial allow VERSION       let in again what was rolled back
 
-The versions are folders in /var/lib/bess-edge/versions;)"
-    R"( "current" there is a link to the one that runs. The limits
-are in /etc/bess/update.conf. Needs root. edge/update/README.md.
+The versions are folders in /var/lib/bess-edge/versions; "current" there is a link to the one that
+runs. The limits are in /etc/bess/update.conf. Needs root. edge/update/README.md.
 Exit codes: 0 done   1 refused or failed: the line says why   2 the command line is bad
 
   bess-edge trial go-back "it trades too much"

@@ -38,17 +38,17 @@ constexpr const char* kHelp =
   --help         this text
   --version      the version
 
-Each alarm is told once, and its end once, also over restarts.)"
-    R"( Every way has a queue and a thread of its own: one
-that hangs holds up neither the others nor the next look.)"
-    R"( It reads what bess-edge publishes and takes no lock of
-it: the controller does not know that it exists. Once a day it fetches what past quarter-hours are
-billed at, where [settled] url is given, for bess-edge earned.)"
-    R"( One bess-notify to one [notify] folder: a second one is refused;
---test and --check may run beside it.
-Exit codes: 0 done   1 the settings are bad, another bess-notify runs, a test message was not taken,
-no settled price came
-2 the command line is bad
+Each alarm is told once, and its end once, also over restarts. Every way has a queue and a thread
+of its own: one that hangs holds up neither the others nor the next look. It reads what bess-edge
+publishes and takes no lock of it: the controller does not know that it exists. Once a day it
+fetches what past quarter-hours are billed at, where [settled] url is given, for bess-edge earned.
+One bess-notify to one [notify] folder: a second one is refused; --test and --check may run beside
+it.
+Exit codes:
+  0 done
+  1 the settings are bad, another bess-notify runs, a test message was not taken, no settled price
+    came
+  2 the command line is bad
 )";
 
 enum class Task { kWatch, kOnce, kTest, kSettle, kCheck };

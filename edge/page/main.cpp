@@ -28,11 +28,11 @@ constexpr const char* kHelp =
   --version      the version
 
 Price and orders of the day, state of charge, why the last order was given and at which price it
-would be another, the month's money, alarms, versions: light, dark, on a phone, without a script. By
-itself it listens on 127.0.0.1 alone and orders nothing; with [page] token_file holds, limits and
-clearing can be ordered by who knows a token. /api/... has the numbers as JSON, /metrics those for
-Prometheus, /statement the month to print. It reads what bess-edge publishes and takes no lock of
-it: the controller does not know that it exists.
+would be another, the month's money, alarms, versions: light, dark, on a phone, without a script.
+By itself it listens on 127.0.0.1 alone and orders nothing; with [page] token_file holds, limits
+and clearing can be ordered by who knows a token. /api/... has the numbers as JSON, /metrics those
+for Prometheus, /statement the month to print. It reads what bess-edge publishes and takes no lock
+of it: the controller does not know that it exists.
 Exit codes: 0 done   1 the settings are bad, or the port is taken   2 the command line is bad
 
   bess-page --check
