@@ -106,7 +106,7 @@ void StepFit::profile(See see) const {
 
 /// From the ramp before's best and, now and then, some of everywhere, with ever finer steps. Dead
 /// time and time constant are hard to tell apart, their sum is not: one is moved with it, the other
-/// within.
+/// within. Without a time constant only the dead time is left to make the sum smaller.
 template <typename See>
 void StepFit::descend(StepDynamics& from, bool looks_around, See see) const {
   double least = misfit(from);
@@ -132,7 +132,8 @@ void StepFit::descend(StepDynamics& from, bool looks_around, See see) const {
     const bool is_better = try_one(dead_s, constant_s + step_s) ||
                            try_one(dead_s, constant_s - step_s) ||
                            try_one(dead_s + step_s, constant_s - step_s) ||
-                           try_one(dead_s - step_s, constant_s + step_s);
+                           try_one(dead_s - step_s, constant_s + step_s) ||
+                           (constant_s == 0 && try_one(dead_s - step_s, 0));
     if (!is_better) step_s /= 2;
   }
 }

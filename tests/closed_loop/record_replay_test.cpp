@@ -323,7 +323,7 @@ TEST_F(RecordCommand, StepsOfACommissionTellDelayRampAndLag) {
   EXPECT_NEAR(number_of("time_constant_s", told.text), 3, 0.3);
   EXPECT_THAT(told.text, HasSubstr("[response]: settle_s = "));
   const std::string text = text_of(path_);
-  const std::string begin = text.substr(0, text.find('\n', text.size() / 8) + 1);
+  const std::string begin = text.substr(0, text.find('\n', text.size() / 20) + 1);
   const std::string few = site.folder.write(
       "few.jsonl", begin + "{\"end\":\"2026-11-22T07:00:00Z\",\"exchanges\":" +
                        std::to_string(std::ranges::count(begin, '\n') - 1) + ",\"dropped\":0}\n");
