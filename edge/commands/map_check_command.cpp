@@ -137,8 +137,10 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
   return failed(error);
 }
 
-/// Of the largest step: shorter than readings are apart it has no shape, and delays by half of it.
+/// Readings are a second apart: what is shorter has no shape and delays, a lag by all of itself,
+/// the ramp of the largest step by half.
 constexpr double kRampS = 1;
+constexpr double kLagS = 0.5;
 constexpr double kSpare = 1.2;  ///< as commission proposes a settle_s
 
 /// As keys of [battery], and what the map's [response] may have to say.
@@ -153,12 +155,15 @@ int print_steps(const MapCheckGiven& given, const RegisterMap& map, const Record
   const auto [least, most] = std::ranges::minmax(whole, {}, &AnswerCurve::step_w);
   const double ramp_s = fit.best().ramp_s_per_w * most->step_w();
   const bool has_ramp = fit.has_ramp() && ramp_s >= kRampS;
+  const double lag_s = fit.best().time_constant_s;
+  const bool has_lag = lag_s >= kLagS;
   std::printf("[battery]   # %zu steps of %d to %d W\n", whole.size(), least->step_w(),
               most->step_w());
-  std::printf("delay_s = %.2f\n", fit.best().dead_time_s + (has_ramp ? 0 : ramp_s / 2));
+  std::printf("delay_s = %.2f\n",
+              fit.best().dead_time_s + (has_ramp ? 0 : ramp_s / 2) + (has_lag ? 0 : lag_s));
   std::printf("ramp_w_per_s = %.0f%s\n", has_ramp ? 1 / fit.best().ramp_s_per_w : 0,
               has_ramp ? "" : "   # none is seen for certain");
-  std::printf("time_constant_s = %.2f\n", fit.best().time_constant_s);
+  std::printf("time_constant_s = %.2f\n", has_lag ? lag_s : 0);
   const double come_s = fit.seconds_until(most->step_w(), most->band_w()).most;
   std::printf("# %s, [response]: settle_s = %d, for %d W; it says %d\n", map.name.c_str(),
               static_cast<int>(kSpare * come_s) + 1, most->step_w(), map.response.settle_s);
