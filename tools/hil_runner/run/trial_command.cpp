@@ -102,7 +102,7 @@ void run(const TrialOptions& options) {
       "{} weeks of {} days from {}, house battery of 4 kW and 8 kWh; loss against the plain "
       "simulation,\nin percent of it, with the standard error of the paired difference\n{}{}",
       weeks.size(), kTrialDays, utc_text(weeks.front().start_utc_s).view(),
-      physics.cold.exist() ? "cold are its own hours alone, all through, for both\n" : "",
+      house.physics.cold.exist() ? "cold are its own hours alone, all through, for both\n" : "",
       table(weeks));
   fmt::print("{}", options.json ? json_of(weeks).line() + "\n" : text);
   if (!options.report.empty()) {
