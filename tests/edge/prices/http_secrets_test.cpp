@@ -65,6 +65,14 @@ TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
   EXPECT_EQ(headers, "X-Api-Key: abc def\nAuthorization: Bearer x");
 }
 
+TEST(HeaderFile, AFolderIsNoFile) {
+  const TemporaryFolder folder;
+  FixedText<2047> headers;
+  std::string error;
+  EXPECT_FALSE(load_http_headers(folder.file(".").c_str(), headers, error));
+  EXPECT_THAT(error, HasSubstr("cannot be read: is it a file?"));
+}
+
 TEST(HeaderFile, TheLastLineNeedsNoEnd) {
   const TemporaryFolder folder;
   const std::string path = folder.write("headers", "A: b\nC: d");

@@ -378,6 +378,12 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"address = 4\n", "address = 0\n", "must lie between 1 and 65535"},
       {"[command]", "[[identity]]\npoint = \"soc\"\nhint = \"x\"\ntext = \"y\"\n[command]",
        "min is missing"},
+      {"max = 10000\n", "", "max is missing"},
+      {"active = [\"enable = 1\"]", "active = [\"enable = -5000000001\"]",
+       "neither a number nor a name"},
+      {"[command]", "[exceptions]\nretry = [256]\n[command]", "exception codes, 1 to 255"},
+      {"[command]", "[commissioning]\nduration_s = 60\nsettle_s = 60\n[command]",
+       "settle_s must be below duration_s"},
   };
   for (const MapMistake& mistake : mistakes) {
     std::string text = good;
