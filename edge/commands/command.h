@@ -150,7 +150,7 @@ std::optional<int> load_settings(const EdgeCommand& command, SettingsFile& setti
 
 /// What is wrong with options that are right each by itself; null: nothing.
 template <typename Given>
-constexpr const char* all_fit(const Given&) {
+const char* all_fit(const Given&) {
   return nullptr;
 }
 
