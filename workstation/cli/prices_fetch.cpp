@@ -23,7 +23,6 @@ struct PricesFetchArguments {
   std::string base_url;
   std::string zone;
   bool day_ahead = false;
-  bool strict = true;
   bool allow_gaps = false;
 };
 
@@ -80,13 +79,8 @@ void add_prices_fetch(ProgramCommand& prices) {
   command.option("--from", options->from, "First local day, YYYY-MM-DD").required();
   command.option("--to", options->to, "Last local day, included").required();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
-  command.flag(
-      "--strict", options->strict,
-      "A missing minute or quarter-hour is an error, and no file is written (the default)");
-  command
-      .flag("--allow-gaps", options->allow_gaps,
-            "Write the file also when rows are missing, and say which")
-      .excludes("--strict");
+  command.flag("--allow-gaps", options->allow_gaps,
+               "Write the file also when rows are missing, and say which; else it is an error");
   options->price_input.add(command);
   command.flag("--day-ahead", options->day_ahead,
                "Day-ahead prices instead, from energy-charts: a day-ahead file");
