@@ -41,8 +41,8 @@ std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings);
 
 /// "charges up to 83.49, rests from 83.50 to 211.49, discharges from 211.50"
-std::string price_margins_text(const Margins& margins);
-Json margins_json(const Margins& margins);
+std::string price_margins_text(const Margins& at);
+Json margins_json(const Margins& at);
 
 /// Some lines, each ended, in local time.
 std::string explanation_text(const Explanation& explanation, const ControlSettings& settings);

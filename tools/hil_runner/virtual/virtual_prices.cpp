@@ -1,7 +1,7 @@
 #include "tools/hil_runner/virtual/virtual_prices.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <string_view>
 
 #include "shared/scaled_clock.h"
@@ -15,7 +15,10 @@ constexpr int kRowsAsked = 20;  ///< as the edge's example configuration does
 /// Of a URL's query: "limit=" of "...?limit=100&offset=0" is 100.
 int number_of(std::string_view url, std::string_view key) {
   const std::size_t at = url.rfind(key);
-  return at == url.npos ? 0 : std::atoi(url.data() + at + key.size());
+  if (at == url.npos) return 0;
+  int number = 0;
+  std::from_chars(url.data() + at + key.size(), url.data() + url.size(), number);
+  return number;
 }
 
 }  // namespace
