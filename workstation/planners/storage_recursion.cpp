@@ -38,7 +38,8 @@ StorageRecursion::StorageRecursion(const BatteryParameters& battery, const SocGr
 StorageRecursion::Direction StorageRecursion::make_direction(const std::vector<GridMove>& moves,
                                                              Action action, int points) {
   Direction d{};
-  const GridMove* const move = &moves[static_cast<std::size_t>(static_cast<int>(action) * points)];
+  const GridMove* const move =
+      &moves[static_cast<std::size_t>(action) * static_cast<std::size_t>(points)];
   for (int i = 0; i < points; ++i) {
     d.lower.push_back(move[i].next.index);
     d.weight.push_back(move[i].next.weight);
