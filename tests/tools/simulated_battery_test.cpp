@@ -104,6 +104,25 @@ TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
   }
 }
 
+/// What the taper leaves falls quicker than a lag follows at first: the ramp must not wait for it.
+TEST(SimulatedBattery, ARampTurnsWithinTheTaperAsWell) {
+  BatteryParameters battery = kHouse;
+  battery.charge_taper = {.width_frac = 0.1, .share = 0.2};
+  battery.discharge_taper = {.width_frac = 0.1, .share = 0.2};
+  battery.response = {.delay_s = 2, .ramp_w_per_s = 60, .time_constant_s = 3};
+  for (const double way : {1.0, -1.0}) {
+    SimulatedBattery simulated(battery, way > 0 ? 0.92 : 0.18, kStartNs);
+    simulated.start_dispatch(way * 4'000, way > 0 ? 1.0 : 0.1, 300);
+    simulated.advance(after_s(90));
+    const double tapered_w = way * simulated.power_w();
+    EXPECT_GT(tapered_w, 500) << way;
+    EXPECT_LT(tapered_w, 3'700) << way;
+    simulated.start_dispatch(-way * 4'000, way > 0 ? 0.1 : 1.0, 300);
+    simulated.advance(after_s(90 + 2 + (tapered_w + 4'000) / 60 + 5 * 3));
+    EXPECT_NEAR(simulated.power_w(), -way * 4'000, 50) << way;
+  }
+}
+
 TEST(SimulatedBattery, ItsOwnConsumptionFlowsAtRestAndAtWork) {
   BatteryParameters battery = kHouse;
   battery.standby_w = 40;

@@ -48,7 +48,11 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
     const double burnt_wh = burnt_w() * hours;
     const double wanted_w = wanted_power_w();
     const BatteryStep step = battery_step(limited(), soc_frac_, wanted_w, hours);
-    if (step.power_w != wanted_w) ramped_w_ = lagged_w_ = step.power_w;  // it goes on from there
+    if (step.power_w != wanted_w) {  // it goes on from there, and a ramp that turns goes on turning
+      lagged_w_ = step.power_w;
+      ramped_w_ =
+          wanted_w > 0 ? std::min(ramped_w_, step.power_w) : std::max(ramped_w_, step.power_w);
+    }
     minute_energy_wh_ += step.power_w * hours + burnt_wh;
     const double drained_frac = habits_.hidden_drain_w * hours / parameters_.capacity_wh;
     soc_frac_ = std::max(step.soc_frac - drained_frac, 0.0);
