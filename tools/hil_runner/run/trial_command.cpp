@@ -49,6 +49,13 @@ std::string table(const std::vector<TrialWeek>& weeks) {
   return text;
 }
 
+/// Each week's own, so that the trials of two students can be paired.
+Json by_week(const std::vector<TrialWeek>& weeks, auto&& eur_of) {
+  Json eur = Json::list();
+  for (const TrialWeek& week : weeks) eur.add(Decimals{eur_of(week), 4});
+  return eur;
+}
+
 Json json_of(const std::vector<TrialWeek>& weeks) {
   Json rows = Json::list();
   for (std::size_t i = 0; i < disturbances().size(); ++i) {
@@ -57,6 +64,7 @@ Json json_of(const std::vector<TrialWeek>& weeks) {
         {{"name", disturbances()[i].name},
          {"eur_per_day",
           Decimals{mean_per_day(weeks, [i](const TrialWeek& w) { return w.loop_eur[i]; }), 4}},
+         {"eur_by_week", by_week(weeks, [i](const TrialWeek& w) { return w.loop_eur[i]; })},
          {"loss_percent", Decimals{loss.percent, 3}},
          {"standard_error_percent", Decimals{loss.percent_error, 3}}}));
   }
@@ -65,6 +73,7 @@ Json json_of(const std::vector<TrialWeek>& weeks) {
        {"days_a_week", kTrialDays},
        {"plain_eur_per_day",
         Decimals{mean_per_day(weeks, [](const TrialWeek& w) { return w.plain_eur; }), 4}},
+       {"plain_eur_by_week", by_week(weeks, [](const TrialWeek& w) { return w.plain_eur; })},
        {"loop", std::move(rows)}});
 }
 
