@@ -226,6 +226,7 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
        "must be whole EUR/MWh, as the student is proved for"},
       {"soc_min = 0.2", "reversals_per_hour_max = 31", 8,
        "reversals_per_hour_max must lie between 0 and 30"},
+      {"soc_min = 0.2", "stand_in_s_max = 3601", 8, "stand_in_s_max must lie between 0 and 3600"},
       {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
       {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
       {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},

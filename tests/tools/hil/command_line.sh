@@ -83,6 +83,11 @@ same = all(abs(sum(weeks) / len(weeks) / trial["days_a_week"] - day) < 2e-4 for 
 sys.exit(0 if same and len(rows) == 8 and all(len(weeks) == 2 for weeks, _ in rows) else 1)
 END
 
+"$program" trial --prices "$scenarios/../data/benchmark_minutes_2023.csv.gz" --weeks 1 \
+  --guard 'hold = 1' >"$work/guard" 2>&1 && complain "trial --guard 'hold = 1' runs"
+grep -q '^bess-hil: --guard: .*hold is not a known key' "$work/guard" ||
+  complain "trial --guard: $(cat "$work/guard")"
+
 # Ctrl-C: exit code 3, and nothing is left.
 mkdir "$work/tmp"
 TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null \

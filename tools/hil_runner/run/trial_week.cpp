@@ -98,6 +98,7 @@ Scenario trial_scenario(std::int64_t start_utc_s, const TrialHouse& house, const
   Scenario scenario;
   scenario.battery.physics = house.physics;
   scenario.edge_guard = house.edge_guard;
+  scenario.path = "--guard";  // the one thing of it that may be refused
   scenario.name = on.name;
   scenario.start_utc_s = start_utc_s;
   scenario.minutes = kTrialMinutes;
