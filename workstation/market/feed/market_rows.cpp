@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 
