@@ -93,8 +93,8 @@ struct Trial {
         loop({.control = true, .guard = {}}, battery, prices, clock,
              Site(settings, &meter, nullptr)) {
     prices.price = [](std::int64_t utc_s) {
-      const auto& prices = real_prices().indicative;
-      const double price = prices[static_cast<std::size_t>(utc_s / 60) % prices.size()];
+      const auto& minutes = real_prices().indicative;
+      const double price = minutes[static_cast<std::size_t>(utc_s / 60) % minutes.size()];
       return std::isnan(price) ? 10'000 : static_cast<std::int32_t>(std::lround(100 * price));
     };
   }

@@ -65,8 +65,6 @@ struct Recorded {
 
 class RecordReplay : public ::testing::TestWithParam<Recorded> {
  protected:
-  static constexpr const char* kNoSuchRegister = "never asked for";
-
   [[nodiscard]] std::string battery_keys() const {
     const MapVariant& m = GetParam().map;
     return "map = \"" + shipped_map(m.map) + "\"\n" +

@@ -29,7 +29,7 @@ struct Lie {
   const char* lie;
   int each_s = 0, for_s = 0;
   bool is_found = true;
-  friend void PrintTo(const Lie& lie, std::ostream* out) { *out << lie.name; }
+  friend void PrintTo(const Lie& of, std::ostream* out) { *out << of.name; }
 };
 
 struct Damage {

@@ -112,7 +112,6 @@ class TrialBattery {
   std::int64_t back_s_ = 0;
 
   BatteryMeasurement shown_;
-  std::int64_t shown_s_ = 0;
 
   const TrialFault* fault_ = nullptr;
   FaultTimes times_;

@@ -121,7 +121,6 @@ void add_charge_left(const ChargeLeft& charge, Json& json) {
 }
 
 void add_figures(const ComparisonRow& row, const std::string& first, Json& json) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const PairedDifference gain = row.difference.value_or(PairedDifference{kUnknown, kUnknown});
   const double share = row.foresight_share.value_or(kUnknown);
   json.set("days", row.days);

@@ -164,55 +164,16 @@ std::vector<std::string> lines_of(const std::string& path) {
 
 /// A value of a line in another's place, or a number beyond what may stand there.
 void exchange_value(Walk& walk, std::vector<std::string>& lines, std::size_t at) {
-  static constexpr const char* kValues[] = {"0",
-                                            "1",
-                                            "-1",
-                                            "2",
-                                            "6",
-                                            "16",
-                                            "247",
-                                            "248",
-                                            "65535",
-                                            "65536",
-                                            "1000001",
-                                            "-1000000",
-                                            "5000000001",
-                                            "4294967296",
-                                            "\"\"",
-                                            "\"s16\"",
-                                            "\"u32\"",
-                                            "\"f32\"",
-                                            "\"text\"",
-                                            "\"bcd\"",
-                                            "\"low_first\"",
-                                            "\"eeprom\"",
-                                            "\"none\"",
-                                            "\"duration\"",
-                                            "\"heartbeat\"",
-                                            "\"rewrite\"",
-                                            "\"power\"",
-                                            "\"soc\"",
-                                            "[]",
-                                            "[\"soc = 1\"]",
-                                            "[\"soc has 1\"]",
-                                            "[\"soc\"]",
-                                            "true",
-                                            "false",
-                                            "1.5",
-                                            "{}",
-                                            "0x10",
-                                            "12",
-                                            "24",
-                                            "125",
-                                            "\"nearest\"",
-                                            "\"-power\"",
-                                            "3600",
-                                            "86401",
-                                            "\"soc = soc_limit\"",
-                                            "[[\"soc = 1\", \"soc = 2\"]]",
-                                            "\"power = power/3\"",
-                                            "\"a text that is far too long for any name of a point "
-                                            "or a unit or a hint, and longer still than that\""};
+  static constexpr const char* kValues[] = {
+      "0", "1", "-1", "2", "6", "16", "247", "248", "65535", "65536", "1000001", "-1000000",
+      "5000000001", "4294967296", "\"\"", "\"s16\"", "\"u32\"", "\"f32\"", "\"text\"", "\"bcd\"",
+      "\"low_first\"", "\"eeprom\"", "\"none\"", "\"duration\"", "\"heartbeat\"", "\"rewrite\"",
+      "\"power\"", "\"soc\"", "[]", "[\"soc = 1\"]", "[\"soc has 1\"]", "[\"soc\"]", "true",
+      "false", "1.5", "{}", "0x10", "12", "24", "125", "\"nearest\"", "\"-power\"", "3600", "86401",
+      "\"soc = soc_limit\"", "[[\"soc = 1\", \"soc = 2\"]]", "\"power = power/3\"",
+      // in brackets: one text, no comma forgotten
+      ("\"a text that is far too long for any name of a point "
+       "or a unit or a hint, and longer still than that\"")};
   const std::size_t equals = lines[at].find('=');
   if (equals == std::string::npos) return;
   const std::size_t other = static_cast<std::size_t>(walk.from(0, std::ssize(lines) - 1));

@@ -64,9 +64,9 @@ TEST(MinuteFile, EveryMistakeNamesItsLine) {
       {header + "2023-01-01T00:00:00Z,1,2\n2073-01-01T00:00:00Z,1,2\n",
        "f:3: 2073-01-01T00:00:00Z is more than 40 years"},
   };
-  for (const auto& [text, message] : mistakes) {
-    EXPECT_THAT(user_error_of([&] { static_cast<void>(parse_minute_csv(text, "f")); }),
-                testing::StartsWith(message));
+  for (const auto& mistake : mistakes) {
+    EXPECT_THAT(user_error_of([&] { static_cast<void>(parse_minute_csv(mistake.first, "f")); }),
+                testing::StartsWith(mistake.second));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "tests/workstation/nn/reference_net.h"
 #include "tests/workstation/rl/market_by_hand.h"
+#include "workstation/correction/distil.h"
 #include "workstation/env/context_fit.h"
 #include "workstation/rl/learner.h"
 #include "workstation/rl/train.h"
