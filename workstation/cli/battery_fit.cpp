@@ -25,26 +25,6 @@ struct FitArguments {
   bool json = false;
 };
 
-/// What was found, under the names of [battery].
-std::vector<std::pair<std::string, Fitted>> named(const BatteryFit& fit) {
-  std::vector<std::pair<std::string, Fitted>> found;
-  const auto add = [&](const char* key, const std::optional<Fitted>& of) {
-    if (of) found.emplace_back(key, *of);
-  };
-  add("charge_efficiency", fit.charge_efficiency);
-  add("discharge_efficiency", fit.discharge_efficiency);
-  add("charge_taper_width", fit.charge_taper_width);
-  add("charge_taper_share", fit.charge_taper_share);
-  add("discharge_taper_width", fit.discharge_taper_width);
-  add("discharge_taper_share", fit.discharge_taper_share);
-  add("full_power_loss", fit.full_power_loss);
-  add("standby_w", fit.standby_w);
-  add("cold_power_share", fit.cold_power_share);
-  add("cold_from_hour", fit.cold_from_hour);
-  add("cold_to_hour", fit.cold_to_hour);
-  return found;
-}
-
 /// Delay, ramp and lag, as `bess-edge map check --steps` prints them; nothing else.
 void take_steps(const std::string& path, BatteryParameters& battery) {
   std::string error;
@@ -66,7 +46,7 @@ void take_steps(const std::string& path, BatteryParameters& battery) {
 
 std::string toml_of(const BatteryFit& fit, BatteryParameters battery) {
   battery = fit.applied_to(battery);
-  const auto found = named(fit);
+  const auto found = fit.found();
   std::string text = "[battery]\n";
   for (const BatteryKey& key : kBatteryKeys) {
     text += fmt::format("{} = {:.6g}", key.name, key.of(battery));
@@ -102,7 +82,7 @@ BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& n
     std::ranges::copy(read_cycle_log(log), std::back_inserter(cycles));
   std::ranges::sort(cycles, {}, &LoggedCycle::utc_s);
   const BatteryFit fit = fit_battery(cycles, nameplate);
-  if (named(fit).empty()) {
+  if (fit.found().empty()) {
     fail(
         "{}: {} cycles show nothing of the battery: a log of some days, with orders in both "
         "directions and rests between, does",
@@ -119,10 +99,10 @@ void write_fit(const FitArguments& options) {
   require_distinct({{"--out", options.out}}, inputs);
   RunConfig config = load_run_config(options.config);
   if (!options.steps.empty()) take_steps(options.steps, config.battery);
-  const BatteryFit found = fit_from_logs(options, config.battery);
-  print_found(named(found), options.json);
+  const BatteryFit fit = fit_from_logs(options, config.battery);
+  print_found(fit.found(), options.json);
   if (options.out.empty()) return;
-  write_file(options.out, toml_of(found, config.battery));
+  write_file(options.out, toml_of(fit, config.battery));
   if (!options.json) fmt::print("{}\n", options.out);
 }
 

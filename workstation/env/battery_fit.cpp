@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "shared/battery_keys.h"
 #include "shared/host/csv.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
@@ -328,21 +329,32 @@ std::vector<LoggedCycle> read_cycle_log(const std::string& path) {
   return cycles;
 }
 
+std::vector<std::pair<std::string, Fitted>> BatteryFit::found() const {
+  const std::pair<const char*, const std::optional<Fitted>&> all[] = {
+      {"charge_efficiency", charge_efficiency},
+      {"discharge_efficiency", discharge_efficiency},
+      {"charge_taper_width", charge_taper_width},
+      {"charge_taper_share", charge_taper_share},
+      {"discharge_taper_width", discharge_taper_width},
+      {"discharge_taper_share", discharge_taper_share},
+      {"full_power_loss", full_power_loss},
+      {"standby_w", standby_w},
+      {"cold_power_share", cold_power_share},
+      {"cold_from_hour", cold_from_hour},
+      {"cold_to_hour", cold_to_hour}};
+  std::vector<std::pair<std::string, Fitted>> found;
+  for (const auto& key : all) {
+    if (key.second) found.emplace_back(key.first, *key.second);
+  }
+  return found;
+}
+
 BatteryParameters BatteryFit::applied_to(BatteryParameters battery) const {
-  const auto set = [](double& field, const std::optional<Fitted>& found) {
-    if (found) field = found->value;
-  };
-  set(battery.standby_w, standby_w);
-  set(battery.charge_taper.width_frac, charge_taper_width);
-  set(battery.charge_taper.share, charge_taper_share);
-  set(battery.discharge_taper.width_frac, discharge_taper_width);
-  set(battery.discharge_taper.share, discharge_taper_share);
-  set(battery.charge_efficiency, charge_efficiency);
-  set(battery.discharge_efficiency, discharge_efficiency);
-  set(battery.full_power_loss_frac, full_power_loss);
-  set(battery.cold.power_share, cold_power_share);
-  set(battery.cold.from_hour, cold_from_hour);
-  set(battery.cold.to_hour, cold_to_hour);
+  for (const auto& one : found()) {
+    const auto key = std::ranges::find_if(
+        kBatteryKeys, [&](const BatteryKey& known) { return known.name == one.first; });
+    key->of(battery) = one.second.value;
+  }
   battery.charge_efficiency = std::min(battery.charge_efficiency, 1.0);
   battery.discharge_efficiency = std::min(battery.discharge_efficiency, 1.0);
   return battery;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shared/battery_model.h"
@@ -41,6 +42,8 @@ struct BatteryFit {
   std::optional<Fitted> full_power_loss;
   std::optional<Fitted> cold_power_share, cold_from_hour, cold_to_hour;
 
+  /// What was found, under the names of [battery].
+  [[nodiscard]] std::vector<std::pair<std::string, Fitted>> found() const;
   /// `battery` with what was found.
   [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
 };

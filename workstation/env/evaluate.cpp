@@ -50,9 +50,8 @@ class Runner {
       Action action = policy_.decide(step, index++, soc_frac_);
       if (must_go_on()) action = last_action_;
       if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
-      const double share = std::min(policy_.power_share_max(step, soc_frac_),
-                                    battery.cold.share_at(step.quarter_hour));
-      const double power_w = power_sign(action) * battery.power_w_max * share;
+      const double power_w =
+          ordered_power_w(battery, step, action, policy_.power_share_max(step, soc_frac_));
       const auto [moved, power] = followed_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
       const double profit_eur = step_profit_eur(battery, mwh, kHoursPerStep, step.paid_eur_per_mwh);

@@ -4,11 +4,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
 
 #include "shared/action.h"
+#include "shared/battery_model.h"
 #include "workstation/env/market_steps.h"
 
 namespace bess {
@@ -41,6 +43,13 @@ class Policy {
     return 1;
   }
 };
+
+/// W, of an action at a step: all of the power that the policy's share and the hour leave.
+inline double ordered_power_w(const BatteryParameters& battery, const MarketStep& step,
+                              Action action, double power_share_max) {
+  const double share = std::min(power_share_max, battery.cold.share_at(step.quarter_hour));
+  return power_sign(action) * battery.power_w_max * share;
+}
 
 /// Charges below `low`, discharges above `high`, idles between [Paper, Eq. 13].
 class RuleBasedPolicy final : public Policy {

@@ -62,9 +62,8 @@ class PartRunner {
     const BatteryParameters& battery = options_.battery;
     Action action = part_.policy->decide(step, steps_.size(), soc_frac_);
     if (is_used_up(local_date_of(step.utc_s))) action = Action::kIdle;
-    const double share = std::min(part_.policy->power_share_max(step, soc_frac_),
-                                  battery.cold.share_at(step.quarter_hour));
-    const double wanted_w = power_sign(action) * battery.power_w_max * share;
+    const double wanted_w =
+        ordered_power_w(battery, step, action, part_.policy->power_share_max(step, soc_frac_));
     const double change_w = part_.step_share * battery.power_w_max;
     const auto [moved, power] = followed_step(
         battery, soc_frac_, power_, std::clamp(wanted_w, power_w_ - change_w, power_w_ + change_w),

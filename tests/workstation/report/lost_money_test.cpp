@@ -208,6 +208,16 @@ TEST(LostMoney, TheBoundItselfMissesNothing) {
   for (const double part : loss.part_eur) EXPECT_NEAR(part, 0, 0.5);
 }
 
+TEST(LostMoney, NobodyLosesWhatColdHoursTake) {
+  BatteryParameters battery;
+  battery.cold = {.power_share = 0.4, .from_hour = 0, .to_hour = 24};
+  ForesightPolicy bound(battery);
+  const DayLoss loss = loss_of(dear_day(), {bound}, 0.5, battery);
+  EXPECT_EQ(loss.missed_eur(), 0);
+  for (const double part : loss.part_eur) EXPECT_NEAR(part, 0, 0.5);
+  for (const double eur : loss.regret_eur) EXPECT_NEAR(eur, 0, 0.5);
+}
+
 TEST(LostMoney, AllPartsAddUpWhateverHappens) {
   std::mt19937 random(24);
   for (int trial = 0; trial < 20; ++trial) {

@@ -71,7 +71,7 @@ class Bench {
   // What could be known.
   /// The newest price of a tick, when it is fresh enough to be acted on.
   [[nodiscard]] std::optional<Publication::Row> fresh_row(std::int64_t tick_ns) const;
-  /// There is no fresh one, and what the newest has become may stand in.
+  /// Where there is no fresh one: what the newest has become may.
   [[nodiscard]] bool may_stand_in(std::int64_t tick_ns) const;
   /// By then it may count as none: from one row on or from the next, as the edge met them.
   [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const;
