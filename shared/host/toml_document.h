@@ -1,5 +1,5 @@
 // A TOML text as a tree of plain values, each with the place where it was written. toml++ itself is
-// known to toml_document.cpp alone: it takes ten seconds to compile, and needs mends.
+// known to toml_document.cpp alone: it takes ten seconds to compile.
 #pragma once
 
 #include <cstddef>

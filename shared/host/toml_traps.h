@@ -1,16 +1,19 @@
-// What toml++ 3.3 must not be shown, looked for before it parses. TOML wants ASCII outside quotes
-// and comments, and toml++ does not check: one accented letter there is undefined behaviour. Nor
-// does it limit the parts of a key: each becomes a table in a table, and some ten thousand of them
-// overflow the stack. Nor the number of values: each takes some 200 bytes, and the edge has 8 MiB
-// for everything.
+// Input that toml++ (3.3 and 3.4) must not see, found before it parses:
+// - a character other than ASCII outside quotes and comments, behind a backslash, or behind a line
+//   continued in a string: undefined behaviour in its test for white space;
+// - a table header that does not start with a key, "[=]": undefined behaviour in release builds;
+// - a key of many parts: each is a table in a table, and ten thousand of them overflow the stack;
+// - very many values: each takes some 200 bytes, and the edge has 8 MiB for everything.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
+#include <vector>
 
 namespace bess {
 
-/// Where a text is no TOML, or none that is worth a crash.
+/// Where a text is not TOML, or would crash the parser.
 struct TomlTrap {
   int line = 0;  ///< counted from 1; 0 when there is none
   std::string_view message{};
@@ -18,12 +21,12 @@ struct TomlTrap {
 
 class TomlTrapFinder {
  public:
-  explicit constexpr TomlTrapFinder(std::string_view toml) : rest_(toml) {}
+  explicit TomlTrapFinder(std::string_view toml) : size_(toml.size()), rest_(toml) {}
 
-  constexpr TomlTrap find() {
+  TomlTrap find() {
     while (!rest_.empty()) {
       const char c = rest_.front();
-      if (static_cast<unsigned char>(c) >= 0x80) {
+      if (!is_ascii(c)) {
         return {line_, "a character other than ASCII outside quotes and comments"};
       }
       if (c == '\r' && !rest_.substr(1).starts_with('\n')) {
@@ -32,44 +35,95 @@ class TomlTrapFinder {
       if (c == '#') {
         skip(std::min(rest_.find('\n'), rest_.size()));
       } else if ((c == '"' || c == '\'') && !in_word_) {
+        begins_statement_ = false;
         skip_string(c);
+      } else if (c == '[' && begins_statement_) {
+        if (!skip_header_start()) return {line_, "a table header without a key"};
       } else {
         pass(c);
         skip(1);
       }
+      if (escapes_letter_) return {line_, "a backslash before a character other than ASCII"};
       if (dots_ >= kKeyPartsMax) return {line_, "a key of more parts than any here"};
       if (pieces_ > kPiecesMax) return {line_, "more lines and values than any file here has"};
     }
     return {};
   }
 
+  /// Offsets of the characters other than ASCII that a continued line of a string begins with.
+  [[nodiscard]] const std::vector<std::size_t>& continued_letters() const {
+    return continued_letters_;
+  }
+
  private:
   static constexpr int kKeyPartsMax = 16;
   static constexpr int kPiecesMax = 10'000;  ///< the largest shipped map has 545
 
-  constexpr void skip(std::size_t bytes) {
+  static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+  static bool begins_key(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '"' || c == '\'' || !is_ascii(c);
+  }
+
+  void skip(std::size_t bytes) {
     bytes = std::min(bytes, rest_.size());
     line_ += static_cast<int>(std::ranges::count(rest_.substr(0, bytes), '\n'));
     rest_.remove_prefix(bytes);
   }
 
+  void skip_spaces(std::string_view spaces) {
+    skip(std::min(rest_.find_first_not_of(spaces), rest_.size()));
+  }
+
+  /// "[" or "[[" where a table header stands; false when no key follows.
+  bool skip_header_start() {
+    begins_statement_ = false;
+    pass('[');
+    skip(rest_.starts_with("[[") ? 2 : 1);
+    skip_spaces(" \t");
+    // "[ [a]]" and the end of the file: the parser has a good message for both.
+    return rest_.empty() || begins_key(rest_.front()) || rest_.front() == '[';
+  }
+
+  /// A backslash in a string, with what it escapes: at most the white space of a continued line.
+  void skip_escape(bool is_multi_line) {
+    skip(1);
+    if (rest_.empty()) return;
+    escapes_letter_ = escapes_letter_ || !is_ascii(rest_.front());
+    if (!is_multi_line || std::string_view(" \t\r\n").find(rest_.front()) == rest_.npos) {
+      return skip(1);
+    }
+    skip_spaces(" \t\r\n");
+    if (!rest_.empty() && !is_ascii(rest_.front())) {
+      continued_letters_.push_back(size_ - rest_.size());
+    }
+  }
+
   /// To behind the closing quote. A string of one line that is not closed ends there: the parser's
   /// business.
-  constexpr void skip_string(char quote_mark) {
+  void skip_string(char quote_mark) {
     const std::string_view triple = quote_mark == '"' ? "\"\"\"" : "'''";
     const std::string_view quote = rest_.starts_with(triple) ? triple : triple.substr(0, 1);
     skip(quote.size());
     in_word_ = true;
     while (!rest_.empty() && !rest_.starts_with(quote)) {
       if (quote.size() == 1 && rest_.front() == '\n') return;
-      skip(quote_mark == '"' && rest_.front() == '\\' ? 2 : 1);
+      if (quote_mark == '"' && rest_.front() == '\\') {
+        skip_escape(quote.size() > 1);
+      } else {
+        skip(1);
+      }
     }
     skip(quote.size());
   }
 
   /// A quote opens a string only where a key or a value begins: in 30''' or 5["" it is part of a
   /// mistake in a number, which toml++ reads on and on.
-  constexpr void pass(char c) {
+  void pass(char c) {
+    if (c == '[' && (in_value_ || arrays_ > 0)) ++arrays_;
+    if (c == ']' && arrays_ > 0) --arrays_;
+    begins_statement_ =
+        (c == '\n' && arrays_ == 0) || (begins_statement_ && (c == ' ' || c == '\t' || c == '\r'));
     if (c == '\n' || c == ',') {
       in_word_ = in_value_ = false;
     } else if (c == ' ' || c == '\t' || c == '\r' || c == ']' || c == '}') {
@@ -87,14 +141,19 @@ class TomlTrapFinder {
     if (is_dot_of_key || begins_piece) ++pieces_;
   }
 
+  std::size_t size_;
   std::string_view rest_;
+  std::vector<std::size_t> continued_letters_;
   int line_ = 1;
-  int dots_ = 0;    ///< in the key so far
-  int pieces_ = 0;  ///< lines, parts of keys and values so far
+  int dots_ = 0;                  ///< in the key so far
+  int pieces_ = 0;                ///< lines, parts of keys and values so far
+  int arrays_ = 0;                ///< that are open
+  bool begins_statement_ = true;  ///< nothing but white space stands before it on the line
+  bool escapes_letter_ = false;
   bool in_word_ = false;
   bool in_value_ = false;  ///< behind the = of a key
 };
 
-constexpr TomlTrap find_toml_trap(std::string_view toml) { return TomlTrapFinder(toml).find(); }
+inline TomlTrap find_toml_trap(std::string_view toml) { return TomlTrapFinder(toml).find(); }
 
 }  // namespace bess

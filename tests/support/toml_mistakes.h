@@ -1,5 +1,4 @@
-// TOML that is not, as users write it and fuzzing found it. toml++ 3.3 as it comes crashes on most
-// of it.
+// Mistakes in TOML, as users write them and fuzzing found them. toml++ as it comes crashes on many.
 #pragma once
 
 #include <string>
@@ -9,8 +8,9 @@ namespace bess {
 
 struct TomlMistake {
   std::string text;
-  int line;               ///< that the complaint names
-  const char* complaint;  ///< a part of it
+  int line;  ///< that the complaint names
+  /// Part of our own message; empty where the parser words it, which differs between its versions.
+  const char* complaint;
 };
 
 inline std::vector<TomlMistake> toml_mistakes() {
@@ -21,17 +21,25 @@ inline std::vector<TomlMistake> toml_mistakes() {
     many_tables += "a" + std::to_string(i) + ".b.b.b.b.b.b.b.b.b.b.b.b.b = 1\n";
   std::string many_values = "a = [0";
   for (int i = 0; i < 20'000; ++i) many_values += ", 0";
-  return {{"[=]", 1, "expected bare key"},
-          {"a = 1\n[=]\n", 2, "expected bare key"},
-          {"[[=]]\n", 1, "expected bare key"},
-          {"a = \"\u00E9", 1, "end-of-file"},
-          {"a = '\u00E9", 1, "end-of-file"},
-          {"a = \"\u00E9\n[b]\n", 1, "control characters"},
-          {"a = \"\"\"\u00E9", 1, "end-of-file"},
-          {"a = \"\"\"x\\\u00E9", 1, "not valid TOML"},
-          {"a = \"\"\"x\\\n\u00E9\u2028", 2, "end-of-file"},
-          {"a = '''x\n\u00E9", 2, "end-of-file"},
-          {"a = [\"\u00E9\", '\u00E9", 1, "end-of-file"},
+  return {{"[=]", 1, "without a key"},
+          {"a = 1\n[=]\n", 2, "without a key"},
+          {"[[=]]\n", 1, "without a key"},
+          {"[\n", 1, "without a key"},
+          {"a = [1]\n \t[ +]\n", 2, "without a key"},
+          {"a = [\n[+1], [],\n]\n[[ #]]\n", 4, "without a key"},
+          {"[ [a]]\n", 1, ""},
+          {"[", 1, ""},
+          {"a = [[\n[=]]]\n", 2, ""},
+          {"a = \"\u00E9", 1, ""},
+          {"a = '\u00E9", 1, ""},
+          {"a = \"\u00E9\n[b]\n", 1, ""},
+          {"a = \"\"\"\u00E9", 1, ""},
+          {"a = \"\"\"x\\\u00E9", 1, "backslash"},
+          {"a = \"\\\u00E9\"", 1, "backslash"},
+          {"a = \"\"\"x\\ \u00E9\"\"\"", 1, ""},
+          {"a = \"\"\"x\\\n\u00E9\u2028", 2, ""},
+          {"a = '''x\n\u00E9", 2, ""},
+          {"a = [\"\u00E9\", '\u00E9", 1, ""},
           {"a = 1\n\u00E9 = 2\n", 2, "other than ASCII"},
           {"a = 1\u00E9\n", 1, "other than ASCII"},
           {"\xEF\xBB\xBF\xEF\xBB\xBF"
@@ -40,16 +48,16 @@ inline std::vector<TomlMistake> toml_mistakes() {
           {"\xFF\xFE", 1, "other than ASCII"},
           {long_key + " = 1\n", 1, "a key of more parts"},
           {"[" + long_key + "]\n", 1, "a key of more parts"},
-          {"a = " + std::string(9'000, '['), 1, "nested"},
+          {"a = " + std::string(9'000, '['), 1, ""},
           {"a = " + std::string(100'000, '['), 1, "more lines and values"},
           {many_values + "]\n", 1, "more lines and values"},
           {many_tables, 667, "more lines and values"},
           {"b = 1\n" + std::string(20'000, '\n'), 10'001, "more lines and values"},
           {std::string(300 * 1024, '#'), 1, "longer than 256 KiB"},
-          {"a = 1\na = 2\n", 2, "cannot redefine"},
+          {"a = 1\na = 2\n", 2, ""},
           {"[a]\rb = 1\r", 1, "ends in CR alone: save it with LF"},
           {"a = 1\r\nb = 2\r", 2, "ends in CR alone"},
-          {"a = \n", 1, "not valid TOML"}};
+          {"a = \n", 1, ""}};
 }
 
 }  // namespace bess

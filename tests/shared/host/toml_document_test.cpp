@@ -50,6 +50,20 @@ TEST(TomlDocument, HoldsValuesAndWhereTheyWereWritten) {
   EXPECT_EQ(list[0].find("none"), nullptr);
 }
 
+/// toml++ compares the first character with ranges of white space that it does not all know.
+TEST(TomlDocument, AContinuedLineMayBeginWithAnyCharacter) {
+  for (const char* const letter :
+       {"\u00E9", "\u0416", "\u20AC", "\u3042", "\U0001F50B", "\u00A0"}) {
+    const std::string text = letter;
+    const TomlValue document =
+        parsed("a = \"\"\"\nx\\\n \n\t" + text + " y \\\r\n" + text +
+               "\"\"\"\nb = [[1], [\n[+2]]]\n[c]\nd = '''\\\n" + text + "'''\n");
+    EXPECT_EQ(*document.find("a")->as<std::string>(), "x" + text + " y " + text);
+    EXPECT_EQ(*document.find("c")->find("d")->as<std::string>(), "\\\n" + text);
+    EXPECT_EQ(document.find("c")->line, 8);
+  }
+}
+
 TEST(TomlDocument, AByteOrderMarkIsPassedOver) {
   EXPECT_EQ(parsed("\xEF\xBB\xBF[battery]\n").find("battery")->line, 1);
   EXPECT_TRUE(parsed("\xEF\xBB\xBF").as<TomlMembers>()->empty());
