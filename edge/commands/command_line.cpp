@@ -47,7 +47,8 @@ std::optional<bool> takes_value(std::string_view name) {
 }
 
 std::vector<std::string> options_of(const EdgeCommand& command) {
-  std::vector<std::string> names = {"--help", "--version"};
+  std::vector<std::string> names;
+  for (const char* const name : {"--help", "--version"}) names.emplace_back(name);
   if (takes_config(command)) names.emplace_back(kConfig.name);
   for (const CommandOption& option : command.options) {
     if (!option.name.empty()) names.emplace_back(option.name);

@@ -1,12 +1,12 @@
 #include "edge/page/page_server.h"
 
+#include <httplib.h>
 #include <sys/socket.h>
 
 #include <functional>
 
 #include "edge/companion/orders.h"
 #include "edge/log/journal.h"
-#include "edge/page/front_door.h"
 #include "edge/page/page_files.h"
 #include "edge/page/page_html.h"
 #include "shared/host/run_program.h"
@@ -17,6 +17,12 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kOrderS = 20;
+// A connection that says nothing, or a byte now and then, holds its own thread only.
+constexpr int kThreads = 128;
+constexpr int kQueued = 128;
+constexpr time_t kReadS = 5;  ///< without a byte
+constexpr time_t kWriteS = 5;
+constexpr std::size_t kBodyBytesMax = 4'096;
 constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kJson = "application/json";
 
@@ -61,12 +67,18 @@ bool wants_html(const httplib::Request& request) {
 }  // namespace
 
 PageServer::PageServer(const PageSettings& settings)
-    : settings_(settings), views_(settings), server_(std::make_unique<FrontDoor>()) {
+    : settings_(settings), views_(settings), server_(std::make_unique<httplib::Server>()) {
   // The library's own would let two pages share a port unnoticed.
-  server_->set_socket_options([](socket_t socket) {
+  server_->set_socket_options([this](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    listening_socket_ = socket;
   });
+  server_->new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server_->set_keep_alive_max_count(1);
+  server_->set_read_timeout(kReadS);
+  server_->set_write_timeout(kWriteS);
+  server_->set_payload_max_length(kBodyBytesMax);
   set_headers(*server_);
   server_->set_pre_routing_handler(
       [this](const httplib::Request& request, httplib::Response& response) {
@@ -178,7 +190,8 @@ bool PageServer::bind(std::string& error) {
     error = "[page] host, port: " + settings_.host + ":" + std::to_string(settings_.port) +
             " cannot be listened on: is another program there?";
   }
-  if (is_bound) server_->lengthen_queue();
+  // The library's own queue of five sends whoever comes sixth away for a second.
+  if (is_bound) ::listen(listening_socket_, kQueued);
   return is_bound;
 }
 

@@ -4,7 +4,7 @@
 //   its numbers /statement    the month, to print         /metrics      for Prometheus POST /orders
 //   a form, or the same fields as JSON's poor cousin from curl: -d order=hold -d power_w=0 ...
 //
-// Small requests only, and nobody waits for whoever is slow or rude (front_door.h).
+// Small requests only, one a connection; a slow client makes nobody else wait.
 #pragma once
 
 #include <memory>
@@ -14,13 +14,12 @@
 #include "edge/page/request_guard.h"
 
 namespace httplib {
+class Server;
 struct Request;
 struct Response;
 }  // namespace httplib
 
 namespace bess {
-
-class FrontDoor;
 
 class PageServer {
  public:
@@ -44,7 +43,8 @@ class PageServer {
   const PageSettings& settings_;
   ControllerViews views_;
   WrongTokens wrong_tokens_;
-  std::unique_ptr<FrontDoor> server_;
+  std::unique_ptr<httplib::Server> server_;
+  int listening_socket_ = -1;
   int port_ = 0;
 };
 

@@ -11,11 +11,11 @@ FileMessage strangers_file(const char* path) {
   struct stat info {};
   const bool is_known = lstat(path, &info) == 0;
   char line[768];
-  std::snprintf(line, sizeof line,
-                "%s belongs to user %ld, neither to root nor to the user that runs this bess-edge "
-                "(%ld): if nothing of that user should be there, remove it",
-                path, is_known ? static_cast<long>(info.st_uid) : -1L,
-                static_cast<long>(geteuid()));
+  std::snprintf(
+      line, sizeof line,
+      "%.500s belongs to user %ld, neither to root nor to the user that runs this bess-edge "
+      "(%ld): if nothing of that user should be there, remove it",
+      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid()));
   return {line};
 }
 
