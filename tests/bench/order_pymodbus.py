@@ -20,7 +20,7 @@ def main():
         block = [1, 0, power, 0, 32000, 2, 250, 0, 300, 255, 0]
         start = time.perf_counter()
         client.write_registers(BLOCK_ADDRESS, block, slave=UNIT)
-        read_back = client.read_holding_registers(BLOCK_ADDRESS, len(block), slave=UNIT)
+        read_back = client.read_holding_registers(BLOCK_ADDRESS, count=len(block), slave=UNIT)
         times_us.append(1e6 * (time.perf_counter() - start))
         if read_back.isError() or read_back.registers != block:
             sys.exit("read back %s instead of %s" % (read_back, block))

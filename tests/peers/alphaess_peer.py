@@ -25,9 +25,9 @@ import asyncio
 import random
 import time
 
-from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
-from pymodbus.transaction import ModbusRtuFramer, ModbusSocketFramer
+from pymodbus.datastore import ModbusSequentialDataBlock
+
+from pymodbus_server import Unit, serve_serial, serve_tcp
 
 UNIT = 85
 SOC, CAPACITY, BATTERY_POWER = 0x0102, 0x0119, 0x0126
@@ -168,27 +168,15 @@ class Registers(ModbusSequentialDataBlock):
 
 async def serve(options):
     registers = Registers(options)
-    unit = ModbusSlaveContext(hr=registers, zero_mode=True)
-    context = ModbusServerContext(slaves={UNIT: unit}, single=False)
     if options.serial:
-        server = ModbusSerialServer(context, ModbusRtuFramer, port=options.serial, baudrate=9600)
-        await server.start()
-        print("listening on", options.serial, flush=True)
-        await server.serve_forever()
-        await asyncio.Event().wait()
+        await serve_serial(UNIT, Unit(registers), options.serial)
 
     def spoil(response):
         if registers.breaks("wrong-echo") and response.function_code == 16:
             response.address += 1
-        return response, False
+        return response
 
-    server = ModbusTcpServer(context, ModbusSocketFramer, address=("127.0.0.1", 0),
-                             response_manipulator=spoil)
-    serving = asyncio.create_task(server.serve_forever())
-    await server.serving
-    port = server.server.sockets[0].getsockname()[1]
-    print(f"listening on 127.0.0.1:{port}", flush=True)
-    await serving
+    await serve_tcp(UNIT, Unit(registers), spoil)
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ class Master:
     def read(self, unit, address, count=1, table=3):
         client = self.client
         read = client.read_holding_registers if table == 3 else client.read_input_registers
-        reply = read(address, count, slave=unit)
+        reply = read(address, count=count, slave=unit)
         assert not reply.isError(), (unit, address, reply)
         return reply.registers
 

@@ -19,9 +19,9 @@ import threading
 import time
 
 from pymodbus.client import ModbusTcpClient
-from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusTcpServer
-from pymodbus.transaction import ModbusSocketFramer
+from pymodbus.datastore import ModbusSequentialDataBlock
+
+from pymodbus_server import Unit, serve_tcp
 
 
 def words(fmt, value):
@@ -74,7 +74,7 @@ class Connection:
         return (time.monotonic_ns() - self.options.anchor_ns) * self.options.scale / 1e9
 
     def battery_watts(self):
-        reply = self.battery.read_holding_registers(11, 2, slave=1)
+        reply = self.battery.read_holding_registers(11, count=2, slave=1)
         assert not reply.isError(), reply
         return struct.unpack(">i", struct.pack(">HH", *reply.registers))[0]
 
@@ -111,20 +111,13 @@ async def serve(options):
     for address, block in registers(options.watts).items():
         values[address:address + len(block)] = block
     block = ModbusSequentialDataBlock(0, values)
-    table = {"ir": block} if options.map == "eastron_sdm630" else {"hr": block}
-    context = ModbusServerContext(slaves={unit: ModbusSlaveContext(zero_mode=True, **table)},
-                                  single=False)
-    server = ModbusTcpServer(context, ModbusSocketFramer, address=("127.0.0.1", 0))
-    serving = asyncio.create_task(server.serve_forever())
-    await server.serving
     if options.battery_port:
         def show(watts):
             for address, content in registers(watts).items():
                 block.values[address:address + len(content)] = content
         truth = open(options.truth, "w", encoding="utf-8") if options.truth else None
         threading.Thread(target=Connection(options).follow, args=(show, truth), daemon=True).start()
-    print(f"listening on 127.0.0.1:{server.server.sockets[0].getsockname()[1]}", flush=True)
-    await serving
+    await serve_tcp(unit, Unit(block, 4 if options.map == "eastron_sdm630" else 3))
 
 
 if __name__ == "__main__":
