@@ -185,7 +185,7 @@ void run_battery(BatteryOptions& options) {
   server.run(stop.fd());
   meter.reset();
   if (!options.record_path.empty()) {
-    write_battery_record(options.record_path, simulated, house ? &house->load : nullptr);
+    write_battery_record(options.record_path, simulated.record(), house ? &house->load : nullptr);
   }
   if (!options.events_path.empty()) write_dispatch_events(options.events_path, simulated);
   std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());

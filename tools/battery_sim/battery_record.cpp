@@ -18,11 +18,11 @@ constexpr std::array<std::string_view, 3> kKindNames = {"order", "stop", "expiry
 
 }  // namespace
 
-void write_battery_record(const std::string& path, const SimulatedBattery& battery,
+void write_battery_record(const std::string& path, const std::vector<MinuteRecord>& minutes,
                           const HouseLoad* house) {
   std::string text = "minute_utc,energy_wh,soc,commanded_power_w";
   text += house == nullptr ? "\n" : ",house_wh,grid_wh\n";
-  for (const MinuteRecord& m : battery.record()) {
+  for (const MinuteRecord& m : minutes) {
     text += fmt::format("{},{:.6f},{:.8f},{:.0f}", utc_text(m.minute_utc_s).view(), m.energy_wh,
                         m.soc_frac, m.commanded_power_w);
     if (house != nullptr) {

@@ -12,7 +12,7 @@
 namespace bess {
 
 /// With a house two more columns: house_wh, and grid_wh = house_wh + energy_wh (import positive).
-void write_battery_record(const std::string& path, const SimulatedBattery& battery,
+void write_battery_record(const std::string& path, const std::vector<MinuteRecord>& minutes,
                           const HouseLoad* house = nullptr);
 
 /// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order,

@@ -15,10 +15,12 @@
 #include <random>
 #include <thread>
 
+#include "edge/log/log_text.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "tools/battery_sim/battery_record.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/real/real_options.h"
 #include "tools/hil_runner/run/agreement.h"
@@ -48,7 +50,7 @@ struct RunOptions {
   bool agree = false;
   int draw = 0;  ///< so many scenarios; 0: all
   std::uint64_t seed = 0;
-  std::string junit, report, pinned, edge, simulators;
+  std::string junit, report, pinned, records, edge, simulators;
   RealOptions real;
 };
 
@@ -109,6 +111,19 @@ Json json_of(const Outcome& outcome) {
   if (outcome.signature != 0) json.set("signature", fmt::format("{:016x}", outcome.signature));
   json.set("findings", std::move(findings));
   return json;
+}
+
+/// What `bess-sim settle` reads: NAME.TIME.battery.csv, NAME.TIME.edge.csv.
+void write_records(const fs::path& folder, const Outcome& outcome) {
+  const std::string place = (folder / (outcome.scenario.name + "." + outcome.time())).string();
+  write_battery_record(place + ".battery.csv", outcome.evidence.minutes);
+  char line[kLogLineBytes];
+  std::string text(line, format_csv_header(line));
+  for (const CycleRecord& record : outcome.evidence.log) {
+    text += '\n';
+    text.append(line, format_csv_line(record, line));
+  }
+  write_file(place + ".edge.csv", text + '\n');
 }
 
 class Runner {
@@ -224,6 +239,9 @@ class Runner {
   void take(Outcome outcome) {
     const std::lock_guard lock(mutex_);
     if (!options_.json && !options_.agree) print_line(outcome);
+    if (!options_.records.empty() && outcome.skipped.empty()) {
+      write_records(options_.records, outcome);
+    }
     outcomes_.push_back(std::move(outcome));
   }
 
@@ -277,6 +295,7 @@ void run(const RunOptions& options) {
   for (const std::string& path : {options.junit, options.report}) {
     if (!path.empty()) require_writable(path);
   }
+  if (!options.records.empty()) require_writable(fs::path(options.records) / "records");
   Runner runner(options);
   if (options.list) return list_scenarios(runner.scenarios(), options.json);
   const std::vector<Outcome> outcomes = runner.run();
@@ -354,6 +373,10 @@ void add_run_command(ProgramCommand& app) {
   command.flag("--json", options->json, "One JSON object instead of lines");
   command.option("--junit", options->junit, "Write JUnit XML here");
   command.option("--report", options->report, "Write a page with pictures here (HTML)");
+  command
+      .option("--records", options->records,
+              "Write what battery and edge recorded into this folder, for bess-sim settle (CSV)")
+      .value_name("FOLDER");
   command.option("--edge", options->edge, "bess-edge; default: the one beside this program");
   command.option("--simulators", options->simulators,
                  "bess-sim; default: the one beside this program");

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "shared/host/file.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -26,10 +27,13 @@ double made_up_day_ahead(std::int64_t utc_s) {
 
 }  // namespace
 
-void read_day_ahead(TomlTable table, Scenario& scenario) {
+void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenario& scenario) {
   if (table.value() == nullptr) return;
   AuctionSettings& auction = scenario.day_ahead.emplace();
   auction.start_utc_s = scenario.start_utc_s;
+  if (const std::string* const file = table.text("file")) {
+    scenario.day_ahead_file = (folder / *file).string();
+  }
   int fault = 0;
   table.choice("fault", fault,
                {"none", "late", "missing", "half", "shifted-hour", "shifted-day", "doubled",
@@ -50,6 +54,7 @@ void read_day_ahead(TomlTable table, Scenario& scenario) {
 }
 
 std::string day_ahead_csv(const Scenario& scenario) {
+  if (!scenario.day_ahead_file.empty()) return read_file(scenario.day_ahead_file);
   std::string csv = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
   const LocalMinute first = local_minute_of(scenario.start_utc_s - kDayS);
   const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kDayS;
@@ -61,7 +66,9 @@ std::string day_ahead_csv(const Scenario& scenario) {
 }
 
 std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario) {
-  return parse_auction_rows(day_ahead_csv(scenario), scenario.path);
+  return parse_auction_rows(day_ahead_csv(scenario), scenario.day_ahead_file.empty()
+                                                         ? scenario.path
+                                                         : scenario.day_ahead_file);
 }
 
 }  // namespace bess

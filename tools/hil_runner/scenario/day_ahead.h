@@ -2,6 +2,7 @@
 // with them, for an edge whose student is by outlook.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,12 @@
 
 namespace bess {
 
-void read_day_ahead(TomlTable table, Scenario& scenario);
+/// A relative `file` is beside the scenario, in `folder`.
+void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
 
-/// Made up from the local day before the start to two after the end: by hour a morning, a noon and
-/// an evening, by date another height, no two quarter-hours of an hour alike.
+/// The scenario's file; without one made up, from the local day before the start to two after the
+/// end: by hour a morning, a noon and an evening, by date another height, no two quarter-hours of
+/// an hour alike.
 std::string day_ahead_csv(const Scenario& scenario);
 std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario);
 

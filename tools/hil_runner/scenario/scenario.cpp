@@ -306,7 +306,7 @@ Scenario read_scenario(const std::string& path) {
   read_battery_faults(table, scenario, sub,
                       [&](const char* key, const auto& read) { each(table, key, read); });
   read_price_fault(sub("price_fault"), scenario);
-  read_day_ahead(sub("day_ahead"), scenario);
+  read_day_ahead(sub("day_ahead"), folder, scenario);
   each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
   each(table, "expect", [&](TomlTable expect) { read_expectation(std::move(expect), scenario); });
   read_edge(sub("edge"), scenario);

@@ -182,6 +182,7 @@ struct Scenario {
   std::vector<BatteryFaultWindow> battery_faults;  ///< several: in virtual time
   PriceFaultWindow price_fault;
   std::optional<AuctionSettings> day_ahead;  ///< and what goes wrong with those prices
+  std::string day_ahead_file;                ///< empty: they are made up
   std::vector<ScenarioEvent> events;         ///< in the order of time
   std::vector<Expectation> expectations;
   std::vector<std::string> invariants;  ///< that are judged
