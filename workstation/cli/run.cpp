@@ -12,6 +12,7 @@
 #include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"
 #include "workstation/run/learnt_for.h"
+#include "workstation/run/run_backtest.h"
 #include "workstation/run/run_plan.h"
 #include "workstation/run/run_stages.h"
 #include "workstation/run/run_summary.h"
@@ -55,7 +56,8 @@ void run_single(const RunArguments& options) {
     fmt::print("{}\n", summary_json(load_run_summary(folder)).line());
   } else {
     fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n",
-               read_file(folder.file(run_file::kSummary)), folder.path.string());
+               with_run_folder(read_file(folder.file(run_file::kSummary)), folder.path),
+               folder.path.string());
   }
 }
 

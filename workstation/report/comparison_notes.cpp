@@ -26,10 +26,17 @@ double capacity_mwh_in(const NamedEvaluation& any) {
   return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).capacity_mwh;
 }
 
+/// "8 MWh", "8 kWh".
+std::string capacity_text(double capacity_mwh) {
+  return capacity_mwh < 1 ? fmt::format("{:g} kWh", 1'000 * capacity_mwh)
+                          : fmt::format("{:g} MWh", capacity_mwh);
+}
+
 /// EUR per day of all of it.
 std::string eur_per_day(const Evaluation& evaluation) {
   if (evaluation.days.empty()) return kNoFigure;
-  return fmt::format("{:.1f}", evaluation.profit_eur_per_day_per_mwh() * evaluation.capacity_mwh);
+  return fmt::format("{:.{}f}", evaluation.profit_eur_per_day_per_mwh() * evaluation.capacity_mwh,
+                     evaluation.capacity_mwh < 1 ? 2 : 1);
 }
 
 }  // namespace
@@ -37,7 +44,7 @@ std::string eur_per_day(const Evaluation& evaluation) {
 std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) {
   if (evaluations.empty()) return {};
   HtmlTable table{
-      fmt::format("The whole battery of {:g} MWh", capacity_mwh_in(evaluations.front())),
+      "The configured battery of " + capacity_text(capacity_mwh_in(evaluations.front())),
       {"Policy", "EUR/day, each day from the same charge", "EUR/day, charge carried over"},
       {}};
   for (const NamedEvaluation& named : evaluations) {
@@ -52,8 +59,10 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
   const NamedEvaluation* exported = find_own_student(evaluations);
   if (exported == nullptr) return {};
   return fmt::format(
-      "the whole battery of {:g} MWh: the {} {} EUR a day, {} with the SoC carried over\n",
-      capacity_mwh_in(*exported), exported->name, eur_per_day(exported->day_reset),
+      "the configured battery of {}: the {} {} EUR a day, {} with the SoC carried over (another "
+      "size "
+      "of the same power_w / capacity_wh has the same student; set [battery] to see its money)\n",
+      capacity_text(capacity_mwh_in(*exported)), exported->name, eur_per_day(exported->day_reset),
       eur_per_day(exported->carried_over));
 }
 

@@ -25,15 +25,25 @@ JsonValue chain_of(const JsonValue& backtest) {
   return JsonValue{};
 }
 
-/// Without the folder's place: the same run says the same wherever it lies.
+/// The run's folder as kRunPlace: the same run writes the same wherever its folder lies.
 std::string how_to_make_one(const RunRecord& record) {
+  const bool is_own = !fs::path(record.prices).is_absolute();
   return fmt::format(
-      "'bess-train backtest --prices FILE --config RUN/{} --seed {} --out RUN/{}', of the run's "
-      "prices, makes one",
-      run_file::kConfig, record.value("seed"), kRunsBacktest);
+      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' makes one",
+      is_own ? kRunPlace : "", record.prices, record.day_ahead.empty() ? "" : " --day-ahead ",
+      record.day_ahead, kRunPlace, run_file::kConfig, record.value("seed"), kRunPlace,
+      kRunsBacktest);
 }
 
 }  // namespace
+
+std::string with_run_folder(std::string text, const fs::path& folder) {
+  const std::string place = folder.string() + "/";
+  for (std::size_t at = 0; (at = text.find(kRunPlace, at)) != text.npos; at += place.size()) {
+    text.replace(at, kRunPlace.size(), place);
+  }
+  return text;
+}
 
 std::string learning_identity(const std::string& prices_hash, const RunConfig& config) {
   const std::string keys = format_run_config(config);

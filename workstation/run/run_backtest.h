@@ -2,6 +2,10 @@
 // prices, seed and configuration.
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <string_view>
+
 #include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/run/run_record.h"
 
@@ -13,6 +17,11 @@ inline constexpr const char* kBacktestJson = "backtest.json";
 inline constexpr const char* kBacktestPage = "backtest.html";
 /// The whole chain, learnt anew for each fold.
 inline constexpr const char* kChainName = "student";
+
+/// The run's own folder in what its files say.
+inline constexpr std::string_view kRunPlace = "RUN/";
+/// With `folder` in its place, to be shown.
+std::string with_run_folder(std::string text, const std::filesystem::path& folder);
 
 /// What a backtest is made of, to be held against a run: prices, seed and every key, in one text.
 std::string learning_identity(const std::string& prices_hash, const RunConfig& config);

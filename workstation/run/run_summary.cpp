@@ -94,7 +94,9 @@ std::string standing_text(const std::vector<RunSummary>& runs) {
   }
   const RunSummary& first = runs.front();
   if (any) return text;
-  return text + walk_forward_text(walk_forward_of(first.folder, first.record)) + "\n";
+  return with_run_folder(
+      text + walk_forward_text(walk_forward_of(first.folder, first.record)) + "\n",
+      first.folder.path);
 }
 
 std::size_t rules_of(const RunSummary& run) {

@@ -61,6 +61,13 @@ TEST(RunConfig, KeysOverlayTheDefaults) {
   EXPECT_EQ(config.battery.capacity_wh, RunConfig{}.battery.capacity_wh);
 }
 
+TEST(RunConfig, TheQuickStartsFileIsAHouseBatteryWithWear) {
+  const RunConfig config = load_run_config(BESS_SOURCE_DIR "/workstation/house.toml");
+  EXPECT_EQ(config.battery.power_w_max, 4'000);
+  EXPECT_EQ(config.battery.capacity_wh, 8'000);
+  EXPECT_EQ(config.battery.wear_eur_per_mwh, 30);
+}
+
 TEST(RunConfig, TheDefaultIsC51OnTheProgramsShoulders) {
   const RunConfig config = load_run_config({});
   EXPECT_EQ(config.train.method, Method::kC51);

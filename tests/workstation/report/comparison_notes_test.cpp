@@ -1,9 +1,13 @@
 #include "workstation/report/comparison_notes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace bess {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 NamedEvaluation earning(const std::string& name, double eur) {
   Evaluation evaluation;
@@ -15,9 +19,12 @@ NamedEvaluation earning(const std::string& name, double eur) {
 TEST(ComparisonNotes, TheWholeBatteryIsCapacityTimesWhatAMwhEarns) {
   const std::vector<NamedEvaluation> evaluations{earning("rbc", -80),
                                                  earning("corrected student", 4000)};
-  EXPECT_EQ(whole_battery_text(evaluations),
-            "the whole battery of 8 MWh: the corrected student 1000.0 EUR a day, 1000.0 with the "
-            "SoC carried over\n");
+  EXPECT_THAT(whole_battery_text(evaluations),
+              AllOf(HasSubstr("of 8 MWh: the corrected student 1000.0 EUR a day, 1000.0 with"),
+                    HasSubstr("power_w / capacity_wh")));
+  std::vector<NamedEvaluation> house{earning("corrected student", 4)};
+  house[0].day_reset.capacity_mwh = house[0].carried_over.capacity_mwh = 0.008;
+  EXPECT_THAT(whole_battery_text(house), HasSubstr("of 8 kWh: the corrected student 1.00 EUR"));
   const std::string html = whole_battery_html(evaluations);
   EXPECT_NE(html.find(">1000.0</td>"), std::string::npos) << html;
   EXPECT_NE(html.find(">\u221220.0</td>"), std::string::npos) << "a true minus";

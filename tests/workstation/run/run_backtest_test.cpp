@@ -42,6 +42,7 @@ TEST(RunBacktest, IsTakenWhenItIsOfTheSamePricesSeedAndKeys) {
   EXPECT_THAT(walk_forward_text(walk_forward_of(folder, record)),
               AllOf(HasSubstr("No walk-forward figure: 'bess-train backtest"),
                     HasSubstr("--seed 7"), HasSubstr("--out RUN/backtest")));
+  EXPECT_EQ(with_run_folder("--out RUN/backtest RUN/a", "x/run"), "--out x/run/backtest x/run/a");
   const std::string identity = learning_identity(record.value("prices"), config);
   write_backtest(folder, identity, kChainName);
   const WalkForwardOfRun walk = walk_forward_of(folder, record);
