@@ -1,20 +1,24 @@
 #!/bin/sh
-# readme_example.sh SOURCE BUILD FOLDER: runs the first example of tools/README.md as it is printed,
-# in FOLDER, which stands for the top of the clone.
+# readme_example.sh SOURCE BUILD FOLDER: runs the closed loop of README.md as it is printed, but for
+# its build, in FOLDER, which stands for the top of the clone.
 source=$1 build=$2 folder=$3
 fail() { cat "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"
-mkdir -p "$folder/build"
-ln -s "$source/edge" "$folder/edge"
-ln -s "$build/bess-sim" "$build/bess-edge" "$folder/build"
+mkdir -p "$folder/build-edge"
+ln -s "$source/edge" "$source/tests" "$folder"
+ln -s "$build/bess-sim" "$build/bess-edge" "$folder/build-edge"
 {
   echo "trap 'kill \$(jobs -p) 2>/dev/null || true' EXIT"  # of an example that fails on its way
-  sed -n '/^```sh$/,/^```$/{/^```$/q;/^```/d;p}' "$source/tools/README.md"
+  sed -n '/^```sh$/,/^```$/{/^```$/q;/^```/d;p}' "$source/README.md" | sed '1,/build build-edge$/d'
 } >"$folder/example.sh"
-grep -q bess-edge "$folder/example.sh" || fail "tools/README.md shows no example"
+grep -q bess-edge "$folder/example.sh" || fail "README.md shows no example"
 cd "$folder" || exit 1
-sh -e example.sh >said 2>&1 || fail "the example fails"
-grep -q "stopped: battery released" said || fail "the battery was not driven to the end"
-rows=$(grep -c ",running," build/closed-loop/edge.csv)
+sh example.sh >said 2>&1 || fail "the example fails"
+grep -q "stopped: battery released" build-edge/closed-loop/edge.log ||
+  fail "the battery was not driven to the end"
+rows=$(grep -c ",running," build-edge/closed-loop/edge.csv)
 [ "$rows" -ge 25 ] || fail "only $rows of 50 cycles were in control"
-grep -q EUR said || fail "nothing was settled"
+# What status, why, earned and settle say, by their codes and numbers.
+for word in '^state  *running' '^decided ' '^2023-03-11 .*%' "^battery's own record .* %"; do
+  grep -q "$word" said || fail "no line $word"
+done
