@@ -5,10 +5,12 @@
   READMEs, and what is one word (a URL); files that are longer yet stand in long_lines.txt with how
   many such lines they have: none may get more
 - a file of a kind that is not known, or at the top of the tree and not named in README.md
-- a README that is longer than it may be, or names a file or a test that is not there
+- a README that is longer than it may be, begins with no heading, or names a file that is not there,
+  in full or by the end of its path
 - a README that repeats a figure of the tree, and it is another by now
 """
 
+import fnmatch
 import pathlib
 import re
 import subprocess
@@ -23,6 +25,10 @@ KINDS = set(
             " .sysusers .timer .tmpfiles .toml .txt .xml .yaml .yml".split())
 KNOWN_NAMES = {"copyright", "conffiles", "lintian-overrides"}  # what Debian's packages have
 PLACES = ("edge", "shared", "tests", "toolchains", "tools", "workstation")
+SHORT = re.compile(r"`(\w[\w.-]*(?:/[\w.*-]+)*\.(?:h|cpp|py|\*))`"  # control/reasons.h
+                   r"|`(\w[\w.-]*/[\w./*-]+\.(?:sh|cmake|toml|txt|js|json|md|css|csv))`")
+ELSEWHERE = tuple(place + "/" for place in PLACES) + (  # checked as places, or made by programs
+    "build", "runs/", "debs/", "sweeps/")
 
 
 def tracked(tree):
@@ -83,6 +89,8 @@ def check_kinds(tree, names, complain):
 def check_readmes(tree, names, complain):
     for name in (n for n in names if n.endswith("README.md")):
         text = (tree / name).read_text(encoding="utf-8")
+        if not re.match(r"# \w", text):
+            complain(f"{name}:1: begins with no heading")
         lines = text.count("\n")
         if lines > README_LINES.get(name, lines):
             complain(f"{name}: {lines} lines, {README_LINES[name]} at most")
@@ -99,6 +107,11 @@ def check_readmes(tree, names, complain):
             there = (tree / place, folder / place)
             if not any(path.exists() for path in there) and "NAME" not in place:
                 complain(f"{name}: names {place}, which is not there")
+        for short in map("".join, SHORT.findall(text)):
+            if not short.startswith(ELSEWHERE) and not any(folder.glob(short)):
+                ends = "*/" + short
+                if not any(fnmatch.fnmatchcase("/" + n, ends) for n in names):
+                    complain(f"{name}: names {short}, which is not there")
 
 
 def figures(tree):
@@ -111,15 +124,26 @@ def figures(tree):
     maps = [m for m in (tree / "edge/maps").glob("*.toml")]
     yield r"\b(\d+) register maps\b", str(len(maps))
     scenarios = list((tree / "tests/scenarios").glob("*.toml"))
-    yield r"\b(\d+) shipped scenarios\b", str(len(scenarios))
+    yield r"\b(\d+) (?:shipped )?scenarios\b", str(len(scenarios))
+    for pattern, name, row in (
+            (r"\b(\d+) faults of bus", "tools/battery_sim/battery_faults.cpp", r"^    \{Bat"),
+            (r"\b(\d+) faults\b(?! of bus)", "tests/trial/trial_fault.cpp", r'^    \{"'),
+            (r"\b(\d+) honest (?:variants|batteries)", "tests/trial/battery_nature.cpp",
+             r'^    \{(?:\.name = )?"'),
+            (r"\b(\d+) (?:mutants|named defects)\b|\ball (\d+) in `tools/test --full`",
+             "tests/tools/hil/mutants.txt", r"^[a-z]"),
+            (r"\b(\d+) alerts, each", "tools/monitoring/bess_rules.yml", r"^ *- alert:")):
+        rows = (tree / name).read_text(encoding="utf-8") if (tree / name).exists() else ""
+        yield pattern, str(len(re.findall(row, rows, re.M)))
 
 
 def check_figures(tree, names, complain):
     held = list(figures(tree))
     for name in (n for n in names if n.endswith("README.md")):
-        text = (tree / name).read_text(encoding="utf-8")
+        text = " ".join((tree / name).read_text(encoding="utf-8").split())
         for pattern, expected in held:
-            for said in re.findall(pattern, text):
+            for match in re.finditer(pattern, text):
+                said = next(filter(None, match.groups()))
                 if said.replace(",", "") != expected:
                     complain(f"{name}: says {said}, the tree {expected}")
 

@@ -3,13 +3,14 @@
 set -eu
 source=$1 tree=$2
 rm -rf "$tree"
-mkdir -p "$tree/edge/generated" "$tree/edge/maps" "$tree/tests/tidy"
+mkdir -p "$tree/edge/generated" "$tree/edge/maps" "$tree/tests/tidy" "$tree/tests/tools/hil"
+printf '# NAME | SCENARIO\noff | one\non | two\n' >"$tree/tests/tools/hil/mutants.txt"
 cp "$source"/edge/generated/* "$tree/edge/generated"
 echo "1 edge/long.cpp" >"$tree/tests/tidy/long_lines.txt"
 long="// $(printf 'word %.0s' $(seq 30))"
 echo "$long" >"$tree/edge/long.cpp"
-printf '`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n' \
-  >"$tree/README.md"
+printf '# tree\n`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n%s\n' \
+  'with `hil/mutants.txt`: 2 mutants' >"$tree/README.md"
 git -C "$tree" init -q
 says() { git -C "$tree" add -A; "$source/tests/tidy/tidy.py" "$tree" >"$tree/../said" 2>&1; }
 says || { cat "$tree/../said"; echo "a tidy tree is refused"; exit 1; }
@@ -36,3 +37,8 @@ refused "links to edge/none.md, which is not there" README.md "[none](edge/none.
 refused "names edge/none.h, which is not there" README.md '`edge/none.h`'
 refused "README.md: says 0123456789abcdef, the tree" README.md "signature=0123456789abcdef"
 refused "README.md: says 6,950,033,281, the tree" README.md "6,950,033,281 states"
+refused "names long/long.cpp, which is not there" README.md '`long/long.cpp`'
+refused "names lang.cpp, which is not there" README.md '`lang.cpp`'
+refused "README.md: says 3, the tree 2" README.md "all 3
+  in \`tools/test --full\`"
+refused "edge/maps/README.md:1: begins with no heading" edge/maps/README.md "#maps : device"
