@@ -50,7 +50,7 @@ std::string complaint(const std::string& name, int line, std::string_view what) 
   return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what);
 }
 
-/// The UTF-8 characters at these offsets as escapes ("\U000000E9"), which mean the same within a string.
+/// The UTF-8 characters at these offsets as escapes, "\U000000E9": the same within a string.
 std::string with_escapes(std::string_view text, const std::vector<std::size_t>& offsets) {
   std::string escaped;
   std::size_t done = 0;

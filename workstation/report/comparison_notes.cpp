@@ -59,9 +59,8 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
   const NamedEvaluation* exported = find_own_student(evaluations);
   if (exported == nullptr) return {};
   return fmt::format(
-      "the configured battery of {}: the {} {} EUR a day, {} with the SoC carried over (another "
-      "size "
-      "of the same power_w / capacity_wh has the same student; set [battery] to see its money)\n",
+      "the configured battery of {}: the {} {} EUR a day, {} with the SoC carried over (only "
+      "the ratio power_w / capacity_wh matters to the student; [battery] sets the size)\n",
       capacity_text(capacity_mwh_in(*exported)), exported->name, eur_per_day(exported->day_reset),
       eur_per_day(exported->carried_over));
 }

@@ -12,7 +12,7 @@ namespace bess {
 /// A table of EUR per day of the whole battery, in both ways of counting. Empty without
 /// evaluations.
 std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations);
-/// "the configured battery of 8 MWh: the corrected student 4,908.8 EUR a day, ..." with its line end;
+/// "the configured battery of 8 MWh: the corrected student 4,908.8 EUR a day ..." and line end;
 /// empty without that student.
 std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations);
 
