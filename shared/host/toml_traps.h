@@ -1,7 +1,6 @@
 // Input that toml++ (3.3 and 3.4) must not see, found before it parses:
 // - a character other than ASCII outside quotes and comments, behind a backslash, or behind a line
 //   continued in a string: undefined behaviour in its test for white space;
-// - a table header that does not start with a key, "[=]": undefined behaviour in release builds;
 // - a key of many parts: each is a table in a table, and ten thousand of them overflow the stack;
 // - very many values: each takes some 200 bytes, and the edge has 8 MiB for everything.
 #pragma once
@@ -35,10 +34,7 @@ class TomlTrapFinder {
       if (c == '#') {
         skip(std::min(rest_.find('\n'), rest_.size()));
       } else if ((c == '"' || c == '\'') && !in_word_) {
-        begins_statement_ = false;
         skip_string(c);
-      } else if (c == '[' && begins_statement_) {
-        if (!skip_header_start()) return {line_, "a table header without a key"};
       } else {
         pass(c);
         skip(1);
@@ -60,29 +56,11 @@ class TomlTrapFinder {
   static constexpr int kPiecesMax = 10'000;  ///< the largest shipped map has 545
 
   static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
-  static bool begins_key(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '"' || c == '\'' || !is_ascii(c);
-  }
 
   void skip(std::size_t bytes) {
     bytes = std::min(bytes, rest_.size());
     line_ += static_cast<int>(std::ranges::count(rest_.substr(0, bytes), '\n'));
     rest_.remove_prefix(bytes);
-  }
-
-  void skip_spaces(std::string_view spaces) {
-    skip(std::min(rest_.find_first_not_of(spaces), rest_.size()));
-  }
-
-  /// "[" or "[[" where a table header stands; false when no key follows.
-  bool skip_header_start() {
-    begins_statement_ = false;
-    pass('[');
-    skip(rest_.starts_with("[[") ? 2 : 1);
-    skip_spaces(" \t");
-    // "[ [a]]" and the end of the file: the parser has a good message for both.
-    return rest_.empty() || begins_key(rest_.front()) || rest_.front() == '[';
   }
 
   /// A backslash in a string, with what it escapes: at most the white space of a continued line.
@@ -93,7 +71,7 @@ class TomlTrapFinder {
     if (!is_multi_line || std::string_view(" \t\r\n").find(rest_.front()) == rest_.npos) {
       return skip(1);
     }
-    skip_spaces(" \t\r\n");
+    skip(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
     if (!rest_.empty() && !is_ascii(rest_.front())) {
       continued_letters_.push_back(size_ - rest_.size());
     }
@@ -120,10 +98,6 @@ class TomlTrapFinder {
   /// A quote opens a string only where a key or a value begins: in 30''' or 5["" it is part of a
   /// mistake in a number, which toml++ reads on and on.
   void pass(char c) {
-    if (c == '[' && (in_value_ || arrays_ > 0)) ++arrays_;
-    if (c == ']' && arrays_ > 0) --arrays_;
-    begins_statement_ =
-        (c == '\n' && arrays_ == 0) || (begins_statement_ && (c == ' ' || c == '\t' || c == '\r'));
     if (c == '\n' || c == ',') {
       in_word_ = in_value_ = false;
     } else if (c == ' ' || c == '\t' || c == '\r' || c == ']' || c == '}') {
@@ -145,10 +119,8 @@ class TomlTrapFinder {
   std::string_view rest_;
   std::vector<std::size_t> continued_letters_;
   int line_ = 1;
-  int dots_ = 0;                  ///< in the key so far
-  int pieces_ = 0;                ///< lines, parts of keys and values so far
-  int arrays_ = 0;                ///< that are open
-  bool begins_statement_ = true;  ///< nothing but white space stands before it on the line
+  int dots_ = 0;    ///< in the key so far
+  int pieces_ = 0;  ///< lines, parts of keys and values so far
   bool escapes_letter_ = false;
   bool in_word_ = false;
   bool in_value_ = false;  ///< behind the = of a key

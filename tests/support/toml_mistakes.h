@@ -21,15 +21,17 @@ inline std::vector<TomlMistake> toml_mistakes() {
     many_tables += "a" + std::to_string(i) + ".b.b.b.b.b.b.b.b.b.b.b.b.b = 1\n";
   std::string many_values = "a = [0";
   for (int i = 0; i < 20'000; ++i) many_values += ", 0";
-  return {{"[=]", 1, "without a key"},
-          {"a = 1\n[=]\n", 2, "without a key"},
-          {"[[=]]\n", 1, "without a key"},
-          {"[\n", 1, "without a key"},
-          {"a = [1]\n \t[ +]\n", 2, "without a key"},
-          {"a = [\n[+1], [],\n]\n[[ #]]\n", 4, "without a key"},
+  return {{"[=]", 1, ""},
+          {"a = 1\n[=]\n", 2, ""},
+          {"[[=]]\n", 1, ""},
+          {"[\n", 1, ""},
+          {"a = [1]\n \t[ +]\n", 2, ""},
+          {"a = [\n[+1], [],\n]\n[[ #]]\n", 4, ""},
           {"[ [a]]\n", 1, ""},
           {"[", 1, ""},
           {"a = [[\n[=]]]\n", 2, ""},
+          {"a = [1,}", 1, ""},
+          {"a = { b = ]\n", 1, ""},
           {"a = \"\u00E9", 1, ""},
           {"a = '\u00E9", 1, ""},
           {"a = \"\u00E9\n[b]\n", 1, ""},
