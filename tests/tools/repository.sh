@@ -67,6 +67,16 @@ export BESS_PACKAGES=$folder/packages
 code=0
 repository --key first@example.org --phased 130 || code=$?
 [ $code -eq 2 ] || fail "130 percent: exit code $code"
+of_two() {
+  BESS_PACKAGES=$folder/marked "$source/tools/package" --repository of_two \
+    --key first@example.org >said 2>&1
+}
+made_up_package marked amd64 1.0+deb12 >/dev/null
+of_two || fail "packages of bookworm: $(cat said)"
+made_up_package marked amd64 2.0+deb13 >/dev/null
+if of_two || ! grep -q "has packages of +deb12: a repository is of one release" said; then
+  fail "packages of two releases: $(cat said)"
+fi
 
 # A machine that has 1.0, with this machine id; what would apt do?
 mkdir -p apt/{lists/partial,archives/partial,parts}
