@@ -132,6 +132,18 @@ refuses "a missing image" "absent.img: no such image" absent.img --package "$pac
 refuses "another release" "holds release bullseye" bullseye.img --package "$package"
 refuses "trixie without cloud-init" "trixie without cloud-init" old_trixie.img --package "$package"
 refuses "an image that was booted" "was booted already" booted.img --package "$package"
+for release in bookworm trixie; do
+  mark=+deb12 other=trixie
+  [ $release = bookworm ] || { mark=+deb13 other=bookworm; }
+  marked=$(made_up_package packages arm64 "1.0$mark")
+  flash $release.img --out out.img --package "$marked" --release $release ||
+    fail "a package of $release: $(cat said)"
+  refuses "a package of $release on $other" \
+    "is for $release, the machine has $other; make it with: tools/package" $other.img \
+    --package "$marked"
+  refuses "an image of $other" "holds release $other, not $release" $other.img \
+    --package "$package" --release $release
+done
 refuses "another architecture" "is for armhf, the machine is arm64" bookworm.img \
   --package "$(made_up_package packages armhf 1.0)"
 spoil='echo >>student_weights.h'
@@ -162,6 +174,10 @@ wifi_refused() {  # wifi_refused WHAT LINE PASSWORD COUNTRY
 wifi_refused "a short Wi-Fi password" "7 characters are no password of WPA" seven77 BE
 wifi_refused "a country of three letters" "--wifi-country BEL: is no country" "long enough" BEL
 wifi_refused "a country in small letters" "--wifi-country be: is no country" "long enough" be
+code=0
+flash bookworm.img --out none.img --package "$package" --release bullseye || code=$?
+[ $code -eq 2 ] && grep -q "argument --release: invalid choice: 'bullseye'" said ||
+  fail "--release bullseye, exit code $code: $(cat said)"
 code=0
 "$source/tools/flash" image bookworm.img --out none.img --host-name bess1 --user root \
   --ssh-key key.pub --config edge.toml >said 2>&1 || code=$?

@@ -118,6 +118,10 @@ echo armhf >machine/architecture
 refuses "another architecture" \
   "is for arm64, the machine is armhf; make it with: tools/package armhf" --package "$package"
 echo arm64 >machine/architecture
+other=trixie mark=+deb13  # commands of the other machine run here: its release is this one's
+! grep -q '^VERSION_CODENAME=trixie' /etc/os-release || other=bookworm mark=+deb12
+refuses "another release" "is for $other, the machine has " \
+  --package "$(made_up_package packages arm64 "2.0$mark")"
 echo 9000 >machine/free_kb
 refuses "a full disk" "has 8 MB free" --package "$package"
 echo 5000000 >machine/free_kb
