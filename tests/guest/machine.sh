@@ -1,7 +1,7 @@
 # Sourced by the tests of tests/guest: machines with systemd as their first process, in containers
-# (systemd-nspawn): Debian 12 of this processor with the simulators inside, no network but their own
-# loopback. Needs root.
-#   make_base             what all machines start from, once: FOLDER/base
+# (systemd-nspawn): Debian of this processor, of the release that $package is for, with the
+# simulators inside, no network but their own loopback. Needs root.
+#   make_base             what all machines start from, once: $guest, of $release
 #   boot NAME             a machine over a copy of it (made when it is not there) is started
 #   on NAME COMMAND       as root inside;  send NAME FILE PLACE
 #   play OPTION...        the Ansible roll-out; its exit code is in $code, its words in ansible.log
@@ -13,6 +13,8 @@
 
 # shellcheck source=tests/guest/site.sh
 . "$source/tests/guest/site.sh"
+# shellcheck source=tools/packaging/release.sh
+. "$source/tools/packaging/release.sh"
 die() { echo "${0##*/}: $*" >&2; exit 1; }
 skip() { echo "${0##*/}: skipped: $*"; exit 77; }
 declare -A container first
@@ -34,7 +36,12 @@ play() {
 }
 
 make_base() {
-  local program base=$folder/base
+  local program httplib=libcpp-httplib0.11
+  release=$(release_of "$package")
+  release=${release:-$own_release}
+  [ $release = bookworm ] || httplib=libcpp-httplib0.18
+  guest=$folder/base-$release
+  local tar=$folder/root-$release.tar
   for program in systemd-nspawn mmdebstrap nsenter; do
     command -v $program >/dev/null ||
       skip "$program is not installed; tools/setup --package installs it"
@@ -42,32 +49,32 @@ make_base() {
   [ "$(id -u)" = 0 ] || skip "machines need root"
   mkdir -p "$folder"
   # Of an older test, without what this one needs.
-  [ ! -d "$base" ] || [ -d "$base/usr/share/doc/libcpp-httplib0.11" ] ||
-    rm -rf "$base" "$folder/root.tar"
-  if [ -d "$base" ] && cmp -s "$source/tests/guest/start_site" "$base/opt/bess-site/start_site" &&
-    cmp -s "$programs/bess-sim" "$base/opt/bess-site/bess-sim"; then
+  [ ! -d "$guest" ] || [ -d "$guest/usr/share/doc/$httplib" ] ||
+    rm -rf "$guest" "$tar"
+  if [ -d "$guest" ] && cmp -s "$source/tests/guest/start_site" "$guest/opt/bess-site/start_site" &&
+    cmp -s "$programs/bess-sim" "$guest/opt/bess-site/bess-sim"; then
     return 0
   fi
-  if [ ! -f "$folder/root.tar" ]; then
+  if [ ! -f "$tar" ]; then
     mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1 \
-      --include=libmodbus5,libmosquitto1,libcpp-httplib0.11,ca-certificates,adduser,python3 \
+      --include=libmodbus5,libmosquitto1,$httplib,ca-certificates,adduser,python3 \
       --include=iproute2,procps,unattended-upgrades \
-      bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 ||
+      $release "$tar" >"$folder/mmdebstrap.log" 2>&1 ||
       skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
   fi
-  rm -rf "$base.new"
-  mkdir -p "$base.new"
-  tar -C "$base.new" -xf "$folder/root.tar"
-  rm -rf "$base.new"/boot/*
-  site_into "$base.new"
+  rm -rf "$guest.new"
+  mkdir -p "$guest.new"
+  tar -C "$guest.new" -xf "$tar"
+  rm -rf "$guest.new"/boot/*
+  site_into "$guest.new"
   # Upgrades come when a test says so.
   for program in apt-daily.timer apt-daily-upgrade.timer unattended-upgrades.service; do
-    ln -sf /dev/null "$base.new/etc/systemd/system/$program"
+    ln -sf /dev/null "$guest.new/etc/systemd/system/$program"
   done
   ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' |
-    xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
-  rm -rf "$base"
-  mv "$base.new" "$base"
+    xargs -I{} cp -L {} "$guest.new/opt/bess-site/lib/"
+  rm -rf "$guest"
+  mv "$guest.new" "$guest"
 }
 
 boot() {
@@ -75,7 +82,7 @@ boot() {
   if [ ! -d "$machine" ]; then mkdir -p "$machine"/{upper,work,root}; fi
   mountpoint -q "$machine/root" ||
     mount -t overlay overlay \
-      -o "lowerdir=$folder/base,upperdir=$machine/upper,workdir=$machine/work" "$machine/root" ||
+      -o "lowerdir=$guest,upperdir=$machine/upper,workdir=$machine/work" "$machine/root" ||
     skip "no overlay file system here"
   systemd-nspawn -q -D "$machine/root" -b --machine="bess-$1-$$" --register=no \
     --keep-unit --private-network --console=pipe \
