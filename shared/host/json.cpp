@@ -7,6 +7,8 @@
 #include <limits>
 #include <new>
 
+#include "shared/host/text.h"
+
 namespace bess {
 namespace {
 
@@ -77,6 +79,12 @@ JsonValue::Iterator JsonValue::begin() const {
 std::size_t JsonValue::size() const { return static_cast<std::size_t>(cJSON_GetArraySize(item_)); }
 
 void Json::Delete::operator()(cJSON* item) const { cJSON_Delete(item); }
+
+bool looks_like_json(std::string_view text) {
+  text = without_byte_order_mark(text);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && (text[first] == '{' || text[first] == '[');
+}
 
 Json Json::parse(std::string_view text) {
   const char* end = nullptr;

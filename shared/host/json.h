@@ -110,6 +110,9 @@ class Json {
   std::unique_ptr<cJSON, Delete> item_;
 };
 
+/// By its first character: an object or a list, whole or not.
+bool looks_like_json(std::string_view text);
+
 struct JsonMember {
   const char* key;
   mutable Json value;  ///< is moved from: an initializer list only gives it as const

@@ -219,11 +219,7 @@ std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_
 
 std::vector<DayAheadRow> parse_day_ahead_text(std::string_view text, std::string_view name) {
   if (looks_like_xml(text)) return parse_entsoe_day_ahead(text, name);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first != text.npos && (text[first] == '{' || text[first] == '[')) {
-    return parse_energy_charts(text, name);
-  }
-  return parse_tidy_day_ahead(text, name);
+  return looks_like_json(text) ? parse_energy_charts(text, name) : parse_tidy_day_ahead(text, name);
 }
 
 JoinedDayAhead join_day_ahead(std::vector<DayAheadRow> rows, std::string_view name) {

@@ -4,14 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 
-#include "shared/host/minute_file.h"
+#include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
@@ -30,8 +29,6 @@ struct Received {
   std::string body;
   std::size_t bytes_max = 0;
   bool is_too_large = false;
-  std::string retry_after, rate_limit_reset;
-  bool has_length = false;
   std::size_t header_bytes = 0;  ///< of all answers, those of redirects too
 };
 
@@ -43,33 +40,17 @@ std::size_t take_body(char* data, std::size_t size, std::size_t count, void* use
   return size * count;
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
+std::size_t take_header(char*, std::size_t size, std::size_t count, void* user) {
+  auto& received = *static_cast<Received*>(user);
+  received.header_bytes += size * count;
+  return received.header_bytes > kHeaderBytesMax ? 0 : size * count;
 }
 
-std::size_t take_header(char* data, std::size_t size, std::size_t count, void* user) {
-  auto& received = *static_cast<Received*>(user);
-  const std::string_view line(data, size * count);
-  received.header_bytes += line.size();
-  if (received.header_bytes > kHeaderBytesMax) return 0;
-  // Each redirect and a proxy's CONNECT has headers of its own, which say nothing of the answer.
-  if (line.starts_with("HTTP/")) {
-    received.retry_after.clear();
-    received.rate_limit_reset.clear();
-    received.has_length = false;
-  }
-  const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos) return size * count;
-  std::string name(line.substr(0, colon));
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const std::string value = trimmed(line.substr(colon + 1));
-  if (name == "retry-after") received.retry_after = value;
-  if (name == "x-ratelimit-reset") received.rate_limit_reset = value;
-  if (name == "content-length" || name == "transfer-encoding") received.has_length = true;
-  return size * count;
+/// Of the answer itself, not of redirects or a proxy; empty when it has none of that name.
+std::string_view header(CURL* curl, const char* name) {
+  curl_header* found = nullptr;
+  const bool is_there = curl_easy_header(curl, name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK;
+  return is_there ? found->value : "";
 }
 
 /// libcurl calls it at least once a second, also while it waits.
@@ -121,16 +102,29 @@ HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& receiv
   return {trouble.kind, {}, std::move(trouble.reason), {}};
 }
 
-HttpOutcome outcome_of_status(long status, Received received) {
+/// libcurl reports a body that ends before its frames, chunks or length do. It cannot where an
+/// HTTP/1 connection's end is the body's, and says nothing of a packed text that breaks off: then
+/// the text must end as a whole one does.
+bool is_whole(CURL* curl, std::string_view body) {
+  if (looks_like_json(body)) return Json::parse(body).value().exists();
+  long version = 0;
+  curl_off_t length = -1;
+  curl_easy_getinfo(curl, CURLINFO_HTTP_VERSION, &version);
+  curl_easy_getinfo(curl, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
+  const bool is_framed = version >= CURL_HTTP_VERSION_2_0 || length >= 0 ||
+                         header(curl, "Transfer-Encoding") == "chunked";
+  return body.ends_with('\n') || (is_framed && header(curl, "Content-Encoding").empty());
+}
+
+HttpOutcome outcome_of_status(CURL* curl, long status, Received received) {
   if (status == 200) {
-    // Without a length the end of the connection is the end of the body: then a whole line is
-    // needed.
-    const bool whole = received.has_length || received.body.ends_with('\n');
-    if (!whole) return {Kind::kTransient, {}, "the answer was cut short", {}};
+    if (!is_whole(curl, received.body)) {
+      return {Kind::kTransient, {}, "the answer was cut short", {}};
+    }
     return {Kind::kDone, std::move(received.body), {}, {}};
   }
-  const std::string& told =
-      received.retry_after.empty() ? received.rate_limit_reset : received.retry_after;
+  const std::string_view retry_after = header(curl, "Retry-After");
+  const std::string told(retry_after.empty() ? header(curl, "X-RateLimit-Reset") : retry_after);
   const std::string body = one_line(received.body, kReasonMax);
   const std::string reason =
       fmt::format("the server answered {}{}{}", status, body.empty() ? "" : ": ", body);
@@ -152,6 +146,52 @@ Handle new_handle() {
   Handle curl(started == CURLE_OK ? curl_easy_init() : nullptr);
   if (!curl) fail("libcurl cannot be started");
   return curl;
+}
+
+/// `encoding`: what libcurl may be sent and unpacks; "" = all that it can.
+HttpOutcome get(const std::string& url, const char* encoding, const std::atomic<bool>& interrupted,
+                const HttpLimits& limits) {
+  const Handle curl = new_handle();
+  Received received;
+  received.bytes_max = limits.bytes_max;
+  char error_text[CURL_ERROR_SIZE] = "";
+  curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
+  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl.get(), CURLOPT_REDIR_PROTOCOLS_STR, redirect_protocols(url));
+  curl_easy_setopt(curl.get(), CURLOPT_FOLLOWLOCATION, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_MAXREDIRS, 5L);
+  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
+  // As the curl command does: a proxy that opens TLS has an authority of its own.
+  if (const char* const authorities = std::getenv("SSL_CERT_FILE")) {
+    curl_easy_setopt(curl.get(), CURLOPT_CAINFO, authorities);
+  }
+  curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
+  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * limits.deadline_s));
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, limits.bytes_per_s_min);
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, limits.slow_s);
+  curl_easy_setopt(curl.get(), CURLOPT_ACCEPT_ENCODING, encoding);
+  curl_easy_setopt(curl.get(), CURLOPT_USERAGENT, "bess-train/" BESS_VERSION);
+  curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_ERRORBUFFER, error_text);
+  curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, take_body);
+  curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &received);
+  curl_easy_setopt(curl.get(), CURLOPT_HEADERFUNCTION, take_header);
+  curl_easy_setopt(curl.get(), CURLOPT_HEADERDATA, &received);
+  curl_easy_setopt(curl.get(), CURLOPT_NOPROGRESS, 0L);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFOFUNCTION, stop_when_interrupted);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
+  const CURLcode code = curl_easy_perform(curl.get());
+  if (code != CURLE_OK) {
+    return outcome_of_failure(curl.get(), code, received, limits, error_text);
+  }
+  long status = 0;
+  curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
+  HttpOutcome outcome = outcome_of_status(curl.get(), status, std::move(received));
+  // A packed text without a last line end is asked for once more, plain: then its length tells.
+  const bool is_unclear = status == 200 && outcome.kind == Kind::kTransient &&
+                          !header(curl.get(), "Content-Encoding").empty();
+  return is_unclear && *encoding == '\0' ? get(url, "identity", interrupted, limits) : outcome;
 }
 
 }  // namespace
@@ -192,43 +232,7 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
 
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
                      const HttpLimits& limits) {
-  const Handle curl = new_handle();
-  Received received;
-  received.bytes_max = limits.bytes_max;
-  char error_text[CURL_ERROR_SIZE] = "";
-  curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
-  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl.get(), CURLOPT_REDIR_PROTOCOLS_STR, redirect_protocols(url));
-  curl_easy_setopt(curl.get(), CURLOPT_FOLLOWLOCATION, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_MAXREDIRS, 5L);
-  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
-  // As the curl command does: a proxy that opens TLS has an authority of its own.
-  if (const char* const authorities = std::getenv("SSL_CERT_FILE")) {
-    curl_easy_setopt(curl.get(), CURLOPT_CAINFO, authorities);
-  }
-  curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
-  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * limits.deadline_s));
-  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, limits.bytes_per_s_min);
-  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, limits.slow_s);
-  curl_easy_setopt(curl.get(), CURLOPT_ACCEPT_ENCODING, "");  // whatever libcurl can unpack
-  curl_easy_setopt(curl.get(), CURLOPT_USERAGENT, "bess-train/" BESS_VERSION);
-  curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_ERRORBUFFER, error_text);
-  curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, take_body);
-  curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &received);
-  curl_easy_setopt(curl.get(), CURLOPT_HEADERFUNCTION, take_header);
-  curl_easy_setopt(curl.get(), CURLOPT_HEADERDATA, &received);
-  curl_easy_setopt(curl.get(), CURLOPT_NOPROGRESS, 0L);
-  curl_easy_setopt(curl.get(), CURLOPT_XFERINFOFUNCTION, stop_when_interrupted);
-  curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
-  const CURLcode code = curl_easy_perform(curl.get());
-  if (code != CURLE_OK) {
-    return outcome_of_failure(curl.get(), code, received, limits, error_text);
-  }
-  long status = 0;
-  curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
-  return outcome_of_status(status, std::move(received));
+  return get(url, "", interrupted, limits);
 }
 
 }  // namespace bess

@@ -1,5 +1,6 @@
 #include "workstation/market/feed/market_text.h"
 
+#include "shared/host/json.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/plain_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
@@ -13,15 +14,14 @@ namespace bess {
 MarketRows parse_market_text(std::string_view text, std::string_view name) {
   if (is_recorded_csv(text)) return parse_recorded_rows(text, name);  // also with a torn end
   text = plain_text(text, name);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
+  if (text.find_first_not_of(" \t\r\n") == text.npos)
+    fail("{}: the file is empty; download it again", name);
   if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
   if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
   if (is_spreadsheet_minute_csv(text)) {
     return parse_minute_file_rows(from_spreadsheet(text), name);
   }
-  const bool json = text[first] == '{' || text[first] == '[';
-  return json ? parse_market_json(text, name) : parse_market_csv(text, name);
+  return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name);
 }
 
 }  // namespace bess

@@ -91,7 +91,7 @@ TEST_F(EliaFetch, BacksOffFromServerErrorsCutAnswersAndNonsense) {
   FakeElia elia([](const std::string& dataset, int number, httplib::Response& response) {
     if (dataset != "ods046" || number > 3) return false;
     if (number == 1) response.status = 500;
-    if (number == 2) response.set_content("<html>proxy</html>", "text/html");
+    if (number == 2) response.set_content("<html>proxy</html>\n", "text/html");
     if (number == 3) {  // announces more than it sends
       response.set_content_provider(1000, "text/csv",
                                     [](std::size_t, std::size_t, httplib::DataSink& sink) {
