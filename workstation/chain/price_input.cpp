@@ -57,8 +57,8 @@ MinuteSeries PriceInput::read(const std::string& path) const {
 }
 
 JoinedMarket PriceInput::read_joined(const std::vector<std::string>& files,
-                                     std::set<MarketSource>* sources) const {
-  MarketRows rows = read_market_files(files);
+                                     std::set<MarketSource>* sources, const OwnForm& own) const {
+  MarketRows rows = read_market_files(files, own);
   if (sources != nullptr) *sources = rows.sources;
   JoinedMarket market = join_market(std::move(rows), files.front());
   judge_market(market.series, market.report.findings, files, accepted());

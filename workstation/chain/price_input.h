@@ -21,7 +21,8 @@ class PriceInput {
   [[nodiscard]] MinuteSeries read(const std::string& path) const;
   /// Minute files and downloads in any mixture. Throws UserError as join_market() does.
   [[nodiscard]] JoinedMarket read_joined(const std::vector<std::string>& files,
-                                         std::set<MarketSource>* sources = nullptr) const;
+                                         std::set<MarketSource>* sources = nullptr,
+                                         const OwnForm& own = {}) const;
 
  private:
   std::string accept_;

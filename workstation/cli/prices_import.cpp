@@ -17,6 +17,7 @@ struct PricesImportArguments {
   std::vector<std::string> files;
   std::string out;
   bool day_ahead = false;
+  OwnForm own;
 };
 
 void import_day_ahead(const PricesImportArguments& options) {
@@ -36,13 +37,17 @@ void run_prices_import(const PricesImportArguments& options) {
   require_writable(options.out);
   if (options.day_ahead) return import_day_ahead(options);
   std::set<MarketSource> sources;
-  const JoinedMarket market = options.price_input.read_joined(options.files, &sources);
+  const JoinedMarket market = options.price_input.read_joined(options.files, &sources, options.own);
   const std::string attribution = attribution_of(sources);
   const std::string description = describe_join(market);
   write_minute_file(options.out, market.series,
                     fmt::format("Imported by bess-train {} from {}\n{}\n{}", BESS_VERSION,
                                 file_names(options.files), attribution, description));
   fmt::print("{}written to {}. {}\n", description, options.out, attribution);
+  if (market.report.minutes == 0) {
+    fmt::print("next: bess-train prices reconstruct --quarter-hours {} --out minutes.csv.gz\n",
+               options.out);
+  }
 }
 
 }  // namespace
@@ -54,11 +59,21 @@ void add_prices_import(ProgramCommand& prices) {
   command
       .option("files", options->files,
               "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
-              "days of 'prices record', or minute files; plain or .gz")
+              "days of 'prices record', minute files, or CSV of your own; plain or .gz")
       .required();
   command.flag("--day-ahead", options->day_ahead,
                "The files hold day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
                "datetime_utc and price_eur_mwh, or day-ahead files");
+  command.option("--time-column", options->own.time_column,
+                 "Your CSV's column of times, the start of each minute or quarter-hour");
+  command.option("--price-column", options->own.price_column, "Its column of EUR/MWh");
+  command
+      .option("--date-format", options->own.times.date_format, "Its order of day, month and year")
+      .one_of({"yyyy-mm-dd", "yyyy/mm/dd", "dd/mm/yyyy", "dd-mm-yyyy", "dd.mm.yyyy", "mm/dd/yyyy"})
+      .with_default();
+  command.choice<std::optional<WallClock>>("--time-zone", options->own.times.clock,
+                                           {{"utc", WallClock::kUtc}, {"local", WallClock::kLocal}},
+                                           "Of its times without an offset; local: Belgian clocks");
   options->price_input.add(command);
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
@@ -66,12 +81,16 @@ void add_prices_import(ProgramCommand& prices) {
       "(--accept overlap: later files win). Of a recorded day the first price of a minute counts, "
       "the one that could be acted on. Semicolons with decimal commas are read too. ENTSO-E sends "
       "a "
-      "ZIP archive: unzip it first.\n"
+      "ZIP archive: unzip it first. Your own CSV needs a header with a time and a price "
+      "(datetime_utc,price_eur_mwh); commas, semicolons or tabs, and all else by the options.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv\n"
       "  bess-train prices import 2023.csv.gz 2024.csv.gz --out both.csv.gz\n"
       "  bess-train prices import --day-ahead a44_2024.xml a44_2025.xml --out day_ahead.csv.gz\n"
+      "  bess-train prices import own.csv --date-format dd/mm/yyyy --time-zone local --out "
+      "own.csv.gz"
+      "\n"
       "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
   command.runs([options] { run_prices_import(*options); });
 }

@@ -138,6 +138,27 @@ TEST_F(PricesCli, NegativeSeedsAreRefused) {
               HasSubstr("1 simulated day from"));
 }
 
+TEST_F(PricesCli, OwnQuarterHoursLeadToMinutes) {
+  const std::string own = written("own.csv",
+                                  "Date;Price [EUR/MWh]\r\n01/06/2025 00:00;-1,5\r\n"
+                                  "01/06/2025 00:15;2\r\n");
+  const Result unclear = run({"import", own, "--out", path("q.csv")});
+  EXPECT_EQ(unclear.exit_code, 1);
+  EXPECT_THAT(unclear.output, AllOf(HasSubstr("own.csv:2: "), HasSubstr("--date-format")));
+  std::vector<std::string> import{"import", own, "--date-format", "dd/mm/yyyy", "--out"};
+  import.push_back(path("q.csv"));
+  EXPECT_THAT(run(import).output, AllOf(HasSubstr("own.csv:2: "), HasSubstr("--time-zone")));
+  import.insert(import.end(), {"--time-zone", "local"});
+  const Result imported = run(import);
+  ASSERT_EQ(imported.exit_code, 0) << imported.output;
+  EXPECT_THAT(imported.output,
+              HasSubstr("prices reconstruct --quarter-hours " + path("q.csv") + " --out "));
+  EXPECT_THAT(read_file(path("q.csv")), AllOf(HasSubstr("\n2025-05-31T22:00:00Z,,-1.5\n"),
+                                              HasSubstr("\n2025-05-31T22:29:00Z,,2\n")));
+  EXPECT_EQ(
+      run({"reconstruct", "--quarter-hours", path("q.csv"), "--out", path("m.csv")}).exit_code, 0);
+}
+
 TEST_F(PricesCli, ImportSaysWhatToDoWithAZip) {
   const Result zip = run({"import", written("a.zip", "PK\x03\x04..."), "--out", path("o.csv")});
   EXPECT_EQ(zip.exit_code, 1);

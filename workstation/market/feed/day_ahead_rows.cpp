@@ -16,6 +16,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
+#include "workstation/market/feed/market_rows.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
@@ -23,16 +24,6 @@ namespace {
 
 /// Seconds that no calendar here reaches: 2200-01-01.
 constexpr double kUnixSecondsMax = 7'258'118'400;
-
-/// "Day-ahead Price [EUR/MWh]" and "day_ahead_price_eur_mwh" are one.
-std::string plain_label(std::string_view label) {
-  std::string plain;
-  for (const char c : label) {
-    if (c >= 'A' && c <= 'Z') plain += static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) plain += c;
-  }
-  return plain;
-}
 
 struct TidyColumns {
   char separator = ',';
@@ -50,7 +41,7 @@ TidyColumns tidy_columns(std::string_view header, std::string_view name) {
   columns.separator = header.find(';') == header.npos ? ',' : ';';
   CsvFields labels(header, columns.separator);
   for (std::string_view label; labels.take(label); ++columns.count) {
-    const std::string plain = plain_label(label);
+    const std::string plain = plain_name(label);
     if (std::ranges::find(kTimes, plain) != kTimes.end()) columns.time = columns.count;
     if (std::ranges::find(kPrices, plain) != kPrices.end()) columns.price = columns.count;
     if (plain == "resolutionmin") columns.resolution = columns.count;
@@ -196,7 +187,7 @@ std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_
         name);
   }
   const JsonValue unit = json.value()["unit"];
-  if (unit.exists() && plain_label(unit.text_or("")) != "eurmwh") {
+  if (unit.exists() && plain_name(unit.text_or("")) != "eurmwh") {
     fail("{}: prices in \"{}\" where EUR / MWh is needed; use an area that publishes it", name,
          one_line(unit.text_or(""), 20));
   }

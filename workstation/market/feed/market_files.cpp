@@ -35,11 +35,11 @@ std::string joined(const std::vector<std::string>& parts, std::string_view separ
 
 }  // namespace
 
-MarketRows read_market_files(const std::vector<std::string>& paths) {
+MarketRows read_market_files(const std::vector<std::string>& paths, const OwnForm& own) {
   MarketRows all;
   Overlap overlap;
   for (const std::string& path : paths) {
-    const MarketRows rows = parse_market_text(read_file(path), path);
+    const MarketRows rows = parse_market_text(read_file(path), path, own);
     if (rows.is_minute_file) overlap.add(path, rows);
     append_rows(all, rows);
   }

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "workstation/market/feed/market_csv.h"
 #include "workstation/market/feed/market_join.h"
 
 namespace bess {
 
-/// All rows of all files, in their order.
-MarketRows read_market_files(const std::vector<std::string>& paths);
+/// All rows of all files, in their order; `own` is how CSV of one's own is read.
+MarketRows read_market_files(const std::vector<std::string>& paths, const OwnForm& own = {});
 
 struct SettledQuarterHours {
   std::vector<QuarterHour> quarter_hours;  ///< ascending

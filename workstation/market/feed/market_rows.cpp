@@ -1,5 +1,6 @@
 #include "workstation/market/feed/market_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -37,6 +38,24 @@ constexpr std::array<std::pair<std::string_view, MarketField>, 18> kFieldNames{{
     {"priceeurmwh", kPrice},
 }};
 
+/// As files of one's own call them.
+constexpr std::array<std::string_view, 8> kTimeNames{"datetime", "date",  "time",   "timestamp",
+                                                     "",         "start", "minute", "starttime"};
+constexpr std::array<std::string_view, 7> kPriceNames{
+    "price", "imbalanceprice", "settledprice", "settled", "imbalance", "", "indicative"};
+constexpr std::array<std::string_view, 2> kClocks{"utc", "local"};
+constexpr std::array<std::string_view, 8> kUnits{"eurpermwh", "eurmwh", "mwh", "eurperkwh",
+                                                 "eurkwh",    "ctkwh",  "kwh", "eur"};
+
+constexpr std::size_t kQuotedMax = 40;
+
+bool is_absent(std::string_view text) {
+  constexpr std::array<std::string_view, 7> kAbsent{"", "null", "NaN", "nan", "n/a", "N/A", "NA"};
+  return std::ranges::find(kAbsent, text) != kAbsent.end();
+}
+
+}  // namespace
+
 /// "Alpha'" must not become "alpha": the apostrophe is spelled out as the API does (alpha_prime).
 std::string plain_name(std::string_view label) {
   std::string name;
@@ -48,20 +67,27 @@ std::string plain_name(std::string_view label) {
   return name;
 }
 
-constexpr std::size_t kQuotedMax = 40;
-
-bool is_absent(std::string_view text) {
-  return text.empty() || text == "null" || text == "NaN" || text == "nan";
-}
-
-}  // namespace
-
 std::optional<MarketField> market_field_of(std::string_view label) {
   const std::string name = plain_name(label);
   for (const auto& [known, field] : kFieldNames) {
     if (name == known) return field;
   }
   return std::nullopt;
+}
+
+bool may_be_called(std::string_view label, MarketField field) {
+  const std::string name = plain_name(label);
+  std::string_view base = name;
+  const auto without = [&base](auto ends) {
+    const auto end = std::ranges::find_if(ends, [&](auto part) { return base.ends_with(part); });
+    if (end != ends.end()) base.remove_suffix(end->size());
+  };
+  if (field == kTime) {
+    without(kClocks);
+    return !name.empty() && std::ranges::find(kTimeNames, base) != kTimeNames.end();
+  }
+  without(kUnits);
+  return !name.empty() && std::ranges::find(kPriceNames, base) != kPriceNames.end();
 }
 
 void MarketRowBuilder::set_text(MarketField field, std::string_view text) {

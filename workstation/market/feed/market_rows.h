@@ -73,8 +73,13 @@ enum class MarketField {
   kNegativePrice,  ///< of a short party
 };
 
+/// A name without case, spaces and punctuation.
+std::string plain_name(std::string_view label);
+
 /// Field of a column label or JSON key; nothing for those that are not needed.
 std::optional<MarketField> market_field_of(std::string_view label);
+/// True of a name by which somebody may call the time or the price, whatever the unit behind it.
+bool may_be_called(std::string_view label, MarketField field);
 
 /// Collects the fields of one row and files it as a minute or a quarter-hour. Throws UserError.
 class MarketRowBuilder {
@@ -86,6 +91,8 @@ class MarketRowBuilder {
 
   void set_text(MarketField field, std::string_view text);
   void set_number(MarketField field, double value);
+  void set_time(std::int64_t utc_s) { utc_s_ = utc_s; }
+  void set_minute() { has_quarter_hour_ = true; }
   void finish(MarketRows& rows) const;
 
  private:

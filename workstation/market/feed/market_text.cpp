@@ -4,14 +4,13 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/plain_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
-#include "workstation/market/feed/market_csv.h"
 #include "workstation/market/feed/market_json.h"
 #include "workstation/market/feed/market_minutes.h"
 #include "workstation/market/feed/recorded_day.h"
 
 namespace bess {
 
-MarketRows parse_market_text(std::string_view text, std::string_view name) {
+MarketRows parse_market_text(std::string_view text, std::string_view name, const OwnForm& own) {
   if (is_recorded_csv(text)) return parse_recorded_rows(text, name);  // also with a torn end
   text = plain_text(text, name);
   if (text.find_first_not_of(" \t\r\n") == text.npos)
@@ -21,7 +20,7 @@ MarketRows parse_market_text(std::string_view text, std::string_view name) {
   if (is_spreadsheet_minute_csv(text)) {
     return parse_minute_file_rows(from_spreadsheet(text), name);
   }
-  return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name);
+  return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name, own);
 }
 
 }  // namespace bess

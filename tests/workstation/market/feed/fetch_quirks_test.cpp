@@ -499,7 +499,7 @@ std::vector<QuirkCase> others() {
       {"a column twice", formatted(with([](std::string t) {
          return replaced(std::move(t), "resolutioncode", "imbalanceprice");
        })),
-       "is not a number", 2},
+       "may be the price", 2},
       {"no column of prices", formatted(with([](std::string t) {
          return replaced(std::move(t), "imbalanceprice", "price");
        })),
