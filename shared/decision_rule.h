@@ -9,6 +9,7 @@
 
 #include "shared/action.h"
 #include "shared/crc32.h"
+#include "shared/features.h"
 #include "shared/fixed_point.h"
 #include "shared/price_thresholds.h"
 #include "shared/units_and_limits.h"
@@ -52,6 +53,16 @@ struct RulePoint {
 constexpr std::int32_t whole_price_of(std::int32_t price_centi_eur_per_mwh) {
   return clamp_to(rounding_divide(price_centi_eur_per_mwh, kCentiPerEur), -kThresholdMaxEurPerMwh,
                   kThresholdMaxEurPerMwh);
+}
+
+/// Of a decision at `state`, which has the price clamped.
+constexpr RulePoint rule_point(const LocalMinute& now, const LatticeState& state,
+                               std::int32_t price_centi_eur_per_mwh) {
+  return {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
+          .soc_index = state.soc_index,
+          .quarter_hour = state.quarter_hour,
+          .month = static_cast<std::int16_t>(now.month),
+          .context_class = state.context_class};
 }
 
 /// All ends belong to the box.
@@ -138,6 +149,16 @@ constexpr RuleLimits rule_limits_at(const Rules& rules, const RulePoint& point) 
     }
   }
   return limits;
+}
+
+/// The power of the nearest action that they leave, and of it what they leave.
+constexpr std::int32_t ruled_power_w(const RuleLimits& limits, std::int32_t power_w,
+                                     std::int32_t rated_w) {
+  const int sign = power_w > 0 ? 1 : power_w < 0 ? -1 : 0;
+  const int allowed = power_sign(nearest_allowed(limits.actions, static_cast<Action>(sign + 1)));
+  const auto most_w = static_cast<std::int32_t>(std::int64_t{rated_w} * limits.power_permille_max /
+                                                kFullPowerPermille);
+  return clamp_to(allowed == sign ? power_w : allowed * rated_w, -most_w, most_w);
 }
 
 /// Of the net's hash and every field, in order; without rules it is the net's own.

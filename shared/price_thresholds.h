@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "shared/action.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -29,6 +30,12 @@ struct PriceThresholds {
   }
   [[nodiscard]] constexpr bool high_binds_student() const {
     return high_eur_per_mwh <= kLatticePriceMaxEurPerMwh;
+  }
+  /// kIdle between them, where the student is asked.
+  [[nodiscard]] constexpr Action action_beyond(std::int32_t price_centi_eur_per_mwh) const {
+    if (price_centi_eur_per_mwh <= low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
+    if (price_centi_eur_per_mwh >= high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
+    return Action::kIdle;
   }
   friend constexpr bool operator==(const PriceThresholds&, const PriceThresholds&) = default;
 };

@@ -5,19 +5,6 @@
 #include "shared/outlook/exported_outlook.h"
 
 namespace bess {
-namespace {
-
-RulePoint rule_point(const LocalMinute& now, const LatticeState& state,
-                     std::int32_t price_centi_eur_per_mwh) {
-  return {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
-          .soc_index = state.soc_index,
-          .quarter_hour = state.quarter_hour,
-          .month = static_cast<std::int16_t>(now.month),
-          .context_class = state.context_class};
-}
-
-}  // namespace
-
 const ContextClasses& student_context() { return kExportedStudent.context; }
 
 const OutlookModel* student_outlook() { return exported_outlook(); }
@@ -68,13 +55,7 @@ int student_self_check_count() {
 
 const char* student_provenance() { return BESS_STUDENT_PROVENANCE; }
 
-std::uint32_t student_hash() {
-  if (kExportedOutlookHash == 0) return kExportedHash;
-  Crc32 crc;
-  crc.add_integer(kExportedHash);
-  crc.add_integer(kExportedOutlookHash);
-  return crc.value();
-}
+std::uint32_t student_hash() { return hash_by_outlook(kExportedHash, kExportedOutlookHash); }
 
 PriceThresholds student_thresholds() { return kExportedThresholds; }
 

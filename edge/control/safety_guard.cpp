@@ -13,7 +13,7 @@ Reason students_reason(const GuardInputs& in) {
 }  // namespace
 
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
-  if (in.link_ok) update_soc_latches(in.measurement.soc_e4, in.reserve_soc_e4);
+  if (in.link_ok) update_soc(in.measurement.soc_e4, in.reserve_soc_e4);
   GuardDecision decision;
   if (find_stop_reason(in, decision.reason)) {
     decision.power_w = 0;
@@ -98,17 +98,12 @@ GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
 
 /// To the nearest action that the rules leave, and to the power that they leave of it.
 void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) const {
-  const int sign = decision.power_w > 0 ? 1 : decision.power_w < 0 ? -1 : 0;
-  const int allowed = power_sign(nearest_allowed(rules.actions, static_cast<Action>(sign + 1)));
-  const std::int32_t power_w = allowed == sign ? decision.power_w : allowed * settings_.power_w;
-  const auto most_w = static_cast<std::int32_t>(std::int64_t{settings_.power_w} *
-                                                rules.power_permille_max / kFullPowerPermille);
-  const std::int32_t ruled_w = clamp_to(power_w, -most_w, most_w);
+  const std::int32_t ruled_w = ruled_power_w(rules, decision.power_w, settings_.power_w);
   if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
 }
 
 GuardDecision SafetyGuard::find_wish_of_price(const GuardInputs& in) const {
-  const Action of_price = action_beyond_thresholds(in.price_centi_eur_per_mwh);
+  const Action of_price = settings_.thresholds.action_beyond(in.price_centi_eur_per_mwh);
   if (of_price == Action::kIdle) return find_wish_between_thresholds(in);
   const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;
   // Where the student agrees it is no intervention.
@@ -127,21 +122,8 @@ GuardDecision SafetyGuard::find_wish_between_thresholds(const GuardInputs& in) c
           .reason = students_reason(in)};
 }
 
-/// kIdle between the thresholds, where the student is asked.
-Action SafetyGuard::action_beyond_thresholds(std::int32_t price_centi_eur_per_mwh) const {
-  const PriceThresholds& thresholds = settings_.thresholds;
-  if (price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
-  if (price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur) {
-    return Action::kDischarge;
-  }
-  return Action::kIdle;
-}
-
-void SafetyGuard::update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4) {
-  if (soc_e4 >= settings_.soc_max_e4) full_ = true;
-  if (soc_e4 < settings_.soc_max_e4 - settings_.soc_hysteresis_e4) full_ = false;
-  if (soc_e4 <= settings_.soc_min_e4) empty_ = true;
-  if (soc_e4 > settings_.soc_min_e4 + settings_.soc_hysteresis_e4) empty_ = false;
+void SafetyGuard::update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4) {
+  soc_.update(soc_e4);
   if (soc_e4 <= reserve_soc_e4) reserved_ = true;
   if (soc_e4 > reserve_soc_e4 + settings_.soc_hysteresis_e4 || reserve_soc_e4 == 0) {
     reserved_ = false;
@@ -159,11 +141,11 @@ void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decis
 }
 
 void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) const {
-  if (decision.power_w > 0 && full_) decision = {.power_w = 0, .reason = Reason::kSocFull};
+  if (decision.power_w > 0 && soc_.is_full) decision = {.power_w = 0, .reason = Reason::kSocFull};
   // Relief gives back what was just taken: it goes down to the bound, whatever was there before.
   const bool is_relief = decision.reason == Reason::kQuarterHourPeak;
   const std::int32_t soc_e4 = in.measurement.soc_e4;
-  const bool is_empty = is_relief ? soc_e4 <= settings_.soc_min_e4 : empty_;
+  const bool is_empty = is_relief ? soc_e4 <= settings_.soc_min_e4 : soc_.is_empty;
   const bool is_reserved = is_relief ? soc_e4 <= in.reserve_soc_e4 : reserved_;
   if (decision.power_w < 0 && is_empty) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
   if (decision.power_w < 0 && is_reserved) decision = {.power_w = 0, .reason = Reason::kReserve};

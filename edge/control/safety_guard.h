@@ -12,6 +12,7 @@
 #include "edge/control/site_range.h"
 #include "shared/decision_rule.h"
 #include "shared/price_thresholds.h"
+#include "shared/soc_latches.h"
 
 namespace bess {
 
@@ -61,7 +62,9 @@ constexpr std::int64_t price_age_s(std::int64_t now_utc_s, std::int64_t price_mi
 
 class SafetyGuard {
  public:
-  explicit SafetyGuard(const GuardSettings& settings) : settings_(settings) {}
+  explicit SafetyGuard(const GuardSettings& settings)
+      : settings_(settings),
+        soc_{settings.soc_min_e4, settings.soc_max_e4, settings.soc_hysteresis_e4} {}
 
   /// Power to order, and the reason when it is not the student's wish.
   GuardDecision decide(const GuardInputs& in);
@@ -80,18 +83,16 @@ class SafetyGuard {
   [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_of_price(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;
-  [[nodiscard]] Action action_beyond_thresholds(std::int32_t price_centi_eur_per_mwh) const;
   void apply_rules(const RuleLimits& rules, GuardDecision& decision) const;
-  void update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
+  void update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
   static void apply_relief(const SiteRange& site, GuardDecision& decision);
   static void apply_site(const SiteRange& site, GuardDecision& decision);
 
   GuardSettings settings_;
-  bool full_ = false;      ///< charging is closed until SoC is below soc_max - hysteresis
-  bool empty_ = false;     ///< discharging is closed until SoC is above soc_min + hysteresis
-  bool reserved_ = false;  ///< the same above the reserve
+  SocLatches soc_;
+  bool reserved_ = false;  ///< discharging is closed until SoC is above the reserve + hysteresis
 };
 
 }  // namespace bess

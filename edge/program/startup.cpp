@@ -3,9 +3,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
-#include <cinttypes>
-#include <cstdio>
-
 #include "edge/control/decision_signature.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
@@ -80,13 +77,7 @@ void journal_transport(const EdgeConfig& config) {
 
 std::string decision_signature_line() {
   set_market_time_zone();
-  const DecisionSignature found = replay_recorded_days();
-  char line[128];
-  std::snprintf(
-      line, sizeof line,
-      "student=%08" PRIx32 " decisions=%d charging=%d discharging=%d signature=%016" PRIx64,
-      student_hash(), found.decisions, found.charging, found.discharging, found.signature);
-  return line;
+  return signature_line(student_hash(), replay_recorded_days()).c_str();
 }
 
 void prepare_process() {

@@ -74,4 +74,13 @@ struct OutlookModel {
   [[nodiscard]] std::uint32_t hash() const;
 };
 
+/// Of a student by outlook: `student_hash` and the model's; without a model, 0, its own.
+constexpr std::uint32_t hash_by_outlook(std::uint32_t student_hash, std::uint32_t model_hash) {
+  if (model_hash == 0) return student_hash;
+  Crc32 crc;
+  crc.add_integer(student_hash);
+  crc.add_integer(model_hash);
+  return crc.value();
+}
+
 }  // namespace bess
