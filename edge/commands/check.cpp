@@ -91,6 +91,23 @@ void report_day_ahead(const EdgeConfig& config) {
   std::printf("day-ahead  %zu prices from %s\n", feed->rows().size(), source.c_str());
 }
 
+/// What it was trained on and is to be expected to do; neither keeps a controller from driving.
+void print_training(const EdgeConfig& config) {
+  const TrainingPeriod trained = student_training();
+  std::printf("trained    %s\n", training_days_text(trained).c_str());
+  const auto age = training_age_text(
+      trained, local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond).view());
+  if (!age.empty()) {
+    report(JournalLevel::kWarning, "note: trained until %s: retrain on newer prices", age.c_str());
+  }
+  const int cycles_e2 = student_cycles_per_day_e2();
+  if (cycles_e2 < 0) return static_cast<void>(std::printf("cycles     a day: not known\n"));
+  std::printf(
+      "cycles     expect about %.1f full cycles a day; to limit them, set [battery] "
+      "wear_eur_per_mwh or cycles_per_day_max of bess-train and retrain\n",
+      cycles_e2 / 100.0);
+}
+
 void print_thresholds(const EdgeConfig& config) {
   const ThresholdNote note =
       compare_thresholds(config.control.guard.thresholds, student_thresholds());
@@ -201,6 +218,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
+  print_training(config);
   std::printf("context    %s\n", context_note(student_context()).c_str());
   std::printf("map        %s%s%s; control = %s\n", config.battery.map.name.c_str(),
               config.battery.map.variant.empty() ? "" : ", variant ",

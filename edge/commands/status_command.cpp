@@ -16,6 +16,7 @@
 #include "edge/why/next_decision.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
+#include "shared/training_period.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
@@ -51,7 +52,8 @@ constexpr const char* kHelp =
 What comes next is told while it runs: the next decision if price and SoC stay, reserves and full
 charges of the plan, and keys of the settings that have no effect. Health is ok, degraded (with
 the reasons) or not running. A status older than two cycles is a WARN, older than four CRITICAL.
-Of a controller that has ended, what it was last and when that was.
+Of a controller that has ended, what it was last and when that was. Training days that are old or
+of another price regime are a WARN to retrain, and no matter of health.
 Exit codes:
   0 ok
   1 degraded, or the files cannot be read
@@ -316,6 +318,17 @@ void print_controller(JsonValue s, bool is_running) {
   std::printf(", version %s, student %s\n", text_of(s["version"]), text_of(s["student"]));
 }
 
+TrainingPeriod training_of(JsonValue s) {
+  return {s["trained_from"].text_or(""), s["trained_until"].text_or("")};
+}
+
+/// Why the student should be retrained, or empty: no matter of health, for it decides as it did.
+std::string retraining_note(const EdgeConfig& config, JsonValue s) {
+  const auto today = local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const auto age = training_age_text(training_of(s), today.view());
+  return age.empty() ? "" : formatted("trained until %s: retrain on newer prices", age.c_str());
+}
+
 void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
                 const TrialState& update) {
   const JsonValue status = published.status.value();
@@ -325,6 +338,9 @@ void print_text(const EdgeConfig& config, const PublishedStatus& published, cons
   } else if (status.exists()) {
     const bool is_running = health.level != HealthLevel::kNotRunning;
     print_controller(status, is_running);
+    std::printf("trained    %s\n", training_days_text(training_of(status)).c_str());
+    const std::string note = retraining_note(config, status);
+    if (!note.empty()) std::printf("           WARN: %s\n", note.c_str());
     const char* const variant = text_of(status["variant"]);
     const char* const part = is_true(status["control"]) ? "driving" : "reading";
     std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at",
@@ -361,6 +377,7 @@ void print_json(const EdgeConfig& config, PublishedStatus published, const Healt
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
   if (!config.contact.view().empty()) status.set("contact", config.contact.view());
+  if (is_known) status.set("retrain", retraining_note(config, status.value()));
   NextDecision next;
   if (health.level != HealthLevel::kNotRunning && find_next(config, next)) {
     status.set("next", next_decision_json(next));

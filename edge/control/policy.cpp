@@ -55,6 +55,10 @@ int student_self_check_count() {
 
 const char* student_provenance() { return BESS_STUDENT_PROVENANCE; }
 
+TrainingPeriod student_training() { return kExportedTraining; }
+
+int student_cycles_per_day_e2() { return BESS_STUDENT_CYCLES_PER_DAY_E2; }
+
 std::uint32_t student_hash() { return hash_by_outlook(kExportedHash, kExportedOutlookHash); }
 
 PriceThresholds student_thresholds() { return kExportedThresholds; }

@@ -10,6 +10,7 @@
 #include "shared/features.h"
 #include "shared/outlook/outlook_model.h"
 #include "shared/price_thresholds.h"
+#include "shared/training_period.h"
 
 namespace bess {
 
@@ -48,6 +49,9 @@ std::int32_t student_price_quartile(int quartile);
 int count_student_self_check_failures();
 int student_self_check_count();
 const char* student_provenance();
+TrainingPeriod student_training();
+/// In hundredths, as the exporter expects them; negative: not known.
+int student_cycles_per_day_e2();
 /// Of the weights, and of the rules that the guard enforces and the outlook where there are any.
 std::uint32_t student_hash();
 /// What the exported student was proved for; the guard's own thresholds may be others.

@@ -23,6 +23,9 @@
 #define BESS_STUDENT_VIOLATIONS_PROPERTY_2 0
 #define BESS_STUDENT_VIOLATIONS_PROPERTY_3 0
 #define BESS_STUDENT_PROVENANCE "bess-train 0.1.0 c51 on benchmark_minutes_2023.csv.gz, by level on the stochastic program, 51 atoms to +-51288 EUR/h, seed 1, best at step 1000 of 1500; monotone by construction, fidelity 1, 600 epochs, seed 1"
+#define BESS_STUDENT_TRAINED_FROM "2023-01-01"
+#define BESS_STUDENT_TRAINED_UNTIL "2023-05-22"
+#define BESS_STUDENT_CYCLES_PER_DAY_E2 448
 #define BESS_STUDENT_CONTEXT_IS_LEVEL 1
 BESS_STUDENT_CONST int16_t bess_student_level_edge_eur_per_mwh[11] = {
 1,23,45,67,89,111,133,155,177,199,221

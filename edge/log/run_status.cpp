@@ -30,6 +30,8 @@ FixedText<kCapacity> quotable(const FixedText<kCapacity>& text) {
 void add_identity(const RunIdentity& id, TextBuffer& json) {
   json.add("  \"version\": \"%s\",\n  \"student\": \"%08x\",\n  \"provenance\": \"%s\",\n",
            id.version.c_str(), id.student_hash, quotable(id.student_provenance).c_str());
+  json.add("  \"trained_from\": \"%s\",\n  \"trained_until\": \"%s\",\n", id.trained_from.c_str(),
+           id.trained_until.c_str());
   json.add("  \"context\": \"%s\",\n", id.context.c_str());
   json.add("  \"map\": \"%s\",\n  \"variant\": \"%s\",\n  \"battery\": \"%s\",\n",
            quotable(id.map).c_str(), quotable(id.variant).c_str(), quotable(id.battery).c_str());

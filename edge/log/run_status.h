@@ -29,7 +29,8 @@ struct RunIdentity {
   FixedText<31> version;
   std::uint32_t student_hash = 0;
   FixedText<255> student_provenance;
-  FixedText<7> context = "month";  ///< what its context class is made from, or "level"
+  FixedText<10> trained_from, trained_until;  ///< local dates; empty: not known
+  FixedText<7> context = "month";             ///< what its context class is made from, or "level"
   FixedText<31> map;
   FixedText<31> variant;
   FixedText<159> battery;  ///< "127.0.0.1:502 unit 85"

@@ -12,6 +12,8 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.version = BESS_VERSION;
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();
+  identity.trained_from = student_training().first_day;
+  identity.trained_until = student_training().last_day;
   identity.context = context_name(student_context().kind);
   identity.map = config.battery.map.name.view();
   identity.variant = config.battery.map.variant.view();

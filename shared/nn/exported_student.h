@@ -11,6 +11,7 @@
 #include "shared/decision_rule.h"
 #include "shared/nn/student_net.h"
 #include "shared/price_thresholds.h"
+#include "shared/training_period.h"
 
 namespace bess {
 
@@ -64,6 +65,18 @@ inline constexpr std::int64_t kExportedViolations = BESS_STUDENT_VIOLATIONS_PROP
                                                     BESS_STUDENT_VIOLATIONS_PROPERTY_3;
 static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount && kExportedViolations == 0,
               "student_weights.h is not proved over the whole lattice: export it again");
+
+#ifndef BESS_STUDENT_TRAINED_UNTIL  // a header of before
+#define BESS_STUDENT_TRAINED_FROM ""
+#define BESS_STUDENT_TRAINED_UNTIL ""
+#endif
+#ifndef BESS_STUDENT_CYCLES_PER_DAY_E2
+#define BESS_STUDENT_CYCLES_PER_DAY_E2 -1
+#endif
+inline constexpr TrainingPeriod kExportedTraining{BESS_STUDENT_TRAINED_FROM,
+                                                  BESS_STUDENT_TRAINED_UNTIL};
+static_assert(kExportedTraining.is_sound(),
+              "the training days of student_weights.h were edited by hand: export it again");
 
 /// What the guard enforces of the operator's rules; a header without them has no table.
 #ifdef BESS_STUDENT_GUARD_RULE_COUNT

@@ -1,10 +1,13 @@
-// The small shared parts: the one argmax, the checksum, the fixed-capacity vector and text.
+// The small shared parts: the one argmax, the checksum, the fixed-capacity vector and text, the
+// latches of the SoC, the age of training days.
 #include <gtest/gtest.h>
 
 #include "edge/base/static_vector.h"
 #include "shared/action.h"
 #include "shared/crc32.h"
 #include "shared/fixed_text.h"
+#include "shared/soc_latches.h"
+#include "shared/training_period.h"
 
 namespace bess {
 namespace {
@@ -66,6 +69,51 @@ TEST(FixedText, CutsAndSaysSo) {
   EXPECT_FALSE(text.assign("fives"));
   EXPECT_EQ(text.view(), "five");
   EXPECT_EQ(text.c_str()[4], '\0');
+}
+
+TEST(SocLatches, OpenOnlySomeWayBackInside) {
+  SocLatches soc{1'000, 10'000, 50};
+  const struct {
+    std::int32_t soc_e4;
+    bool full, empty;
+  } walk[] = {{9'999, false, false}, {10'000, true, false}, {9'950, true, false},
+              {9'949, false, false}, {1'001, false, false}, {1'000, false, true},
+              {1'050, false, true},  {1'051, false, false}};
+  for (const auto& at : walk) {
+    soc.update(at.soc_e4);
+    EXPECT_EQ(soc.is_full, at.full) << at.soc_e4;
+    EXPECT_EQ(soc.is_empty, at.empty) << at.soc_e4;
+  }
+}
+
+/// 180 days of one price regime, and a day on either side of each boundary.
+TEST(TrainingPeriod, IsToldOfWhenItIsOldOrOfAnotherRegime) {
+  const struct {
+    const char *last, *today, *told;
+  } cases[] = {
+      {"2023-05-22", "2023-05-22", ""},
+      {"2023-05-22", "2023-11-18", ""},
+      {"2023-05-22", "2023-11-19", "181 days ago"},
+      {"2024-05-20", "2024-05-21", ""},
+      {"2024-05-21", "2024-05-22",
+       "1 days ago, before the price regime from 22 May 2024 (dead band and floor, local mFRR)"},
+      {"2024-05-22", "2024-05-23", ""},
+      {"2024-11-25", "2024-11-26",
+       "1 days ago, before the price regime from 26 November 2024 (PICASSO)"},
+      {"2023-05-22", "2026-11-27",
+       "1285 days ago, before the price regime from 1 October 2025 (day-ahead in quarter-hours)"},
+      {"2025-10-01", "2025-12-31", ""},
+      {"2023-05-22", "1970-01-01", ""},  // a clock that nobody has set
+      {"", "2026-11-27", ""},
+      {"2023-02-30", "2026-11-27", ""},
+  };
+  for (const auto& c : cases) {
+    EXPECT_EQ(training_age_text({c.last, c.last}, c.today).view(), c.told)
+        << c.last << ' ' << c.today;
+  }
+  EXPECT_TRUE(TrainingPeriod{}.is_sound());
+  EXPECT_FALSE((TrainingPeriod{"2023-05-22", "2023-05-21"}.is_sound()));
+  EXPECT_FALSE((TrainingPeriod{"2023-05-22", ""}.is_sound()));
 }
 
 }  // namespace

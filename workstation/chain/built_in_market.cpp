@@ -22,7 +22,7 @@ MinuteSeries built_in_market() {
 }
 
 std::string built_in_market_provenance() {
-  return fmt::format("Simulated, not real: {}, seed {}", kBuiltInMarketName, kSeed);
+  return fmt::format("{}: {}, seed {}", kSimulatedProvenance, kBuiltInMarketName, kSeed);
 }
 
 }  // namespace bess

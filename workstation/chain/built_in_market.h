@@ -13,4 +13,7 @@ MinuteSeries built_in_market();
 /// What its minute file says about it.
 std::string built_in_market_provenance();
 
+/// How the provenance of made-up prices begins.
+inline constexpr const char* kSimulatedProvenance = "Simulated, not real";
+
 }  // namespace bess

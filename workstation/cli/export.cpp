@@ -1,4 +1,5 @@
-// bess-train export: proves a student once more and writes the weight header of the edge.
+// bess-train export: proves a student once more and writes the weight header of the edge, with the
+// signature that its build will have.
 #include "workstation/student/export.h"
 
 #include <fmt/core.h>
@@ -27,24 +28,46 @@ struct ExportArguments {
        broken_text(demand_counts(c)));
 }
 
+void print_next(const ExportArguments& options, const std::filesystem::path& folder) {
+  if (options.out.empty()) {
+    fmt::print("next, here:            cmake --build build --target bess-edge\n");
+  } else {
+    fmt::print("next, as a package:    tools/package --student {}\n", folder.string());
+  }
+  fmt::print("or, on a Raspberry Pi: tools/flash update-weights USER@HOST --student {}\n",
+             options.student);
+}
+
 void run_export(const ExportArguments& options) {
-  const std::string out = options.out.empty() ? header_to_replace().string() : options.out;
-  require_distinct({{"--out", out}}, {{"--student", options.student}});
+  const std::filesystem::path out =
+      options.out.empty() ? header_to_replace() : std::filesystem::path(options.out);
+  const auto signature = std::filesystem::path(out).replace_filename(kDecisionSignatureFile);
+  require_distinct({{"--out", out.string()}, {kDecisionSignatureFile, signature.string()}},
+                   {{"--student", options.student}});
   require_writable(out);
+  const bool has_folder = !is_special_file(out);
+  if (has_folder) require_writable(signature);
   const Verdict verdict =
       prove(load_student(options.student), options.common.resolve().train.threads);
   const auto* student = std::get_if<ProvedStudent>(&verdict);
   if (student == nullptr) refuse(options.student, student_of(verdict).certificate);
+  const std::string decided = decision_signature_line(student->file());
   write_file(out, format_weight_header(*student));
-  fmt::print("{}: weights {:08x}, proved, written\n", out, student_weights_hash(student->net()));
+  fmt::print("{}: written{}, weights {:08x}, proved\n", out.string(),
+             options.out.empty() ? " into the source tree" : "",
+             student_weights_hash(student->net()));
+  if (!has_folder) return;
+  write_file(signature, decided + '\n');
+  fmt::print("{}: written, {}\n", signature.string(), decided);
+  print_next(options, signature.has_parent_path() ? signature.parent_path() : ".");
 }
 
 }  // namespace
 
 void add_export_command(ProgramCommand& app) {
   auto options = std::make_shared<ExportArguments>();
-  ProgramCommand command =
-      app.subcommand("export", "Prove a student and write it as the edge's weight header");
+  ProgramCommand command = app.subcommand(
+      "export", "Prove a student and write it as the edge's weight header, with its signature");
   command.option("--student", options->student, "Student file").required();
   command.option("--out", options->out,
                  "Header to write; without it edge/generated/student_weights.h of the source tree "

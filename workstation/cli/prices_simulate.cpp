@@ -8,6 +8,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/chain/built_in_market.h"
 #include "workstation/cli/commands.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_day_ahead.h"
@@ -36,16 +37,17 @@ void run_prices_simulate(const PricesSimulateArguments& options) {
   const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, options.seed);
   write_minute_file(
       options.out, series,
-      fmt::format("Simulated, not real: bess-train {} prices simulate --days {} --seed {} --start "
+      fmt::format("{}: bess-train {} prices simulate --days {} --seed {} --start "
                   "{}\nParameters fitted to Elia open data (CC BY 4.0): ods047 2023-01-01 to "
                   "2023-05-23, ods045, ods161",
-                  BESS_VERSION, options.days, options.seed, format_local_date(start)));
+                  kSimulatedProvenance, BESS_VERSION, options.days, options.seed,
+                  format_local_date(start)));
   if (!options.day_ahead_out.empty()) {
-    write_day_ahead_file(
-        options.day_ahead_out, simulate_day_ahead(quarter_hours, options.seed),
-        fmt::format("Simulated, not real: day-ahead prices of bess-train {} prices simulate --days "
-                    "{} --seed {} --start {}",
-                    BESS_VERSION, options.days, options.seed, format_local_date(start)));
+    write_day_ahead_file(options.day_ahead_out, simulate_day_ahead(quarter_hours, options.seed),
+                         fmt::format("{}: day-ahead prices of bess-train {} prices simulate --days "
+                                     "{} --seed {} --start {}",
+                                     kSimulatedProvenance, BESS_VERSION, options.days, options.seed,
+                                     format_local_date(start)));
   }
   fmt::print("{}: {} from {}, seed {}, {} minutes\n", options.out,
              counted(static_cast<std::size_t>(options.days), "simulated day"),

@@ -1,11 +1,13 @@
 // bess-train run: the whole chain into one folder, from prices to the weight header and the report.
 #include <fmt/core.h>
 
+#include <ctime>
 #include <memory>
 #include <optional>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/chain/built_in_market.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/config_plausibility.h"
 #include "workstation/chain/folder_lock.h"
@@ -29,6 +31,16 @@ struct RunArguments {
   bool json = false;
 };
 
+/// Made-up prices are of no day: their file says so.
+void warn_old_prices(const RunPlan& plan) {
+  if (plan.record.prices == run_file::kSimulatedPrices) return;
+  const std::string warning = old_prices(plan.series, std::time(nullptr));
+  if (warning.empty()) return;
+  const std::string prices = read_file(plan.folder.path / plan.record.prices);
+  if (prices.starts_with(fmt::format("# {}", kSimulatedProvenance))) return;
+  fmt::print(stderr, "bess-train: warning: {}\n", warning);
+}
+
 /// Plans, claims the folder and goes through all stages.
 void run_one(const RunRequest& request, std::FILE* messages) {
   std::optional<FolderLock> lock;
@@ -39,6 +51,7 @@ void run_one(const RunRequest& request, std::FILE* messages) {
     here.emplace_back("prices", plan.record.value("prices"));
     warn_learnt_otherwise(plan.record.teacher_file, here);
   }
+  warn_old_prices(plan);
   if (plan.record.teacher_file.empty()) warn_long_training(plan.record.config(plan.folder));
   require_writable(plan.folder.record());
   if (!lock) lock.emplace(plan.folder.path);

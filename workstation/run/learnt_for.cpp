@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cinttypes>
 #include <cstdio>
 
+#include "shared/training_period.h"
 #include "shared/utc_text.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/market/series/price_regime.h"
@@ -16,21 +16,6 @@ namespace bess {
 namespace {
 
 constexpr const char* kPricesKey = "prices";  // as in a run's record
-
-/// What prices_hash() wrote, read back.
-std::optional<UtcSpan> span_of(const Entries& there) {
-  const auto prices = std::ranges::find(there, kPricesKey, &Entries::value_type::first);
-  if (prices == there.end()) return {};
-  std::int64_t minutes = 0;
-  char from[32] = {};
-  std::int64_t from_utc_s = 0;
-  if (std::sscanf(prices->second.c_str(), "crc32 %*8x, %" SCNd64 " minutes from %31s", &minutes,
-                  from) != 2 ||
-      !parse_utc(from, from_utc_s)) {
-    return {};
-  }
-  return UtcSpan{from_utc_s, from_utc_s + 60 * minutes};
-}
 
 /// Keys that `there` has not, with the value that they have unless set: a file from before a key
 /// was learnt as if the key were not set.
@@ -88,12 +73,25 @@ std::string learnt_otherwise(const Entries& there, const Entries& here) {
 
 std::string unknown_regimes(const Entries& there, const MarketSteps& market,
                             const std::vector<MarketDay>& days) {
-  const auto learnt = span_of(there);
+  const auto learnt = learnt_span(there);
   if (!learnt || days.empty()) return {};
   const std::string regimes = regimes_not_learnt(*learnt, market.span_of(days));
   if (regimes.empty()) return {};
   return fmt::format("its prices are of {} to {}, these days of another regime: {}",
                      date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
+}
+
+std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
+  constexpr std::int64_t kDay_s = 86'400;
+  const auto date = [](std::int64_t utc_s) { return local_date_text(utc_s); };
+  const auto newest = date(series.utc_s(series.size()) - 1);
+  const auto age = training_age_text({newest.view(), newest.view()}, date(now_utc_s).view());
+  if (age.empty()) return {};
+  return fmt::format(
+      "the newest day of these prices, {}, was {}; newer ones: bess-train prices fetch --from {} "
+      "--to {} --out FILE, then run --prices FILE",
+      newest.view(), age.view(), date(now_utc_s - 365 * kDay_s).view(),
+      date(now_utc_s - kDay_s).view());
 }
 
 void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& here,

@@ -35,6 +35,10 @@ std::string unknown_regimes(const Entries& there, const MarketSteps& market,
 void warn_unknown_regimes(const std::string& what, const MarketSteps& fitting,
                           const MarketSteps& market, const std::vector<MarketDay>& days);
 
+/// One line for who trains on these prices at `now_utc_s`, when their newest day is old or lies in
+/// another price regime, and how to get newer ones; else empty.
+std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s);
+
 /// One line on stderr when there is something to tell; of `days`, when they are given.
 void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& here,
                            const MarketSteps& market = {}, const std::vector<MarketDay>& days = {});

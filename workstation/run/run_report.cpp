@@ -76,6 +76,15 @@ void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
   if (!projected.empty()) under(kUnderAllRules, projected);
 }
 
+/// So often that a warranty may not allow it, and what to set then.
+std::string cycles_text(const StudentFile& student) {
+  if (!student.cycles_per_day) return {};
+  return fmt::format(
+      "expect about {:.1f} full cycles a day of it (validation days); limit them by [battery] "
+      "wear_eur_per_mwh or cycles_per_day_max\n",
+      *student.cycles_per_day);
+}
+
 }  // namespace
 
 void require_test_days(const MarketSteps& market, const std::string& prices) {
@@ -134,7 +143,8 @@ std::vector<std::string> write_run_report(const RunResults& run,
                "\n" + walk_forward_text(run.walk_forward) + "\n\n";
   }
   summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
-             whole_battery_text(evaluations) + violations_text(run.plain->certificate, certificate);
+             whole_battery_text(evaluations) + cycles_text(run.corrected) +
+             violations_text(run.plain->certificate, certificate);
   if (const auto prices = rule_prices_of(evaluations)) {
     summary += '\n';
     summary += rule_prices_text(*prices);

@@ -44,9 +44,16 @@ Verdict judge(StudentFile student, const DistilOptions& options) {
 /// A student on the way, and what it earns on validation days.
 struct Candidate {
   StudentNet net;
-  double score;
+  ValidationTrial trial;
   int epoch;
+  [[nodiscard]] double score() const { return trial.profit; }
 };
+
+/// Rounded as the file holds it, so that a header is the same whatever it is made from.
+void note_cycles(const ValidationTrial& trial, StudentFile& student) {
+  if (!std::isfinite(trial.cycles_per_day)) return;  // of no day
+  student.cycles_per_day = std::round(trial.cycles_per_day * 100) / 100;
+}
 
 /// Appends the candidates of a round, which are ordered by score, in time; those before `chosen`
 /// disobey.
@@ -57,7 +64,7 @@ void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chos
     const CheckpointState state = i < chosen    ? CheckpointState::kDisobeys
                                   : i == chosen ? CheckpointState::kChosen
                                                 : CheckpointState::kPassedOver;
-    checkpoints.push_back({round, candidates[i].epoch, candidates[i].score, state});
+    checkpoints.push_back({round, candidates[i].epoch, candidates[i].score(), state});
   }
   std::sort(
       checkpoints.begin() + before, checkpoints.end(),
@@ -147,7 +154,7 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
       StudentNet net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
       net.context = teacher.context;
       student.net = net;
-      candidates.push_back({net, chooses ? score(student) : 0.0,
+      candidates.push_back({net, chooses ? score(student) : ValidationTrial{},
                             epochs_before + static_cast<int>(std::lround(done * epochs))});
     });
     epochs_before += epochs;
@@ -167,7 +174,9 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
       teller.add(std::move(look.round), result.rounds);
       continue;
     }
-    student.net = (obedient == candidates.end() ? candidates.front() : *obedient).net;
+    const Candidate& taken = obedient == candidates.end() ? candidates.front() : *obedient;
+    student.net = taken.net;
+    if (chooses) note_cycles(taken.trial, student);
     result.verdict = judge(student, options);
     counterexamples = student_of(result.verdict).certificate.counterexamples;
     teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
@@ -183,9 +192,9 @@ StudentScore validation_score(const MarketSteps& market, const BatteryParameters
                               double initial_soc_frac) {
   return [&market, &battery, initial_soc_frac](const StudentFile& student) {
     StudentPolicy policy(student.net, student.outlook);
-    return evaluate(market, market.days_of(Split::kValidation), policy,
-                    {battery, initial_soc_frac, true})
-        .profit_eur_per_day_per_mwh();
+    const Evaluation trial = evaluate(market, market.days_of(Split::kValidation), policy,
+                                      {battery, initial_soc_frac, true});
+    return ValidationTrial{trial.profit_eur_per_day_per_mwh(), trial.cycles_per_day()};
   };
 }
 
@@ -221,11 +230,14 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.net = quantise_student(distiller.parameters(), teacher.price_map);
     student.net.context = teacher.context;
     epochs_done += epochs;
+    const bool is_tried = score && options.correct;  // the last is taken, whatever it earns
+    const ValidationTrial trial = is_tried ? score(student) : ValidationTrial{};
+    if (is_tried) note_cycles(trial, student);
     result.verdict = judge(student, options);
-    if (score && options.correct) {  // the last one is taken, whatever it earns
+    if (is_tried) {
       const bool is_proved = std::holds_alternative<ProvedStudent>(result.verdict);
       result.checkpoints.push_back(
-          {static_cast<int>(round) + 1, epochs_done, score(student),
+          {static_cast<int>(round) + 1, epochs_done, trial.profit,
            is_proved ? CheckpointState::kChosen : CheckpointState::kDisobeys});
     }
     teller.add(round_of(student_of(result.verdict).certificate), result.rounds);

@@ -21,8 +21,11 @@ struct CorrectionResult {
   std::vector<StudentCheckpoint> checkpoints = {};  ///< in time; empty where nothing was scored
 };
 
-/// What a student earns on validation days.
-using StudentScore = std::function<double(const StudentFile&)>;
+/// What a student earns on validation days, EUR per day per MWh, and its full cycles a day.
+struct ValidationTrial {
+  double profit, cycles_per_day;
+};
+using StudentScore = std::function<ValidationTrial(const StudentFile&)>;
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
 /// round, no repair and no proof: violations are counted in a sample of the contexts. By

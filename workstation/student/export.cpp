@@ -3,11 +3,15 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "shared/decision_signature.h"
 #include "shared/outlook/outlook_check.h"
+#include "shared/soc_latches.h"
+#include "shared/training_period.h"
 #include "workstation/base/random.h"
 #include "workstation/student/rule_header.h"
 
@@ -126,6 +130,21 @@ std::string certificate_macros(const Certificate& c) {
       c.states_evaluated, c.violations_of(1), c.violations_of(2), c.violations_of(3));
 }
 
+/// What people are told of it; nothing of it decides.
+std::string training_macros(const StudentFile& student) {
+  std::string text;
+  if (const auto span = learnt_span(student.learnt_for)) {
+    text += fmt::format(
+        "#define BESS_STUDENT_TRAINED_FROM \"{}\"\n#define BESS_STUDENT_TRAINED_UNTIL \"{}\"\n",
+        local_date_text(span->from_s).view(), local_date_text(span->until_s - 1).view());
+  }
+  if (student.cycles_per_day) {
+    text += fmt::format("#define BESS_STUDENT_CYCLES_PER_DAY_E2 {}\n",
+                        std::lround(*student.cycles_per_day * 100));
+  }
+  return text;
+}
+
 /// The plan's model as one array, each part behind its name, and how the exporter plans with it.
 std::string outlook_section(const OutlookModel& model) {
   std::string numbers;
@@ -143,6 +162,34 @@ std::string outlook_section(const OutlookModel& model) {
       "BESS_STUDENT_CONST int32_t bess_student_outlook[{}] = {{\n{}}};\n",
       model.hash(), outlook_check(model, *plan), size, numbers);
 }
+
+/// What is left of the edge's guard where nothing is wrong: thresholds, rules and the SoC's bounds.
+class UndisturbedGuard final : public ReplayedDecider {
+ public:
+  UndisturbedGuard(const StudentNet& net, const std::vector<GuardRule>& rules)
+      : net_(net), rules_(rules) {}
+
+  std::int32_t power_w(const ReplayedMoment& m) override {
+    soc_.update(m.soc_e4);
+    const LocalMinute now = local_minute_of(m.now_utc_s);
+    const std::int16_t context_class = net_.context.class_of(now.month, m.context_centi);
+    const LatticeState state =
+        make_lattice_state(now, context_class, m.soc_e4, m.price_centi_eur_per_mwh);
+    Action wish = PriceThresholds{}.action_beyond(m.price_centi_eur_per_mwh);
+    if (wish == Action::kIdle) wish = net_.decide(state);
+    const RuleLimits limits =
+        rule_limits_at(rules_, rule_point(now, state, m.price_centi_eur_per_mwh));
+    const std::int32_t power_w =
+        ruled_power_w(limits, power_sign(wish) * kReplayedPowerW, kReplayedPowerW);
+    const bool is_closed = power_w > 0 ? soc_.is_full : soc_.is_empty;
+    return is_closed ? 0 : power_w;
+  }
+
+ private:
+  const StudentNet& net_;
+  const std::vector<GuardRule>& rules_;
+  SocLatches soc_{kReplayedSocMinE4, kReplayedSocMaxE4, kReplayedSocHysteresisE4};
+};
 
 }  // namespace
 
@@ -162,6 +209,7 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += certificate_macros(student.certificate());
   text +=
       fmt::format("#define BESS_STUDENT_PROVENANCE {}\n", c_string_literal(student.provenance()));
+  text += training_macros(student.file());
   text += fmt::format("#define BESS_STUDENT_CONTEXT_IS_LEVEL {}\n",
                       net.context.kind == ContextKind::kLevel ? 1 : 0);
   text += vector("int16_t", "level_edge_eur_per_mwh", net.context.level_edge_eur_per_mwh);
@@ -178,6 +226,15 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += rule_section(student);
   if (student.file().outlook) text += outlook_section(student.file().outlook->model());
   return text + "/* clang-format on */\n";
+}
+
+std::string decision_signature_line(const StudentFile& student) {
+  const std::vector<GuardRule> rules = student.certificate.rules.guard_rules();
+  const OutlookModel* const outlook = student.outlook ? &student.outlook->model() : nullptr;
+  UndisturbedGuard guard(student.net, rules);
+  const std::uint32_t hash = hash_by_outlook(ruled_hash(student_weights_hash(student.net), rules),
+                                             outlook != nullptr ? outlook->hash() : 0);
+  return signature_line(hash, replay_recorded_days(guard, outlook)).c_str();
 }
 
 std::string c_string_literal(const std::string& text) {

@@ -12,6 +12,11 @@ namespace bess {
 /// seed.
 std::string format_weight_header(const ProvedStudent& student);
 
+/// Beside the header: what `bess-edge signature` has to print of a build with it. The time zone
+/// must be set.
+inline constexpr const char* kDecisionSignatureFile = "decision_signature.txt";
+std::string decision_signature_line(const StudentFile& student);
+
 /// A C string literal of `text`: no byte of it can end the literal, nor start an escape or a
 /// trigraph; what is not printable ASCII becomes a question mark.
 std::string c_string_literal(const std::string& text);

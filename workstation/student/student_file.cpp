@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <iterator>
 #include <numeric>
 #include <span>
@@ -11,6 +13,7 @@
 #include "shared/host/json_reader.h"
 #include "shared/nn/exported_student.h"
 #include "shared/outlook/exported_outlook.h"
+#include "shared/utc_text.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/quantise.h"
 
@@ -199,6 +202,20 @@ void check_net(const StudentNet& net, const std::string& name) {
   }
 }
 
+std::optional<UtcSpan> learnt_span(const Entries& learnt_for) {
+  const auto prices = std::ranges::find(learnt_for, "prices", &Entries::value_type::first);
+  if (prices == learnt_for.end()) return {};
+  std::int64_t minutes = 0;
+  char from[32] = {};
+  std::int64_t from_utc_s = 0;
+  if (std::sscanf(prices->second.c_str(), "crc32 %*8x, %" SCNd64 " minutes from %31s", &minutes,
+                  from) != 2 ||
+      !parse_utc(from, from_utc_s)) {
+    return {};
+  }
+  return UtcSpan{from_utc_s, from_utc_s + 60 * minutes};
+}
+
 void save_student(const std::filesystem::path& path, const StudentFile& student) {
   check_net(student.net, path.string());
   const bool has_rules = !student.certificate.rules.empty();
@@ -212,6 +229,7 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
                             {"certificate", certificate_json(student.certificate)},
                             {"context", context_name(student.net.context.kind)}});
   if (!student.learnt_for.empty()) json.set("learnt_for", learnt_for_json(student.learnt_for));
+  if (student.cycles_per_day) json.set("cycles_per_day", Decimals{*student.cycles_per_day, 2});
   if (has_rules) add_rule_claims(student.certificate, json);
   json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));
   visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
@@ -258,6 +276,10 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   if (student.net.context.is_outlook()) student.outlook = parse_outlook(in.object("outlook"), name);
   student.provenance = in.text("provenance");
   student.learnt_for = parse_learnt_for(json.value()["learnt_for"], name);
+  student.cycles_per_day = json.value()["cycles_per_day"].number();
+  if (student.cycles_per_day.value_or(0) < 0 || student.cycles_per_day.value_or(0) > 1000) {
+    fail("{}: \"cycles_per_day\" is not in 0..1000", name);
+  }
   return student;
 }
 

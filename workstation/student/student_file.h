@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "shared/host/json.h"
@@ -21,7 +22,11 @@ struct StudentFile {
   Entries learnt_for{};     ///< as the teacher was; empty: the file does not say
   /// By outlook: the plans that give the net its context.
   std::shared_ptr<const OutlookBook> outlook = nullptr;
+  std::optional<double> cycles_per_day{};  ///< full ones, on validation days
 };
+
+/// Of what a model was learnt for the span of its prices; none when it does not tell.
+std::optional<UtcSpan> learnt_span(const Entries& learnt_for);
 
 /// Written beside and renamed.
 void save_student(const std::filesystem::path& path, const StudentFile& student);

@@ -10,13 +10,12 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/run/run_folder.h"
+#include "workstation/student/export.h"
 
 namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSignature = "decision_signature.txt";
 
 void require_host_name(const std::string& id) {
   const auto is_of_a_name = [](unsigned char c) {
@@ -41,7 +40,8 @@ std::string version_in(const fs::path& folder, const std::string& architecture) 
 bool is_packaged(const fs::path& folder, const std::string& header,
                  const std::vector<std::string>& architectures) {
   const fs::path there = folder / run_file::kHeader;
-  return fs::exists(there) && read_file(there) == header && fs::exists(folder / kSignature) &&
+  return fs::exists(there) && read_file(there) == header &&
+         fs::exists(folder / kDecisionSignatureFile) &&
          std::ranges::none_of(architectures, [&](const std::string& architecture) {
            return version_in(folder, architecture).empty();
          });
@@ -91,7 +91,8 @@ bool package_class(const SweepFolder& sweep, const PackageRequest& request, Pack
     write_file(folder / run_file::kHeader, header);
     make_packages(request, folder, one.name);
   }
-  const std::string signature = read_file(folder / kSignature);  // "student=4d10ef93 decisions=..."
+  const std::string signature =
+      read_file(folder / kDecisionSignatureFile);  // "student=4d10ef93 decisions=..."
   one.student = signature.substr(signature.find('=') + 1, 8);
   one.version = version_in(folder, request.architectures.front());
   return is_due;

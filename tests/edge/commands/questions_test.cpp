@@ -10,10 +10,12 @@
 #include "edge/commands/command_line.h"
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
+#include "edge/log/run_status.h"
 #include "edge/why/local_moment.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/local_text.h"
+#include "shared/training_period.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -167,6 +169,35 @@ TEST_F(Questions, StatusSaysWhomToCall) {
   EXPECT_THAT(ask({"status"}).out, HasSubstr("\ncall       Ann, +32 2 000 00 00\n"));
   const Json status = Json::parse(ask({"status", "--json"}).out);
   EXPECT_STREQ(status.value()["contact"].text(), "Ann, +32 2 000 00 00");
+}
+
+/// What the controller published; whoever retrains late is told, and nobody is called for it.
+TEST_F(Questions, StatusTellsTheTrainingDays) {
+  const auto published = [&](const char* from, const char* until) {
+    RunIdentity identity;
+    identity.trained_from = from;
+    identity.trained_until = until;
+    char storage[kStatusBytes];
+    TextBuffer json(storage);
+    format_status_json(identity, {}, 5, json);
+    static_cast<void>(folder_.write("state/status.json", std::string(json.view())));
+  };
+  const std::string today{local_date_text(std::time(nullptr)).view()};
+  published("2023-01-01", today.c_str());
+  const Said fresh = ask({"status"});
+  EXPECT_THAT(fresh.out, HasSubstr("\ntrained    2023-01-01 to " + today + "\n"));
+  EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
+  published("2023-01-01", "2023-05-22");
+  const Said old = ask({"status"});
+  EXPECT_THAT(old.out, HasSubstr("2023-05-22\n           WARN: trained until "));
+  EXPECT_EQ(old.exit_code, fresh.exit_code);
+  const Json json = Json::parse(ask({"status", "--json"}).out);
+  EXPECT_STREQ(json.value()["trained_from"].text(), "2023-01-01");
+  EXPECT_STREQ(json.value()["trained_until"].text(), "2023-05-22");
+  EXPECT_THAT(json.value()["retrain"].text(), HasSubstr("before the price regime from "));
+  published("", "");
+  EXPECT_THAT(ask({"status"}).out, AllOf(HasSubstr("\ntrained    on unknown days\n"),
+                                         ::testing::Not(HasSubstr("retrain"))));
 }
 
 TEST_F(Questions, EarnedAddsTheDaysUp) {

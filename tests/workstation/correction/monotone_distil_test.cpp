@@ -212,7 +212,7 @@ TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
       std::ranges::find(result.checkpoints, CheckpointState::kChosen, &StudentCheckpoint::state);
   ASSERT_NE(chosen, result.checkpoints.end());
   EXPECT_EQ(chosen->validation_eur_per_day_per_mwh,
-            validation_score(school().market, {}, 0.5)(file));
+            validation_score(school().market, {}, 0.5)(file).profit);
   for (const StudentCheckpoint& other : result.checkpoints) {
     if (other.round != chosen->round) {
       EXPECT_EQ(other.state, CheckpointState::kDisobeys);

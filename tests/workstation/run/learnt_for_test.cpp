@@ -7,9 +7,11 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/training_period.h"
 #include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/chain/built_in_market.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/market/series/price_regime.h"
@@ -144,6 +146,32 @@ TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   EXPECT_EQ(of_teacher["policy"].text_or(""), std::string("teacher"));
   EXPECT_EQ(of_teacher["days"].number(), 28);
   EXPECT_GT(of_teacher["profit_eur_per_day_per_mwh"].number().value(), 0);
+}
+
+TEST(OldPrices, AreToldOfByTheClock) {
+  const MinuteSeries series = small_series(30);
+  const std::int64_t end_utc_s = series.utc_s(series.size());
+  EXPECT_EQ(old_prices(series, end_utc_s - 40 * kDay_s), "");
+  EXPECT_EQ(old_prices(series, end_utc_s + 179 * kDay_s), "");
+  const std::string told = old_prices(series, end_utc_s + 181 * kDay_s);
+  const std::string yesterday{local_date_text(end_utc_s + 180 * kDay_s).view()};
+  EXPECT_THAT(told, AllOf(HasSubstr(", was 182 days ago; "), HasSubstr("prices fetch --from "),
+                          HasSubstr(" --to " + yesterday + " --out ")));
+  EXPECT_THAT(old_prices(series, kPicasso_s), HasSubstr("(PICASSO)"));
+}
+
+TEST_F(LearntFor, ARunOnOldPricesSaysSoUnlessTheyAreMadeUp) {
+  interruption() = true;  // it ends with its first stage
+  for (const bool made_up : {false, true}) {
+    write_minute_file(prices_, small_series(30), made_up ? kSimulatedProvenance : "");
+    EXPECT_THROW(warnings("run --prices " + prices_ + " --out " + folder_.file("run")),
+                 Interrupted);
+    testing::internal::GetCapturedStdout();
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(said.find("prices fetch --from") == std::string::npos, made_up) << said;
+    std::filesystem::remove_all(folder_.file("run"));
+  }
+  interruption() = false;
 }
 
 TEST(PriceRegimes, BeginAtLocalMidnight) {

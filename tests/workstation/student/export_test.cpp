@@ -172,6 +172,17 @@ TEST(Export, CommittedHeaderIsCAndCpp) {
   expect_header_compiles(BESS_COMMITTED_STUDENT_DIR, BESS_STUDENT_PROVENANCE);
 }
 
+/// The workstation's replay and the edge's are of two programs: one number holds them together.
+TEST(Export, TheSignatureIsTheOneOfTheBuild) {
+  for (const std::string folder :
+       {BESS_COMMITTED_STUDENT_DIR, BESS_SOURCE_DIR "/tests/golden/outlook_student"}) {
+    const fs::path file = fs::path(folder) / "student.json";
+    const StudentFile student = fs::exists(file) ? load_student(file) : compiled_student();
+    EXPECT_EQ(decision_signature_line(student) + '\n',
+              read_file(fs::path(folder) / kDecisionSignatureFile));
+  }
+}
+
 struct ProvenanceCase {
   const char* name;
   std::string given, found;
@@ -210,6 +221,26 @@ void expect_header_is_refused(const std::string& header, const std::string& comp
   EXPECT_THAT(outcome.output, HasSubstr(complaint));
 }
 
+/// What people are told may be missing, but is not made up.
+TEST(Export, TheTrainingDaysAreToldAndAHeaderOfBeforeHasNone) {
+  EXPECT_THAT(format_weight_header(crowded_student()),
+              HasSubstr("#define BESS_STUDENT_TRAINED_FROM \"2024-02-29\"\n"
+                        "#define BESS_STUDENT_TRAINED_UNTIL \"2024-12-31\"\n"
+                        "#define BESS_STUDENT_CYCLES_PER_DAY_E2 321\n"));
+  const std::string header = committed_header();
+  const TemporaryFolder folder;
+  write_file(
+      folder.file("student_weights.h"),
+      std::regex_replace(header, std::regex("#define BESS_STUDENT_(TRAINED|CYCLES)_.*\n"), ""));
+  expect_header_compiles(fs::path(folder.file("student_weights.h")).parent_path().string(),
+                         BESS_STUDENT_PROVENANCE);
+  for (const char* day : {"2023-02-30", "2022-12-31", "1 May", ""}) {
+    expect_header_is_refused(
+        std::regex_replace(header, std::regex("(TRAINED_UNTIL) .*"), fmt::format("$1 \"{}\"", day)),
+        "edited by hand");
+  }
+}
+
 TEST(Export, DamagedHeaderDoesNotCompile) {
   std::string header = committed_header();
   const std::size_t digit = header.find_first_of("234567", header.find("layer2_weight"));
@@ -246,9 +277,8 @@ constexpr const char* kHeaderRules =
 
 const ProvedStudent& ruled_student() {
   static const Verdict verdict =
-      prove({crowded_net(),
-             {.thresholds = kCrowdedThresholds, .rules = parse_rules(kHeaderRules, "test.toml")},
-             kCrowdedProvenance},
+      prove(crowded_file({.thresholds = kCrowdedThresholds,
+                          .rules = parse_rules(kHeaderRules, "test.toml")}),
             2);
   return std::get<ProvedStudent>(verdict);
 }
@@ -279,6 +309,44 @@ TEST(Export, AHeaderWithRulesIsCAndCppAndAnswersItsGoldenPoints) {
   write_file(folder.file("student_weights.h"), format_weight_header(ruled_student()));
   expect_header_compiles(fs::path(folder.file("student_weights.h")).parent_path().string(),
                          kCrowdedProvenance);
+}
+
+/// The edge's own guard, with rules in its header, against what the exporter says of it.
+TEST(Export, TheEdgeDecidesWithRulesAsTheSignatureSays) {
+  const TemporaryFolder folder;
+  write_file(folder.file("student_weights.h"), format_weight_header(ruled_student()));
+  const std::string source = folder.write("a.cpp", R"(
+#include <cstdio>
+#include "edge/control/decision_signature.h"
+#include "edge/control/policy.h"
+#include "shared/local_time.h"
+int main() {
+  bess::set_market_time_zone();
+  std::puts(bess::signature_line(bess::student_hash(), bess::replay_recorded_days()).c_str());
+})");
+  std::vector<std::string> command{BESS_CXX_COMPILER,
+                                   "-std=c++20",
+                                   "-O1",
+                                   "-I",
+                                   fs::path(source).parent_path().string(),
+                                   "-I",
+                                   BESS_SOURCE_DIR,
+                                   "-o",
+                                   folder.file("program"),
+                                   source};
+  for (const char* const file :
+       {"edge/control/policy", "edge/control/decision_signature", "edge/control/safety_guard",
+        "shared/decision_signature", "shared/features", "shared/local_time",
+        "shared/outlook/outlook_check", "shared/outlook/outlook_model",
+        "shared/outlook/outlook_plan"}) {
+    command.push_back(fmt::format("{}/{}.cpp", BESS_SOURCE_DIR, file));
+  }
+  const Outcome built = run(command);
+  ASSERT_EQ(built.exit_code, 0) << built.output;
+  EXPECT_EQ(run({folder.file("program")}).output,
+            decision_signature_line(ruled_student().file()) + '\n');
+  EXPECT_NE(decision_signature_line(ruled_student().file()),
+            decision_signature_line(crowded_student().file()));
 }
 
 /// A row or an entry of the table that is changed or left out does not compile.
@@ -374,6 +442,12 @@ TEST(ExportCommand, WritesAProvedStudent) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_EQ(read_file(header), format_weight_header(crowded_student()));
   expect_header_compiles(folder.file("out"), kCrowdedProvenance);
+  const std::string signature = read_file(folder.file("out/decision_signature.txt"));
+  EXPECT_EQ(signature, decision_signature_line(crowded_student().file()) + '\n');
+  EXPECT_THAT(outcome.output,
+              testing::AllOf(HasSubstr(header + ": written"), HasSubstr(signature),
+                             HasSubstr("tools/package --student " + folder.file("out") + "\n"),
+                             HasSubstr("update-weights USER@HOST --student " + student + "\n")));
 }
 
 /// The file claims a proof; the prover runs again and counts what breaks it.

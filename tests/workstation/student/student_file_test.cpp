@@ -133,6 +133,30 @@ TEST(StudentFile, CompiledStudentRoundTrips) {
   EXPECT_EQ(again.provenance, BESS_STUDENT_PROVENANCE);
 }
 
+/// What the header tells people; a file of before knows less.
+TEST(StudentFile, DaysAndCyclesAreToldWhereTheyAreKnown) {
+  const TemporaryFolder folder;
+  const auto loaded = [&](const StudentFile& student) {
+    save_student(folder.file("student.json"), student);
+    return load_student(folder.file("student.json"));
+  };
+  StudentFile student = compiled_student();
+  EXPECT_FALSE(loaded(student).cycles_per_day);
+  EXPECT_FALSE(learnt_span(loaded(student).learnt_for));
+  student.learnt_for = {{"prices", "crc32 78d15778, 172740 minutes from 2022-12-31T23:00:00Z"}};
+  student.cycles_per_day = 4.48;
+  const auto span = learnt_span(loaded(student).learnt_for);
+  ASSERT_TRUE(span);
+  EXPECT_EQ(span->until_s - span->from_s, 60 * 172'740);
+  EXPECT_EQ(loaded(student).cycles_per_day, 4.48);
+  for (const char* const edited : {"", "today", "crc32 78d15778, 5 minutes from May"}) {
+    student.learnt_for = {{"prices", edited}};
+    EXPECT_FALSE(learnt_span(loaded(student).learnt_for)) << edited;
+  }
+  student.cycles_per_day = -1;
+  EXPECT_THROW(loaded(student), UserError);
+}
+
 /// Written before a file had counts: the thresholds stood beside the weights.
 TEST(StudentFile, Version1IsStillRead) {
   const StudentFile student =

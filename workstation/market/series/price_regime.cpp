@@ -2,35 +2,17 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 namespace bess {
-namespace {
 
-constexpr PriceRegime kRegimes[] = {
-    // The paper's: Elia's tariff of the balancing services until the local go-live of mFRR.
-    {std::numeric_limits<std::int64_t>::min(), "", "", "until 21 May 2024 (marginal price)"},
-    // Elia open data: ods046 and ods047 end, ods133 and ods134 begin; dead band of 25 MW, a floor
-    // under MIP; of 2024 every tenth quarter-hour settled below -200.
-    {1'716'328'800, "2024-05-22", "dead band, floor",
-     "from 22 May 2024 (dead band and floor, local mFRR)"},
-    // Belgium joins PICASSO (aFRR), as the trade press told of it; settled prices below -200 fall
-    // to one in a hundred.
-    {1'732'575'600, "2024-11-26", "PICASSO", "from 26 November 2024 (PICASSO)"},
-    // The day-ahead auction of Europe sells quarter-hours; until then hours, repeated.
-    {1'759'269'600, "2025-10-01", "day-ahead in quarter-hours",
-     "from 1 October 2025 (day-ahead in quarter-hours)"},
-};
-
-}  // namespace
-
-std::span<const PriceRegime> price_regimes() { return kRegimes; }
+std::span<const PriceRegime> price_regimes() { return kPriceRegimes; }
 
 std::vector<const PriceRegime*> regimes_met(const UtcSpan& span) {
   std::vector<const PriceRegime*> met;
-  for (const PriceRegime* regime = std::begin(kRegimes); regime != std::end(kRegimes); ++regime) {
+  for (const PriceRegime* regime = std::begin(kPriceRegimes); regime != std::end(kPriceRegimes);
+       ++regime) {
     const PriceRegime* const next = regime + 1;
-    const bool begins_before = next == std::end(kRegimes) || span.from_s < next->from_utc_s;
+    const bool begins_before = next == std::end(kPriceRegimes) || span.from_s < next->from_utc_s;
     if (span.until_s > regime->from_utc_s && begins_before) met.push_back(regime);
   }
   return met;

@@ -1,5 +1,4 @@
-// How the Belgian imbalance price came about, by date: a policy that learnt one way knows little of
-// another. Margins halved from 2024 to 2025.
+// Which of the price regimes (shared/price_regime.h) prices lie in.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "shared/price_regime.h"
+
 namespace bess {
 
 /// The end is excluded.
 struct UtcSpan {
   std::int64_t from_s, until_s;
-};
-
-struct PriceRegime {
-  std::int64_t from_utc_s;  ///< local midnight
-  const char* from_date;    ///< local, "2024-05-22"; empty of the first
-  const char* change;       ///< what changed with it, for a mark in a picture
-  const char* name;         ///< "from 26 November 2024 (PICASSO)"
 };
 
 /// Ascending; every moment belongs to one.
