@@ -15,7 +15,7 @@ cmake -G Ninja -C toolchains/release.cmake -DBESS_WORKSTATION=OFF -DBESS_TESTS=O
   -DBESS_NOTIFY=OFF -S . -B build >said 2>&1 ||
   fail "cannot be configured"
 ln -s "$build/bess-train" build
-cp "$source/tests/data/benchmark_minutes_2023.csv.gz" 2023.csv.gz
+cp "$source/tests/data/benchmark_minutes_2023.csv.gz" prices.csv.gz
 header_before=$(cksum edge/generated/student_weights.h)
 
 # The commands: what is indented between the two headings.
@@ -30,7 +30,7 @@ sed -i -e 's/^low_price_eur_per_mwh = .*/low_price_eur_per_mwh = -300/' \
 if [ -z "$BESS_README_FULL" ]; then
   printf '[distil]\nepochs = 60\n' >quick.toml
   sed -i 's/^epochs = .*/epochs = 60/' my.toml
-  sed -i 's/--prices 2023.csv.gz --out/--prices 2023.csv.gz --config quick.toml --out/' flow.sh
+  sed -i 's/--prices prices.csv.gz --out/--prices prices.csv.gz --config quick.toml --out/' flow.sh
 fi
 start=$(date +%s)
 sh -e flow.sh >said 2>&1 || fail "the flow fails"
@@ -46,7 +46,7 @@ grep -q '^#define BESS_STUDENT_TRAINED_FROM "2023-01-01"$' edge/generated/studen
   grep -q '^#define BESS_STUDENT_TRAINED_UNTIL "2023-05-22"$' edge/generated/student_weights.h ||
   fail "the header does not tell its training days"
 grep -q '^expect about [0-9.]* full cycles a day.* wear_eur_per_mwh or cycles_per_day_max$' \
-  runs/2023/summary.txt || fail "the summary does not tell the cycles"
+  runs/first/summary.txt || fail "the summary does not tell the cycles"
 grep -q 'warning: the newest day of these prices, 2023-05-22, was ' said ||
   fail "nothing is told of old prices"
 [ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] ||
@@ -55,4 +55,4 @@ grep -q 'low_price_eur_per_mwh: -500 | -300' said ||
   fail "'runs compare' does not tell what differs"
 grep -q '"low_price_eur_per_mwh":[[:space:]]*-300' runs/mine/student.json ||
   fail "the student is not bound to the new thresholds"
-cmp -s runs/2023/teacher.bin runs/mine/teacher.bin || fail "another teacher was used"
+cmp -s runs/first/teacher.bin runs/mine/teacher.bin || fail "another teacher was used"
