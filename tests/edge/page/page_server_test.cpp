@@ -305,7 +305,7 @@ TEST_F(PageServerTest, HalfOpenConnectionsKeepNobodyWaiting) {
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   come(1);
   std::this_thread::sleep_for(std::chrono::seconds(2));
-  const std::string rest = "y\r\nConnection: close\r\n\r\n";
+  const std::string rest = "X: y\r\nConnection: close\r\n\r\n";
   const std::string whole = "GET /page.css HTTP/1.1\r\nHost: 127.0.0.1\r\n" + rest;
   EXPECT_EQ(send(rude.back()->get(), whole.data(), whole.size(), MSG_NOSIGNAL),
             static_cast<ssize_t>(whole.size()));
