@@ -459,7 +459,7 @@ TEST_F(Processes, ThresholdsOtherThanTheProvedOnesAreSaidAtStart) {
 }
 
 TEST_F(Processes, BadStartsEndWithOneClearLine) {
-  site_.battery_port = 1;
+  site_.battery_port = 2;  // 1 is of another test, beside it
   site_.market_port = 1;
   const std::string config = site_.write_config();
   struct Start {
@@ -468,7 +468,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
     const char* message;
   };
   const Start starts[] = {
-      {{edge_program(), "--config", config}, 1, "battery at 127.0.0.1:1 unit 85: no connection"},
+      {{edge_program(), "--config", config}, 1, "battery at 127.0.0.1:2 unit 85: no connection"},
       {{edge_program(), "--config", "/nonexistent"}, 1, "cannot open"},
       {{edge_program(), "--confg", config}, 2, "unknown option --confg"},
       {{edge_program(), "--config", config, "--cycles", "x"}, 2, "needs a whole number"},
