@@ -9,7 +9,7 @@
 
 namespace bess {
 
-/// Older training days are told of.
+/// Training days older than this are reported.
 inline constexpr int kTrainingAgeDaysMax = 180;
 
 /// Local dates, "2023-01-01", the last included; empty: not known.

@@ -190,7 +190,7 @@ bool PageServer::bind(std::string& error) {
     error = "[page] host, port: " + settings_.host + ":" + std::to_string(settings_.port) +
             " cannot be listened on: is another program there?";
   }
-  // The library's own queue of five sends whoever comes sixth away for a second.
+  // The library's own queue is five long: a sixth client would wait for a second.
   if (is_bound) ::listen(listening_socket_, kQueued);
   return is_bound;
 }

@@ -48,7 +48,7 @@ grep -q '^#define BESS_STUDENT_TRAINED_FROM "2023-01-01"$' edge/generated/studen
 grep -q '^expect about [0-9.]* full cycles a day.* wear_eur_per_mwh or cycles_per_day_max$' \
   runs/first/summary.txt || fail "the summary does not tell the cycles"
 grep -q 'warning: the newest day of these prices, 2023-05-22, was ' said ||
-  fail "nothing is told of old prices"
+  fail "no warning of old prices"
 [ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] ||
   fail "bess-edge decides as before"
 grep -q 'low_price_eur_per_mwh: -500 | -300' said ||
