@@ -89,8 +89,7 @@ TEST(PricesWalk, Addresses) {
     if (walk.once_in(2)) url = with_slips(walk, url, 2);
     if (url.find('\0') != std::string::npos) continue;
     const UrlParts parts = url_parts(url);
-    walk.see(parts.authority_at, parts.login_bytes, parts.path_at, transport_of(url),
-             holds_login(url));
+    walk.see(parts.authority_at, parts.login_bytes, parts.path_at, holds_login(url));
     walk.see_text(loggable_url(url).view());
     if (i % 300 == 299) walk.end_line(i / 300);
   }
