@@ -126,6 +126,4 @@ class TomlTrapFinder {
   bool in_value_ = false;  ///< behind the = of a key
 };
 
-inline TomlTrap find_toml_trap(std::string_view toml) { return TomlTrapFinder(toml).find(); }
-
 }  // namespace bess

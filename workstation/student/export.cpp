@@ -130,7 +130,7 @@ std::string certificate_macros(const Certificate& c) {
       c.states_evaluated, c.violations_of(1), c.violations_of(2), c.violations_of(3));
 }
 
-/// What people are told of it; nothing of it decides.
+/// Training days and cycles a day, for people: nothing here decides.
 std::string training_macros(const StudentFile& student) {
   std::string text;
   if (const auto span = learnt_span(student.learnt_for)) {

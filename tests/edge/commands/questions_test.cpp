@@ -171,7 +171,7 @@ TEST_F(Questions, StatusSaysWhomToCall) {
   EXPECT_STREQ(status.value()["contact"].text(), "Ann, +32 2 000 00 00");
 }
 
-/// What the controller published; whoever retrains late is told, and nobody is called for it.
+/// What the controller published. Old training days are a warning, not a matter of health.
 TEST_F(Questions, StatusTellsTheTrainingDays) {
   const auto published = [&](const char* from, const char* until) {
     RunIdentity identity;

@@ -15,6 +15,8 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
+int trap_line(std::string_view toml) { return TomlTrapFinder(toml).find().line; }
+
 TomlValue parsed(std::string_view text) {
   TomlValue document;
   std::string error;
@@ -102,33 +104,31 @@ TEST(TomlDocument, AFileIsReadNoFurtherThanItCouldBeParsed) {
 }
 
 TEST(TomlTraps, NonAsciiIsFoundOutsideQuotesAndCommentsOnly) {
-  const auto line_of = [](std::string_view toml) { return find_toml_trap(toml).line; };
-  EXPECT_EQ(line_of(""), 0);
-  EXPECT_EQ(line_of("key = 1  # \u00E9\npath = \"\u00E9\"\n"), 0);
-  EXPECT_EQ(line_of("a = '\u00E9#'\nb = \"\\\"\u00E9\"\nc = 1"), 0);
-  EXPECT_EQ(line_of("a = \"\"\"\n\"\u00E9\"\n\"\"\"\nb = '''\n\u00E9'''"), 0);
-  EXPECT_EQ(line_of("a = 1\n\u00E9 = 2\n"), 2);
-  EXPECT_EQ(line_of("a = \"\"\"\n\n\"\"\"\u00E9\n"), 3);
-  EXPECT_EQ(line_of("a = \"unclosed\nb = \u00E9\n"), 2);
-  EXPECT_EQ(line_of("a = \"unclosed"), 0);
-  EXPECT_EQ(line_of("a = 1\nb = 30'''\u00E9 # found by fuzzing"), 2);
-  EXPECT_EQ(line_of("a = 5p.9.\"\"\"\"&\u00E9"), 1);
-  EXPECT_EQ(line_of("a = 5['''\u00E9\nb = 5='''\u00E9"), 1);
-  EXPECT_EQ(line_of("a = [5.'''\u00E9'''"), 1);
-  EXPECT_EQ(line_of("a = \"b,c\"='\u00E9'"), 1);
-  EXPECT_EQ(line_of("a = {b=\"\u00E9\", c=[\n\"\u00E9\", '\u00E9'\n]}"), 0);
-  EXPECT_EQ(line_of("a = '''\u00E9''''\nb = [\"\u00E9\",'\u00E9']"), 0);
+  EXPECT_EQ(trap_line(""), 0);
+  EXPECT_EQ(trap_line("key = 1  # \u00E9\npath = \"\u00E9\"\n"), 0);
+  EXPECT_EQ(trap_line("a = '\u00E9#'\nb = \"\\\"\u00E9\"\nc = 1"), 0);
+  EXPECT_EQ(trap_line("a = \"\"\"\n\"\u00E9\"\n\"\"\"\nb = '''\n\u00E9'''"), 0);
+  EXPECT_EQ(trap_line("a = 1\n\u00E9 = 2\n"), 2);
+  EXPECT_EQ(trap_line("a = \"\"\"\n\n\"\"\"\u00E9\n"), 3);
+  EXPECT_EQ(trap_line("a = \"unclosed\nb = \u00E9\n"), 2);
+  EXPECT_EQ(trap_line("a = \"unclosed"), 0);
+  EXPECT_EQ(trap_line("a = 1\nb = 30'''\u00E9 # found by fuzzing"), 2);
+  EXPECT_EQ(trap_line("a = 5p.9.\"\"\"\"&\u00E9"), 1);
+  EXPECT_EQ(trap_line("a = 5['''\u00E9\nb = 5='''\u00E9"), 1);
+  EXPECT_EQ(trap_line("a = [5.'''\u00E9'''"), 1);
+  EXPECT_EQ(trap_line("a = \"b,c\"='\u00E9'"), 1);
+  EXPECT_EQ(trap_line("a = {b=\"\u00E9\", c=[\n\"\u00E9\", '\u00E9'\n]}"), 0);
+  EXPECT_EQ(trap_line("a = '''\u00E9''''\nb = [\"\u00E9\",'\u00E9']"), 0);
 }
 
 TEST(TomlTraps, OnlyTheDotsOfOneKeyCount) {
   const std::string dots(20, '.');
-  EXPECT_EQ(find_toml_trap("a = \"" + dots + "\"  # " + dots + "\nb = '''\n" + dots + "'''").line,
-            0);
+  EXPECT_EQ(trap_line("a = \"" + dots + "\"  # " + dots + "\nb = '''\n" + dots + "'''"), 0);
   std::string numbers;
   for (int i = 0; i < 20; ++i) numbers += "1.5, ";
-  EXPECT_EQ(find_toml_trap("a.b = [" + numbers + "]\nc = { d.e = 1.5, f.g = 2.5 }\n").line, 0);
-  EXPECT_EQ(find_toml_trap("\n[a" + dots + "]").line, 2);
-  EXPECT_EQ(find_toml_trap("a = { b . c" + dots + " = 1 }").line, 1);
+  EXPECT_EQ(trap_line("a.b = [" + numbers + "]\nc = { d.e = 1.5, f.g = 2.5 }\n"), 0);
+  EXPECT_EQ(trap_line("\n[a" + dots + "]"), 2);
+  EXPECT_EQ(trap_line("a = { b . c" + dots + " = 1 }"), 1);
 }
 
 }  // namespace

@@ -221,7 +221,7 @@ void expect_header_is_refused(const std::string& header, const std::string& comp
   EXPECT_THAT(outcome.output, HasSubstr(complaint));
 }
 
-/// What people are told may be missing, but is not made up.
+/// Training days and cycles may be missing; they are never made up.
 TEST(Export, TheTrainingDaysAreToldAndAHeaderOfBeforeHasNone) {
   EXPECT_THAT(format_weight_header(crowded_student()),
               HasSubstr("#define BESS_STUDENT_TRAINED_FROM \"2024-02-29\"\n"
