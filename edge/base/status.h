@@ -32,6 +32,13 @@ enum class [[nodiscard]] Status : std::uint8_t{
 
 inline constexpr int kStatusCount = static_cast<int>(Status::kTooLate) + 1;
 
+/// Trouble of the link or a busy device, which may pass within seconds; any other the same request
+/// would meet again.
+constexpr bool is_temporary(Status status) {
+  return status == Status::kNotConnected || status == Status::kTimeout ||
+         status == Status::kBusBusy || status == Status::kBadReply;
+}
+
 constexpr std::string_view status_name(Status status) {
   constexpr std::string_view kNames[] = {
       "ok",          "not_connected",   "timeout",      "bus_exception",

@@ -27,11 +27,7 @@ class BatteryDriver {
       : map_(map),
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
-        reader_(map),
-        scales_elsewhere_(
-            std::any_of(map.points.begin(), map.points.end(), [](const RegisterPoint& p) {
-              return p.scale_from >= 0 || p.percent_of >= 0 || p.clamp_to >= 0;
-            })) {}
+        reader_(map) {}
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
@@ -44,9 +40,14 @@ class BatteryDriver {
       if (status == Status::kImplausible) note_capacity(failure, measurement);
       return status;
     }
-    if (const Status status = read_registers(); status != Status::kOk) return status;
-    const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
-    if (status != Status::kOk) return status;
+    const Status came = read_registers();
+    const bool is_complete = came == Status::kOk || !reader_.lacks_essentials(bus_.live());
+    const Status status =
+        is_complete ? reader_.translate(bus_.live(), bus_.time().now_ns(), measurement) : came;
+    if (status != Status::kOk) {
+      measurement = {.lost_point = reader_.lost_essential(bus_.live())};
+      return status;
+    }
     note_order_in_force(measurement);
     watch_order(measurement.dispatch_active);
     measurement.order_replaced = loss_ == Loss::kReplaced;
@@ -68,10 +69,13 @@ class BatteryDriver {
       return refuse(Status::kNotExpressible);
     }
     // Nothing is written before it is known that all of it may be.
-    Status status = runner_.check(map_.sequence(command), order);
+    Status status = check(map_.sequence(command), order);
     if (status == Status::kOk && !enabled_) status = enable(order);
     if (status != Status::kOk) return refuse(status);
-    status = runner_.run(map_.sequence(command), order);
+    // 0 W that does not get through is not waited for as long: what follows is the release.
+    const bool drives = command != Command::kIdle;
+    status =
+        runner_.run(map_.sequence(command), order, drives ? kOrderPatienceNs : kReadPatienceNs);
     if (status == Status::kOk) {
       take_into_force(command, order);
     } else {
@@ -100,7 +104,8 @@ class BatteryDriver {
     const Status known = identify();
     if (known != Status::kOk && !(known == Status::kImplausible && may_be_released_)) return known;
     static_cast<void>(prepare());
-    const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
+    const Status status =
+        runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, kReadPatienceNs);
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
     if (status == Status::kOk) loss_ = Loss::kNone;
@@ -118,6 +123,13 @@ class BatteryDriver {
     may_be_released_ = may_be_released_ || identified_;
     return status;
   }
+
+  /// Whether the map calls a point optional and this device has it.
+  [[nodiscard]] bool has_optional(std::int8_t point) const {
+    return map_.points[point].optional && !bus_.live().absent[point];
+  }
+  /// An optional point that this device was seen to have: it is required.
+  void require(std::int8_t point) { bus_.require(point); }
 
   /// A person insists: this device is to be given back whatever its identity checks say.
   void permit_release() { may_be_released_ = true; }
@@ -156,6 +168,11 @@ class BatteryDriver {
   /// Gives the one connection free; the next request opens it again.
   void close() { bus_.link().close(); }
   [[nodiscard]] Link& link() { return bus_.link(); }
+  [[nodiscard]] const LivePoints& live() const { return bus_.live(); }
+  /// Where a point lies on this device.
+  [[nodiscard]] PlacedPoint place_of(std::int8_t point) const {
+    return bus_.placed(point, map_.points[point].read_function);
+  }
 
  private:
   /// How an order went that was in force and ought to be.
@@ -178,27 +195,40 @@ class BatteryDriver {
     const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
     const bool is_recent = bus_.time().now_ns() - identified_ns_ < kIdentityAgeNs;
     if (identified_ && same_connection && is_recent) return Status::kOk;
-    return check_identity(failure);
+    const std::int64_t patience_ns = may_be_released_ ? kReadPatienceNs : 0;
+    return retried(bus_.time(), patience_ns, [&] { return check_identity(failure); });
   }
 
   void note_capacity(const IdentityFailure& failure, BatteryMeasurement& measurement) const {
-    const bool is_checked = failure.check < map_.identity.size();
-    if (!is_checked || map_.points[map_.identity[failure.check].point].name != "capacity") return;
+    const bool is_value = failure.missing_model == 0 && failure.is_known;
+    if (!is_value || map_.points[map_.identity[failure.check].point].name != "capacity") return;
     measurement.capacity_wh = clamp_to_int32(failure.value);
   }
 
+  /// What is missing is asked for again, patiently; meanwhile the watchdog is fed.
   Status read_registers() {
-    return retried([this] { return bus_.read_due(); });
+    int attempt = 0;
+    return retried(bus_.time(), kReadPatienceNs, [&] {
+      if (++attempt > kBusAttempts) static_cast<void>(refresh());
+      return attempt == 1 ? bus_.read_due() : bus_.read_rest();
+    });
+  }
+
+  /// Whether it may be written; flash is compared with the device first.
+  Status check(const CommandSequence& sequence, const PowerOrder& order) {
+    return retried(bus_.time(), kReadPatienceNs, [&] { return runner_.check(sequence, order); });
   }
 
   /// Scale factors, ratings and limits that go into an order must not be old. A map without them
   /// can order (0 W above all) even while the measurements fail.
   Status prepare() {
     if (const Status status = identify(); status != Status::kOk) return status;
-    const bool needs_live = scales_elsewhere_ || (!enabled_ && !map_.saved.empty());
+    const bool needs_live = !map_.scales.empty() || (!enabled_ && !map_.saved.empty());
     const std::int64_t read_ns = bus_.last_read_ns();
     const bool fresh = read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs;
-    return fresh || !needs_live ? Status::kOk : read_registers();
+    if (fresh || !needs_live) return Status::kOk;
+    const Status status = read_registers();
+    return bus_.last_read_ns() == read_ns ? status : Status::kOk;
   }
 
   /// What order the device follows, whoever gave it: a restart takes over from here.
@@ -243,7 +273,7 @@ class BatteryDriver {
     // Only a fresh reading tells that the device still follows an order.
     const bool may_be_end = trace == OrderTrace::kAtRest && shows_end();
     const bool is_active =
-        may_be_end && read_registers() == Status::kOk && live_all(map_, map_.active, bus_.live());
+        may_be_end && bus_.read_due() == Status::kOk && live_all(map_, map_.active, bus_.live());
     note_loss(may_be_end && !is_active ? Loss::kEnded : Loss::kReplaced, trace);
     return false;
   }
@@ -286,8 +316,8 @@ class BatteryDriver {
     const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
     PowerOrder order = order_;
     order.write_until_ns = order_.feed_until_ns;
-    Status status = runner_.check(sequence, order);
-    if (status == Status::kOk) status = runner_.run(sequence, order);
+    Status status = check(sequence, order);
+    if (status == Status::kOk) status = runner_.run(sequence, order, kReadPatienceNs);
     if (status == Status::kOk) {
       fed_ns_ = bus_.time().now_ns();
       runs_out_ = false;
@@ -301,15 +331,16 @@ class BatteryDriver {
   Status enable(const PowerOrder& order) {
     for (const Condition& condition : map_.precondition) {
       bool holds = false;
-      const Status status = retried([&] { return runner_.test(condition, holds); });
+      const Status status =
+          retried(bus_.time(), kReadPatienceNs, [&] { return runner_.test(condition, holds); });
       if (status != Status::kOk) return status;
       if (!holds) return Status::kNotPermitted;
     }
-    Status status = retried([this] { return save_registers(); });
+    Status status = retried(bus_.time(), kReadPatienceNs, [this] { return save_registers(); });
     const CommandSequence& sequence = map_.sequence(Command::kEnable);
-    if (status == Status::kOk) status = runner_.check(sequence, order);
+    if (status == Status::kOk) status = check(sequence, order);
     if (status != Status::kOk) return status;
-    status = runner_.run(sequence, order);
+    status = runner_.run(sequence, order, kReadPatienceNs);
     enabled_ = status == Status::kOk;
     if (!enabled_) roll_back(status, Command::kEnable, order);
     return status;
@@ -339,7 +370,7 @@ class BatteryDriver {
   Status refuse(Status reason) {
     const bool stays = in_force_ && map_.watchdog.kind == Watchdog::Kind::kNone;
     lose_order();
-    if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}));
+    if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, 0));
     return reason;
   }
 
@@ -353,7 +384,7 @@ class BatteryDriver {
     const CommandSequence& undo = own.writes.empty() ? map_.sequence(Command::kRelease) : own;
     PowerOrder unbound = order;  // taking back is never too late
     unbound.write_until_ns = INT64_MAX;
-    static_cast<void>(runner_.run(undo, unbound));  // the link may be gone: the watchdog ends it
+    static_cast<void>(runner_.run(undo, unbound, 0));  // the link may be gone: the watchdog ends it
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
@@ -375,7 +406,6 @@ class BatteryDriver {
   BatteryBus<Link, Time> bus_;
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
-  bool scales_elsewhere_;  ///< what is written depends on what is read
   bool identified_ = false;
   bool may_be_released_ = false;  ///< it was known once, or a person insists
   std::int64_t identified_ns_ = 0;

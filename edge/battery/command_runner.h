@@ -85,9 +85,9 @@ class CommandRunner {
     return Status::kOk;
   }
 
-  Status run(const CommandSequence& sequence, const PowerOrder& order) {
+  Status run(const CommandSequence& sequence, const PowerOrder& order, std::int64_t patience_ns) {
     if (sequence.writes.empty()) return Status::kOk;
-    return retried([&] { return run_once(sequence, order); });
+    return retried(bus_.time(), patience_ns, [&] { return run_once(sequence, order); });
   }
 
   /// Asks the device whether a condition holds.

@@ -44,7 +44,7 @@ class SignCheck {
       : settings_(settings), battery_(battery), clock_(clock), meter_(meter) {}
 
   CommissionResult run() {
-    if (!succeeded(battery_.read(before_))) return result_;
+    if (!reads(before_)) return result_;
     result_.soc_e4 = before_.soc_e4;
     if (before_.alarm || before_.off_grid) return fail(CommissionVerdict::kAlarm);
     if (before_.dispatch_active) return fail(CommissionVerdict::kForeignOrder);
@@ -91,6 +91,13 @@ class SignCheck {
     return false;
   }
 
+  bool reads(BatteryMeasurement& m) {
+    const Status status = battery_.read(m);
+    result_.lost_point = m.lost_point;
+    if (status == Status::kOk && m.lost_point != 0) return succeeded(Status::kImplausible);
+    return succeeded(status);
+  }
+
   struct Seen {
     std::optional<AnswerCurve> small;
     std::optional<AnswerCurve> large;
@@ -126,13 +133,19 @@ class SignCheck {
     AnswerCurve& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
                                                   sign * last_power_w_);
     const bool is_watched =
-        order_and_watch(sign * settings_.power_w, settings_.drive_s, settings_.drive_s, curve);
+        order_and_watch(sign * settings_.power_w, drive_s(sign), settings_.drive_s, curve);
     direction(sign) = {.is_tested = true,
                        .ordered_power_w = sign * settings_.power_w,
                        .measured_power_w = result_.measured_power_w,
                        .came_ms = curve.came_ms()};
     if (is_watched) judge_drive(sign * result_.measured_power_w, curve);
     if (passes()) rests_and_tells_of(direction(sign));
+  }
+  /// The first time for as long as an order must last without being fed.
+  std::int32_t drive_s(int sign) {
+    const bool is_long = !was_unfed_ && room_e4(sign) >= kFurtherRoomE4;
+    was_unfed_ = was_unfed_ || is_long;
+    return is_long ? std::max(settings_.drive_s, settings_.unfed_s) : settings_.drive_s;
   }
   void rests_and_tells_of(const DirectionResult& driven) {
     rests(kRestPatienceS);
@@ -199,6 +212,8 @@ class SignCheck {
     // One that is late is watched for longer, to say by how much.
     const std::int64_t last_ns = end_ns + patience_s * kNanosecondsPerSecond;
     fed_ns_ = start_ns;
+    has_flowed_ = false;
+    gone_ns_ = 0;
     int beyond = 0;
     while (true) {
       const std::int64_t now_ns = clock_.now_utc_ns();
@@ -222,10 +237,11 @@ class SignCheck {
   bool look(std::int32_t power_w, std::int64_t start_ns, std::int64_t end_ns, AnswerCurve& curve) {
     BatteryMeasurement m;
     const std::int64_t begin_ns = clock_.now_utc_ns();
-    if (!succeeded(battery_.read(m))) return false;
+    if (!reads(m)) return false;
     const std::int64_t now_ns = clock_.now_utc_ns();
     result_.measured_power_w = last_power_w_ = m.power_w;
     if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
+    note_end(power_w, now_ns);
     curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
                .end_ms = (now_ns - start_ns) / 1'000'000,
                .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});
@@ -234,6 +250,23 @@ class SignCheck {
     // The last third: both meters have had time.
     if (begin_ns - start_ns >= (end_ns - start_ns) / 3 * 2) proof_.add(m.power_w, last_grid_w_);
     return true;
+  }
+
+  /// Two readings in a row of hardly any power, after most of it had come.
+  void note_end(std::int32_t power_w, std::int64_t now_ns) {
+    const std::int64_t along_w = std::int64_t{result_.measured_power_w} * (power_w < 0 ? -1 : 1);
+    const std::int64_t ordered_w = std::abs(std::int64_t{power_w});
+    if (2 * along_w >= ordered_w) has_flowed_ = true;
+    const bool is_gone = power_w != 0 && has_flowed_ && 4 * along_w < ordered_w;
+    if (!is_gone) gone_ns_ = 0;
+    if (!is_gone || !passes()) return;
+    if (gone_ns_ == 0) {
+      gone_ns_ = now_ns;
+      return;
+    }
+    result_.wanted_duration_s = static_cast<std::int32_t>(
+        std::max<std::int64_t>((gone_ns_ - fed_ns_) / kNanosecondsPerSecond - 1, 2));
+    fail(CommissionVerdict::kEndsEarly);
   }
 
   /// Refreshes on the way; what fails there shows in the measurement.
@@ -334,10 +367,13 @@ class SignCheck {
   Seen seen_charge_;
   Seen seen_discharge_;
   bool is_further_ = false;
+  bool was_unfed_ = false;
   MeterProof proof_;
   std::int32_t last_power_w_ = 0;
   std::int32_t last_grid_w_ = 0;
-  std::int64_t fed_ns_ = 0;  ///< when the battery last got an order or a refresh
+  bool has_flowed_ = false;   ///< since the newest order
+  std::int64_t gone_ns_ = 0;  ///< when its power was first seen to be gone; 0 = it is not
+  std::int64_t fed_ns_ = 0;   ///< when the battery last got an order or a refresh
 };
 
 }  // namespace bess

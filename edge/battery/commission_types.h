@@ -16,6 +16,7 @@ struct CommissionSettings {
   std::int32_t power_w = 500;
   std::int32_t rest_s = 10;    ///< for the battery to come to 0 W
   std::int32_t drive_s = 30;   ///< for the battery to follow
+  std::int32_t unfed_s = 0;    ///< an order must last so long without being fed; 0 = drive_s
   std::int32_t noise_w = 150;  ///< a resting battery and its meter may show this much
   std::int32_t tolerance_percent =
       50;                           ///< by which the power that flows may fall short of the order
@@ -41,6 +42,7 @@ enum class CommissionVerdict : std::uint8_t {
   kDoesNotFollow,  ///< hardly any power flows
   kWrongSign,      ///< power flows the other way
   kTooMuch,        ///< more than ordered
+  kEndsEarly,      ///< the power came, and went before the order was due to be fed
   kTooLittle,      ///< less than the map's [response] allows
   kSlow,           ///< slower than the map's [response] says
   kMeterLost,      ///< `status` says why
@@ -56,13 +58,15 @@ constexpr std::string_view commission_text(CommissionVerdict verdict) {
       "the battery did not answer or refused",
       "the battery reports an alarm or is off-grid: clear that first",
       "the battery follows an order already: stop the other controller, or wait for its timer",
-      ("neither direction can be tested: SoC, soc_min and soc_max leave no room, or the battery's "
-       "own limits"),
-      "power flows although 0 W is ordered: is the map right, does another controller interfere?",
-      "hardly any power flows: is external control enabled on the device, is the battery ready?",
+      ("neither direction can be tested: between soc_min and soc_max, or by the battery's own "
+       "limits, there is no room"),
+      "power flows although 0 W is ordered",
+      "hardly any power flows",
       "power flows the wrong way: the sign of battery_power or of the order is wrong in the map",
       ("more power flows than ordered: unit or scale of the order or of battery_power is wrong in "
        "the map, or something else drives the battery"),
+      ("the power came and went while the order was in force: the device ends orders earlier than "
+       "[watchdog] of the map says; set"),
       ("less power flows than [response] of the map allows: is its scale right? If this is how the "
        "battery is, set"),
       "the battery follows more slowly than [response] of the map says; set",
@@ -93,6 +97,7 @@ struct CommissionResult {
   Status status = Status::kOk;
   Status release_status = Status::kOk;  ///< else the battery may still follow the order
   std::int32_t soc_e4 = 0;
+  std::int16_t lost_point = 0;        ///< of the reading that failed: 1 + index; 0 = none
   std::int32_t ordered_power_w = 0;   ///< last
   std::int32_t measured_power_w = 0;  ///< with that order in force
   DirectionResult charge{};
@@ -100,7 +105,10 @@ struct CommissionResult {
   MeterVerdict meter = MeterVerdict::kNotAsked;
   std::int32_t meter_percent = 0;  ///< of the battery's steps that the meter showed
   std::int32_t rest_house_w = 0;   ///< grid less battery, at rest
+  /// Optional points that this device has.
+  StaticVector<std::int8_t, kPointsMax> present{};
   /// Lines for the map and the configuration with which it would pass; 0: leave it.
+  std::int32_t wanted_duration_s = 0;  ///< of [watchdog]
   std::int32_t wanted_settle_s = 0;
   std::int32_t wanted_tolerance_w = 0;
   std::int32_t wanted_ramp_w_max = 0;  ///< of [guard]: what it manages within settle_s

@@ -18,13 +18,43 @@ MeasurementReader::MeasurementReader(const RegisterMap& map)
       temperature_max_(find_point(map, "temperature_max")),
       alive_(map) {}
 
+bool MeasurementReader::lacks_essentials(const LivePoints& live) const {
+  return std::any_of(map_.required.begin(), map_.required.end(),
+                     [&](std::int8_t point) { return live.failed[point]; });
+}
+
+bool MeasurementReader::is_unknown(const LivePoints& live, std::int8_t point) const {
+  std::int64_t value = 0;
+  return !live.absent[point] && (live.failed[point] || !live_value(map_, live, point, value));
+}
+
+std::int16_t MeasurementReader::lost_essential(const LivePoints& live) const {
+  const auto* const lost = std::find_if(map_.required.begin(), map_.required.end(),
+                                        [&](std::int8_t point) { return is_unknown(live, point); });
+  return lost == map_.required.end() ? 0 : static_cast<std::int16_t>(*lost + 1);
+}
+
+void MeasurementReader::read_protective(const LivePoints& live, BatteryMeasurement& m) const {
+  for (const std::int8_t point : map_.protective) {
+    std::int64_t value = 0;
+    if (is_unknown(live, point)) {
+      if (m.lost_point == 0) m.lost_point = static_cast<std::int16_t>(point + 1);
+    } else if (live_value(map_, live, point, value)) {
+      store(live, point, value, m);
+    }
+  }
+  m.grid_unknown = map_.off_grid.point >= 0 && is_unknown(live, map_.off_grid.point);
+}
+
 Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
                                     BatteryMeasurement& m) {
   for (const std::int8_t point : map_.required) {
     std::int64_t value = 0;
+    if (live.absent[point]) continue;
     if (!live_value(map_, live, point, value)) return Status::kImplausible;
-    store(point, value, m);
+    store(live, point, value, m);
   }
+  read_protective(live, m);
   std::int64_t power_w = 0;
   if (!live_power(map_, map_.measured_power, live, power_w)) return Status::kImplausible;
   m.power_w = clamp_to_int32(power_w);
@@ -45,8 +75,13 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
   return alive_.is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
 }
 
-void MeasurementReader::store(int point, std::int64_t wide, BatteryMeasurement& m) const {
+void MeasurementReader::store(const LivePoints& live, int point, std::int64_t wide,
+                              BatteryMeasurement& m) const {
   const std::int32_t value = clamp_to_int32(wide);
+  Scaling scaling;
+  const bool is_beyond = live_scaling(map_, live, point, scaling) &&
+                         is_cut(map_.points[point], live.raw[point], scaling);
+  if (is_beyond) m.cut_point = static_cast<std::int16_t>(point + 1);
   if (point == soc_) m.soc_e4 = value;
   if (point == capacity_) m.capacity_wh = value;
   if (point == charge_limit_) m.charge_w_max = value;

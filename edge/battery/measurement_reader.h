@@ -18,13 +18,22 @@ class MeasurementReader {
   /// `map` must outlive this object.
   explicit MeasurementReader(const RegisterMap& map);
 
+  /// State of charge, power or another value without which there is no measurement did not come.
+  [[nodiscard]] bool lacks_essentials(const LivePoints& live) const;
+  /// 1 + index of the first of these that did not come or is not plausible; 0 = none.
+  [[nodiscard]] std::int16_t lost_essential(const LivePoints& live) const;
+
   /// Fills what is measured; kImplausible when one required value is not plausible or the device's
-  /// counter stands still. `now_ns` is the device's time.
+  /// counter stands still. A protective value that is not known is reported in `m`. `now_ns` is the
+  /// device's time.
   Status translate(const LivePoints& live, std::int64_t now_ns, BatteryMeasurement& m);
 
  private:
-  void store(int point, std::int64_t wide, BatteryMeasurement& m) const;
-  /// Also false while its register is not known, which only an optional one can be here.
+  void store(const LivePoints& live, int point, std::int64_t wide, BatteryMeasurement& m) const;
+  /// Required, and not read this time, or not plausible.
+  [[nodiscard]] bool is_unknown(const LivePoints& live, std::int8_t point) const;
+  void read_protective(const LivePoints& live, BatteryMeasurement& m) const;
+  /// False as well while its register is not known.
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
 
   const RegisterMap& map_;

@@ -50,6 +50,9 @@ void put_pdu(const ModbusRequest& request, ModbusFrame& frame) {
   for (int i = 0; i < request.count; ++i) put_word(frame, request.values[i]);
 }
 
+/// Some gateways answer as themselves; the transaction tells whose answer it is all the same.
+bool is_unit_of_gateway(int unit) { return unit == 0 || unit == 255; }
+
 ReplyCheck check_pdu(const ModbusRequest& request, const std::uint8_t* pdu, int size,
                      std::uint16_t* registers) {
   if (pdu[0] == (request.function | kExceptionFlag) && size == kExceptionPduBytes) {
@@ -112,6 +115,10 @@ int missing_bytes(Framing framing, const ModbusRequest& request, const ModbusFra
   return reply_bytes_max(framing, request) - reply.size;
 }
 
+bool is_stale(const ModbusRequest& request, const ModbusFrame& reply) {
+  return word_at(reply.bytes) != request.transaction;
+}
+
 ReplyCheck check_reply(Framing framing, const ModbusRequest& request, const ModbusFrame& reply,
                        std::uint16_t* registers) {
   if (missing_bytes(framing, request, reply) != 0) return {};
@@ -119,10 +126,10 @@ ReplyCheck check_reply(Framing framing, const ModbusRequest& request, const Modb
   const std::uint8_t* unit = reply.bytes + (tcp ? kTcpHeaderBytes : 0);
   const int pdu_size =
       static_cast<int>(reply.bytes + reply.size - unit) - kUnitBytes - (tcp ? 0 : kCrcBytes);
-  if (*unit != request.unit) return {};
+  const bool is_of_unit = *unit == request.unit || (tcp && is_unit_of_gateway(*unit));
+  if (!is_of_unit) return {.foreign_unit = *unit};
   if (tcp) {
-    const bool same = word_at(reply.bytes) == request.transaction && word_at(reply.bytes + 2) == 0;
-    if (!same) return {};
+    if (is_stale(request, reply) || word_at(reply.bytes + 2) != 0) return {};
   } else {
     const std::uint8_t* crc = reply.bytes + reply.size - kCrcBytes;
     if (crc16(reply.bytes, reply.size - kCrcBytes) != (crc[1] << 8 | crc[0])) return {};

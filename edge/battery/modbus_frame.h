@@ -19,6 +19,8 @@ inline constexpr int kReadRegistersMax = 125;   ///< by the protocol's one-byte 
 inline constexpr int kWriteRegistersMax = 123;  ///< by the longest PDU
 inline constexpr int kExceptionBusyLong = 5;    ///< acknowledged, still at work
 inline constexpr int kExceptionBusy = 6;        ///< ask again later
+inline constexpr int kExceptionNoPath = 10;     ///< of a gateway: the way to the device is blocked
+inline constexpr int kExceptionNoReply = 11;    ///< of a gateway: the device did not answer it
 inline constexpr int kExceptionDenied = 0x80;   ///< vendors' "permission denied"
 
 struct ModbusRequest {
@@ -50,16 +52,24 @@ int missing_bytes(Framing framing, const ModbusRequest& request, const ModbusFra
 
 struct ReplyCheck {
   Status status = Status::kBadReply;
-  int exception = 0;  ///< the exception code that the device answered, 0 = none
+  int exception = 0;      ///< the exception code that the device answered, 0 = none
+  int foreign_unit = -1;  ///< the unit that answered instead of the one that was asked; -1 = none
 };
+
+/// TCP: an answer to an earlier request of this or another connection, which came too late.
+bool is_stale(const ModbusRequest& request, const ModbusFrame& reply);
 
 /// Compares a complete reply with its request; `registers` of a read are filled only on kOk.
 ReplyCheck check_reply(Framing framing, const ModbusRequest& request, const ModbusFrame& reply,
                        std::uint16_t* registers);
 
-/// What an exception code means when the register map says nothing else.
+/// What an exception code means when the register map says nothing else: 1 to 4 concern the
+/// request, the rest passes.
 constexpr Status status_of_exception(int code) {
-  if (code == kExceptionBusyLong || code == kExceptionBusy) return Status::kBusBusy;
+  if (code == kExceptionBusyLong || code == kExceptionBusy || code == kExceptionNoPath ||
+      code == kExceptionNoReply) {
+    return Status::kBusBusy;
+  }
   return code == kExceptionDenied ? Status::kNotPermitted : Status::kBusException;
 }
 

@@ -85,6 +85,8 @@ void ModbusLink::close() {
 Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
                            std::int64_t send_until_ns) {
   last_exception_ = 0;
+  foreign_unit_ = -1;
+  asked_unit_ = request.unit;
   if (!request.is_valid()) return Status::kNotExpressible;
   ++counters_.requests;
   const std::int64_t asked_ns = now();
@@ -103,7 +105,7 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
 
 /// Connected, rested, and nothing under way that could be taken for the reply to this request.
 Status ModbusLink::make_ready(const ModbusRequest& request) {
-  if (state_.state(now()) == LinkState::kConnected && wire_.is_spoilt()) close();
+  if (state_.state(now()) == LinkState::kConnected && wire_.is_lost()) close();
   switch (state_.state(now())) {
     case LinkState::kBackingOff:
       return connect_status_;
@@ -148,11 +150,14 @@ Status ModbusLink::ask(const ModbusRequest& request, std::uint16_t* registers,
   const std::int64_t deadline_ns = sent_ns_ + milliseconds(timing_.response_timeout_ms) +
                                    line_time_ns(frame.size + reply_bytes_max(framing_, request));
   ModbusFrame reply;
-  if (const Status status = receive_reply(request, deadline_ns, reply); status != Status::kOk) {
-    return status;
-  }
+  do {  // an answer that came too late is not this one's
+    reply.size = 0;
+    const Status status = receive_reply(request, deadline_ns, reply);
+    if (status != Status::kOk) return status;
+  } while (!rtu_ && is_stale(request, reply));
   const ReplyCheck check = check_reply(framing_, request, reply, registers);
   last_exception_ = check.exception;
+  foreign_unit_ = check.foreign_unit;
   return check.status;
 }
 

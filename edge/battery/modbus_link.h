@@ -75,6 +75,9 @@ class ModbusLink {
   /// The exception code of the last request, 0 when the device answered none: for register maps
   /// that give a vendor's code a meaning of their own.
   [[nodiscard]] int last_exception() const { return last_exception_; }
+  /// The unit that answered the last request in place of the one that was asked; -1: none did.
+  [[nodiscard]] int foreign_unit() const { return foreign_unit_; }
+  [[nodiscard]] int asked_unit() const { return asked_unit_; }
   [[nodiscard]] const LinkCounters& counters() const { return counters_; }
 
  private:
@@ -100,6 +103,8 @@ class ModbusLink {
   Status connect_status_ = Status::kNotConnected;  ///< of the last attempt to connect
   bool was_connected_ = false;
   int last_exception_ = 0;
+  int foreign_unit_ = -1;
+  int asked_unit_ = 0;
   std::uint16_t transaction_ = 0;
   std::int64_t sent_ns_ = 0;
   ExchangeListener listener_;

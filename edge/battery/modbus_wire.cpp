@@ -93,10 +93,15 @@ void ModbusWire::close() {
   fd_ = -1;
 }
 
-bool ModbusWire::is_spoilt() const {
-  pollfd event{.fd = fd_, .events = POLLIN, .revents = 0};
-  if (poll(&event, 1, 0) == 0) return false;
-  return !rtu_ || (event.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
+bool ModbusWire::is_lost() const {
+  while (true) {
+    pollfd event{.fd = fd_, .events = POLLIN, .revents = 0};
+    if (poll(&event, 1, 0) == 0) return false;
+    if ((event.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return true;
+    if (rtu_) return false;
+    std::uint8_t unasked[kFrameBytesMax];
+    if (recv(fd_, unasked, sizeof unasked, MSG_DONTWAIT) <= 0) return true;
+  }
 }
 
 void ModbusWire::discard_input() { static_cast<void>(modbus_flush(context_)); }

@@ -47,8 +47,8 @@ class ModbusWire {
 
   Status open();
   void close();
-  /// The peer closed, or sent something unasked: nothing that comes now can be trusted.
-  [[nodiscard]] bool is_spoilt() const;
+  /// The peer has closed. TCP: what has come unasked, an answer that was too late, is forgotten.
+  [[nodiscard]] bool is_lost() const;
   /// Serial line: forgets what has arrived and was not read.
   void discard_input();
 

@@ -171,8 +171,8 @@ bool complain_of_meter(const SiteConfig& site, const char* what) {
 bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid_power_w) {
   IdentityFailure failure;
   Status status = meter.check_identity(failure);
-  if (status == Status::kImplausible && failure.check < site.map.identity.size()) {
-    return complain_of_meter(site, site.map.identity[failure.check].hint.c_str());
+  if (status == Status::kImplausible) {
+    return complain_of_meter(site, identity_text(site.map, failure).c_str());
   }
   if (status == Status::kOk) status = meter.read(grid_power_w);
   return status == Status::kOk || complain_of_meter(site, status_text(status).data());
@@ -213,6 +213,16 @@ bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& 
   return false;
 }
 
+/// Optional points that this device does not have: no alarm can come from there.
+void print_absent(const EdgeConfig& config, const ModbusBattery& battery) {
+  std::string names;
+  for (const std::int8_t point : config.battery.map.measure) {
+    if (!battery.live().absent[point]) continue;
+    names.append(names.empty() ? "" : ", ").append(config.battery.map.points[point].name.view());
+  }
+  if (!names.empty()) std::printf("absent     %s\n", names.c_str());
+}
+
 /// Settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock) {
@@ -231,9 +241,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   const Hold hold = read_newest_hold(both_places(config, kHoldFileName)).hold;
   std::fputs(operator_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
-  std::string trouble;
-  const bool battery_ok = identify_battery(config, battery, trouble) == Status::kOk;
-  if (!battery_ok) report(JournalLevel::kError, "battery at %s", trouble.c_str());
+  const BatterySearch found = identify_battery(config, battery);
+  const bool battery_ok = found.status == Status::kOk;
+  if (!battery_ok) report(JournalLevel::kError, "battery at %s", found.trouble.c_str());
   print_orders(config, battery);
   BatteryMeasurement m;
   if (battery_ok && battery.read(m) == Status::kOk) {
@@ -243,6 +253,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
                 battery_place(config.battery).c_str(), m.soc_e4 / 100.0, m.power_w, capacity,
                 m.dispatch_active ? "active" : "off");
   }
+  print_absent(config, battery);
   const bool sign_ok = report_sign(config);
   const bool clock_ok = report_clock(config, clock);
   report_day_ahead(config);

@@ -97,6 +97,10 @@ CommissionSettings settings_of(const EdgeConfig& config) {
   settings.rest_s = test.settle_s;
   settings.drive_s = test.duration_s;
   settings.tolerance_percent = test.tolerance_percent;
+  const Watchdog& watchdog = config.battery.map.watchdog;
+  const bool lasts_a_step =
+      watchdog.kind != Watchdog::Kind::kNone && watchdog.refresh_s >= kSecondsPerStep;
+  settings.unfed_s = lasts_a_step ? kSecondsPerStep + 5 : 0;
   settings.response = config.battery.map.response;
   const ConnectionSettings& connection = config.site.settings.connection;
   settings.import_w_max =
@@ -194,6 +198,11 @@ void print_measured(const EdgeConfig& config, const CommissionResult& result) {
 
 /// With which it would pass.
 void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
+  if (result.wanted_duration_s > 0) {
+    std::printf("[watchdog]   # of the map, %s\nduration_s = %d   # it says %d\nrefresh_s = %d\n",
+                config.battery.map_path.c_str(), result.wanted_duration_s,
+                config.battery.map.watchdog.duration_s, result.wanted_duration_s / 2);
+  }
   if (result.wanted_settle_s > 0 || result.wanted_tolerance_w > 0) {
     std::printf("[response]   # of the map, %s\n", config.battery.map_path.c_str());
   }
@@ -213,16 +222,18 @@ void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
   }
 }
 
-bool is_link(CommissionVerdict verdict) {
-  return verdict == CommissionVerdict::kNoLink || verdict == CommissionVerdict::kMeterLost;
-}
-
-int refuse(const EdgeConfig& config, const CommissionResult& result) {
-  const bool has_status = is_link(result.verdict);
-  report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s%s%s",
+int refuse(const EdgeConfig& config, ModbusBattery& battery, const CommissionResult& result) {
+  std::string read;
+  if (result.verdict == CommissionVerdict::kMeterLost) {
+    read = status_text(result.status);
+  } else if (result.verdict == CommissionVerdict::kNoLink) {
+    read = reading_text(config, battery, result.status, result.lost_point);
+  } else {
+    read = "read: " + measured_text(config.battery.map, battery.live());
+  }
+  report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s; %s",
          battery_place(config.battery).c_str(), result.ordered_power_w, result.measured_power_w,
-         commission_text(result.verdict).data(), has_status ? ": " : "",
-         has_status ? status_text(result.status).data() : "");
+         commission_text(result.verdict).data(), read.c_str());
   print_proposal(config, result);
   return 1;
 }
@@ -256,15 +267,18 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
       battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s,
       further_w(test));
   std::fflush(stdout);
-  const CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
-                                      test, battery, clock, SiteMeter(config.site.settings, meter))
-                                      .run();
+  CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
+                                test, battery, clock, SiteMeter(config.site.settings, meter))
+                                .run();
   battery.link().tell_exchanges({});
   if (!recorder.finish(message)) report(JournalLevel::kError, "%s", message.c_str());
   if (result.release_status != Status::kOk) complain_about_release(config, result);
   print_measured(config, result);
   std::fflush(stdout);
-  if (result.verdict != CommissionVerdict::kPassed) return refuse(config, result);
+  if (result.verdict != CommissionVerdict::kPassed) return refuse(config, battery, result);
+  for (const std::int8_t point : config.battery.map.measure) {
+    if (battery.has_optional(point)) result.present.push_back(point);
+  }
   std::string error;
   const std::int64_t utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
   if (!write_commission_file(config, result, utc_s, error)) {

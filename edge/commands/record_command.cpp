@@ -80,7 +80,8 @@ std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
 /// other with it. What a command would write is asked for as the holding register that it is.
 void read_everything(const RegisterMap& map, const PointPlaces& places, Bus& bus,
                      EdgeClock& clock) {
-  static_cast<void>(bus.locate_models());
+  std::uint16_t missing_model = 0;
+  static_cast<void>(bus.locate_models(missing_model));
   for (int i = 0; i < map.points.size() && !clock.stop_requested(); ++i) {
     const auto point = static_cast<std::int8_t>(i);
     std::uint16_t registers[kTextRegistersMax] = {};

@@ -184,9 +184,8 @@ void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
     return table.add("battery", Verdict::kNote, in_use.c_str());
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   BatteryMeasurement m;
-  std::string trouble;
-  const bool is_there = find_battery(config, battery, clock, trouble) == Status::kOk;
-  if (!is_there) return table.add("battery", false, trouble);
+  const BatterySearch found = find_battery(config, battery, clock);
+  if (found.status != Status::kOk) return table.add("battery", false, found.trouble);
   if (const Status status = battery.read(m); status != Status::kOk) {
     return table.add("battery", false, place + ": " + std::string(status_text(status)));
   }

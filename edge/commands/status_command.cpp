@@ -89,6 +89,13 @@ bool has_outlook(JsonValue s) {
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
 
+/// Of a number as records have it: 1 + index, 0 = none.
+std::string_view point_name(const EdgeConfig& config, long long number) {
+  const auto& points = config.battery.map.points;
+  if (number <= 0 || number > points.size()) return {};
+  return points[static_cast<int>(number) - 1].name.view();
+}
+
 Health health_of(const EdgeConfig& config, const PublishedStatus& published,
                  const std::string& update_trouble) {
   const JsonValue status = published.status.value();
@@ -118,6 +125,8 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   in.house_w = whole(field<&R::site, &S::grid_power_w>(status)) -
                whole(field<&R::measurement, &B::power_w>(status));
   in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
+  in.lost_reading = point_name(config, whole(field<&R::measurement, &B::lost_point>(status)));
+  in.cut_reading = point_name(config, whole(field<&R::measurement, &B::cut_point>(status)));
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.lost_orders = whole(field<&R::lost_orders, &LostOrderHistory::lost>(status));

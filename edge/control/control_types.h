@@ -42,6 +42,11 @@ struct BatteryMeasurement {
   bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
   std::int32_t grid_power_w = 0;  ///< import is positive
   bool warning = false;           ///< the device warns and goes on: told, stops nothing
+  /// A reading that did not come or is not plausible: one without which nothing is measured, or a
+  /// protective one (alarm, limit, temperature, off-grid). 1 + its index in the map; 0 = none.
+  std::int16_t lost_point = 0;
+  std::int16_t cut_point = 0;  ///< likewise one that is beyond its range and was cut to it
+  bool grid_unknown = false;   ///< of these, the one that tells whether the grid is there
 };
 
 /// Totals since start, and what the flash-backed registers have had today.

@@ -34,6 +34,17 @@ namespace bess {
   ROW(kOffGrid, 5, "off_grid", kReleases,                                                          \
       "the battery feeds an island: released at once, so that the house keeps it",                 \
       "the grid; nothing to mend here", "until the battery is back on the grid")                   \
+  ROW(kGridUnknown, 41, "grid_unknown", kReleases,                                                 \
+      "the reading that tells whether the grid is there did not come: released at once, as if "    \
+      "off-grid",                                                                                  \
+      "`status` names the register; gateway, cable, the device's own display",                     \
+      "until that register can be read")                                                           \
+  ROW(kProtectionLost, 42, "protection_lost", kRests,                                              \
+      "an alarm, limit or temperature that was there before could not be read: it may be "         \
+      "active",                                                                                    \
+      "`status` names the register; gateway, cable, the device's own display; after a change "     \
+      "of the device `bess-edge commission`",                                                      \
+      "until that register can be read")                                                           \
   ROW(kWrongDirection, 16, "wrong_direction", kReleases, "trip: the power went against the order", \
       "meter, sign, map; `bess-edge commission` again, then `bess-edge clear --yes`",              \
       "until a person has looked and says `bess-edge clear --yes`")                                \
@@ -55,7 +66,8 @@ namespace bess {
       "a second controller, the maker's app, a schedule in the device; `on_other_master`",         \
       "tried again after 10 minutes, then 20, up to 6 hours, until it works")                      \
   ROW(kOrdersFail, 22, "orders_fail", kReleases,                                                   \
-      "three orders in a row failed although the battery was read; tried again",                   \
+      "three orders in a row failed although the battery was read, or it cannot be read "          \
+      "while it follows one; tried again",                                                         \
       "`battery=` of those lines; external control switched off on the device",                    \
       "tried again after 10 minutes, then 20, up to 6 hours, until it works")                      \
   ROW(kNoAnswer, 23, "no_answer", kReleases,                                                       \

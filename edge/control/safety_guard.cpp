@@ -46,6 +46,10 @@ bool SafetyGuard::find_stop_reason(const GuardInputs& in, Reason& reason) const 
     reason = Reason::kTemperature;
   } else if (m.off_grid) {
     reason = Reason::kOffGrid;
+  } else if (m.grid_unknown) {
+    reason = Reason::kGridUnknown;
+  } else if (m.lost_point != 0) {
+    reason = Reason::kProtectionLost;
   } else if (is_stop_reason(in.supervision)) {
     reason = in.supervision;
   } else {

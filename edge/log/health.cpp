@@ -122,6 +122,13 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.battery_status != "ok") {
     reasons.push_back("WARN: battery: " + std::string(in.battery_status));
   }
+  if (!in.lost_reading.empty()) {
+    reasons.push_back("WARN: battery: " + std::string(in.lost_reading) + " could not be read");
+  }
+  if (!in.cut_reading.empty()) {
+    reasons.push_back("WARN: battery: " + std::string(in.cut_reading) +
+                      " is beyond its range, and taken for the end of it");
+  }
   if (in.battery_warns) reasons.emplace_back("WARN: the battery warns, see its own display");
   check_findings(in, reasons);
   if (in.orders_are_lost) {

@@ -36,6 +36,8 @@ struct HealthInputs {
   bool house_is_implausible = false;
   std::int64_t house_w = 0;  ///< of the last cycle
   std::string_view limit_status = "ok";
+  std::string_view lost_reading;  ///< name of the point that could not be read; empty: none
+  std::string_view cut_reading;   ///< of one beyond its range
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   bool run_folder_is_failing = false;

@@ -312,6 +312,12 @@ consteval auto make_record_fields() {
       {member<&R::stand_in_centi_eur_per_mwh>().given<&R::price_stands_in>(),
        "stand_in_centi",
        {.csv = 67, .last = 58}},
+      {member<&R::measurement, &B::lost_point>(),
+       "lost_point",
+       {.journal = 25, .csv = 68, .last = 35, .metrics = {46, "bess_lost_reading"}},
+       {"1 + index in the register map of a protective reading that did not come; 0: none."}},
+      {member<&R::measurement, &B::grid_unknown>()},
+      {member<&R::measurement, &B::cut_point>(), "cut_point", {.csv = 69, .last = 36}},
   });
 }
 

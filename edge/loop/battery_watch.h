@@ -42,9 +42,9 @@ class BatteryWatch {
       order_.find(record.measurement);
     }
     const Response response = order_.response(record.measurement);
-    observe(look, record.utc_s, record.has_measurement, response);
+    observe(look, record.utc_s, record.battery_status, response);
     if (!record.has_measurement) {
-      record.measurement = BatteryMeasurement{};
+      record.measurement = {.lost_point = record.measurement.lost_point};
     } else if (settings_.control) {
       record.followed = {.is_judged = response.is_driven && !was_cut_,
                          .power_w = response.ordered_power_w,
@@ -66,8 +66,9 @@ class BatteryWatch {
   /// Is the order in force still borne?
   void check() {
     BatteryMeasurement measurement;
-    bool is_read = site().needs_battery() && battery_.read(measurement) == Status::kOk;
-    observe(Look::kCheck, now_utc_s(), is_read, order_.response(measurement));
+    Status status = site().needs_battery() ? battery_.read(measurement) : Status::kNotConnected;
+    observe(Look::kCheck, now_utc_s(), status, order_.response(measurement));
+    bool is_read = status == Status::kOk;
     if (!settings_.control || !order_.exists() || mode_ != Mode::kRunning) return;
     const BatteryMeasurement& known = is_read ? measurement : measured_;
     if (bearable(known, Margin::kHalf).power_w == order_.power_w() && !cut_failed_) return;
@@ -78,7 +79,7 @@ class BatteryWatch {
     const bool has_ended = measurement.order_ended && order_.drives();
     if (is_read && (measurement.order_replaced || has_ended)) return;
     // What flowed under the order until now would be taken for the next one's at the next reading.
-    if (is_read) observe(Look::kCut, now_utc_s(), is_read, order_.response(measurement));
+    if (is_read) observe(Look::kCut, now_utc_s(), Status::kOk, order_.response(measurement));
     cut(left);
   }
 
@@ -94,10 +95,11 @@ class BatteryWatch {
 
   [[nodiscard]] const Site& site() const { return parts_.template get<SitePart<Site>>().site; }
 
-  void observe(Look look, std::int64_t utc_s, bool is_read, const Response& response) {
+  void observe(Look look, std::int64_t utc_s, Status status, const Response& response) {
     parts_.observe({.look = look,
                     .utc_s = utc_s,
-                    .is_read = is_read,
+                    .status = status,
+                    .is_read = status == Status::kOk,
                     .is_under_control = settings_.control,
                     .holds_nothing = !order_.exists(),
                     .drives = order_.drives(),

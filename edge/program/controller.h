@@ -20,6 +20,7 @@
 #include "edge/program/find_battery.h"
 #include "edge/program/starting_level.h"
 #include "edge/program/take_over.h"
+#include "edge/storage/commission_file.h"
 #include "edge/storage/recall.h"
 
 namespace bess {
@@ -77,11 +78,11 @@ class Controller {
   /// True when the battery is found, or when the configuration allows to start without it.
   bool reach() {
     world_.needs_time(config_.battery.start_timeout_s + kStartMarginS);
-    std::string trouble;
-    const Status status = find_battery(config_, world_.battery(), world_.clock(), trouble);
-    if (status == Status::kOk) return true;
-    world_.complain(JournalLevel::kError, "battery at " + trouble);
-    return may_start_without(config_, status);
+    for (const std::int8_t point : commissioned_points(config_)) world_.battery().require(point);
+    const BatterySearch found = find_battery(config_, world_.battery(), world_.clock());
+    if (found.status == Status::kOk) return true;
+    world_.complain(JournalLevel::kError, "battery at " + found.trouble);
+    return may_start_without(config_, found);
   }
 
   /// False where this run must not drive, or cannot keep what it does.

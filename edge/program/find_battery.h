@@ -10,17 +10,30 @@
 
 namespace bess {
 
-/// Proves that this is the configured battery; else `trouble` says where it was looked for, and
-/// what to mend.
-Status identify_battery(const EdgeConfig& config, ModbusBattery& battery, std::string& trouble);
+struct BatterySearch {
+  Status status = Status::kOk;
+  bool is_stranger = false;  ///< it answers as another device, and will go on doing so
+  std::string trouble;       ///< where it was looked for, what was read, what mends it
+};
 
-/// Tries until `start_timeout_s` is over, or a stop is asked for. kOk when the battery is there and
-/// is the right one; otherwise `trouble` is of the last attempt.
-Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
-                    std::string& trouble);
+/// Which identity check failed, and what was read there.
+std::string identity_text(const RegisterMap& map, const IdentityFailure& failure);
 
-/// A battery that was not found may come later, if the configuration says so; the wrong one stays
-/// it.
-bool may_start_without(const EdgeConfig& config, Status status);
+/// Why the battery could not be read, with the point that was lost (1 + index; 0 = none).
+std::string reading_text(const EdgeConfig& config, ModbusBattery& battery, Status status,
+                         int lost_point);
+
+/// The registers that decided the measurement, and alarms that hold, with their raw values.
+std::string measured_text(const RegisterMap& map, const LivePoints& live);
+
+/// Proves that this is the configured battery.
+BatterySearch identify_battery(const EdgeConfig& config, ModbusBattery& battery);
+
+/// Tries until `start_timeout_s` is over, or a stop is asked for.
+BatterySearch find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
+
+/// A battery that was not found, or is still starting, may come later, if the configuration says
+/// so; the wrong one remains wrong.
+bool may_start_without(const EdgeConfig& config, const BatterySearch& search);
 
 }  // namespace bess

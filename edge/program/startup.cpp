@@ -24,11 +24,10 @@ bool check_student() {
 }
 
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
-  std::string trouble;
-  const Status status = find_battery(config, battery, clock, trouble);
-  if (status == Status::kOk) return true;
-  report(JournalLevel::kError, "battery at %s", trouble.c_str());
-  return may_start_without(config, status);
+  const BatterySearch found = find_battery(config, battery, clock);
+  if (found.status == Status::kOk) return true;
+  report(JournalLevel::kError, "battery at %s", found.trouble.c_str());
+  return may_start_without(config, found);
 }
 
 void report_commission_losses(const EdgeConfig& config) {

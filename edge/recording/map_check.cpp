@@ -89,6 +89,8 @@ std::string what_would_fit(const RegisterPoint& point, const std::uint16_t* raw,
 bool decode_anything(RegisterPoint point, const std::uint16_t* raw, const Scaling& scaling,
                      std::int64_t& value) {
   point.value_min = std::numeric_limits<std::int64_t>::min();
+  point.slack = 0;
+  point.unknown_is_max = false;
   point.value_max = std::numeric_limits<std::int64_t>::max();
   return decode(point, raw, value, scaling);
 }

@@ -93,7 +93,8 @@ struct WritePolicy {
   std::int32_t read_back_delay_ms = 0;     ///< a device that shows what it was told only later
 };
 
-/// What the Modbus exception codes mean on this device; a code in no list is final.
+/// What the Modbus exception codes mean on this device, beside those that every device uses
+/// (modbus_frame.h).
 struct ExceptionCodes {
   StaticVector<std::uint8_t, 6> retry;
   StaticVector<std::uint8_t, 6> not_permitted;

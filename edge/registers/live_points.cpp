@@ -9,6 +9,7 @@ void LivePoints::keep(const RegisterMap& map, int point, const std::uint16_t* re
   if (count > kPointRegistersMax) return;  // a text
   std::copy(registers, registers + count, raw[point]);
   known[point] = true;
+  failed[point] = false;
 }
 
 // Bounded: the loader allows a scale factor no scale of its own, and a rating only a scale factor.
@@ -27,10 +28,21 @@ bool live_value(const RegisterMap& map, const LivePoints& live, int point, std::
   return decode(map.points[point], live.raw[point], value, scaling);
 }
 
+namespace {
+
+bool needs_absent(const LivePoints& live, const PowerCase& c) {
+  return (c.when.point >= 0 && live.absent[c.when.point]) ||
+         std::any_of(c.terms.begin(), c.terms.end(),
+                     [&](const PowerCase::Term& term) { return live.absent[term.point]; });
+}
+
+}  // namespace
+
 bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                 const LivePoints& live, std::int64_t& power_w) {
   for (const PowerCase& c : cases) {
     std::int64_t value = 0;
+    if (needs_absent(live, c)) continue;
     if (c.when.point >= 0 && !live_value(map, live, c.when.point, value)) return false;
     if (c.when.point >= 0 && !c.when.holds(value)) continue;
     power_w = 0;

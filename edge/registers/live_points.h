@@ -11,6 +11,8 @@ namespace bess {
 struct LivePoints {
   std::uint16_t raw[kPointsMax][kPointRegistersMax] = {};
   bool known[kPointsMax] = {};
+  bool failed[kPointsMax] = {};  ///< the newest reading of it did not come: what is known is older
+  bool absent[kPointsMax] = {};  ///< optional, and this device does not have it
 
   void keep(const RegisterMap& map, int point, const std::uint16_t* registers);
   void forget() { *this = LivePoints{}; }
@@ -22,7 +24,7 @@ struct LivePoints {
 [[nodiscard]] bool live_value(const RegisterMap& map, const LivePoints& live, int point,
                               std::int64_t& value);
 
-/// The first case that holds: `cases` is the map's measured_power or order_power. False when there
+/// The first case that holds, of those whose points this device has: `cases` is the map's measured_power or order_power. False when there
 /// is none, or when a register that it needs is unknown or implausible.
 [[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                               const LivePoints& live, std::int64_t& power_w);

@@ -35,25 +35,48 @@ void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
   }
 }
 
-/// What the map lists, alarms and off-grid decide about safety: one implausible value of them
-/// spoils the measurement, unless not every device has it. The rest only tells what order is in
-/// force, or warns.
+bool keeps_from_harm(const RegisterMap& map, std::int8_t point) {
+  const auto name = map.points[point].name.view();
+  for (const std::string_view known :
+       {"temperature_min", "temperature_max", "charge_power_max", "discharge_power_max"}) {
+    if (name == known) return true;
+  }
+  return point == map.off_grid.point ||
+         std::any_of(map.alarms.begin(), map.alarms.end(),
+                     [&](const Condition& alarm) { return alarm.point == point; });
+}
+
+bool is_power(const RegisterMap& map, std::int8_t point) {
+  return std::any_of(map.measured_power.begin(), map.measured_power.end(), [&](const PowerCase& c) {
+    return c.when.point == point ||
+           std::any_of(c.terms.begin(), c.terms.end(),
+                       [&](const PowerCase::Term& term) { return term.point == point; });
+  });
+}
+
+/// What the map lists, its power and its alarms decide what is ordered. The rest only tells what
+/// order is in force, or warns.
 void complete_measure(RegisterMap& map) {
   for (const Condition& c : map.alarms) measure_also(map, c.point);
   measure_also(map, map.off_grid.point);
   measure_also(map, map.alive.point);
   measure_power(map, map.measured_power);
   for (const std::int8_t point : map.measure) {
-    if (!map.points[point].optional) map.required.push_back(point);
+    if (is_power(map, point) || !(keeps_from_harm(map, point) || map.points[point].optional)) {
+      map.required.push_back(point);
+    } else {
+      map.protective.push_back(point);
+    }
   }
   for (const Condition& c : map.warnings) measure_also(map, c.point);
   for (const Condition& c : map.active) measure_also(map, c.point);
   measure_also(map, map.watchdog.remaining);
   measure_power(map, map.order_power);
   for (const RegisterPoint& p : map.points) {
-    measure_also(map, p.scale_from);
-    measure_also(map, p.percent_of);
-    measure_also(map, p.clamp_to);
+    for (const std::int8_t scale : {p.scale_from, p.percent_of, p.clamp_to}) {
+      measure_also(map, scale);
+      if (scale >= 0 && !contains(map.scales, scale)) map.scales.push_back(scale);
+    }
   }
 }
 
@@ -134,9 +157,11 @@ bool is_written(const RegisterMap& map, int point) {
 void check_optional(TomlTable& root, const RegisterMap& map) {
   for (int point = 0; point < map.points.size(); ++point) {
     const RegisterPoint& p = map.points[point];
-    if (!p.optional || (is_told(map, point) && !is_written(map, point))) continue;
+    const bool is_used = is_told(map, point) || is_power(map, static_cast<std::int8_t>(point));
+    if (!p.optional || (is_used && !is_written(map, point))) continue;
     root.fail("point", quoted(p.name.view()) +
-                           " is optional: only alarms, warnings and off_grid may look at it");
+                           " is optional: only alarms, warnings, off_grid and "
+                           "measured_power may look at it");
   }
   for (const RegisterPoint& p : map.points) {
     for (const std::int8_t other : {p.scale_from, p.percent_of, p.clamp_to}) {

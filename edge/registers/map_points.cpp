@@ -135,6 +135,19 @@ void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& poi
   }
 }
 
+/// What becomes of a value beyond the range. A full battery may say 100.4 %; a limit that is
+/// larger than any order, or none, is no limit.
+void read_policy(TomlTable& table, RegisterPoint& point) {
+  const auto name = point.name.view();
+  const bool is_limit = name == "charge_power_max" || name == "discharge_power_max";
+  constexpr std::int64_t kSocSlackE4 = 500;
+  int unknown = is_limit ? 1 : 0;
+  point.slack = is_limit ? kMapValueLimit : name == "soc" ? kSocSlackE4 : 0;
+  table.integer("slack", point.slack, 0, kMapValueLimit);
+  table.choice("unknown", unknown, {"reject", "max"});
+  point.unknown_is_max = unknown == 1;
+}
+
 void read_scale(TomlTable& table, const RegisterMap& map, RegisterPoint& point) {
   int rounding = 0;
   table.integer("scale", point.scale, 1, 1'000'000);
@@ -145,6 +158,7 @@ void read_scale(TomlTable& table, const RegisterMap& map, RegisterPoint& point) 
   table.choice("rounding", rounding, {"auto", "nearest", "down", "up", "towards_zero"});
   table.integer("min", point.value_min, -kMapValueLimit, kMapValueLimit);
   table.integer("max", point.value_max, -kMapValueLimit, kMapValueLimit);
+  read_policy(table, point);
   point.rounding = static_cast<Rounding>(rounding);
   read_reference(table, "scale_from", map, point.scale_from);
   read_reference(table, "percent_of", map, point.percent_of);

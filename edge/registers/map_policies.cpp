@@ -9,14 +9,13 @@ void read_codes(TomlTable& table, std::string_view key,
                 StaticVector<std::uint8_t, kCapacity>& out) {
   const TomlArray* list = table.array(key);
   if (list == nullptr) return;
-  out.clear();
   for (const TomlValue& item : *list) {
     const auto* number = item.as<std::int64_t>();
     if (number == nullptr || *number < 1 || *number > 255) {
       return table.fail_at(item, std::string(key) + " must hold exception codes, 1 to 255");
     }
     if (!out.try_push_back(static_cast<std::uint8_t>(*number))) {
-      return table.fail(key, "holds more than 6 codes");
+      return table.fail(key, "holds more codes than fit");
     }
   }
 }
@@ -73,8 +72,6 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
   }
   writes.finish();
   TomlTable exceptions = map_child(root, "exceptions");
-  map.exceptions.retry.push_back(5);  // acknowledge: still working on it
-  map.exceptions.retry.push_back(6);  // busy
   read_codes(exceptions, "retry", map.exceptions.retry);
   read_codes(exceptions, "not_permitted", map.exceptions.not_permitted);
   exceptions.finish();

@@ -186,11 +186,26 @@ bool is_not_implemented(const RegisterPoint& point, const std::uint16_t* raw) {
 bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value,
             const Scaling& scaling) {
   const Ratio ratio = ratio_of(point, scaling);
-  if (!ratio.valid || is_not_implemented(point, raw)) return false;
+  if (!ratio.valid) return false;
+  if (is_not_implemented(point, raw)) {
+    value = point.value_max;
+    return point.unknown_is_max;
+  }
   const std::uint64_t bits = bits_of(point, raw);
   const bool decoded = point.type == RegisterType::kF32 ? decode_float(point, bits, ratio, value)
                                                         : decode_integer(point, bits, ratio, value);
-  return decoded && value >= point.value_min && value <= point.value_max;
+  const bool is_plausible =
+      decoded && value >= point.value_min - point.slack && value <= point.value_max + point.slack;
+  value = std::clamp(value, point.value_min, point.value_max);
+  return is_plausible;
+}
+
+bool is_cut(const RegisterPoint& point, const std::uint16_t* raw, const Scaling& scaling) {
+  RegisterPoint strict = point;
+  strict.slack = 0;
+  strict.unknown_is_max = false;
+  std::int64_t value = 0;
+  return decode(point, raw, value, scaling) && !decode(strict, raw, value, scaling);
 }
 
 Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding, RegisterBlock& out,

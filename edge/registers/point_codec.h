@@ -22,9 +22,12 @@ struct Scaling {
 };
 
 /// Value of the registers at `raw`; false when the device says that it has none, or when it lies
-/// outside the point's plausible range.
+/// outside the point's plausible range by more than its slack.
 [[nodiscard]] bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value,
                           const Scaling& scaling = {});
+/// The value is not what the registers say: cut to the range, or the largest in place of none.
+[[nodiscard]] bool is_cut(const RegisterPoint& point, const std::uint16_t* raw,
+                          const Scaling& scaling);
 
 /// Appends the registers of `value` to `out`. kNotExpressible when the range does not allow it or
 /// the type cannot hold it.

@@ -97,14 +97,19 @@ struct RegisterMap {
 
   StaticVector<RegisterPoint, kPointsMax> points;
   StaticVector<NamedValue, 96> names;
-  StaticVector<std::int8_t, kPointsMax> measure;   ///< points read every cycle
-  StaticVector<std::int8_t, kPointsMax> required;  ///< of these, those that must be plausible
-  StaticVector<Condition, 4> active;               ///< all hold while the device follows an order
-  StaticVector<Condition, 40> alarms;              ///< any of them is an alarm: nothing is driven
-  StaticVector<Condition, 40> warnings;            ///< any of them is told, and stops nothing
+  StaticVector<std::int8_t, kPointsMax> measure;  ///< points read every cycle
+  /// Of these, those without which there is no measurement, and those that keep from harm: alarms,
+  /// off-grid, temperatures, limits. One of the latter that is not known stops the battery.
+  StaticVector<std::int8_t, kPointsMax> required;
+  StaticVector<std::int8_t, kPointsMax> protective;
+  StaticVector<std::int8_t, kPointsMax> scales;  ///< what is written depends on these
+  StaticVector<Condition, 4> active;             ///< all hold while the device follows an order
+  StaticVector<Condition, 40> alarms;            ///< any of them is an alarm: nothing is driven
+  StaticVector<Condition, 40> warnings;          ///< any of them is told, and stops nothing
   Condition off_grid;
   AliveCounter alive;
-  StaticVector<PowerCase, 4> measured_power;  ///< the first case that holds counts
+  /// The first case that holds counts, of those whose points the device has.
+  StaticVector<PowerCase, 4> measured_power;
   StaticVector<PowerCase, 4> order_power;
   StaticVector<PowerCase, 4> grid_power;  ///< import is positive; a battery map's is read on demand
   StaticVector<IdentityCheck, 8> identity;

@@ -53,6 +53,8 @@ struct RegisterPoint {
   std::int32_t write_interval_s = 0;  ///< between two writes, release apart
   std::int64_t value_min = 0;         ///< plausible range when read, permitted range when written
   std::int64_t value_max = 0;
+  std::int64_t slack = 0;       ///< a value that is read beyond the range by no more is cut to it
+  bool unknown_is_max = false;  ///< "not implemented" is read as the largest value
   StaticVector<std::uint64_t, 3> not_implemented;  ///< raw values that say: I do not have this
 
   [[nodiscard]] constexpr int register_count() const { return registers; }

@@ -181,6 +181,12 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   if (result.meter != MeterVerdict::kNotAsked) {
     text << "meter_percent = " << result.meter_percent << "\n";
   }
+  text << "# Optional points that this device has: required from now on.\npresent = [";
+  for (const std::int8_t point : result.present) {
+    text << (point == result.present[0] ? "\"" : ", \"")
+         << config.battery.map.points[point].name.view() << "\"";
+  }
+  text << "]\n";
   return text.str();
 }
 
@@ -269,6 +275,21 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
                     expect_same(table, "battery", battery_text(config));
   if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";
   return same;
+}
+
+std::vector<std::int8_t> commissioned_points(const EdgeConfig& config) {
+  const AllStored all = read_places(config);
+  const Stored* const stored = all.that_counts();
+  const TomlValue* const node = stored == nullptr ? nullptr : stored->document.find("present");
+  const auto* const list = node == nullptr ? nullptr : node->as<TomlArray>();
+  std::vector<std::int8_t> points;
+  if (list == nullptr) return points;
+  for (const TomlValue& item : *list) {
+    const auto* const name = item.as<std::string>();
+    const int point = name == nullptr ? -1 : find_point(config.battery.map, *name);
+    if (point >= 0) points.push_back(static_cast<std::int8_t>(point));
+  }
+  return points;
 }
 
 std::vector<std::string> commission_file_losses(const EdgeConfig& config) {

@@ -4,6 +4,7 @@
 // in run_folder, for one that dies: the first that is whole counts. Start-up only.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ bool write_commission_file(const EdgeConfig& config, const CommissionResult& res
 
 /// False with one line in `error`, which says what differs and how to mend it.
 bool is_commissioned(const EdgeConfig& config, std::string& error);
+
+/// Optional points that the commissioned device has; none where an older program wrote the file.
+std::vector<std::int8_t> commissioned_points(const EdgeConfig& config);
 
 /// A line for each place that was lost or damaged while another counts; nothing is written.
 std::vector<std::string> commission_file_losses(const EdgeConfig& config);

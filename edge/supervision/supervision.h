@@ -53,6 +53,7 @@ struct SupervisionSettings {
 class Supervision {
  public:
   static constexpr std::int32_t kFailedOrdersToPause = 3;
+  static constexpr std::int32_t kUnreadToPause = 6;
   /// No battery needs that long to save itself, or to balance its cells.
   static constexpr std::int64_t kCareWithoutEndS = 24 * 3'600;
 
@@ -65,6 +66,7 @@ class Supervision {
     note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);
     if (trip_.is_set()) return;
+    if (now.is_driven && now.ordered_power_w != 0) unread_ = 0;
     observe_orders(now, holds_nothing);
     judge(now);
   }
@@ -94,6 +96,13 @@ class Supervision {
     const bool failed = status != Status::kOk && status != Status::kWriteBudget;
     failed_orders_ = failed ? failed_orders_ + 1 : 0;
     if (failed_orders_ >= kFailedOrdersToPause) pause(utc_s, Reason::kOrdersFail);
+  }
+
+  /// A reading that failed at the end of a step. A fault that comes with every order and goes at
+  /// 0 W is of the orders; one of the link may do so by chance for longer.
+  void note_unread(std::int64_t utc_s, bool was_driven, bool is_temporary) {
+    unread_ = was_driven ? unread_ + (is_temporary ? 1 : kUnreadToPause / 2) : 0;
+    if (unread_ >= kUnreadToPause && !trip_.is_set()) pause(utc_s, Reason::kOrdersFail);
   }
 
   /// Why the battery must not be driven now; kStudent: nothing.
@@ -141,6 +150,7 @@ class Supervision {
     pause_.begin(utc_s, reason);
     lost_.forget_findings();
     failed_orders_ = 0;
+    unread_ = 0;
     response_.forget();
   }
   /// Tried again soon, as often as it takes: the price may want it meanwhile.
@@ -179,6 +189,7 @@ class Supervision {
   LostOrders lost_;
   std::int64_t care_since_s_ = 0;  ///< without an honest reading since; 0 = it needs none
   std::int32_t failed_orders_ = 0;
+  std::int32_t unread_ = 0;  ///< points against orders with which nothing can be read
 };
 
 }  // namespace bess

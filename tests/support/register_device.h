@@ -35,7 +35,7 @@ inline WriteRecord fc6(int address, int value) { return {1, 6, address, {value}}
 struct MissingRegister {
   int function = 3;
   int address = 0;
-  int exception = 2;  ///< with which it is refused
+  int exception = 2;  ///< with which it is refused; -1 = no answer at all
 };
 
 struct RegisterDevice {
@@ -52,6 +52,7 @@ struct RegisterDevice {
   std::vector<MissingRegister> missing;
   int refused_reads = 0;
   int failing_writes = 0;  ///< that many of the next writes are not answered
+  std::function<void(std::int64_t ns)> sleep = [this](std::int64_t ns) { now_ns += ns; };
   std::function<void()> before_request = [] {};
   std::function<void(int address, int count)> after_write = [](int, int) {};
 
@@ -82,6 +83,7 @@ class DeviceLink {
     for (const MissingRegister& missing : device_.missing) {
       if (missing.function != span.function || !is_read(missing.address)) continue;
       ++device_.refused_reads;
+      if (missing.exception < 0) return Status::kTimeout;
       last_exception_ = missing.exception;
       return Status::kBusException;
     }
@@ -131,7 +133,7 @@ class DeviceClock {
  public:
   explicit DeviceClock(RegisterDevice& device) : device_(&device) {}
   [[nodiscard]] std::int64_t now_ns() const { return device_->now_ns; }
-  void sleep_ms(std::int32_t ms) const { device_->now_ns += std::int64_t{ms} * 1'000'000; }
+  void sleep_ms(std::int32_t ms) const { device_->sleep(std::int64_t{ms} * 1'000'000); }
   [[nodiscard]] std::int64_t utc_day() const { return device_->day; }
 
  private:

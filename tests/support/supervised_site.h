@@ -17,7 +17,11 @@ namespace bess {
 
 /// The device's time as the loop's clock; `every_half_minute` runs while the loop sleeps.
 struct MovedClock {
-  explicit MovedClock(SimulatedDevice& d) : device(d) {}
+  explicit MovedClock(SimulatedDevice& d) : device(d) {
+    d.test.device.sleep = [this](std::int64_t ns) { sleep_until_utc_ns(now_utc_ns() + ns); };
+  }
+  MovedClock(const MovedClock&) = delete;
+  MovedClock& operator=(const MovedClock&) = delete;
 
   [[nodiscard]] std::int64_t now_utc_ns() const { return device.utc_ns() + step_ns; }
   [[nodiscard]] std::int64_t monotonic_ns() const { return device.test.device.now_ns; }

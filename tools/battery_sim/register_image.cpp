@@ -183,7 +183,10 @@ void RegisterImage::show_soc() {
 
 /// One register with a sign (of several phases the first), one for each direction, or a size whose
 /// sign stands in a state.
-void RegisterImage::show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w) {
+void RegisterImage::show_power(const StaticVector<PowerCase, 4>& all, std::int64_t power_w) {
+  // Behind a case without a condition stand those of devices that do not have its points.
+  const bool is_first_alone = !all.empty() && all[0].when.point < 0;
+  const std::span cases(all.begin(), static_cast<std::size_t>(is_first_alone ? 1 : all.size()));
   for (const PowerCase& c : cases) {
     const bool has_sign =
         c.when.point < 0 && std::all_of(c.terms.begin(), c.terms.end(), [&](const auto& term) {

@@ -84,7 +84,7 @@ class RegisterImage {
   };
   void show_state(const Condition& state, bool lasts, StateBefore& before);
   [[nodiscard]] double shown_grid_w();
-  void show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w);
+  void show_power(const StaticVector<PowerCase, 4>& all, std::int64_t power_w);
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
   [[nodiscard]] bool is_order_ignored(int address, int count) const;

@@ -24,7 +24,8 @@ enum class Look : std::uint8_t {
 /// The battery was read, or could not be.
 struct Reading {
   Look look = Look::kTick;
-  std::int64_t utc_s = 0;  ///< the tick's; between two, now
+  std::int64_t utc_s = 0;       ///< the tick's; between two, now
+  Status status = Status::kOk;  ///< of the reading
   bool is_read = false;
   bool is_under_control = false;
   bool holds_nothing = false;  ///< what the battery follows is not ours

@@ -35,10 +35,15 @@ struct SupervisionPart : CyclePart {
     if (now.look == Look::kCut) return supervision.note_power(now.response);
     if (now.look == Look::kCheck && now.is_read) return supervision.note_between(now.response);
     if (!now.ends_step()) return;
-    if (now.is_read) {
+    const bool is_lost = now.response.measurement.lost_point != 0;
+    if (is_lost && now.is_read) {
+      supervision.note_unread(now.utc_s, now.drives, true);
+    } else if (now.is_read) {
       supervision.observe(now.response, now.holds_nothing);
     } else if (capacity_wh > 0) {
       supervision.note_capacity(capacity_wh);
+    } else {
+      supervision.note_unread(now.utc_s, now.drives, is_temporary(now.status));
     }
   }
   void put(const Moment&, CycleRecord&, GuardInputs& in) {

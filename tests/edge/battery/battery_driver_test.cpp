@@ -637,7 +637,12 @@ TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
   t.device.pass_s(2);
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_EQ(t.measured.soc_e4, 6'000);
-  t.device.set(0, {101});
+  t.device.set(0, {104});
+  t.device.pass_s(601);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.soc_e4, 10'000);
+  EXPECT_EQ(t.measured.cut_point, 1);
+  t.device.set(0, {106});
   t.device.pass_s(601);
   EXPECT_EQ(t.read(), Status::kImplausible);
   EXPECT_EQ(t.driver->release(), Status::kOk);  // giving back is possible all the same

@@ -184,13 +184,14 @@ TEST(DeviceState, SunSpec) {
   const int bank = 40'070 + 155 + 67;
   const auto fill_704 = [&](RegisterDevice& device) {
     chain(device, {{701, 153}, {704, 65}, {802, 62}});
-    device.set(40'070 + 4, {4});
+    device.set(40'070 + 4, {3});
     device.set(bank + 3, {8'000, 4'000, 3'500});
     device.set(bank + 11, {50});
     device.set(bank + 22, {3});
   };
   expect_told("sunspec_704", fill_704,
-              {{3, 40'070 + 4, {7}, Told::kAlarm},
+              {{3, 40'070 + 4, {6}, Told::kAlarm},
+               {3, 40'070 + 4, {7}, Told::kNothing},   // standby
                {3, 40'070 + 6, {1, 0}, Told::kAlarm},  // the maker's own
                {3, 40'070 + 6, {0, 0x0010}, Told::kWarning},
                {3, bank + 22, {99}, Told::kAlarm},
@@ -226,7 +227,7 @@ TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
   ASSERT_EQ(t.driver->release(), Status::kOk);
   EXPECT_EQ(t.device.holding[40'237], 2'424);
   MapUnderTest foreign(shipped_map("sma"));
-  foreign.device.set(30'845, {0, 101});
+  foreign.device.set(30'845, {0, 106});
   EXPECT_EQ(foreign.driver->release(), Status::kImplausible);
   EXPECT_THAT(foreign.device.writes, IsEmpty());
 }

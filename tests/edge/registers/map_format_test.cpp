@@ -371,7 +371,7 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
        "eeprom_writes_per_day is missing"},
       {"type = \"s32\"\nmin = -1000", "type = \"s32\"\nmin = -999", "cannot express"},
       {"type = \"s32\"", "type = \"u32\"", "cannot express"},
-      {"type = \"s32\"", "type = \"s32\"\noptional = true", "only alarms, warnings and off_grid"},
+      {"type = \"s32\"", "type = \"s32\"\noptional = true", "\"power\" is optional"},
       {"name = \"soc\"", "name = \"soc\"\noptional = true", "\"soc\" is optional: name it in"},
       {"[command]", "[simulator]\ninitial = [\"soc has capacity\"]\n[command]",
        "must be \"point = number, name, power_max or capacity\""},

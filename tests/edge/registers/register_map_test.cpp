@@ -114,7 +114,7 @@ TEST(AlphaEss, MeasurementsDecodeToOurSignsAndUnits) {
   EXPECT_EQ(value_of("battery_fault", {0x8000, 0x0001}), 0x8000'0001);
   EXPECT_EQ(value_of("dispatch_power", {0, 36'000}), -4'000);
   std::int64_t value = 0;
-  const std::uint16_t impossible = 1'001;
+  const std::uint16_t impossible = 1'051;
   EXPECT_FALSE(decode(map.points[find_point(map, "soc")], &impossible, value));
 }
 

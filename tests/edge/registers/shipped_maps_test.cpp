@@ -244,22 +244,6 @@ void fill_sungrow(RegisterDevice& device) {
   device.set(33'046, {500, 450});
 }
 
-TEST(SungrowSh, SignComesFromTheRunningState) {
-  MapUnderTest t(shipped_map("sungrow_sh"));
-  fill_sungrow(t.device);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.power_w, 1'500);
-  EXPECT_EQ(t.measured.soc_e4, 5'050);
-  EXPECT_EQ(t.measured.temperature_max_deci_c, 215);
-  EXPECT_EQ(t.measured.charge_w_max, 5'000);
-  t.device.set_input(13'000, {4});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.power_w, -1'500);
-  t.device.set_input(13'000, {1});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.power_w, 0);
-}
-
 TEST(SungrowSh, ExternalEmsWithHeartbeat) {
   MapUnderTest t(shipped_map("sungrow_sh"));
   fill_sungrow(t.device);

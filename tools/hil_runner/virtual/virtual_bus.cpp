@@ -70,10 +70,11 @@ void VirtualBus::close() {
   input_.clear();
 }
 
-bool VirtualBus::is_spoilt() {
+bool VirtualBus::is_lost() {
   answer_due();
   if (settings_.rtu) return false;
-  return is_cut_ || (!input_.empty() && input_.front().arrives_ns <= time_.monotonic_ns());
+  discard_input();
+  return is_cut_;
 }
 
 void VirtualBus::discard_input() {

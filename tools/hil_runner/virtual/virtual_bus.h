@@ -45,7 +45,7 @@ class VirtualBus {
 
   Status open();
   void close();
-  [[nodiscard]] bool is_spoilt();
+  [[nodiscard]] bool is_lost();
   void discard_input();
   Status send(const ModbusFrame& frame);
   Status receive(int count, std::int64_t deadline_ns, ModbusFrame& frame);

@@ -31,7 +31,7 @@ void ModbusWire::close() {
   fd_ = -1;
 }
 
-bool ModbusWire::is_spoilt() const { return bus_of(context_).is_spoilt(); }
+bool ModbusWire::is_lost() const { return bus_of(context_).is_lost(); }
 
 void ModbusWire::discard_input() { bus_of(context_).discard_input(); }
 
