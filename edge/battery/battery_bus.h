@@ -120,6 +120,14 @@ class BatteryBus {
     return status;
   }
 
+  Status read_points(const StaticVector<std::int8_t, kPointsMax>& points) {
+    PlacedPoints due;
+    for (const std::int8_t point : points) {
+      due.push_back(placed(point, map_.points[point].read_function));
+    }
+    return read_placed(due, live_);
+  }
+
   /// Reads `points` into `out`; what does not come is marked there as failed, and does not keep
   /// from the others. Of several failures the one that may pass.
   Status read_placed(PlacedPoints& points, LivePoints& out) {
@@ -165,8 +173,20 @@ class BatteryBus {
   Status write(const BlockWrite& write, const RegisterBlock& block, std::int64_t send_until_ns) {
     if (!is_located(write.values[0].point)) return Status::kImplausible;
     const PlacedPoint first = placed(write.values[0].point, 3);
-    return judged(link_.write(first.place.unit, write.function, first.place.address, block.data(),
-                              block.size(), send_until_ns));
+    const auto send = [&](std::uint8_t function) {
+      return judged(link_.write(first.place.unit, function, first.place.address, block.data(),
+                                block.size(), send_until_ns));
+    };
+    if (block.size() > 1) return send(write.function);
+    // Some firmware takes a single register by one of the two functions alone.
+    const std::uint8_t other = write.function == 6 ? 16 : 6;
+    const Status status = send(writes_by_other_ ? other : write.function);
+    if (status != Status::kBusException || link_.last_exception() > kExceptionNoAddress) {
+      return status;
+    }
+    if (send(writes_by_other_ ? write.function : other) != Status::kOk) return status;
+    writes_by_other_ = !writes_by_other_;
+    return Status::kOk;
   }
 
  private:
@@ -300,6 +320,7 @@ class BatteryBus {
   std::uint32_t read_in_round_[kPointsMax] = {};
   std::uint32_t round_ = 0;  ///< of readings, each with all its repetitions
   std::int64_t last_read_ns_ = 0;
+  bool writes_by_other_ = false;  ///< single registers by the function that the map does not name
   ModelStarts model_start_ = {};  ///< 0: not found
 };
 

@@ -27,7 +27,8 @@ class BatteryDriver {
       : map_(map),
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
-        reader_(map) {}
+        reader_(map),
+        adds_live_(std::any_of(std::begin(map.command), std::end(map.command), adds_to_order)) {}
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
@@ -158,7 +159,8 @@ class BatteryDriver {
     const bool was_read = bus_.last_read_ns() != 0;
     for (const WriteValue& value : write.values) {
       const RegisterPoint& p = map_.points[value.point];
-      const bool needs_device = p.model >= 0 || p.scale_from >= 0 || p.percent_of >= 0;
+      const bool needs_device =
+          p.model >= 0 || p.scale_from >= 0 || p.percent_of >= 0 || value.plus >= 0;
       if (needs_device && !was_read) return Status::kNotConnected;
     }
     address = bus_.placed(write.values[0].point, 3).place.address;
@@ -181,6 +183,13 @@ class BatteryDriver {
     kReplaced,  ///< its registers hold what somebody else wrote
     kEnded      ///< the device follows none, and nothing in the registers says who ended it
   };
+
+  static bool adds_to_order(const CommandSequence& sequence) {
+    return std::any_of(sequence.writes.begin(), sequence.writes.end(), [](const BlockWrite& write) {
+      return std::any_of(write.values.begin(), write.values.end(),
+                         [](const WriteValue& value) { return value.plus >= 0; });
+    });
+  }
 
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
   static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
@@ -316,7 +325,9 @@ class BatteryDriver {
     const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
     PowerOrder order = order_;
     order.write_until_ns = order_.feed_until_ns;
-    Status status = check(sequence, order);
+    // What is added to an order changes between two ticks.
+    Status status = adds_live_ ? bus_.read_points(map_.scales) : Status::kOk;
+    if (status == Status::kOk) status = check(sequence, order);
     if (status == Status::kOk) status = runner_.run(sequence, order, kReadPatienceNs);
     if (status == Status::kOk) {
       fed_ns_ = bus_.time().now_ns();
@@ -406,6 +417,7 @@ class BatteryDriver {
   BatteryBus<Link, Time> bus_;
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
+  bool adds_live_;  ///< a measured load is added to what is written
   bool identified_ = false;
   bool may_be_released_ = false;  ///< it was known once, or a person insists
   std::int64_t identified_ns_ = 0;

@@ -17,6 +17,7 @@ enum class Framing : std::uint8_t { kTcp, kRtu };
 inline constexpr int kFrameBytesMax = 260;      ///< TCP: 7 bytes of header, 253 of PDU
 inline constexpr int kReadRegistersMax = 125;   ///< by the protocol's one-byte count
 inline constexpr int kWriteRegistersMax = 123;  ///< by the longest PDU
+inline constexpr int kExceptionNoAddress = 2;   ///< 1: no such function
 inline constexpr int kExceptionBusyLong = 5;    ///< acknowledged, still at work
 inline constexpr int kExceptionBusy = 6;        ///< ask again later
 inline constexpr int kExceptionNoPath = 10;     ///< of a gateway: the way to the device is blocked

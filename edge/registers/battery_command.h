@@ -31,6 +31,7 @@ struct WriteValue {
   Argument argument = Argument::kConstant;
   std::int8_t sign = 1;
   std::uint8_t divisor = 1;   ///< e.g. 3 phases
+  std::int8_t plus = -1;      ///< point whose live value is added, e.g. a load behind the same port
   std::int64_t constant = 0;  ///< engineering units
 };
 

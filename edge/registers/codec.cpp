@@ -102,6 +102,12 @@ Status encode_value(const RegisterMap& map, const WriteValue& write, const Power
     if (write.argument == Argument::kHeartbeat) value = wrapped(point, value);
     value = write.sign * value / write.divisor;
   }
+  std::int64_t added = 0;
+  // Not in proofs: the device cuts what both together would be.
+  if (write.plus >= 0 && context.clamp && context.live != nullptr) {
+    if (!live_value(map, live, write.plus, added)) return Status::kImplausible;
+    value = std::clamp(value + added, point.value_min, point.value_max);
+  }
   if (point.clamp_to >= 0 && context.clamp && context.live != nullptr) {
     if (const Status status = clamp_to_live(map, point, live, value); status != Status::kOk) {
       return status;

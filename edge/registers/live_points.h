@@ -24,8 +24,9 @@ struct LivePoints {
 [[nodiscard]] bool live_value(const RegisterMap& map, const LivePoints& live, int point,
                               std::int64_t& value);
 
-/// The first case that holds, of those whose points this device has: `cases` is the map's measured_power or order_power. False when there
-/// is none, or when a register that it needs is unknown or implausible.
+/// The first case that holds, of those whose points this device has: `cases` is the map's
+/// measured_power or order_power. False when there is none, or when a register that it needs is
+/// unknown or implausible.
 [[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                               const LivePoints& live, std::int64_t& power_w);
 

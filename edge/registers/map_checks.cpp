@@ -78,6 +78,14 @@ void complete_measure(RegisterMap& map) {
       if (scale >= 0 && !contains(map.scales, scale)) map.scales.push_back(scale);
     }
   }
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        measure_also(map, value.plus);
+        if (value.plus >= 0 && !contains(map.scales, value.plus)) map.scales.push_back(value.plus);
+      }
+    }
+  }
 }
 
 bool writes_argument(const RegisterMap& map, Command command, Argument wanted) {

@@ -36,7 +36,7 @@ std::string argument_names() {
   return names;
 }
 
-/// "[-] argument [/ whole number]"
+/// "[-] argument [/ whole number]", and behind it "+ point"
 bool parse_argument(std::string_view text, WriteValue& value) {
   if (text.starts_with('-')) {
     value.sign = -1;
@@ -68,10 +68,17 @@ bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view te
   }
   value.point = require_point(table, at, phrase.left, map);
   if (value.point < 0) return false;
-  if (parse_value(map, value.point, phrase.right, value.constant)) return true;
+  std::string_view written = phrase.right;
+  constexpr std::string_view kPlus = " + ";
+  if (const std::size_t plus = written.find(kPlus); plus != std::string_view::npos) {
+    value.plus = require_point(table, at, written.substr(plus + kPlus.size()), map);
+    if (value.plus < 0) return false;
+    written = written.substr(0, plus);
+  }
+  if (parse_value(map, value.point, written, value.constant)) return true;
   value.constant = 0;
-  if (!parse_argument(phrase.right, value)) {
-    table.fail_at(at, quoted(phrase.right) + " is no number, no name of " + quoted(phrase.left) +
+  if (!parse_argument(written, value)) {
+    table.fail_at(at, quoted(written) + " is no number, no name of " + quoted(phrase.left) +
                           " and none of: " + argument_names());
     return false;
   }

@@ -144,6 +144,7 @@ void read_policy(TomlTable& table, RegisterPoint& point) {
   int unknown = is_limit ? 1 : 0;
   point.slack = is_limit ? kMapValueLimit : name == "soc" ? kSocSlackE4 : 0;
   table.integer("slack", point.slack, 0, kMapValueLimit);
+  table.integer("raw_at_max", point.raw_at_max, 1, 65'535);
   table.choice("unknown", unknown, {"reject", "max"});
   point.unknown_is_max = unknown == 1;
 }

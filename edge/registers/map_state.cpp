@@ -32,7 +32,7 @@ bool read_term(TomlTable& table, const TomlValue& at, std::string_view text, con
   term.point = require_point(table, at, text, map);
   if (term.point < 0) return false;
   if (out.terms.try_push_back(term)) return true;
-  table.fail_at(at, "at most 3 points add up to the power of an order");
+  table.fail_at(at, "at most 6 points add up to the power of an order");
   return false;
 }
 

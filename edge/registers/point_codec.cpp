@@ -224,6 +224,8 @@ Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding,
     return Status::kNotExpressible;
   }
   raw = divide(raw, ratio.numerator, point.sign < 0 ? mirrored(rounding) : rounding);
+  const bool is_bound = point.raw_at_max == 0 || value != point.value_max;
+  if (!is_bound) raw = point.raw_at_max - point.offset;
   if (__builtin_add_overflow(raw, std::int64_t{point.offset}, &raw) || !fits(point, raw)) {
     return Status::kNotExpressible;
   }

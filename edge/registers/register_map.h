@@ -44,7 +44,7 @@ struct PowerCase {
     std::int8_t sign = 1;
   };
   Condition when;  ///< point -1: always
-  StaticVector<Term, 3> terms;
+  StaticVector<Term, 6> terms;
 };
 
 /// A counter of the device that must move; standing still means frozen values.

@@ -54,6 +54,7 @@ struct RegisterPoint {
   std::int64_t value_min = 0;         ///< plausible range when read, permitted range when written
   std::int64_t value_max = 0;
   std::int64_t slack = 0;       ///< a value that is read beyond the range by no more is cut to it
+  std::int32_t raw_at_max = 0;  ///< written in place of the largest value: no bound; 0 = none
   bool unknown_is_max = false;  ///< "not implemented" is read as the largest value
   StaticVector<std::uint64_t, 3> not_implemented;  ///< raw values that say: I do not have this
 

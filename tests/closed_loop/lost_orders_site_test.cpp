@@ -54,6 +54,7 @@ struct Shows {
   /// Giving back, or changing the mode, writes no more than the device does at an order's end.
   bool release_is_end = false;
   bool mode_is_end = false;
+  bool has_mode = true;  ///< orders need one that somebody may change
 };
 
 Shows what_it_shows(const MapVariant& v) {
@@ -65,10 +66,14 @@ Shows what_it_shows(const MapVariant& v) {
   if (name == "sma bms_mode") return {.ended = false};
   if (name == "sma setpoint") return {.replaced = false, .ended = false};
   if (std::string(v.map) == "victron_ess3") return {.ended = false};
+  if (std::string(v.map) == "goodwe_et") return {.ended = false};
+  if (name == "solaredge ") return {.ended = false};
+  if (name == "kostal_plenticore ") return {.ended = false, .has_mode = false};
   return {};
 }
 
 bool shows(const Shows& map, Interference::Kind kind) {
+  if (kind == Interference::Kind::kMode && !map.has_mode) return false;
   return kind == Interference::Kind::kEnd ? map.ended : map.replaced;
 }
 

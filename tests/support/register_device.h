@@ -51,6 +51,7 @@ struct RegisterDevice {
   int unreadable_address = -1;  ///< a read that covers it is not answered
   std::vector<MissingRegister> missing;
   int refused_reads = 0;
+  int refused_single = 0;  ///< function by which no single register is written: exception 2
   int failing_writes = 0;  ///< that many of the next writes are not answered
   std::function<void(std::int64_t ns)> sleep = [this](std::int64_t ns) { now_ns += ns; };
   std::function<void()> before_request = [] {};
@@ -104,6 +105,10 @@ class DeviceLink {
       return Status::kTimeout;
     }
     if (const Status status = fault(); status != Status::kOk) return status;
+    if (count == 1 && function == device_.refused_single) {
+      last_exception_ = 2;
+      return Status::kBusException;
+    }
     if (device_.ignores_writes) return Status::kOk;
     std::copy_n(registers, count, device_.holding.begin() + address);
     device_.after_write(address, count);

@@ -29,7 +29,13 @@ inline constexpr MapVariant kShippedMapVariants[] = {{"alphaess", "block"},
                                                      {"sungrow_sh", "forced"},
                                                      {"huawei_luna2000", ""},
                                                      {"sma", "bms_mode"},
-                                                     {"sma", "setpoint"}};
+                                                     {"sma", "setpoint"},
+                                                     {"solaredge", ""},
+                                                     {"goodwe_et", "registers_47511"},
+                                                     {"goodwe_et", "registers_42000"},
+                                                     {"kostal_plenticore", ""},
+                                                     {"marstek_venus", "gen_3"},
+                                                     {"marstek_venus", "gen_1_2"}};
 
 inline std::string shipped_map(const std::string& name) {
   return std::string(BESS_SOURCE_DIR) + "/edge/maps/" + name + ".toml";

@@ -220,13 +220,13 @@ TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
 
 /// It shows no SoC then: nothing is driven, but an order of an earlier run is taken back.
 TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
-  MapUnderTest t(shipped_map("sma"));
+  MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0xFFFF, 0xFFFF});
   t.device.set(40'236, {0, 2'289});
   EXPECT_EQ(t.read(), Status::kImplausible);
   ASSERT_EQ(t.driver->release(), Status::kOk);
   EXPECT_EQ(t.device.holding[40'237], 2'424);
-  MapUnderTest foreign(shipped_map("sma"));
+  MapUnderTest foreign(shipped_map("sma"), "bms_mode");
   foreign.device.set(30'845, {0, 106});
   EXPECT_EQ(foreign.driver->release(), Status::kImplausible);
   EXPECT_THAT(foreign.device.writes, IsEmpty());
@@ -290,9 +290,11 @@ TEST(OptionalPoint, AModelThatIsThereAgainIsReadAgain) {
   EXPECT_TRUE(t.measured.alarm);
 }
 
-TEST(ResponseBand, OnlyTheHybridChargesByItself) {
+TEST(ResponseBand, OnlyHybridsChargeByThemselves) {
   for (const MapVariant& variant : kShippedMapVariants) {
-    const bool is_hybrid = std::string_view(variant.map) == "fronius_gen24";
+    const std::string_view name = variant.map;
+    const bool is_hybrid =
+        name == "fronius_gen24" || name == "solaredge" || name == "kostal_plenticore";
     EXPECT_EQ(load_shipped_map(variant).response.charges_by_itself, is_hybrid) << variant.map;
   }
 }

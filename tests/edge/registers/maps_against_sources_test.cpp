@@ -82,5 +82,132 @@ TEST(SungrowHeartbeat, CountsDownWithoutBeingTakenForAnotherMaster) {
   }
 }
 
+/// sunspec/models json/model_701.json, InvSt: RUNNING 3, FAULT 6, STANDBY 7.
+TEST(SunSpec701, AFaultIsAnAlarmAndStandbyIsNot) {
+  for (const auto& [state, is_alarm] : {std::pair{3, false}, {6, true}, {7, false}}) {
+    MapUnderTest t(shipped_map("sunspec_704"));
+    t.device.set(40'000, {0x5375, 0x6E53, 701, 153});
+    t.device.set(40'002 + 4, {state});
+    t.device.set(40'157, {704, 65});
+    t.device.set(40'224, {802, 62, 0, 8'000, 4'000, 3'500});
+    t.device.set(40'224 + 11, {50});
+    t.device.set(40'288, {0xFFFF, 0});
+    ASSERT_EQ(t.read(), Status::kOk) << state;
+    EXPECT_EQ(t.measured.alarm, is_alarm) << state;
+  }
+}
+
+/// victronenergy.com, ESS mode 2 and 3, section 1.3: register 37 sets the power at the AC input,
+/// which is battery + output; attributes.csv: 23 to 25 are the output's power in 10 W.
+TEST(VictronInput, IsWhatTheBatteryTakesAndTheLoadOnTheOutput) {
+  constexpr int kVebus = 228;
+  int output_w = 800;
+  MapUnderTest t(shipped_map("victron_ess3"));
+  const auto show = [&] {
+    t.device.set(23, {output_w / 10});
+    const auto input_w = static_cast<std::int16_t>(t.device.holding[37]);
+    t.device.set(842, {word(t.device.holding[2'902] == 3 ? input_w - output_w : 0), 62});
+  };
+  t.device.set(2'902, {0});  // as it reads on some systems
+  t.device.before_request = show;
+  for (const int power_w : {0, -1'000, 2'000}) {
+    ASSERT_EQ(t.order(power_w), Status::kOk) << power_w;
+    ASSERT_EQ(t.read(), Status::kOk);
+    EXPECT_EQ(t.measured.power_w, power_w);
+    EXPECT_EQ(t.measured.order_power_w, power_w);
+    output_w += 1'500;  // a kettle: followed as soon as the set-point is sent again
+    t.device.pass_s(t.driver->refresh_interval_s());
+    ASSERT_EQ(t.driver->refresh(), Status::kOk);
+    ASSERT_EQ(t.read(), Status::kOk);
+    EXPECT_EQ(t.measured.power_w, power_w);
+    EXPECT_FALSE(t.measured.order_replaced);
+  }
+  EXPECT_EQ(t.device.take_writes().back().unit, kVebus);
+}
+
+/// openWB/core issue 3355: the set-point is dropped after 10 s.
+TEST(VictronInput, IsSentAgainBeforeItIsDropped) {
+  MapUnderTest t(shipped_map("victron_ess3"));
+  EXPECT_GE(t.driver->refresh_interval_s(), 1);
+  EXPECT_LT(t.driver->refresh_interval_s(), 10);
+}
+
+/// knackerbrot fronius-modbus-control: StorCtl_Mod 3, OutWRte = P and InWRte = -P discharge with
+/// exactly P; mode 1 with InWRte alone is a floor.
+TEST(FroniusDischarge, IsAnExactPower) {
+  MapUnderTest t(shipped_map("fronius_gen24"));
+  t.device.set(40'253, {160});
+  t.device.set(40'343, {124});
+  t.device.set(40'345, {5'000});
+  t.device.set(40'351, {4'700});
+  t.device.set(40'365, {0xFFFE});
+  t.device.set(40'368, {0xFFFE});
+  ASSERT_EQ(t.order(-1'250), Status::kOk);
+  EXPECT_EQ(t.device.holding[40'348], 3);
+  EXPECT_EQ(t.device.holding[40'355], 2'500);
+  EXPECT_EQ(t.device.holding[40'356], word(-2'500));
+}
+
+/// evcc PR 11580: 40149 is the way to a Smart Energy hybrid; OpenEMS: it has no 40153.
+TEST(SmaHybrid, IsDrivenBySetPointWithoutRegister40153) {
+  MapUnderTest t(shipped_map("sma"));
+  t.device.set(30'845, {0, 55});
+  ASSERT_EQ(t.order(-3'000), Status::kOk);
+  for (const WriteRecord& write : t.device.take_writes()) {
+    EXPECT_LE(write.address + static_cast<int>(write.values.size()), 40'153);
+  }
+  EXPECT_EQ(t.device.holding[40'150], 3'000);  // positive = discharge
+}
+
+/// senalse, changelog v1.7.1: function 16 for a single register is answered with exception 2.
+TEST(AlphaEssSingles, AreWrittenAndReleasedByTheOtherFunction) {
+  for (const char* const variant : {"five_writes", "ten_and_one"}) {
+    for (const int refused : {6, 16}) {
+      MapUnderTest t(shipped_map("alphaess"), variant);
+      t.device.set(0x0102, {435});
+      t.device.set(0x0119, {80});
+      t.device.set(0x012C, {4'000, 3'500});
+      t.device.set(0x0440, {1});
+      t.device.refused_single = refused;
+      ASSERT_EQ(t.order(-2'000), Status::kOk) << variant << " " << refused;
+      EXPECT_EQ(t.device.holding[0x0880], 1);
+      EXPECT_EQ(t.device.holding[0x0882], 34'000);
+      ASSERT_EQ(t.driver->release(), Status::kOk) << variant << " " << refused;
+      EXPECT_EQ(t.device.holding[0x0880], 0);
+    }
+  }
+}
+
+/// Manual: 250 is 100 %; senalse and the Home Assistant community: 255 is. Neither ends early.
+TEST(AlphaEssSoc, ACeilingOfAHundredPercentIsNone) {
+  MapUnderTest t(shipped_map("alphaess"));
+  t.device.set(0x0102, {435});
+  t.device.set(0x0119, {80});
+  t.device.set(0x012C, {4'000, 3'500});
+  t.device.set(0x0440, {1});
+  PowerOrder order{.power_w = 2'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
+  ASSERT_EQ(t.driver->order(order), Status::kOk);
+  EXPECT_EQ(t.device.holding[0x0886], 255);
+  order.soc_max_e4 = 9'000;
+  ASSERT_EQ(t.driver->order(order), Status::kOk);
+  EXPECT_EQ(t.device.holding[0x0886], 225);
+}
+
+/// evcc solaredge-hybrid: the meter's W counts export as positive (scale -1).
+TEST(SolarEdgeMeter, CountsExportAsPositive) {
+  RegisterMap map;
+  std::string error;
+  const std::string path = std::string(BESS_SOURCE_DIR) + "/edge/meters/sunspec.toml";
+  ASSERT_TRUE(load_register_map(path, "solaredge", map, error)) << error;
+  LivePoints live;
+  const std::uint16_t exponent = 0;
+  const std::uint16_t export_w = 1'200;
+  live.keep(map, find_point(map, "power_sf"), &exponent);
+  live.keep(map, find_point(map, "grid_power"), &export_w);
+  std::int64_t power_w = 0;
+  ASSERT_TRUE(live_power(map, map.grid_power, live, power_w));
+  EXPECT_EQ(power_w, -1'200);
+}
+
 }  // namespace
 }  // namespace bess

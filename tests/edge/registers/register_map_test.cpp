@@ -43,9 +43,9 @@ TEST(AlphaEss, BlockVariantIsOneWriteOfElevenRegisters) {
   EXPECT_EQ(map.sequence(Command::kCharge).writes[0].address, 0x0880);
   EXPECT_EQ(map.sequence(Command::kCharge).writes[0].function, 16);
   EXPECT_THAT(registers_of(map, Command::kCharge, 0, order_of(4'000)),
-              ElementsAre(1, 0, 28'000, 0, 32'000, 2, 250, 0, 300, 255, 0));
+              ElementsAre(1, 0, 28'000, 0, 32'000, 2, 255, 0, 300, 255, 0));
   EXPECT_THAT(registers_of(map, Command::kIdle, 0, order_of(0)),
-              ElementsAre(1, 0, 32'000, 0, 32'000, 2, 250, 0, 300, 255, 0));
+              ElementsAre(1, 0, 32'000, 0, 32'000, 2, 255, 0, 300, 255, 0));
   EXPECT_THAT(registers_of(map, Command::kDischarge, 0, order_of(-4'000)),
               ElementsAre(1, 0, 36'000, 0, 32'000, 2, 25, 0, 300, 255, 0));
   EXPECT_THAT(registers_of(map, Command::kRelease, 0, {}),
@@ -75,7 +75,7 @@ TEST(AlphaEss, TenAndOneVariantStartsLast) {
   EXPECT_EQ(charge.writes[0].address, 0x0881);
   EXPECT_EQ(charge.writes[1].address, 0x0880);
   EXPECT_THAT(registers_of(map, Command::kCharge, 0, order_of(4'000)),
-              ElementsAre(0, 28'000, 0, 32'000, 2, 250, 0, 300, 255, 0));
+              ElementsAre(0, 28'000, 0, 32'000, 2, 255, 0, 300, 255, 0));
   EXPECT_THAT(registers_of(map, Command::kCharge, 1, order_of(4'000)), ElementsAre(1));
 }
 

@@ -23,7 +23,7 @@ TEST(ShippedMaps, EveryVariantLoads) {
     EXPECT_TRUE(load_register_map(file.path().string(), "", map, error)) << error;
     ++maps;
   }
-  EXPECT_EQ(maps, 9);
+  EXPECT_EQ(maps, 13);
 }
 
 TEST(AlphaEssDriver, OneBlockAndItsRelease) {
@@ -91,8 +91,8 @@ TEST(FroniusGen24, ControlModeIsLastToStartAndFirstToStop) {
   EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(40'358, {300}), fc16(40'355, {0}),
                                                   fc16(40'356, {10'000}), fc16(40'348, {2})));
   ASSERT_EQ(t.order(-1'250), Status::kOk);  // 25 %
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(40'358, {300}), fc16(40'355, {10'000}),
-                                                  fc16(40'356, {63'036}), fc16(40'348, {1})));
+  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(40'358, {300}), fc16(40'355, {2'500}),
+                                                  fc16(40'356, {63'036}), fc16(40'348, {3})));
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_EQ(t.measured.order_power_w, -1'250);
   ASSERT_EQ(t.driver->release(), Status::kOk);
@@ -134,22 +134,21 @@ TEST(HuaweiLuna2000, ForcibleIsLastAndFlashOnlyWhenItDiffers) {
   EXPECT_EQ(t.measured.capacity_wh, 10'000);
   EXPECT_EQ(t.measured.discharge_w_max, 4'500);
   ASSERT_EQ(t.order(4'000), Status::kOk);  // 47075 holds the rated power already
-  EXPECT_THAT(t.device.take_writes(),
-              ElementsAre(fc16(47'087, {1}), fc16(47'247, {0, 4'000}), fc16(47'083, {2}),
-                          fc16(47'246, {0}), fc16(47'100, {1})));
+  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc6(47'087, 1), fc16(47'247, {0, 4'000}),
+                                                  fc6(47'083, 2), fc6(47'246, 0), fc6(47'100, 1)));
   ASSERT_EQ(t.order(0), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(47'247, {0, 0}), fc16(47'083, {2}),
-                                                  fc16(47'246, {0}), fc16(47'100, {1})));
+  EXPECT_THAT(t.device.take_writes(),
+              ElementsAre(fc16(47'249, {0, 0}), fc6(47'083, 2), fc6(47'246, 0), fc6(47'100, 2)));
   ASSERT_EQ(t.order(-3'000), Status::kOk);
   EXPECT_THAT(t.device.take_writes(),
-              ElementsAre(fc16(47'077, {0, 4'500}), fc16(47'249, {0, 3'000}), fc16(47'083, {2}),
-                          fc16(47'246, {0}), fc16(47'100, {2})));
+              ElementsAre(fc16(47'077, {0, 4'500}), fc16(47'249, {0, 3'000}), fc6(47'083, 2),
+                          fc6(47'246, 0), fc6(47'100, 2)));
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_EQ(t.measured.order_power_w, -3'000);
   EXPECT_EQ(t.driver->counters().flash_writes_today, 2);
   ASSERT_EQ(t.driver->release(), Status::kOk);
   EXPECT_THAT(t.device.take_writes(),
-              ElementsAre(fc16(47'100, {0}), fc16(47'077, {0, 2'500}), fc16(47'087, {0})));
+              ElementsAre(fc6(47'100, 0), fc16(47'077, {0, 2'500}), fc6(47'087, 0)));
 }
 
 TEST(HuaweiLuna2000, PowerIsCutToTheRatedOneAndRefreshedEvery30s) {
@@ -161,8 +160,8 @@ TEST(HuaweiLuna2000, PowerIsCutToTheRatedOneAndRefreshedEvery30s) {
   t.device.take_writes();
   t.device.pass_s(30);
   ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(47'247, {0, 5'000}), fc16(47'083, {2}),
-                                                  fc16(47'246, {0}), fc16(47'100, {1})));
+  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(47'247, {0, 5'000}), fc6(47'083, 2),
+                                                  fc6(47'246, 0), fc6(47'100, 1)));
 }
 
 TEST(HuaweiLuna2000, PermissionDeniedIsToldApart) {
@@ -184,7 +183,7 @@ TEST(VictronEss3, SetPointOfTheVebusDeviceAndEssModeOfTheSystem) {
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_EQ(t.measured.power_w, 1'500);
   EXPECT_EQ(t.measured.soc_e4, 6'200);
-  EXPECT_EQ(t.driver->refresh_interval_s(), 30);
+  EXPECT_EQ(t.driver->refresh_interval_s(), 5);
   ASSERT_EQ(t.order(4'000), Status::kOk);
   EXPECT_THAT(t.device.take_writes(),
               ElementsAre(fc16(2'902, {3}, 100), fc16(37, {4'000, 0, 0}, 228)));
@@ -279,7 +278,7 @@ TEST(SungrowSh, ForcedModeHasNoWatchdogAndIsNeverRefreshed) {
 }
 
 TEST(Sma, SixOrderedWrites) {
-  MapUnderTest t(shipped_map("sma"));
+  MapUnderTest t(shipped_map("sma"), "bms_mode");
   const auto write = [](int address, int value) { return fc16(address, {0, value}, 3); };
   t.device.set(30'845, {0, 55});
   t.device.set_input(31'393, {0, 1'200, 0, 0});
@@ -309,7 +308,7 @@ TEST(Sma, SixOrderedWrites) {
 
 /// What a killed process ordered must not be taken for the limits to give back.
 TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
-  MapUnderTest t(shipped_map("sma"));
+  MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0, 55});
   t.device.set(40'236, {0, 2'424});
   t.device.set(40'795, {0, 4'600});
@@ -327,20 +326,21 @@ TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
 }
 
 TEST(Sma, NotImplementedIsNeverUsed) {
-  MapUnderTest t(shipped_map("sma"));
+  MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0xFFFF, 0xFFFF});
   EXPECT_EQ(t.read(), Status::kImplausible);
 }
 
-TEST(Sma, SetPointInOneWritePositiveIsDischarge) {
+TEST(Sma, SetPointPositiveIsDischarge) {
   MapUnderTest t(shipped_map("sma"), "setpoint");
   t.device.set(30'845, {0, 55});
   ASSERT_EQ(t.order(4'000), Status::kOk);
   ASSERT_EQ(t.order(-3'000), Status::kOk);
   ASSERT_EQ(t.driver->release(), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(40'149, {0xFFFF, 0xF060, 0, 802, 0, 0}, 3),
-                                                  fc16(40'149, {0, 3'000, 0, 802, 0, 0}, 3),
-                                                  fc16(40'149, {0, 0, 0, 803}, 3)));
+  EXPECT_THAT(t.device.take_writes(),
+              ElementsAre(fc16(40'149, {0xFFFF, 0xF060}, 3), fc16(40'151, {0, 802}, 3),
+                          fc16(40'149, {0, 3'000}, 3), fc16(40'151, {0, 802}, 3),
+                          fc16(40'149, {0, 0}, 3), fc16(40'151, {0, 803}, 3)));
 }
 
 TEST(Simulator, OneBlockInOurOwnUnits) {

@@ -1,5 +1,6 @@
 #include "tools/hil_runner/witness/maker_table.h"
 
+#include <bit>
 #include <cmath>
 
 namespace bess {
@@ -11,6 +12,22 @@ Value times(const Value& value, double factor) {
   return value ? Value(*value * factor) : std::nullopt;
 }
 Value of(const std::optional<std::uint16_t>& word) { return word ? Value(*word) : std::nullopt; }
+/// 32 bits in two registers, the low word first.
+std::optional<std::uint32_t> low_first(const WireMemory& wire, int unit, int address,
+                                       Table table = Table::kHolding) {
+  const auto low = wire.word(unit, address, table);
+  const auto high = wire.word(unit, address + 1, table);
+  if (!low || !high) return std::nullopt;
+  return static_cast<std::uint32_t>(*high) << 16 | *low;
+}
+Value low_first_signed(const WireMemory& wire, int unit, int address, Table table) {
+  const auto bits = low_first(wire, unit, address, table);
+  return bits ? Value(static_cast<std::int32_t>(*bits)) : std::nullopt;
+}
+Value low_first_float(const WireMemory& wire, int unit, int address) {
+  const auto bits = low_first(wire, unit, address);
+  return bits ? Value(std::bit_cast<float>(*bits)) : std::nullopt;
+}
 Value minus(const Value& a, const Value& b) { return a && b ? Value(*a - *b) : std::nullopt; }
 
 /// AlphaESS, manual V1.23: 0x0102 SoC in 0.1 %; 0x0126 power, discharge positive; dispatch at
@@ -41,7 +58,7 @@ struct Simulator : MakerTable {
 };
 
 /// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2:
-/// of discharging), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A negative
+/// of discharging, 3: both), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A negative
 /// limit of one is the other.
 struct StorageModel : MakerTable {
   static constexpr double kWhole = 10'000;  // with the scale of -2 that both devices have
@@ -127,7 +144,8 @@ struct SunSpec704 : MakerTable {
 };
 
 /// Victron GX, CCGX register list: unit 100, 842 power, 843 SoC in %, 2902 ESS mode, 3 while ours;
-/// unit 228, 37, 40 and 41 what each phase is to take, charge positive.
+/// unit 228, 37, 40 and 41 what the AC input of each phase is to take, charge positive; 23 to 25
+/// what its AC output gives to loads, in 10 W.
 struct VictronEss3 : MakerTable {
   explicit VictronEss3(int of_phases) : phases(of_phases) {}
   Value soc_frac(const WireMemory& wire) const override {
@@ -136,28 +154,26 @@ struct VictronEss3 : MakerTable {
   Value power_w(const WireMemory& wire) const override { return wire.signed16(100, 842); }
   Value ordered_w(const WireMemory& wire) const override {
     if (wire.word(100, 2902) != 3) return std::nullopt;
-    Value sum = wire.signed16(228, 37);
-    for (int phase = 1; phase < phases; ++phase) {
-      const Value more_w = wire.signed16(228, 39 + phase);
-      sum = sum && more_w ? Value(*sum + *more_w) : std::nullopt;
+    Value sum = 0;
+    for (int phase = 0; phase < phases; ++phase) {
+      const Value input_w = wire.signed16(228, phase == 0 ? 37 : 39 + phase);
+      const Value battery_w = minus(input_w, times(wire.signed16(228, 23 + phase), 10));
+      sum = sum && battery_w ? Value(*sum + *battery_w) : std::nullopt;
     }
     return sum;
   }
   int phases;
 };
 
-/// Sungrow SH: input registers 13000 running state (bit 1 charges, bit 2 discharges), 13021 power
-/// without a sign, 13022 SoC in 0.1 %; holding registers 13049 mode, 13050 command, 13051 power.
+/// Sungrow SH: input registers 5213 power in two registers, discharge positive, 13022 SoC in 0.1 %;
+/// holding registers 13049 mode, 13050 command, 13051 power.
 struct SungrowSh : MakerTable {
   explicit SungrowSh(int ours) : mode(ours) {}
   Value soc_frac(const WireMemory& wire) const override {
     return times(of(wire.word(1, 13'022, Table::kInput)), 0.001);
   }
   Value power_w(const WireMemory& wire) const override {
-    const auto state = wire.word(1, 13'000, Table::kInput);
-    const Value size_w = of(wire.word(1, 13'021, Table::kInput));
-    if (!state) return std::nullopt;
-    return times(size_w, (*state & 2) != 0 ? 1 : (*state & 4) != 0 ? -1 : 0);
+    return times(low_first_signed(wire, 1, 5'213, Table::kInput), -1);
   }
   Value ordered_w(const WireMemory& wire) const override {
     const auto command = wire.word(1, 13'050);
@@ -207,6 +223,80 @@ struct Sma : MakerTable {
   bool has_setpoint;
 };
 
+/// SolarEdge, low word first: 57732 SoC in %, 57716 power, charge positive; 57348 control, 4 while
+/// ours; 57357 mode: 3 charges at 57358, 4 discharges at 57360.
+struct SolarEdge : MakerTable {
+  Value soc_frac(const WireMemory& wire) const override {
+    return times(low_first_float(wire, 1, 57'732), 0.01);
+  }
+  Value power_w(const WireMemory& wire) const override { return low_first_float(wire, 1, 57'716); }
+  Value ordered_w(const WireMemory& wire) const override {
+    const auto mode = wire.word(1, 57'357);
+    if (wire.word(1, 57'348) != 4 || !mode || *mode == 7) return std::nullopt;
+    if (*mode == 3) return low_first_float(wire, 1, 57'358);
+    return *mode == 4 ? times(low_first_float(wire, 1, 57'360), -1) : Value(0);
+  }
+};
+
+/// GoodWe ET: 37007 SoC in %, 35182 power, discharge positive; mode at 47511 or 42000: 11 charges,
+/// 12 discharges, 8 rests; its power in the register behind it, or in two.
+struct GoodWe : MakerTable {
+  GoodWe(int at, bool is_wide) : mode_at(at), has_two_registers(is_wide) {}
+  static constexpr int kUnit = 247;
+  Value soc_frac(const WireMemory& wire) const override {
+    return times(of(wire.word(kUnit, 37'007)), 0.01);
+  }
+  Value power_w(const WireMemory& wire) const override {
+    return times(wire.signed32(kUnit, 35'182), -1);
+  }
+  Value ordered_w(const WireMemory& wire) const override {
+    const auto mode = wire.word(kUnit, mode_at);
+    if (!mode || *mode == 1) return std::nullopt;
+    const Value power_w =
+        has_two_registers ? wire.unsigned32(kUnit, mode_at + 1) : of(wire.word(kUnit, mode_at + 1));
+    return times(power_w, *mode == 11 ? 1 : *mode == 12 ? -1 : 0);
+  }
+  int mode_at;
+  bool has_two_registers;
+};
+
+/// Kostal Plenticore: 514 SoC in %, 582 power and 1034 set-point (low word first), discharge
+/// positive; a set-point of 0 W looks like none.
+struct Kostal : MakerTable {
+  static constexpr int kUnit = 71;
+  Value soc_frac(const WireMemory& wire) const override {
+    return times(of(wire.word(kUnit, 514)), 0.01);
+  }
+  Value power_w(const WireMemory& wire) const override {
+    return times(wire.signed16(kUnit, 582), -1);
+  }
+  Value ordered_w(const WireMemory& wire) const override {
+    const Value set_w = low_first_float(wire, kUnit, 1'034);
+    return set_w == 0 ? std::nullopt : times(set_w, -1);
+  }
+};
+
+/// Marstek Venus: 42000 control, 0x55AA while ours; 42010: 1 charges at 42020, 2 discharges at
+/// 42021. Third generation 34002 SoC in 0.1 %, 30006 power; before, 32104 in %, 32202 in two
+/// registers; discharge positive.
+struct Marstek : MakerTable {
+  explicit Marstek(bool is_third) : third_generation(is_third) {}
+  Value soc_frac(const WireMemory& wire) const override {
+    return third_generation ? times(of(wire.word(1, 34'002)), 0.001)
+                            : times(of(wire.word(1, 32'104)), 0.01);
+  }
+  Value power_w(const WireMemory& wire) const override {
+    return times(third_generation ? wire.signed16(1, 30'006) : wire.signed32(1, 32'202), -1);
+  }
+  Value ordered_w(const WireMemory& wire) const override {
+    const auto force = wire.word(1, 42'010);
+    if (wire.word(1, 42'000) != 0x55AA || !force) return std::nullopt;
+    if (*force == 1) return of(wire.word(1, 42'020));
+    return *force == 2 ? times(of(wire.word(1, 42'021)), -1) : Value(0);
+  }
+  bool third_generation;
+};
+
 }  // namespace
 
 const MakerTable* maker_table(std::string_view map, std::string_view variant) {
@@ -219,6 +309,10 @@ const MakerTable* maker_table(std::string_view map, std::string_view variant) {
   static const SungrowSh external(3), forced(2);
   static const HuaweiLuna huawei;
   static const Sma setpoint(true), bms_mode(false);
+  static const SolarEdge solaredge;
+  static const GoodWe goodwe(47'511, false), newer_goodwe(42'000, true);
+  static const Kostal kostal;
+  static const Marstek marstek(false), third_marstek(true);
   if (map == "alphaess") return &alphaess;
   if (map == "simulator") return &simulator;
   if (map == "fronius_gen24") return &fronius;
@@ -227,7 +321,11 @@ const MakerTable* maker_table(std::string_view map, std::string_view variant) {
   if (map == "victron_ess3") return variant == "three_phase" ? &three_phase : &single_phase;
   if (map == "sungrow_sh") return variant == "forced" ? &forced : &external;
   if (map == "huawei_luna2000") return &huawei;
-  if (map == "sma") return variant == "setpoint" ? &setpoint : &bms_mode;
+  if (map == "sma") return variant == "bms_mode" ? &bms_mode : &setpoint;
+  if (map == "solaredge") return &solaredge;
+  if (map == "goodwe_et") return variant == "registers_42000" ? &newer_goodwe : &goodwe;
+  if (map == "kostal_plenticore") return &kostal;
+  if (map == "marstek_venus") return variant == "gen_1_2" ? &marstek : &third_marstek;
   return nullptr;
 }
 
