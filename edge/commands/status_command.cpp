@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <sstream>
 
 #include "edge/commands/command_list.h"
 #include "edge/log/health.h"
@@ -407,6 +408,21 @@ std::string decision_info(JsonValue status) {
       text_of(field<&R::reason>(status)), text_of(field<&R::mode>(status)));
 }
 
+/// Prints metrics, each with the battery's name: several controllers may be scraped at one place.
+void print_labelled(const EdgeConfig& config, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = line.find_first_of("{ ");
+    const bool is_sample = !line.empty() && line[0] != '#' && end != line.npos;
+    if (is_sample && line.find("battery=\"") == line.npos) {
+      const std::string label = formatted("{battery=\"%s\"", config.battery.name.c_str());
+      const bool has_labels = line[end] == '{';
+      line.replace(end, has_labels ? 1 : 0, label + (has_labels ? "," : "}"));
+    }
+    std::printf("%s\n", line.c_str());
+  }
+}
+
 bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) {
   std::string text;
   if (!read_published_metrics(config, text)) {
@@ -417,15 +433,15 @@ bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) 
   }
   std::fputs(text.c_str(), stdout);
   NextDecision next;
-  if (is_running && status.exists()) std::fputs(decision_info(status).c_str(), stdout);
+  if (is_running && status.exists()) print_labelled(config, decision_info(status));
   if (is_running && find_next(config, next)) {
-    std::fputs(next_decision_metrics(next).c_str(), stdout);
+    print_labelled(config, next_decision_metrics(next));
   }
   // Where this is a package: the supervisor's own, and what a fleet's inventory expects here.
   for (const char* file : {"/update.prom", "/expected.prom"}) {
     std::string more;
     if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
-      std::fputs(more.c_str(), stdout);
+      print_labelled(config, more);
     }
   }
   return true;

@@ -1,9 +1,8 @@
 #include "edge/companion/controller_places.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 
+#include "edge/log/battery_name.h"
 #include "edge/log/installed_folders.h"
 
 namespace bess {
@@ -24,8 +23,16 @@ ControllerPlaces controller_places(TomlTable& root) {
   state = root.resolved(state);
   std::string run_folder(kInstalledEdge.run_beside(state));
   table.line("run_folder", run_folder);
+  TomlTable battery(root.table("battery"), root.file(), "[battery]", root.error());
+  std::string name = default_battery_name(state);
+  battery.line("name", name);
+  if (root.ok() && !is_battery_name(name)) {
+    battery.fail("name", "must be 1 to 63 letters, digits, - and _");
+  }
   const std::string run_ring = root.resolved(run_folder) + "/decisions.ring";
-  return {.config_path = root.file(),
+  return {.name = name,
+          .id = battery_id(state),
+          .config_path = root.file(),
           .program = controller_beside(),
           .ring = state + "/decisions.ring",
           .run_ring = run_folder.empty() ? "" : run_ring};
@@ -34,11 +41,6 @@ ControllerPlaces controller_places(TomlTable& root) {
 void read_program(TomlTable& table, ControllerPlaces& places) {
   table.line("program", places.program);
   places.program = table.resolved(places.program);
-}
-
-std::string host_name() {
-  char name[65] = {};
-  return gethostname(name, sizeof name - 1) == 0 && *name != '\0' ? name : "bess";
 }
 
 }  // namespace bess

@@ -10,6 +10,8 @@
 namespace bess {
 
 struct ControllerPlaces {
+  std::string name;  ///< [battery] name
+  std::string id;    ///< battery_id
   std::string config_path;
   std::string program;   ///< bess-edge, which answers
   std::string ring;      ///< the decision log
@@ -21,8 +23,5 @@ ControllerPlaces controller_places(TomlTable& root);
 
 /// Key program of a section: another one than that.
 void read_program(TomlTable& table, ControllerPlaces& places);
-
-/// Of this machine; "bess" where it has no name.
-std::string host_name();
 
 }  // namespace bess

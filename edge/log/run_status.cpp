@@ -28,6 +28,7 @@ FixedText<kCapacity> quotable(const FixedText<kCapacity>& text) {
 }
 
 void add_identity(const RunIdentity& id, TextBuffer& json) {
+  json.add("  \"name\": \"%s\",\n", id.name.c_str());
   json.add("  \"version\": \"%s\",\n  \"student\": \"%08x\",\n  \"provenance\": \"%s\",\n",
            id.version.c_str(), id.student_hash, quotable(id.student_provenance).c_str());
   json.add("  \"trained_from\": \"%s\",\n  \"trained_until\": \"%s\",\n", id.trained_from.c_str(),
@@ -92,19 +93,25 @@ void add_cycles_by_reason(const RunTotals& t, TextBuffer& json) {
   json.add("\n  }");
 }
 
+/// Metrics, each of which carries the battery's name: several controllers may write into one folder.
+struct Metrics {
+  TextBuffer& out;
+  char label[80];
+};
+
 /// What counts up has a name that says so: the naming rule of Prometheus.
 void add_head(TextBuffer& text, const char* name, const char* help) {
   const bool is_counter = std::string_view(name).ends_with("_total");
   text.add("# HELP %s %s\n# TYPE %s %s\n", name, help, name, is_counter ? "counter" : "gauge");
 }
 
-void add_value(TextBuffer& text, const char* name, const char* help, double value) {
-  add_head(text, name, help);
-  text.add("%s %.10g\n", name, value);
+void add_value(const Metrics& text, const char* name, const char* help, double value) {
+  add_head(text.out, name, help);
+  text.out.add("%s{%s} %.10g\n", name, text.label, value);
 }
 
 /// The metrics that are one field each. What does not exist is absent, not zero.
-void add_fields(MetricGroup group, const RunTotals& totals, TextBuffer& text) {
+void add_fields(MetricGroup group, const RunTotals& totals, const Metrics& text) {
   visit_in_order<&Places::metrics>(totals, [&](const auto& field, const auto& source) {
     const bool is_due = tens(field.place_in(&Places::metrics)) == static_cast<int>(group);
     if (!is_due || !field.exists_in(source)) return;
@@ -113,42 +120,45 @@ void add_fields(MetricGroup group, const RunTotals& totals, TextBuffer& text) {
   });
 }
 
-void add_requests(const BatteryCounters& c, TextBuffer& text) {
+void add_requests(const BatteryCounters& c, const Metrics& text) {
   const char* const name = "bess_modbus_requests_total";
-  add_head(text, name, "Modbus requests to the battery.");
-  text.add("%s{result=\"ok\"} %lld\n", name, as_long(c.requests - c.failed_requests));
-  text.add("%s{result=\"failed\"} %lld\n", name, as_long(c.failed_requests));
+  add_head(text.out, name, "Modbus requests to the battery.");
+  text.out.add("%s{%s,result=\"ok\"} %lld\n", name, text.label,
+               as_long(c.requests - c.failed_requests));
+  text.out.add("%s{%s,result=\"failed\"} %lld\n", name, text.label, as_long(c.failed_requests));
 }
 
-void add_interventions(const RunTotals& t, TextBuffer& text) {
+void add_interventions(const RunTotals& t, const Metrics& text) {
   const char* const name = "bess_guard_interventions_total";
-  add_head(text, name, "Cycles in which this rule overruled the student.");
+  add_head(text.out, name, "Cycles in which this rule overruled the student.");
   for (int i = 0; i < kReasonCount; ++i) {
     if (static_cast<Reason>(i) == Reason::kStudent) continue;  // no intervention
-    text.add("%s{rule=\"%s\"} %lld\n", name, reason_name(static_cast<Reason>(i)).data(),
-             as_long(t.cycles_by_reason[static_cast<std::size_t>(i)]));
+    text.out.add("%s{%s,rule=\"%s\"} %lld\n", name, text.label,
+                 reason_name(static_cast<Reason>(i)).data(),
+                 as_long(t.cycles_by_reason[static_cast<std::size_t>(i)]));
   }
 }
 
-void add_state(Mode mode_now, TextBuffer& text) {
+void add_state(Mode mode_now, const Metrics& text) {
   const char* const name = "bess_state";
-  add_head(text, name, "1 for the mode that the controller is in.");
+  add_head(text.out, name, "1 for the mode that the controller is in.");
   for (int i = 0; i < kModeCount; ++i) {
     const Mode mode = static_cast<Mode>(i);
-    text.add("%s{state=\"%s\"} %d\n", name, mode_name(mode).data(), mode == mode_now ? 1 : 0);
+    text.out.add("%s{%s,state=\"%s\"} %d\n", name, text.label, mode_name(mode).data(),
+                 mode == mode_now ? 1 : 0);
   }
 }
 
-void add_model(const RunIdentity& id, TextBuffer& text) {
+void add_model(const RunIdentity& id, const Metrics& text) {
   const char* const name = "bess_model_info";
-  add_head(text, name, "The student and the program that decide.");
-  text.add("%s{version=\"%s\",student=\"%08x\",provenance=\"%s\",map=\"%s\"} 1\n", name,
-           id.version.c_str(), id.student_hash, quotable(id.student_provenance).c_str(),
-           quotable(id.map).c_str());
+  add_head(text.out, name, "The student and the program that decide.");
+  text.out.add("%s{%s,version=\"%s\",student=\"%08x\",provenance=\"%s\",map=\"%s\"} 1\n", name,
+               text.label, id.version.c_str(), id.student_hash,
+               quotable(id.student_provenance).c_str(), quotable(id.map).c_str());
 }
 
 /// Only what the device tells.
-void add_wear(const CardWear& wear, TextBuffer& text) {
+void add_wear(const CardWear& wear, const Metrics& text) {
   if (wear.used_life_percent > 0) {
     add_value(text, "bess_card_used_life_ratio",
               "Share of its life that the state folder's card has used, as of the start.",
@@ -191,7 +201,9 @@ void format_status_json(const RunIdentity& identity, const RunTotals& totals,
   json.add("%s", checksum_end(json.view(), kJsonChecksum).c_str());
 }
 
-void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text) {
+void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& out) {
+  Metrics text{.out = out, .label = ""};
+  std::snprintf(text.label, sizeof text.label, "battery=\"%s\"", identity.name.c_str());
   const CycleRecord& last = totals.last;
   add_fields(MetricGroup::kSite, totals, text);
   add_requests(last.counters, text);
@@ -207,7 +219,7 @@ void format_prometheus(const RunIdentity& identity, const RunTotals& totals, Tex
   add_fields(MetricGroup::kOutlook, totals, text);
   add_model(identity, text);
   add_wear(identity.wear, text);
-  text.add("%s", checksum_end(text.view(), kCommentChecksum).c_str());
+  out.add("%s", checksum_end(out.view(), kCommentChecksum).c_str());
 }
 
 }  // namespace bess

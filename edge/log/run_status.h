@@ -26,6 +26,7 @@ struct CardWear {
 
 /// What does not change while the process runs.
 struct RunIdentity {
+  FixedText<63> name;  ///< [battery] name
   FixedText<31> version;
   std::uint32_t student_hash = 0;
   FixedText<255> student_provenance;
@@ -60,7 +61,7 @@ struct RunTotals {
 };
 
 inline constexpr std::size_t kStatusBytes = 6'144;
-inline constexpr std::size_t kMetricsBytes = 12'288;
+inline constexpr std::size_t kMetricsBytes = 24'576;
 
 /// Both end with a checksum of what stands before (text_checksum.h): as JSON's last member, as a
 /// comment.

@@ -9,7 +9,7 @@ namespace bess {
 std::string mail_text(const NotifySettings& settings, const Message& message) {
   std::string text = "To: " + one_line(settings.mail_to) + "\n";
   if (!settings.mail_from.empty()) text += "From: " + one_line(settings.mail_from) + "\n";
-  text += "Subject: [bess " + settings.node + "] " + one_line(headline(message), 200) + "\n";
+  text += "Subject: [bess " + settings.name + "] " + one_line(headline(message), 200) + "\n";
   // Machines must not answer, and a vacation reply is one.
   text += "Auto-Submitted: auto-generated\nMIME-Version: 1.0\n";
   text += "Content-Type: text/plain; charset=UTF-8\n\n";
@@ -18,7 +18,7 @@ std::string mail_text(const NotifySettings& settings, const Message& message) {
     text += "since " + std::string(utc_text(message.since_utc_s).view()) + "\n";
   }
   text += "seen at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
-          settings.node + "\nmore: bess-edge status, bess-edge log --last 20\n";
+          settings.name + "\nmore: bess-edge status, bess-edge log --last 20\n";
   if (!settings.contact.empty()) text += "call: " + settings.contact + "\n";
   return text;
 }

@@ -86,7 +86,7 @@ int parse(int argc, char** argv, Options& options) {
 std::int64_t now_utc_s() { return clock_ns(CLOCK_REALTIME) / kNanosecondsPerSecond; }
 
 void print_check(const NotifySettings& settings) {
-  std::printf("node       %s, every %d s, told after %d s\n", settings.node.c_str(),
+  std::printf("node       %s, every %d s, told after %d s\n", settings.name.c_str(),
               settings.every_s, settings.after_s);
   std::printf("asks       %s status --config %s\n", settings.program.c_str(),
               settings.config_path.c_str());
@@ -97,7 +97,7 @@ void print_check(const NotifySettings& settings) {
   } else {
     std::printf("mqtt       %s:%d%s, topics bess/v1/%s/...%s\n", settings.mqtt.host.c_str(),
                 settings.mqtt.port, settings.mqtt.ca_file.empty() ? "" : " with TLS",
-                settings.node.c_str(), settings.mqtt.orders ? ", holds may be ordered" : "");
+                settings.name.c_str(), settings.mqtt.orders ? ", holds may be ordered" : "");
   }
   if (!settings.settled.url.empty()) {
     std::printf("settled    prices of %d days, fetched once a day\n", settings.settled.days);

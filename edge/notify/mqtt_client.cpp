@@ -20,8 +20,9 @@ constexpr std::string_view kOffline = "offline";
 
 const char* text_or_null(const std::string& text) { return text.empty() ? nullptr : text.c_str(); }
 
-std::string client_name(const std::string& node, MqttPresence presence) {
-  const std::string name = "bess-notify-" + node;
+/// A broker cuts off who has the same client id as a newcomer.
+std::string client_name(const std::string& id, MqttPresence presence) {
+  const std::string name = "bess-notify-" + id;
   return presence == MqttPresence::kStays ? name : name + "-" + std::to_string(getpid());
 }
 
@@ -33,15 +34,14 @@ int publish(mosquitto* client, int* id, const std::string& topic, const std::str
 
 }  // namespace
 
-MqttClient::MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence,
-                       MqttOrderBox* orders)
-    : settings_(settings),
+MqttClient::MqttClient(const NotifySettings& notify, MqttPresence presence, MqttOrderBox* orders)
+    : settings_(notify.mqtt),
       presence_(presence),
       orders_(orders),
-      status_topic_(topic(node, "status")),
-      order_topics_{topic(node, kHoldTopic), topic(node, kHoldPowerTopic)} {
+      status_topic_(topic(notify.name, "status")),
+      order_topics_{topic(notify.name, kHoldTopic), topic(notify.name, kHoldPowerTopic)} {
   mosquitto_lib_init();
-  client_ = mosquitto_new(client_name(node, presence).c_str(), true, this);
+  client_ = mosquitto_new(client_name(notify.id, presence).c_str(), true, this);
   if (client_ == nullptr) {
     trouble_ = "mqtt: no memory";
     return;
@@ -198,6 +198,7 @@ void MqttClient::on_connect(int code) {
   const std::lock_guard lock(mutex_);
   refusal_ = code;
   is_connected_ = code == 0;
+  connected_ = std::chrono::steady_clock::now();
   if (is_connected_ && presence_ == MqttPresence::kStays) {
     unacknowledged_.clear();
     publish_retained(status_topic_, "online");
@@ -213,7 +214,16 @@ void MqttClient::on_connect(int code) {
 
 void MqttClient::on_disconnect() {
   const std::lock_guard lock(mutex_);
+  constexpr std::chrono::seconds kLasts(30);
+  const bool has_lasted = std::chrono::steady_clock::now() - connected_ >= kLasts;
+  if (is_connected_) cut_off_ = has_lasted ? 0 : cut_off_ + 1;
   is_connected_ = false;
+}
+
+bool MqttClient::is_cut_off() {
+  constexpr int kInARow = 5;
+  const std::lock_guard lock(mutex_);
+  return cut_off_ >= kInARow;
 }
 
 void MqttClient::on_message(const std::string& topic, std::string payload, bool is_retained) {

@@ -24,8 +24,7 @@ class MqttClient {
  public:
   /// Nothing is sent yet; who stays leaves `status` as the last will. `orders` gets what may be
   /// ordered; null: nothing may.
-  MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence,
-             MqttOrderBox* orders = nullptr);
+  MqttClient(const NotifySettings& notify, MqttPresence presence, MqttOrderBox* orders = nullptr);
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;
   /// Says offline, and goes.
@@ -33,6 +32,9 @@ class MqttClient {
 
   /// Empty, or why the settings cannot be used at all.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
+
+  /// Connections end soon after they begin, one after another: somebody else has this client's id.
+  [[nodiscard]] bool is_cut_off();
 
   /// Held by the broker for whoever comes later. Kept here as well, for the next connect.
   void retain(const std::string& topic, const std::string& payload);
@@ -77,6 +79,8 @@ class MqttClient {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   bool is_connected_ = false;
+  int cut_off_ = 0;  ///< connections in a row that did not last
+  std::chrono::steady_clock::time_point connected_{};
   int refusal_ = 0;  ///< the broker's answer to the last connect
   OnItsWay on_its_way_{};
   std::map<std::string, std::string> retained_;

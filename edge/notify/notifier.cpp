@@ -74,14 +74,13 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
 
 void Notifier::open_mqtt(MqttPresence presence) {
   const bool takes_orders = settings_.mqtt.orders && presence == MqttPresence::kStays;
-  mqtt_ = std::make_unique<MqttClient>(settings_.mqtt, settings_.node, presence,
-                                       takes_orders ? &orders_ : nullptr);
+  mqtt_ = std::make_unique<MqttClient>(settings_, presence, takes_orders ? &orders_ : nullptr);
   if (!settings_.mqtt.discovery_prefix.empty()) {
     mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
   }
   open_outbox("mqtt", [this](const Message& message, const std::stop_token& stop) {
     if (!mqtt_->trouble().empty()) return mqtt_->trouble();
-    return mqtt_->send(topic(settings_.node, "event"), message_json(settings_.node, message), stop);
+    return mqtt_->send(topic(settings_.name, "event"), message_json(settings_.name, message), stop);
   });
 }
 
@@ -102,6 +101,11 @@ void Notifier::run_round(std::int64_t now_utc_s) {
   if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
   look_at_settled(now_utc_s);
   if (!settled_trouble_.empty()) troubles.push_back({.key = "settled", .text = settled_trouble_});
+  if (mqtt_ != nullptr && mqtt_->is_cut_off()) {
+    troubles.push_back({.key = "mqtt_cut_off",
+                        .text = "the MQTT broker ends each connection: is there another client "
+                                "with the id of this one, from a copied machine?"});
+  }
   tell_events(book_.observe(troubles, now_utc_s), now_utc_s);
   read_log(newest_utc_of(status), now_utc_s);
   publish(status);
@@ -223,7 +227,7 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
                                                "--json", "--config", settings_.config_path},
                                               kEarnedS);
     const Json earned = Json::parse(answer.output);
-    mqtt_->retain(topic(settings_.node, "day"), day_json(day, earned.value()["beside"]));
+    mqtt_->retain(topic(settings_.name, "day"), day_json(day, earned.value()["beside"]));
   }
   told_.local_day = yesterday;
 }
@@ -234,10 +238,10 @@ void Notifier::publish(const ControllerStatus& status) {
   const std::vector<Alarm>& alarms = book_.alarms();
   const auto told =
       std::count_if(alarms.begin(), alarms.end(), [](const Alarm& alarm) { return alarm.is_told; });
-  mqtt_->retain(topic(settings_.node, "state"),
+  mqtt_->retain(topic(settings_.name, "state"),
                 state_json(status, static_cast<std::size_t>(told),
                            {energy_, today_, settings_.mqtt.orders ? &desk_ : nullptr}));
-  mqtt_->retain(topic(settings_.node, "alarms"), alarms_json(alarms));
+  mqtt_->retain(topic(settings_.name, "alarms"), alarms_json(alarms));
 }
 
 void Notifier::keep() {

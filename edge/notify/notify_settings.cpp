@@ -21,26 +21,6 @@ std::string readable_file(TomlTable& table, std::string_view key, const std::str
   return path;
 }
 
-/// One level of a topic, and an identifier of Home Assistant.
-bool is_node_name(std::string_view name) {
-  constexpr std::string_view kOthers = "-_";
-  for (const char c : name) {
-    const bool is_plain =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (!is_plain && kOthers.find(c) == kOthers.npos) return false;
-  }
-  return !name.empty() && name.size() <= 64;
-}
-
-void read_node(TomlTable& table, NotifySettings& settings) {
-  settings.node = host_name();
-  for (char& c : settings.node) c = is_node_name({&c, 1}) ? c : '_';
-  table.line("node", settings.node);
-  if (!is_node_name(settings.node)) {
-    table.fail("node", "must be a name of at most 64 letters, digits, - and _");
-  }
-}
-
 void read_mail(TomlTable& table, NotifySettings& settings) {
   settings.sendmail = "/usr/sbin/sendmail";
   table.line("mail_to", settings.mail_to);
@@ -114,7 +94,6 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
 
 void read_notify(TomlTable table, NotifySettings& settings) {
   std::string folder = "notify";
-  read_node(table, settings);
   table.integer("every_s", settings.every_s, 1, 3'600);
   table.integer("after_s", settings.after_s, 0, 86'400);
   table.boolean("daily", settings.daily);

@@ -28,8 +28,7 @@ struct NotifySettings : ControllerPlaces {
   std::string memory;                      ///< file of what was told
   std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
   std::string lock;                        ///< file that the one notifier of this memory holds
-  std::string node;
-  std::string contact;  ///< stands in each mail; empty: not said
+  std::string contact;                     ///< stands in each mail; empty: not said
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;
   bool daily = true;

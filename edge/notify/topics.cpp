@@ -73,9 +73,9 @@ Json entity_json(const NotifySettings& settings, const std::string& id, const En
   Json json = Json::object({{"platform", entity.platform},
                             {"unique_id", id + "_" + entity.key},
                             {"name", entity.name},
-                            {"state_topic", topic(settings.node, "state")},
+                            {"state_topic", topic(settings.name, "state")},
                             {"value_template", entity.value},
-                            {"availability_topic", topic(settings.node, "status")},
+                            {"availability_topic", topic(settings.name, "status")},
                             {"expire_after", settings.every_s * 10}});
   const std::pair<const char*, const char*> others[] = {
       {"device_class", entity.device_class},
@@ -95,10 +95,10 @@ void add_controls(const NotifySettings& settings, const std::string& id, Json& c
     return Json::object({{"platform", platform},
                          {"unique_id", id + "_" + key},
                          {"name", name},
-                         {"command_topic", topic(settings.node, command)},
-                         {"state_topic", topic(settings.node, "state")},
+                         {"command_topic", topic(settings.name, command)},
+                         {"state_topic", topic(settings.name, "state")},
                          {"value_template", value},
-                         {"availability_topic", topic(settings.node, "status")}});
+                         {"availability_topic", topic(settings.name, "status")}});
   };
   Json power = control("number", "hold_power", "Power to hold", kHoldPowerTopic,
                        "{{ value_json.hold_power_w | default(0) }}");
@@ -131,10 +131,10 @@ void add_yesterday(const NotifySettings& settings, const std::string& id, Json& 
                    Json::object({{"platform", "sensor"},
                                  {"unique_id", unique},
                                  {"name", name},
-                                 {"state_topic", topic(settings.node, "day")},
+                                 {"state_topic", topic(settings.name, "day")},
                                  {"value_template",
                                   std::string("{{ value_json.") + member + " | default('None') }}"},
-                                 {"availability_topic", topic(settings.node, "status")},
+                                 {"availability_topic", topic(settings.name, "status")},
                                  {"device_class", "monetary"},
                                  {"unit_of_measurement", "EUR"}}));
   }
@@ -186,7 +186,7 @@ void set_ledger(Json& json, const Ledger& ledger) {
   }
 }
 
-std::string id_of(const NotifySettings& settings) { return "bess_" + settings.node; }
+std::string id_of(const NotifySettings& settings) { return "bess_" + settings.id; }
 
 }  // namespace
 
@@ -263,7 +263,7 @@ std::string discovery_json(const NotifySettings& settings, const std::string& ve
   Json ids = Json::list();
   ids.add(id);
   Json device = Json::object({{"identifiers", std::move(ids)},
-                              {"name", "bess " + settings.node},
+                              {"name", "bess " + settings.name},
                               {"manufacturer", "bess"},
                               {"model", "battery controller"},
                               {"sw_version", version}});

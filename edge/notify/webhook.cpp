@@ -58,7 +58,7 @@ std::string post_webhook(const NotifySettings& settings, const Message& message,
                          const std::stop_token& stop) {
   const Curl curl(curl_easy_init());
   if (curl == nullptr) return "webhook: no memory";
-  const std::string body = message_json(settings.node, message);
+  const std::string body = message_json(settings.name, message);
   const CurlList headers = headers_of(settings);
   curl_easy_setopt(curl.get(), CURLOPT_URL, settings.webhook_url.c_str());
   curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");

@@ -33,8 +33,6 @@ void read_tokens(TomlTable& table, const std::string& name, AccessTokens& tokens
 
 void read_page(TomlTable table, PageSettings& settings) {
   std::string token_file;
-  settings.name = host_name();
-  table.line("name", settings.name);
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
   table.integer("refresh_s", settings.refresh_s, 1, 600);

@@ -11,7 +11,6 @@
 namespace bess {
 
 struct PageSettings : ControllerPlaces {
-  std::string name;                ///< in the title
   std::string host = "127.0.0.1";  ///< numeric; where it listens
   std::int32_t port = 8745;
   std::vector<std::string>

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "edge/log/battery_name.h"
 #include "edge/settings/link_config.h"
 #include "edge/settings/operator_config.h"
 
@@ -37,6 +38,10 @@ void expect_capacity(BatteryConfig& battery) {
 void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& control) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
+  table.text("name", battery.name);
+  if (table.has("name") && table.ok() && !is_battery_name(battery.name.view())) {
+    table.fail("name", "must be 1 to 63 letters, digits, - and _");
+  }
   table.text("map", map_file);
   table.text("variant", variant);
   read_link(table, battery.link);

@@ -12,6 +12,7 @@
 namespace bess {
 
 struct BatteryConfig {
+  FixedText<63> name;  ///< in metrics, topics and titles
   BatteryLinkSettings link;
   RegisterMap map;
   FixedText<511> map_path;

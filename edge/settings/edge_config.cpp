@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "edge/log/battery_name.h"
 #include "edge/settings/guard_config.h"
 #include "edge/settings/operator_config.h"
 #include "shared/utc_text.h"
@@ -69,6 +70,9 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
     static_cast<void>(root.table(others));
   }
   root.finish();
+  if (config.battery.name.empty()) {
+    config.battery.name = std::string_view(default_battery_name(config.state.folder.c_str()));
+  }
   config.control.price_wait_s = config.price.feed.wait_s;
   set_supervision(config.battery, config.control);
   set_site(config);

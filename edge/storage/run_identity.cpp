@@ -9,6 +9,7 @@ namespace bess {
 
 RunIdentity identity_of_run(const EdgeConfig& config) {
   RunIdentity identity;
+  identity.name = config.battery.name;
   identity.version = BESS_VERSION;
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();

@@ -428,7 +428,7 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   EXPECT_THAT(text, HasSubstr("clock      simulated"));
   EXPECT_THAT(text, HasSubstr("guard      charge at or below -500, discharge at or above 1500 "
                               "EUR/MWh, as the student is proved for\n"));
-  EXPECT_THAT(text, HasSubstr("charge     0x0880:[1 0 28000 0 32000 2 250 0 300 255 0]"));
+  EXPECT_THAT(text, HasSubstr("charge     0x0880:[1 0 28000 0 32000 2 255 0 300 255 0]"));
   EXPECT_THAT(text, HasSubstr("SoC 50."));  // the sign check has charged a little
   EXPECT_THAT(text, HasSubstr("dispatch off"));
   EXPECT_THAT(text, HasSubstr("EUR/MWh of minute"));

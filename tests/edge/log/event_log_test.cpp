@@ -20,6 +20,7 @@
 namespace bess {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 constexpr std::int64_t kDrainNs = 30 * kNanosecondsPerSecond;
@@ -61,7 +62,8 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
       ASSERT_TRUE(log->drain(kDrainNs));
     }
     EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 100"));
-    EXPECT_THAT(text_of_file(folder_.file("metrics.prom")), HasSubstr("bess_cycles_total 100\n"));
+    EXPECT_THAT(text_of_file(folder_.file("metrics.prom")),
+                ContainsRegex("bess_cycles_total[{].*[}] 100\n"));
     const std::string csv = text_of_file(folder_.file("log.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
   }

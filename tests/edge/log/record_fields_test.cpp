@@ -97,7 +97,7 @@ void expect_in_metrics(const Field<Source>& field, const RunTotals& totals) {
   const double value = static_cast<double>(telling_value(field.access.kind)) / field.metric.divisor;
   std::ostringstream line;
   line.precision(10);
-  line << '\n' << field.name_in(&Places::metrics) << ' ' << value << '\n';
+  line << '\n' << field.name_in(&Places::metrics) << "{battery=\"\"} " << value << '\n';
   EXPECT_THAT(std::string(text.view()), HasSubstr(line.str()));
 }
 

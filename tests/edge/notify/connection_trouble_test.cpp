@@ -117,14 +117,16 @@ class MqttTrouble : public ::testing::Test {
   }
   /// What a message meets at this broker.
   static std::string send(int port, const std::string& ca_file, const std::string& user = "") {
-    MqttSettings settings;
+    NotifySettings notify;
+    notify.name = "garage";
+    MqttSettings& settings = notify.mqtt;
     settings.host = "127.0.0.1";
     settings.port = port;
     settings.ca_file = ca_file;
     settings.user = user;
     settings.password = user.empty() ? "" : "wrong";
     settings.wait_ms_max = 1'500;
-    MqttClient client(settings, "garage", MqttPresence::kStays);
+    MqttClient client(notify, MqttPresence::kStays);
     return client.send("bess/v1/garage/event", "{}", {});
   }
   std::string tls_keys(const DatedCertificate& certificate) const {

@@ -43,9 +43,9 @@ class Outboxes : public Mqtt {
   }
   /// The same settings as a file.
   std::string config() {
-    std::string text =
-        "[notify]\nnode = \"garage\"\nevery_s = 1\nafter_s = " + std::to_string(settings_.after_s) +
-        "\nprogram = \"" + settings_.program + "\"\n";
+    std::string text = "[battery]\nname = \"garage\"\n[notify]\nevery_s = 1\nafter_s = " +
+                       std::to_string(settings_.after_s) + "\nprogram = \"" + settings_.program +
+                       "\"\n";
     if (!settings_.mail_to.empty()) {
       text +=
           "mail_to = \"" + settings_.mail_to + "\"\nsendmail = \"" + settings_.sendmail + "\"\n";

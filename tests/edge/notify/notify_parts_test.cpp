@@ -42,7 +42,7 @@ TEST(NotifySettings, WithoutASectionThereIsNoWay) {
   EXPECT_FALSE(settings.has_channel());
   EXPECT_EQ(settings.ring, folder.file("state/decisions.ring"));
   EXPECT_EQ(settings.memory, folder.file("notify/told.json"));
-  EXPECT_FALSE(settings.node.empty());
+  EXPECT_FALSE(settings.name.empty());
   EXPECT_EQ(std::filesystem::path(settings.program).filename(), "bess-edge");
 }
 
@@ -73,7 +73,7 @@ TEST(NotifySettings, ReadsEveryKey) {
   std::string error;
   ASSERT_TRUE(load_notify_settings(
       folder.write("edge.toml",
-                   "[state]\nfolder = \"/var/lib/bess\"\n[notify]\nnode = \"garage-1\"\n"
+                   "[state]\nfolder = \"/var/lib/bess\"\n[battery]\nname = \"garage-1\"\n[notify]\n"
                    "every_s = 10\nafter_s = 60\ndaily = false\nfolder = \"memory\"\n"
                    "run_folder = \"run\"\n"
                    "program = \"/opt/bess-edge\"\nmail_to = \"a@b.example, c@d.example\"\n"
@@ -89,7 +89,7 @@ TEST(NotifySettings, ReadsEveryKey) {
   EXPECT_EQ(settings.memory, folder.file("memory/told.json"));
   EXPECT_THAT(settings.memory_copies, ::testing::ElementsAre(folder.file("memory/told.copy"),
                                                              folder.file("run/told.json")));
-  EXPECT_EQ(settings.node, "garage-1");
+  EXPECT_EQ(settings.name, "garage-1");
   EXPECT_EQ(settings.every_s, 10);
   EXPECT_EQ(settings.after_s, 60);
   EXPECT_FALSE(settings.daily);
@@ -105,8 +105,7 @@ TEST(NotifySettings, EveryMistakeIsOneClearLine) {
   write_secret(folder, "open", "x\n", 0644);
   const std::pair<const char*, const char*> mistakes[] = {
       {"nod = \"x\"", "nod is not a known key"},
-      {"node = \"a/b\"", "node must be a name"},
-      {"node = \"\"", "node must be a name"},
+      {"node = \"a\"", "node is not a known key"},
       {"every_s = 0", "every_s must lie between 1 and 3600"},
       {"after_s = -1", "after_s must lie between 0 and 86400"},
       {"mail_to = \"a@b\\nBcc: c@d\"", "mail_to must be one line of text"},
@@ -218,7 +217,7 @@ const Message kAlarm{.kind = MessageKind::kAlarm,
 
 TEST(Mail, IsWholeAndNothingInAStatusBecomesAHeader) {
   NotifySettings settings;
-  settings.node = "garage";
+  settings.name = "garage";
   settings.mail_to = "a@b.example";
   settings.mail_from = "bess@b.example";
   settings.contact = "Ann, +32 2";
@@ -261,7 +260,7 @@ ControllerStatus sample_status(const std::string& health = "degraded") {
 TEST(Topics, AreTheseToTheLetter) {
   set_market_time_zone();
   NotifySettings settings;
-  settings.node = "garage";
+  settings.name = "garage";
   settings.mqtt.discovery_prefix = "homeassistant";
   settings.mqtt.orders = true;
   HoldDesk desk(60, 4'000);

@@ -299,11 +299,11 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
       write_script("ordered", "[ $1 = hold ] && { echo \"$@\" >>" + calls +
                                   "; [ $2 != 9999 ]; exit; }; cat " + folder_.file("status.json"));
   const std::string config = folder_.write(
-      "edge.toml", "[battery]\npower_w = 5000\n[notify]\nnode = \"garage\"\nprogram = \"" +
+      "edge.toml", "[battery]\nname = \"garage\"\npower_w = 5000\n[notify]\nprogram = \"" +
                        program + "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " +
                        std::to_string(port()) + "\nmqtt_orders = true\nmqtt_hold_minutes = 90\n");
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
-  EXPECT_THAT(all.await("/config", "bess_garage_hold"),
+  EXPECT_THAT(all.await("/config", "_hold\""),
               AllOf(HasSubstr("\"min\":-5000,\"max\":5000"),
                     HasSubstr("\"command_topic\":\"bess/v1/garage/hold_power/set\"")));
   ASSERT_NE(all.await("/state", "\"hold_power_w\":0"), "");
@@ -352,9 +352,9 @@ TEST_F(Mqtt, NothingIsOrderedOtherwise) {
 TEST_F(Mqtt, AKilledNotifierIsOffline) {
   Broker broker(folder_, port());
   const std::string config = folder_.write(
-      "edge.toml", "[notify]\nnode = \"garage\"\nevery_s = 1\nprogram = \"" + settings_.program +
-                       "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) +
-                       "\n");
+      "edge.toml",
+      "[battery]\nname = \"garage\"\n[notify]\nevery_s = 1\nprogram = \"" + settings_.program +
+          "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n");
   Listener all(port(), "#");
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
   EXPECT_EQ(all.await("/status", "online"), "online");
@@ -365,7 +365,7 @@ TEST_F(Mqtt, AKilledNotifierIsOffline) {
 class Program : public Rounds {};
 
 TEST_F(Program, CommandLine) {
-  const std::string config = folder_.write("edge.toml", "[notify]\nnode = \"garage\"\n");
+  const std::string config = folder_.write("edge.toml", "[battery]\nname = \"garage\"\n[notify]\n");
   const auto run = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
     ChildProcess child(arguments);

@@ -35,7 +35,8 @@ class Rounds : public ::testing::Test {
     settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
     settings_.ring = folder_.file("decisions.ring");
     settings_.memory = folder_.file("notify/told.json");
-    settings_.node = "garage";
+    settings_.name = "garage";
+    settings_.id = "garage";
     settings_.after_s = 300;
     set_status("ok");
   }

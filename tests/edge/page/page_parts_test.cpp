@@ -225,7 +225,7 @@ TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
       {"host = \"0.0.0.0\"\ntoken_file = \"tokens\"\n", "behind a proxy with TLS"},
       {"hosts = [\"http://a.example\"]\n", "without scheme and port"},
       {"hosts = [5]\n", "without scheme and port"},
-      {"name = \"a\\u0007b\"\n", "one line of text"},
+      {"name = \"a\"\n", "name is not a known key"},
   };
   for (const auto& [page, mend] : bad) {
     EXPECT_THAT(error_of(page), HasSubstr(mend)) << page;

@@ -160,7 +160,7 @@ TEST_F(PageServerTest, EveryNumberIsThatOfTheAnswers) {
         "month/earned_eur", "month/days/0/charged_kwh"}) {
     EXPECT_EQ(shown.count(path), 1U) << path;
   }
-  EXPECT_THAT(html.body, HasSubstr("garage &lt;1&gt;"));
+  EXPECT_THAT(html.body, HasSubstr("garage-1"));
   EXPECT_EQ(page.select_nodes("//*[local-name()='svg']").size(), 2U);
 }
 

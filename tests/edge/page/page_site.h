@@ -29,13 +29,13 @@ class PageSite {
     set_market_time_zone();
     write_log(cycles);
     config_ = folder.write(
-        "edge.toml", "contact = \"Ann & Bo, +32 2\"\n[battery]\nmap = \"" BESS_SOURCE_DIR
-                     "/edge/maps/alphaess.toml\"\n[price]\nurl = \"https://example.org/rows\"\n"
-                     "[simulation]\ntime_scale = 1\nutc_start = \"" +
-                         std::string(utc_text(kStart + cycles * kSecondsPerStep).view()) +
-                         "\"\nanchor_monotonic_ns = " + std::to_string(clock_ns(CLOCK_MONOTONIC)) +
-                         "\n[page]\nname = \"garage <1>\"\nport = 1\nprogram = \"" BESS_EDGE_PROGRAM
-                         "\"\ntoken_file = \"tokens\"\n");
+        "edge.toml",
+        "contact = \"Ann & Bo, +32 2\"\n[battery]\nname = \"garage-1\"\nmap = \"" BESS_SOURCE_DIR
+        "/edge/maps/alphaess.toml\"\n[price]\nurl = \"https://example.org/rows\"\n"
+        "[simulation]\ntime_scale = 1\nutc_start = \"" +
+            std::string(utc_text(kStart + cycles * kSecondsPerStep).view()) +
+            "\"\nanchor_monotonic_ns = " + std::to_string(clock_ns(CLOCK_MONOTONIC)) +
+            "\n[page]\nport = 1\nprogram = \"" BESS_EDGE_PROGRAM "\"\ntoken_file = \"tokens\"\n");
     const std::string tokens = folder.write("tokens", "# who\nanna  0123456789abcdef\n");
     EXPECT_EQ(chmod(tokens.c_str(), 0600), 0);
   }

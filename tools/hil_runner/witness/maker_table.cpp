@@ -58,8 +58,8 @@ struct Simulator : MakerTable {
 };
 
 /// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2:
-/// of discharging, 3: both), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A negative
-/// limit of one is the other.
+/// of discharging, 3: both), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A
+/// negative limit of one is the other.
 struct StorageModel : MakerTable {
   static constexpr double kWhole = 10'000;  // with the scale of -2 that both devices have
   virtual std::optional<int> model(const WireMemory& wire) const = 0;
