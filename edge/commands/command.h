@@ -6,6 +6,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edge/commands/duration_text.h"
 #include "edge/settings/edge_config.h"
+#include "edge/why/duration_text.h"
 #include "edge/why/local_moment.h"
 
 namespace bess {
@@ -57,7 +58,9 @@ struct OptionsOf {
   template <auto kMember>
   static constexpr CommandOption moment(std::string_view name) {
     return {name, true, [](void* given, std::string_view value, std::string& wants) {
-              wants = "a moment such as 14:32, \"2026-11-23 14:32\" or 2026-11-23T13:32:00Z";
+              wants =
+                  "a moment such as 14:32, yesterday, \"yesterday 14:32\", 2h (ago), \"2026-11-23 "
+                  "14:32\" or 2026-11-23T13:32:00Z";
               static_cast<Given*>(given)->*kMember = value;
               std::int64_t ignored = 0;
               return parse_moment(value, 0, ignored);
@@ -83,15 +86,25 @@ struct OptionsOf {
               return true;
             }};
   }
-  /// Whole watts, once; a minus before it begins no option.
+  /// Whole watts, once, as 2000, 2000W or 2kW; a minus before it begins no option.
   template <auto kMember>
   static constexpr CommandOption power() {
     return {"", false, [](void* given, std::string_view value, std::string&) {
               std::optional<std::int64_t>& power_w = static_cast<Given*>(given)->*kMember;
               if (value.starts_with('+')) value.remove_prefix(1);
-              std::int64_t number = 0;
-              if (power_w.has_value() || !is_whole(value, number)) return false;
-              power_w = number;
+              if (value.ends_with('W')) value.remove_suffix(1);
+              const bool is_kilo = value.ends_with('k');
+              if (is_kilo) value.remove_suffix(1);
+              constexpr double kLargest = 1e9;
+              double number = 0;
+              const char* const last = value.data() + value.size();
+              const auto [end, error] = std::from_chars(value.data(), last, number);
+              const double watts = is_kilo ? 1e3 * number : number;
+              const bool is_whole = std::abs(watts) <= kLargest && watts == std::nearbyint(watts);
+              if (power_w.has_value() || error != std::errc{} || end != last || !is_whole) {
+                return false;
+              }
+              power_w = static_cast<std::int64_t>(watts);
               return true;
             }};
   }

@@ -38,8 +38,8 @@ constexpr const char* kHelp =
   bess-edge hold [--config FILE] WATTS --for DURATION
   bess-edge hold [--config FILE] --release
 
-  WATTS           power to hold: positive charges, negative discharges, 0 rests; up to [battery]
-                  power_w
+  WATTS           power to hold, as 2000, 2000W or 2kW: positive charges, negative discharges, 0
+                  rests; up to [battery] power_w
   --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
   --release       end the hold before its time
   --config FILE   the controller's settings; default /etc/bess/edge.toml
@@ -53,7 +53,7 @@ in the [state] folder: run it as the controller's user, or as root.
 Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
 
   bess-edge hold 0 --for 30m
-  bess-edge hold -2000 --for 2h
+  bess-edge hold -2kW --for 2h
   bess-edge hold --release
 )";
 

@@ -48,10 +48,11 @@ constexpr const char* kHelp =
   --until MOMENT  only up to then
   --at MOMENT     only the cycle whose order was in force then
 
-A moment is the market's wall clock, 14:32 (the newest that has been) or "2026-11-23 14:32", or
-UTC: 2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power
-measured at the tick, for two minutes, at the price decided on. Read from the ring in [state]
-folder, oldest first, while the controller runs or not.
+A moment is the market's wall clock, 14:32 (the newest that has been), yesterday, "yesterday 14:32"
+or "2026-11-23 14:32"; so long ago, 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are
+estimates, as bess-edge earned has them: the power measured at the tick, for two minutes, at the
+price decided on. Read from the ring in [state] folder, oldest first, while the controller runs or
+not.
 Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
 
   bess-edge log --last 10

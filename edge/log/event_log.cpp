@@ -191,6 +191,7 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   const std::size_t size = format_log_line(record, line);
   if (!append_to_ring(record, number)) ++totals_.disk_failures;
   tell_of_hold(record);
+  tell_of_readings(record);
   tell_of_meter(record);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
@@ -330,6 +331,19 @@ void EventLog::tell_of_hold(const CycleRecord& record) {
   if (!hold_lines_.add_line(record, identity_.control, line)) return;
   write_journal_line(record.hold.unreadable ? JournalLevel::kWarning : JournalLevel::kNotice,
                      line.view());
+}
+
+void EventLog::tell_of_readings(const CycleRecord& record) {
+  char text[256];
+  TextBuffer lost(text);
+  if (reading_lines_.add_lost_line(record, identity_, lost)) {
+    const bool is_trouble = record.measurement.lost_point != 0;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, lost.view());
+  }
+  TextBuffer cut(text);
+  if (reading_lines_.add_cut_line(record, identity_, cut)) {
+    write_journal_line(JournalLevel::kWarning, cut.view());
+  }
 }
 
 void EventLog::tell_of_meter(const CycleRecord& record) {

@@ -14,6 +14,7 @@
 #include "edge/log/handover_queue.h"
 #include "edge/log/hold_lines.h"
 #include "edge/log/meter_lines.h"
+#include "edge/log/reading_lines.h"
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
 #include "edge/log/whole_file.h"
@@ -95,6 +96,7 @@ class EventLog {
   void add_what_goes_on(const CycleRecord* record, TextBuffer& line) const;
   void tell_of_run_folder();
   void tell_of_hold(const CycleRecord& record);
+  void tell_of_readings(const CycleRecord& record);
   void tell_of_meter(const CycleRecord& record);
 
   EventLogSettings settings_;
@@ -110,6 +112,7 @@ class EventLog {
   bool is_ending_run_ = false;
   HoldLines hold_lines_;
   MeterLines meter_lines_;
+  ReadingLines reading_lines_;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;
   std::atomic<std::int64_t> kept_{0};

@@ -93,7 +93,7 @@ void add_cycles_by_reason(const RunTotals& t, TextBuffer& json) {
   json.add("\n  }");
 }
 
-/// Metrics, each of which carries the battery's name: several controllers may write into one folder.
+/// Metrics, each with the battery's name: several controllers may write into one folder.
 struct Metrics {
   TextBuffer& out;
   char label[80];

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "edge/base/static_vector.h"
 #include "edge/control/control_types.h"
 #include "edge/log/text_buffer.h"
 #include "shared/fixed_text.h"
@@ -34,7 +35,8 @@ struct RunIdentity {
   FixedText<7> context = "month";             ///< what its context class is made from, or "level"
   FixedText<31> map;
   FixedText<31> variant;
-  FixedText<159> battery;  ///< "127.0.0.1:502 unit 85"
+  StaticVector<FixedText<31>, 48> point_names;  ///< of the map, as records count them
+  FixedText<159> battery;                       ///< "127.0.0.1:502 unit 85"
   bool control = false;
   pid_t pid = 0;
   std::int64_t start_utc_s = 0;

@@ -1,8 +1,8 @@
 // What a broker may order, where [notify] mqtt_orders allows it: a hold, and its end. Taken by
 // libmosquitto's thread and carried out by the notifier's, as commands of bess-edge with that
 // command's checks.
-//   bess/v1/NODE/hold/set         ON | OFF: hold the power below for mqtt_hold_minutes, or release
-//   bess/v1/NODE/hold_power/set   W, positive charges; of a hold in force at once, else of the next
+//   bess/v1/NAME/hold/set         ON | OFF: hold the power below for mqtt_hold_minutes, or release
+//   bess/v1/NAME/hold_power/set   W, positive charges; of a hold in force at once, else of the next
 // Retained messages are not followed: an order counts when it is given, not when somebody comes.
 #pragma once
 

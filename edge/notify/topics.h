@@ -1,11 +1,11 @@
 // What stands where in the broker: a versioned tree, so that no later version moves what users have
 // built upon.
-//   bess/v1/NODE/status   online | offline (the last will), retained
-//   bess/v1/NODE/state    the newest values, one JSON object, retained
-//   bess/v1/NODE/alarms   the alarms that are told and not over, JSON list, retained
-//   bess/v1/NODE/day      yesterday, JSON, retained
-//   bess/v1/NODE/event    each alarm and its end as it is told, JSON, not retained
-//   bess/v1/NODE/hold/set, hold_power/set   orders, where they are allowed (mqtt_orders.h)
+//   bess/v1/NAME/status   online | offline (the last will), retained
+//   bess/v1/NAME/state    the newest values, one JSON object, retained
+//   bess/v1/NAME/alarms   the alarms that are told and not over, JSON list, retained
+//   bess/v1/NAME/day      yesterday, JSON, retained
+//   bess/v1/NAME/event    each alarm and its end as it is told, JSON, not retained
+//   bess/v1/NAME/hold/set, hold_power/set   orders, where they are allowed (mqtt_orders.h)
 // A member may be added to an object; none is renamed or removed within v1.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace bess {
 
-/// "bess/v1/NODE/NAME".
+/// "bess/v1/NAME/TOPIC".
 std::string topic(const std::string& node, const char* name);
 
 /// What the decision log adds up to.

@@ -33,6 +33,15 @@ void expect_capacity(BatteryConfig& battery) {
   }
 }
 
+/// No battery is that small: somebody gave kW or kWh.
+void expect_watts(TomlTable& table, std::string_view key, std::int32_t value, const char* unit) {
+  constexpr std::int32_t kLeast = 100;
+  if (!table.ok() || !table.has(key) || value >= kLeast) return;
+  const std::string given = std::to_string(value);
+  table.fail(
+      key, "= " + given + " is in " + unit + ": write " + given + "000 for " + given + " k" + unit);
+}
+
 }  // namespace
 
 void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& control) {
@@ -47,6 +56,8 @@ void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& cont
   read_link(table, battery.link);
   table.integer("power_w", control.guard.power_w, 1, 100'000'000);
   table.integer("capacity_wh", battery.capacity_wh, 1, 1'000'000'000);
+  expect_watts(table, "power_w", control.guard.power_w, "W");
+  expect_watts(table, "capacity_wh", battery.capacity_wh, "Wh");
   table.integer("capacity_tolerance_percent", battery.capacity_tolerance_percent, 0, 100);
   table.integer("start_timeout_s", battery.start_timeout_s, 0, 3'600);
   table.boolean("allow_without_watchdog", battery.allow_without_watchdog);

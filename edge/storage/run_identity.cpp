@@ -18,6 +18,9 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.context = context_name(student_context().kind);
   identity.map = config.battery.map.name.view();
   identity.variant = config.battery.map.variant.view();
+  for (const RegisterPoint& point : config.battery.map.points) {
+    identity.point_names.push_back(point.name);
+  }
   identity.battery = battery_place(config.battery);
   identity.control = config.control.control;
   identity.pid = getpid();

@@ -51,7 +51,9 @@ TomlValue value_of(const toml::node& node, const FileName& file) {
 }
 
 std::string complaint(const std::string& name, int line, std::string_view what) {
-  return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what);
+  const bool is_bare_word = what.find("could not determine value type") != what.npos;
+  return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what) +
+         (is_bare_word ? "; write true or false, a number, or text in \"quotes\"" : "");
 }
 
 /// The UTF-8 characters at these offsets as escapes, "\U000000E9": the same within a string.

@@ -6,6 +6,8 @@
 
 #include "shared/host/text.h"
 
+#include "shared/host/nearest_word.h"
+
 namespace bess {
 namespace {
 
@@ -82,7 +84,11 @@ void TomlTable::number(std::string_view key, double& value, double min, double m
   const auto number = found->number();
   if (!number) return fail(key, "must be a number");
   if (!std::isfinite(*number) || *number < min || *number > max) {
-    return fail(key, range_text(min, max));
+    const bool is_percent = max == 1 && *number > 1 && *number <= 100;
+    const std::string share = is_percent ? number_text(*number / 100) : "";
+    return fail(key,
+                range_text(min, max) +
+                    (is_percent ? ": write " + share + " for " + number_text(*number) + " %" : ""));
   }
   value = *number;
 }
@@ -143,7 +149,8 @@ void TomlTable::finish() {
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
     if (known.empty()) known = "none";
-    return fail(key, "is not a known key here (known: " + known + ")");
+    const std::string meant = did_you_mean(key, {asked_.begin(), asked_.end()});
+    return fail(key, "is not a known key here" + meant + " (known: " + known + ")");
   }
 }
 

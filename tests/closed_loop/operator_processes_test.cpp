@@ -72,8 +72,8 @@ TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
               HasSubstr("hold       -1000 W until 2023-03-26T"));
   EXPECT_THAT(edge({"status", "--prometheus", "--config", config_}).text,
               AllOf(ContainsRegex("\nbess_hold_watts[{].*[}] -1000\n"),
-                    HasSubstr("\nbess_decision_info{reason=\"held\",mode=\"running\"} 1\n"),
-                    HasSubstr("\nbess_charge_up_to_eur_per_mwh ")));
+                    HasSubstr(",reason=\"held\",mode=\"running\"} 1\n"),
+                    HasSubstr("\nbess_charge_up_to_eur_per_mwh{")));
   EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);
   EXPECT_EQ(await_line(controller, "hold: "), "hold: released; the prices decide again");
   EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));
@@ -116,7 +116,7 @@ TEST_F(People, EveryWrongHoldIsOneClearLine) {
       {{"hold", "--for", "2h"}, "hold needs a power"},
       {{"hold", "100", "--for", "2h", "--release"}, "hold needs a power"},
       {{"hold", "100", "200", "--for", "2h"}, "unknown option 200"},
-      {{"hold", "1.5kW", "--for", "2h"}, "unknown option 1.5kW"},
+      {{"hold", "1.5kV", "--for", "2h"}, "unknown option 1.5kV"},
       {{"hold", "100", "--for", "2"}, "--for needs 2m to 7d"},
       {{"hold", "100", "--for", "119s"}, "--for needs 2m to 7d"},
       {{"hold", "100", "--for", "7d1s"}, "--for needs 2m to 7d"},

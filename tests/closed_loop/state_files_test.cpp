@@ -148,7 +148,7 @@ class StateFiles : public ::testing::Test {
                                  HasSubstr(newest_utc_), Not(HasSubstr("health     ok"))));
     const Said metrics = edge({"status", "--prometheus", "--config", config_});
     EXPECT_THAT(metrics.text, AllOf(ContainsRegex("bess_tripped[{].*[}] 0\n"),
-                                    HasSubstr("bess_last_cycle_timestamp_seconds ")))
+                                    HasSubstr("bess_last_cycle_timestamp_seconds{")))
         << metrics.text;
     said_ += json.text + text.text + metrics.text;
   }

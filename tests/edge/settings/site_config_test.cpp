@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/commands/duration_text.h"
+#include "edge/why/duration_text.h"
 #include "edge/settings/edge_config.h"
 #include "tests/support/temporary_folder.h"
 

@@ -76,7 +76,7 @@ TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
   const MistakeCase cases[] = {
       {"", "asks for nothing: add one of is, is_not"},
       {"enforce = true", "asks for nothing: add one of is, is_not"},
-      {"at_mostly = \"idle\"", "at_mostly is not a known key here (known: at_least, at_most, "},
+      {"at_mostly = \"idle\"", "at_mostly is not a known key here; did you mean at_most?"},
       {"is = \"sleep\"", "is must be one of \"discharge\", \"idle\", \"charge\""},
       {"is = 1", "is must be text in quotes"},
       {"is = \"idle\"\nat_least = \"idle\"", "at_least is a second demand beside is"},
