@@ -20,6 +20,7 @@
 #include "edge/site/house_watch.h"
 #include "edge/storage/commission_file.h"
 #include "edge/storage/hold_file.h"
+#include "edge/storage/run_locks.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -254,10 +255,16 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
                 m.dispatch_active ? "active" : "off");
   }
   print_absent(config, battery);
+  const int twin = holder_of(name_lock_path(config).c_str());
+  if (twin > 0) {
+    report(JournalLevel::kError,
+           "another controller (process %d) has [battery] name %s: change one", twin,
+           config.battery.name.c_str());
+  }
   const bool sign_ok = report_sign(config);
   const bool clock_ok = report_clock(config, clock);
   report_day_ahead(config);
-  return report_price(config, prices) && battery_ok && sign_ok && clock_ok;
+  return report_price(config, prices) && battery_ok && sign_ok && clock_ok && twin <= 0;
 }
 
 }  // namespace

@@ -57,6 +57,14 @@ FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view fold
   return {path};
 }
 
+FixedText<639> name_lock_path(const EdgeConfig& config) {
+  const std::string_view folder = standard_lock_folder();
+  char path[640];
+  std::snprintf(path, sizeof path, "%.*s/bess-name-%s.lock", static_cast<int>(folder.size()),
+                folder.data(), config.battery.name.c_str());
+  return {path};
+}
+
 std::string_view standard_lock_folder() {
   struct stat info {};
   const bool is_there = stat("/run/lock", &info) == 0 && S_ISDIR(info.st_mode);
@@ -93,6 +101,8 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
     if (!refuse_stranger(path.c_str(), error)) return false;
   }
   char what[560];
+  std::snprintf(what, sizeof what, "[battery] name %s", config.battery.name.c_str());
+  if (!locks.name.take(name_lock_path(config).c_str(), what, error)) return false;
   std::snprintf(what, sizeof what, "the state folder %s", folder);
   return locks.state.take(state_file(config, "lock").c_str(), what, error) &&
          lock_run_folder(config, locks, error);

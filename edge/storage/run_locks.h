@@ -8,6 +8,8 @@ namespace bess {
 
 /// Lock of the battery in a folder: the same name for every configuration that leads to it.
 FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder);
+/// Of [battery] name: two controllers of one machine must not report under the same.
+FixedText<639> name_lock_path(const EdgeConfig& config);
 /// Where every controller of this machine locks its battery; no configuration leads past it.
 std::string_view standard_lock_folder();
 /// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state
@@ -18,6 +20,7 @@ bool is_controller_running(const EdgeConfig& config);
 struct RunLocks {
   InstanceLock battery;
   InstanceLock battery_elsewhere;  ///< in [state] lock_folder as well, if it names one
+  InstanceLock name;
   InstanceLock state;
   InstanceLock run;  ///< where there is a run folder
 };

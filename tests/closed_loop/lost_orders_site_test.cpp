@@ -8,12 +8,14 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <random>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/supervised_site.h"
+#include "tests/support/thorough.h"
 
 namespace bess {
 namespace {
@@ -349,6 +351,45 @@ TEST_P(EveryMapsOrders, RestartsLoseNone) {
     ASSERT_FALSE(is_stop_reason(record.reason)) << reason_name(record.reason);
     ASSERT_EQ(record.replaced_orders + record.ended_orders, 0);
     if (cycle % 3 == 2) site.start();
+  }
+}
+
+/// One request in two hundred is not answered or refused as busy, and a gateway is busy, silent or
+/// without its device for some seconds about once an hour: nobody is stopped for it.
+TEST_P(EveryMapsOrders, OrdinaryBusFaultsStopNothing) {
+  SupervisedSite site(GetParam());
+  site.prices.price = [](std::int64_t minute_utc_s) {  // it never stands still for long
+    return static_cast<std::int32_t>(minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000) +
+           static_cast<std::int32_t>(minute_utc_s / 60 % 7);
+  };
+  constexpr int kTroubles[] = {-1, 5, 6, 10, 11};
+  std::mt19937 random(520'007);
+  RegisterDevice& device = site.device.test.device;
+  std::int64_t spell_begin_ns = 0;
+  std::int64_t spell_end_ns = 0;
+  int trouble = 0;
+  int faults = 0;
+  device.before_request = [&, refresh = device.before_request] {
+    refresh();
+    if (device.now_ns > spell_end_ns) {
+      spell_begin_ns = device.now_ns + (random() % 7'200) * kNanosecondsPerSecond;
+      spell_end_ns = spell_begin_ns + (3 + random() % 10) * kNanosecondsPerSecond;
+      trouble = kTroubles[random() % std::size(kTroubles)];
+    }
+    const bool is_spell = device.now_ns >= spell_begin_ns;
+    const bool is_alone = random() % 200 == 0;
+    device.exception = is_spell ? trouble : is_alone ? kTroubles[random() % 5] : 0;
+    if (device.exception != 0) ++faults;
+  };
+  const int cycles = 720 * few_or_all(3, 30);
+  std::map<Reason, int> stops;
+  for (int i = 0; i < cycles; ++i) {
+    const CycleRecord record = site.cycle();
+    if (is_stop_reason(record.reason)) ++stops[record.reason];
+  }
+  EXPECT_GT(faults, cycles / 50);
+  for (const auto& [reason, count] : stops) {
+    EXPECT_EQ(count, 0) << reason_name(reason) << " in " << cycles << " cycles";
   }
 }
 
