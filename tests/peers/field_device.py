@@ -11,11 +11,11 @@ openWB/core issue 3355 (10 s); models 1, 103 and 124 by sunspec/models; AlphaESS
 and senalse/ha-alphaess-modbus (function 16, 250 or 255 for 100 %); SMA by evcc (sma-hybrid, issues
 17115 and 15440) and OpenEMS SmaBatteryImpl (no 40153). + charges, - discharges, in W.
 
-SIGUSR1 begins the trouble, SIGUSR2 ends it: "refuse" (unit, first, last: of reads;
-code, 0 = silence; spell_s: so long from the first on), "fault_after_s", "island_after_s", "firmware" (an
-update), "boot" ("zeros", "ones" or an exception). A gateway has from its start: "busy" (before_s,
-after_s, every: around each so manieth tick), "late" (each so manieth answer comes before the one
-after it), "answer_unit", "one_client". The record has a line for each write, change of power and
+SIGUSR1 begins the trouble, SIGUSR2 ends it: "refuse" (unit, first, last: of reads; code, 0 =
+silence; spell_s: duration from the first read on), "fault_after_s", "island_after_s", "firmware"
+(an update), "boot" ("zeros", "ones" or an exception). A gateway has from its start: "busy"
+(before_s, after_s, every: around every n-th tick), "late" (every n-th answer comes before the next
+one), "answer_unit", "one_client". The record has a line for each write, change of power and
 trouble, after its time in UTC seconds. Runs until it is killed.
 """
 import argparse
@@ -250,7 +250,8 @@ class SunSpec(Battery):
             words |= {head: model, head + 1: self.MODEL_LENGTHS[model]}
         if 103 in self.heads:
             head = self.heads[103]
-            words |= {head + 14: -round(self.power), head + 15: 0, head + 38: 7 if self.fault else 4}
+            words |= {head + 14: -round(self.power), head + 15: 0,
+                      head + 38: 7 if self.fault else 4}
         if 124 in self.heads:
             head = self.heads[124]
             words |= {head + 2: RATED_W, head + 8: round(self.soc_shown() * 10000), head + 18: 0,
@@ -336,8 +337,8 @@ class Sma(Battery):
 
     def shown(self, unit, function):
         power = round(self.power)
-        values = {30201: 35 if self.fault else 307, 30845: round(self.soc_shown() * 100), 31391: 307,
-                  31393: max(power, 0), 31395: max(-power, 0)}
+        values = {30201: 35 if self.fault else 307, 30845: round(self.soc_shown() * 100),
+                  31391: 307, 31393: max(power, 0), 31395: max(-power, 0)}
         return {a + i: word for a, value in values.items() for i, word in enumerate(u32(value))}
 
 

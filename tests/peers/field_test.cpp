@@ -1,6 +1,6 @@
 // The real bess-edge against batteries and gateways that behave as users report them
-// (field_device.py, which shares nothing with bess): what is ordered, which reason stops it, and how
-// much energy flows. Each row of reports is a test, and three draws of it are run.
+// (field_device.py, which shares nothing with bess): what is ordered, which reason stops it, and
+// how much energy flows. Each row of reports is a test, and three draws of it are run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -283,7 +283,8 @@ TEST_P(Field, AlarmsLostForOneRead) {
   figures_ = std::to_string(driven(rest)) + " driven after the fault";
 }
 
-/// A unit behind a gateway is gone for good: the alarms of a BMS, a whole range, the off-grid state.
+/// A unit behind a gateway is gone for good: the alarms of a BMS, a whole range, the state of the
+/// grid.
 TEST_P(Field, ProtectionLostForGood) {
   const std::string reason = GetParam().index == 1 ? "grid_unknown" : "protection_lost";
   drive_into_trouble(variant(
