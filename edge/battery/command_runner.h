@@ -43,7 +43,6 @@ class CommandRunner {
       bool same = false;
       status = is_in_device(write, block, same);
       if (status != Status::kOk) return status;
-      if (!same && is_too_soon(write)) return Status::kWriteBudget;
       worn += same ? 0 : 1;
     }
     return budget_.allows(bus_.time().utc_day(), worn) ? Status::kOk : Status::kWriteBudget;
@@ -146,7 +145,6 @@ class CommandRunner {
       if (status == Status::kOk && write.read_back == ReadBack::kNone) {
         written_.keep(map_, value.point, block.data() + offset);
       }
-      written_ns_[value.point] = bus_.time().now_ns();
       offset += map_.points[value.point].register_count();
     }
     return status;
@@ -184,18 +182,6 @@ class CommandRunner {
       offset += map_.points[value.point].register_count();
     }
     return Status::kOk;
-  }
-
-  bool is_too_soon(const BlockWrite& write) const {
-    for (const WriteValue& value : write.values) {
-      const std::int64_t interval_ns =
-          map_.points[value.point].write_interval_s * kNanosecondsPerSecond;
-      if (written_ns_[value.point] != 0 &&
-          bus_.time().now_ns() - written_ns_[value.point] < interval_ns) {
-        return true;
-      }
-    }
-    return false;
   }
 
   bool holds(const LivePoints& registers, int point, const std::uint16_t* block, int offset) const {
@@ -317,7 +303,6 @@ class CommandRunner {
   FlashBudget budget_;
   LivePoints written_;  ///< confirmed by read-back, or written where reading back is not possible
   LivePoints saved_;    ///< registers as they were before the first order
-  std::int64_t written_ns_[kPointsMax] = {};
   std::int64_t heartbeat_ = 0;
 };
 

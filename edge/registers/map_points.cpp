@@ -15,7 +15,7 @@ struct TypeFacts {
 constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF, 0},      {"s16", 1, 0x8000, 0x7FFF},
                                 {"u32", 2, 0xFFFF'FFFF, 0}, {"s32", 2, 0x8000'0000, 0x7FFF'FFFF},
                                 {"u64", 4, UINT64_MAX, 0},  {"f32", 2, 0x7FC0'0000, 0},
-                                {"bcd", 0, 0, 0},           {"text", 0, 0, 0}};
+                                {"text", 0, 0, 0}};
 
 /// Numbers of a list such as models = [124, 704].
 template <typename T, int kCapacity>
@@ -110,14 +110,12 @@ void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& poi
   int word_order = defaults.word_order;
   std::int32_t registers = 0;
   std::int64_t mask = 0;
-  table.choice("type", type, {"u16", "s16", "u32", "s32", "u64", "f32", "bcd", "text"});
+  table.choice("type", type, {"u16", "s16", "u32", "s32", "u64", "f32", "text"});
   table.choice("word_order", word_order, {"high_first", "low_first"});
   point.type = static_cast<RegisterType>(type);
   point.word_order = static_cast<WordOrder>(word_order);
   registers = kTypes[type].registers == 0 ? 1 : kTypes[type].registers;
-  const std::int32_t most = point.type == RegisterType::kText  ? kTextRegistersMax
-                            : point.type == RegisterType::kBcd ? kPointRegistersMax
-                                                               : registers;
+  const std::int32_t most = point.type == RegisterType::kText ? kTextRegistersMax : registers;
   table.integer("registers", registers, kTypes[type].registers == 0 ? 1 : registers, most);
   table.integer("mask", mask, 1, 0xFFFF'FFFF);
   if (mask != 0 && point.type != RegisterType::kU16 && point.type != RegisterType::kU32) {
@@ -203,7 +201,6 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   read_type(table, defaults, point);
   read_scale(table, map, point);
   table.choice("storage", storage, {"volatile", "eeprom"});
-  table.integer("write_interval_s", point.write_interval_s, 0, 86'400);
   table.integer("max_age_s", point.max_age_s, 0, 86'400);
   table.boolean("optional", point.optional);
   table.boolean("private", point.is_private);

@@ -67,24 +67,6 @@ std::uint64_t bits_of(const RegisterPoint& point, const std::uint16_t* raw) {
   return bits;
 }
 
-bool bcd_value(std::uint64_t bits, std::int64_t& value) {
-  value = 0;
-  for (int shift = 60; shift >= 0; shift -= 4) {
-    const std::uint64_t digit = bits >> shift & 0xF;
-    if (digit > 9) return false;
-    value = value * 10 + static_cast<std::int64_t>(digit);
-  }
-  return true;
-}
-
-std::uint64_t bcd_bits(std::int64_t value) {
-  std::uint64_t bits = 0;
-  for (int shift = 0; shift < 64; shift += 4, value /= 10) {
-    bits |= static_cast<std::uint64_t>(value % 10) << shift;
-  }
-  return bits;
-}
-
 bool integer_of(const RegisterPoint& point, std::uint64_t bits, std::int64_t& raw) {
   if (point.mask != 0) bits = (bits & point.mask) >> std::countr_zero(point.mask);
   switch (point.type) {
@@ -94,8 +76,6 @@ bool integer_of(const RegisterPoint& point, std::uint64_t bits, std::int64_t& ra
     case RegisterType::kS32:
       raw = static_cast<std::int32_t>(bits);
       return true;
-    case RegisterType::kBcd:
-      return bcd_value(bits, raw);
     case RegisterType::kU16:
     case RegisterType::kU32:
     case RegisterType::kU64:
@@ -144,11 +124,6 @@ bool fits(const RegisterPoint& point, std::int64_t raw) {
       return raw >= 0 && raw <= UINT32_MAX;
     case RegisterType::kU64:
       return raw >= 0;
-    case RegisterType::kBcd: {
-      std::int64_t end = 1;
-      for (int i = 0; i < 4 * point.register_count() && i < 18; ++i) end *= 10;
-      return raw >= 0 && raw < end;
-    }
     case RegisterType::kF32:
     case RegisterType::kText:
       break;
@@ -229,7 +204,6 @@ Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding,
   if (__builtin_add_overflow(raw, std::int64_t{point.offset}, &raw) || !fits(point, raw)) {
     return Status::kNotExpressible;
   }
-  if (point.type == RegisterType::kBcd) return append(point, bcd_bits(raw), out);
   return append(point, static_cast<std::uint64_t>(raw), out);
 }
 

@@ -20,7 +20,7 @@ inline constexpr int kPointsMax = 48;
 inline constexpr int kPointRegistersMax = 4;  ///< of a number; texts are longer
 inline constexpr int kTextRegistersMax = 16;
 
-enum class RegisterType : std::uint8_t { kU16, kS16, kU32, kS32, kU64, kF32, kBcd, kText };
+enum class RegisterType : std::uint8_t { kU16, kS16, kU32, kS32, kU64, kF32, kText };
 enum class WordOrder : std::uint8_t { kHighFirst, kLowFirst };
 
 /// How a value between two raw counts is rounded. kAuto: a SoC ceiling goes down, a SoC floor up,
@@ -47,11 +47,10 @@ struct RegisterPoint {
   std::int32_t scale = 1;
   std::int32_t scale_divisor = 1;
   std::int32_t offset = 0;
-  std::int32_t sign = 1;              ///< -1 flips the device's sign to ours (charge positive)
-  std::int32_t step = 1;              ///< written values are cut to multiples of this
-  std::int32_t max_age_s = 0;         ///< a younger value is not read again; 0 = always read
-  std::int32_t write_interval_s = 0;  ///< between two writes, release apart
-  std::int64_t value_min = 0;         ///< plausible range when read, permitted range when written
+  std::int32_t sign = 1;       ///< -1 flips the device's sign to ours (charge positive)
+  std::int32_t step = 1;       ///< written values are cut to multiples of this
+  std::int32_t max_age_s = 0;  ///< a younger value is not read again; 0 = always read
+  std::int64_t value_min = 0;  ///< plausible range when read, permitted range when written
   std::int64_t value_max = 0;
   std::int64_t slack = 0;       ///< a value that is read beyond the range by no more is cut to it
   std::int32_t raw_at_max = 0;  ///< written in place of the largest value: no bound; 0 = none

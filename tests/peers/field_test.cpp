@@ -278,8 +278,7 @@ TEST_P(Field, AlarmsLostForOneRead) {
   ASSERT_GE(rest.size(), 2U);
   EXPECT_EQ(driven(rest), 0);
   EXPECT_EQ(rest.front().reason, "alarm");
-  EXPECT_THAT(run({"status", "--prometheus"}).text,
-              HasSubstr(",reason=\"alarm\""));
+  EXPECT_THAT(run({"status", "--prometheus"}).text, HasSubstr(",reason=\"alarm\""));
   figures_ = std::to_string(driven(rest)) + " driven after the fault";
 }
 

@@ -575,19 +575,6 @@ TEST_F(DriverTest, ReleasesThatFailDoNotWearTheFlashBeyondItsDay) {
   EXPECT_EQ(t.driver->release(), Status::kOk);
 }
 
-TEST_F(DriverTest, AWriteIntervalIsKept) {
-  MapUnderTest& t = with({{"storage = \"eeprom\"", "storage = \"eeprom\"\nwrite_interval_s = 600"},
-                          {"order = [[",
-                           "idle = [\"enable = 1\", \"time = duration\"]\n"
-                           "discharge = [\"mode = 2\", \"time = duration\", "
-                           "\"enable = 1\"]\ncharge = [\"mode = 1\", "
-                           "\"time = duration\", \"enable = 1\"]\n#"}});
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_EQ(t.order(-1'000), Status::kWriteBudget);
-  t.device.pass_s(601);
-  EXPECT_EQ(t.order(-1'000), Status::kOk);
-}
-
 TEST_F(DriverTest, EnableHappensOnceAndWhatItChangedIsRestored) {
   MapUnderTest& t = with({{"release = [",
                            "save = [\"mode = 5\"]\nenable = [\"mode = 9\"]\n"

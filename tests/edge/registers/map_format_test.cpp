@@ -117,18 +117,12 @@ TEST_F(MapFormat, FloatsBecomeWholeUnits) {
   EXPECT_FALSE(decodes_) << "infinity";
 }
 
-TEST_F(MapFormat, WideAndDecimalCodedNumbers) {
+TEST_F(MapFormat, WideNumbers) {
   EXPECT_EQ(decoded("type = \"u64\"", {0, 1, 2, 3}), (std::int64_t{1} << 32) + (2 << 16) + 3);
   EXPECT_EQ(decoded("type = \"u64\"\nword_order = \"low_first\"", {3, 2, 1, 0}),
             (std::int64_t{1} << 32) + (2 << 16) + 3);
   decoded("type = \"u64\"", {0x8000, 0, 0, 0});
   EXPECT_FALSE(decodes_);
-  EXPECT_EQ(decoded("type = \"bcd\"\nregisters = 2", {0x2026, 0x1121}), 20'261'121);
-  EXPECT_THAT(encoded("type = \"bcd\"\nregisters = 2", 20'261'121), ElementsAre(0x2026, 0x1121));
-  decoded("type = \"bcd\"", {0x00A0});
-  EXPECT_FALSE(decodes_) << "no decimal digit";
-  encoded("type = \"bcd\"", 10'000);
-  EXPECT_EQ(status_, Status::kNotExpressible);
 }
 
 TEST_F(MapFormat, ExtremesAreNoValuesByType) {

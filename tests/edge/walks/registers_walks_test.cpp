@@ -36,8 +36,8 @@ void see_point(Walk& walk, const RegisterPoint& p) {
   walk.see_text(p.name.view());
   walk.see(p.address, p.model, p.unit_group, p.registers, p.read_function, p.type, p.word_order,
            p.rounding, p.eeprom, p.optional, p.is_private, p.scale_from, p.percent_of, p.clamp_to,
-           p.mask, p.scale, p.scale_divisor, p.offset, p.sign, p.step, p.max_age_s,
-           p.write_interval_s, p.value_min, p.value_max);
+           p.mask, p.scale, p.scale_divisor, p.offset, p.sign, p.step, p.max_age_s, p.value_min,
+           p.value_max);
   for (const std::uint64_t raw : p.not_implemented) walk.see(raw);
 }
 
@@ -166,7 +166,7 @@ std::vector<std::string> lines_of(const std::string& path) {
 void exchange_value(Walk& walk, std::vector<std::string>& lines, std::size_t at) {
   static constexpr const char* kValues[] = {
       "0", "1", "-1", "2", "6", "16", "247", "248", "65535", "65536", "1000001", "-1000000",
-      "5000000001", "4294967296", "\"\"", "\"s16\"", "\"u32\"", "\"f32\"", "\"text\"", "\"bcd\"",
+      "5000000001", "4294967296", "\"\"", "\"s16\"", "\"u32\"", "\"f32\"", "\"text\"",
       "\"low_first\"", "\"eeprom\"", "\"none\"", "\"duration\"", "\"heartbeat\"", "\"rewrite\"",
       "\"power\"", "\"soc\"", "[]", "[\"soc = 1\"]", "[\"soc has 1\"]", "[\"soc\"]", "true",
       "false", "1.5", "{}", "0x10", "12", "24", "125", "\"nearest\"", "\"-power\"", "3600", "86401",
@@ -200,7 +200,6 @@ void add_key(Walk& walk, std::vector<std::string>& lines, std::size_t at) {
       "offset = 5",
       "step = 5",
       "max_age_s = 5",
-      "write_interval_s = 5",
       "word_order = \"low_first\"",
       "type = \"u64\"",
       "type = \"s32\"",
@@ -457,12 +456,11 @@ TEST(RegistersWalk, IncludedMaps) {
 
 RegisterPoint drawn_point(Walk& walk) {
   RegisterPoint p;
-  p.type = static_cast<RegisterType>(walk.from(0, 7));
+  p.type = static_cast<RegisterType>(walk.from(0, 6));
   p.word_order = static_cast<WordOrder>(walk.from(0, 1));
   p.rounding = static_cast<Rounding>(walk.from(0, 4));
-  constexpr std::uint8_t kRegisters[] = {1, 1, 2, 2, 4, 2, 2, 4};
+  constexpr std::uint8_t kRegisters[] = {1, 1, 2, 2, 4, 2, 4};
   p.registers = kRegisters[static_cast<int>(p.type)];
-  if (p.type == RegisterType::kBcd) p.registers = static_cast<std::uint8_t>(walk.from(1, 4));
   if (walk.once_in(2)) p.scale = walk.number(1, 100);
   if (walk.once_in(2)) p.scale_divisor = walk.number(1, 100);
   if (walk.once_in(3)) p.offset = walk.number(-500, 500);
