@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/why/duration_text.h"
 #include "edge/settings/edge_config.h"
+#include "edge/why/duration_text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
