@@ -11,12 +11,12 @@ openWB/core issue 3355 (10 s); models 1, 103 and 124 by sunspec/models; AlphaESS
 and senalse/ha-alphaess-modbus (function 16, 250 or 255 for 100 %); SMA by evcc (sma-hybrid, issues
 17115 and 15440) and OpenEMS SmaBatteryImpl (no 40153). + charges, - discharges, in W.
 
-SIGUSR1 begins the trouble, SIGUSR2 ends it: "refuse" (unit, first, last: of reads; code, 0 =
-silence; spell_s: duration from the first read on), "fault_after_s", "island_after_s", "firmware"
-(an update), "boot" ("zeros", "ones" or an exception). A gateway has from its start: "busy"
-(before_s, after_s, every: around every n-th tick), "late" (every n-th answer comes before the next
-one), "answer_unit", "one_client". The record has a line for each write, change of power and
-trouble, after its time in UTC seconds. Runs until it is killed.
+SIGUSR1 begins the trouble, SIGUSR2 ends it: "refuse" (reads of unit, first to last; code, 0 =
+silence; spell_s: so long from the first on), "fault_after_s", "island_after_s", "firmware" (an
+update), "boot" ("zeros", "ones" or an exception). A gateway has "busy" (before_s, after_s, every:
+exception 6 around each so manieth tick) and "late" (each so manieth answer comes before the one
+after it) while there is trouble, "answer_unit" and "one_client" always. The record has a line for
+each write, change of power and trouble, after its time in UTC seconds. Runs until it is killed.
 """
 import argparse
 import json
