@@ -218,7 +218,7 @@ class BatteryBus {
     return worst;
   }
 
-  /// Refused, by a gateway for some seconds, or not implemented: this device does not have it.
+  /// A point is absent when it is refused (by a gateway: for some seconds) or not implemented.
   Status decide(const RegisterSpan& span, const PlacedPoints& undecided) {
     LivePoints now;
     const Status status =

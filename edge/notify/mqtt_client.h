@@ -33,7 +33,7 @@ class MqttClient {
   /// Empty, or why the settings cannot be used at all.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
 
-  /// Connections end soon after they begin, one after another: somebody else has this client's id.
+  /// Connections keep ending soon after they begin: another client has this client id.
   [[nodiscard]] bool is_cut_off();
 
   /// Held by the broker for whoever comes later. Kept here as well, for the next connect.

@@ -105,7 +105,7 @@ struct RegisterMap {
   StaticVector<std::int8_t, kPointsMax> scales;  ///< what is written depends on these
   StaticVector<Condition, 4> active;             ///< all hold while the device follows an order
   StaticVector<Condition, 40> alarms;            ///< any of them is an alarm: nothing is driven
-  StaticVector<Condition, 40> warnings;          ///< any of them is told, and stops nothing
+  StaticVector<Condition, 40> warnings;          ///< any of them is reported and stops nothing
   Condition off_grid;
   AliveCounter alive;
   /// The first case that holds counts, of those whose points the device has.

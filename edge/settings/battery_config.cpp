@@ -33,7 +33,7 @@ void expect_capacity(BatteryConfig& battery) {
   }
 }
 
-/// No battery is that small: somebody gave kW or kWh.
+/// No battery is that small: the value was given in kW or kWh.
 void expect_watts(TomlTable& table, std::string_view key, std::int32_t value, const char* unit) {
   constexpr std::int32_t kLeast = 100;
   if (!table.ok() || !table.has(key) || value >= kLeast) return;
