@@ -242,9 +242,13 @@ class SignCheck {
     result_.measured_power_w = last_power_w_ = m.power_w;
     if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
     note_end(power_w, now_ns);
-    curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
-               .end_ms = (now_ns - start_ns) / 1'000'000,
-               .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});
+    // Once it has come, the rest of a long order tells nothing of its speed.
+    const std::int64_t told_ns = start_ns + settings_.drive_s * kNanosecondsPerSecond;
+    if (!curve.has_come() || begin_ns <= told_ns) {
+      curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
+                 .end_ms = (now_ns - start_ns) / 1'000'000,
+                 .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});
+    }
     if (!passes() || !reads_meter()) return passes();
     if (!succeeded(meter_.read(m, last_grid_w_), CommissionVerdict::kMeterLost)) return false;
     // The last third: both meters have had time.

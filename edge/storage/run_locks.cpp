@@ -101,11 +101,11 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
     if (!refuse_stranger(path.c_str(), error)) return false;
   }
   char what[560];
+  std::snprintf(what, sizeof what, "the state folder %s", folder);
+  if (!locks.state.take(state_file(config, "lock").c_str(), what, error)) return false;
   std::snprintf(what, sizeof what, "[battery] name %s", config.battery.name.c_str());
   if (!locks.name.take(name_lock_path(config).c_str(), what, error)) return false;
-  std::snprintf(what, sizeof what, "the state folder %s", folder);
-  return locks.state.take(state_file(config, "lock").c_str(), what, error) &&
-         lock_run_folder(config, locks, error);
+  return lock_run_folder(config, locks, error);
 }
 
 }  // namespace bess

@@ -3,7 +3,7 @@
 // release, over TCP and over a serial line (socat), written as one block and as five writes. The
 // expected registers are worked out by hand from the vendor's manual:
 //   0x0880 start | 32000 + W, below it charging (2) | 32000 + var (2) | mode 2 = SoC control |
-//   SoC limit, 0.4 % each: ceiling 100 % = 250, floor 10 % = 25 | seconds (2) | 255 | PV 0
+//   SoC limit, 0.4 % each: ceiling 100 % = 255 (none), floor 10 % = 25 | seconds (2) | 255 | PV 0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,11 +36,11 @@ struct Situation {
   std::vector<int> dispatch;
 };
 
-const Situation kCharge{"charge", -600, 435, {1, 0, 28'000, 0, 32'000, 2, 250, 0, 300, 255, 0}};
+const Situation kCharge{"charge", -600, 435, {1, 0, 28'000, 0, 32'000, 2, 255, 0, 300, 255, 0}};
 const Situation kDischarge{
     "discharge", 1'600, 435, {1, 0, 36'000, 0, 32'000, 2, 25, 0, 300, 255, 0}};
 /// Very cheap, but full.
-const Situation kIdle{"idle", -600, 1'000, {1, 0, 32'000, 0, 32'000, 2, 250, 0, 300, 255, 0}};
+const Situation kIdle{"idle", -600, 1'000, {1, 0, 32'000, 0, 32'000, 2, 255, 0, 300, 255, 0}};
 
 /// The writes by which one order arrives.
 std::vector<std::string> writes_of(const std::vector<int>& d, const std::string& variant) {
@@ -171,7 +171,7 @@ TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
   const bool block = std::string(GetParam().variant) == "block";
   const std::vector<int> released =
       block ? std::vector{0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}
-            : std::vector{0, 0, 32'000, 0, 32'000, 2, 250, 0, 300, 255, 0};
+            : std::vector{0, 0, 32'000, 0, 32'000, 2, 255, 0, 300, 255, 0};
   EXPECT_THAT(read_dispatch(), ElementsAreArray(released));
   std::vector<std::string> expected = writes_of(kCharge.dispatch, GetParam().variant);
   for (const std::string& write : writes_of(kIdle.dispatch, GetParam().variant)) {
