@@ -391,11 +391,10 @@ class BatteryDriver {
     const bool several = map_.sequence(command).writes.size() > 1 || enabled_;
     lose_order();
     if (!sent || !(several || reason == Status::kNotApplied)) return;
-    const CommandSequence& own = map_.sequence(Command::kRollback);
-    const CommandSequence& undo = own.writes.empty() ? map_.sequence(Command::kRelease) : own;
     PowerOrder unbound = order;  // taking back is never too late
     unbound.write_until_ns = INT64_MAX;
-    static_cast<void>(runner_.run(undo, unbound, 0));  // the link may be gone: the watchdog ends it
+    static_cast<void>(runner_.run(map_.sequence(Command::kRelease), unbound,
+                                  0));  // the link may be gone: the watchdog ends it
   }
 
   void take_into_force(Command command, const PowerOrder& order) {

@@ -129,7 +129,6 @@ class CommandRunner {
         continue;
       }
       if (!same) status = send(write, block, order.write_until_ns);
-      if (status == Status::kOk) status = pause_after(write);
       if (status != Status::kOk) return status;
     }
     return withheld == Status::kOk ? read_back(sequence, order) : withheld;
@@ -148,21 +147,6 @@ class CommandRunner {
       offset += map_.points[value.point].register_count();
     }
     return status;
-  }
-
-  Status pause_after(const BlockWrite& write) {
-    if (write.delay_after_ms > 0) bus_.time().sleep_ms(write.delay_after_ms);
-    if (write.wait_after.point < 0) return Status::kOk;
-    constexpr std::int32_t kPollMs = 200;
-    const std::int64_t end_ns =
-        bus_.time().now_ns() + std::int64_t{write.wait_timeout_ms} * 1'000'000;
-    while (true) {
-      bool holds_now = false;
-      const Status status = test(write.wait_after, holds_now);
-      if (status != Status::kOk || holds_now) return status;
-      if (bus_.time().now_ns() >= end_ns) return Status::kNotApplied;
-      bus_.time().sleep_ms(kPollMs);
-    }
   }
 
   /// Flash is compared before it is written; what is not known is read first.
@@ -256,7 +240,6 @@ class CommandRunner {
       wanted.push_back(value.point);
     });
     if (wanted.empty()) return Status::kOk;
-    if (map_.writes.read_back_delay_ms > 0) bus_.time().sleep_ms(map_.writes.read_back_delay_ms);
     LivePoints now;
     Status status = read_written(wanted, now);
     for (int i = 0; i < sequence.writes.size() && status == Status::kOk; ++i) {

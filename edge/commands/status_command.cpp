@@ -14,9 +14,11 @@
 #include "edge/storage/storage_health.h"
 #include "edge/update/trial_machine.h"
 #include "edge/update/trial_state.h"
+#include "edge/why/explanation.h"
 #include "edge/why/next_decision.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/training_period.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -83,6 +85,12 @@ using T = RunTotals;
 using H = HoldReport;
 
 const char* text_of(JsonValue found) { return found.text_or("none"); }
+
+/// Of a moment in UTC, the wall clock of the market's zone.
+std::string local_of(JsonValue found) {
+  std::int64_t utc_s = 0;
+  return parse_utc(text_of(found), utc_s) ? local_text(utc_s).c_str() : "none";
+}
 
 bool has_outlook(JsonValue s) {
   return std::string_view(text_of(field<&R::outlook, &K::source>(s))) != "none";
@@ -204,7 +212,7 @@ void print_level(JsonValue s) {
 void print_operator_orders(JsonValue s) {
   if (is_true(field<&R::hold, &H::held>(s))) {
     std::printf("hold       %lld W until %s\n", whole(field<&R::hold, &H::power_w>(s)),
-                text_of(field<&R::hold, &H::until_utc_s>(s)));
+                local_of(field<&R::hold, &H::until_utc_s>(s)).c_str());
   }
   const double reserve_e4 = number(field<&R::reserve_soc_e4>(s));
   if (reserve_e4 > 0) std::printf("reserve    SoC %.1f %% at this hour\n", reserve_e4 / 100);
@@ -225,10 +233,10 @@ void print_site(JsonValue s) {
 
 void print_last_cycle(JsonValue s, bool is_running) {
   std::printf("%-10s %s at %s, cycle %lld\n", is_running ? "state" : "was",
-              text_of(field<&R::mode>(s)), text_of(field<&R::utc_s>(s)),
+              text_of(field<&R::mode>(s)), local_of(field<&R::utc_s>(s)).c_str(),
               whole(field<&R::cycle>(s)));
   if (is_true(field<&R::has_measurement>(s))) {
-    std::printf("battery    SoC %.1f %%, %.0f W (charging is positive), %s\n",
+    std::printf("battery    SoC %.1f %%, %.0f W before this order (charging is positive), %s\n",
                 number(field<&R::measurement, &B::soc_e4>(s)) / 100,
                 number(field<&R::measurement, &B::power_w>(s)),
                 text_of(field<&R::battery_status>(s)));
@@ -271,17 +279,23 @@ void print_counters(JsonValue s) {
               whole(field<&R::counters, &C::register_writes>(s)));
 }
 
+/// Of the log: where the newest decision would have been another, as `why` has it, and orders.
 void print_last_orders(const EdgeConfig& config) {
   constexpr std::uint64_t kOrders = 10;
   LogReader log;
   FileMessage ignored;
   if (!log.open(config.log, ignored)) return;
-  std::printf("orders     utc                     ordered W  price EUR/MWh   SoC %%  reason\n");
   const std::uint64_t newest = log.newest_number();
   CycleRecord r;
+  Margins margins;
+  if (log.read(newest, r) && margins_of(r, config.control.guard.thresholds, margins)) {
+    std::printf("margins    at %s it %s EUR/MWh\n", local_clock_text(r.utc_s).c_str(),
+                price_margins_text(margins).c_str());
+  }
+  std::printf("orders     local time        ordered W  price EUR/MWh   SoC %%  reason\n");
   for (std::uint64_t n = newest > kOrders ? newest - kOrders + 1 : 1; n <= newest; ++n) {
     if (!log.read(n, r)) continue;
-    std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", utc_text(r.utc_s).c_str(),
+    std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", local_text(r.utc_s).c_str(),
                 r.ordered_power_w, r.price.price_centi_eur_per_mwh / 100.0,
                 r.measurement.soc_e4 / 100.0, reason_name(r.reason).data(),
                 r.written ? "" : " (not written)");
@@ -314,16 +328,16 @@ void print_controller(JsonValue s, bool is_running) {
   const char* const part = is_true(s["control"]) ? "in control" : "read-only";
   if (is_running) {
     std::printf("controller %s, process %lld since %s", part, whole(s["pid"]),
-                text_of(s["start_utc"]));
+                local_of(s["start_utc"]).c_str());
   } else {
     const bool has_stopped = std::string_view(text_of(field<&R::mode>(s))) == "stopping";
     const bool has_cycles = whole(field<&T::cycles>(s)) > 0;
     std::printf("controller none; the last one was %s, process %lld from %s, %s %s", part,
-                whole(s["pid"]), text_of(s["start_utc"]),
+                whole(s["pid"]), local_of(s["start_utc"]).c_str(),
                 !has_cycles   ? "ended before a cycle had"
                 : has_stopped ? "stopped at"
                               : "ended without a stop after the cycle of",
-                has_cycles ? text_of(field<&R::utc_s>(s)) : "ended");
+                has_cycles ? local_of(field<&R::utc_s>(s)).c_str() : "ended");
   }
   std::printf(", version %s, student %s\n", text_of(s["version"]), text_of(s["student"]));
 }

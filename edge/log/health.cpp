@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "edge/control/reasons.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -58,9 +59,6 @@ std::string unusual_price(double eur_per_mwh) {
 }
 
 void check_prices(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.price_status != "ok") {
-    reasons.push_back("WARN: prices: " + std::string(in.price_status));
-  }
   if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
   if (in.price_frozen) reasons.push_back(frozen_price(in));
   if (in.has_price && std::fabs(in.price_eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
@@ -110,21 +108,42 @@ void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
   }
 }
 
+/// What the reason means and where to look, of a name in the table of reasons.
+std::string meaning_of(std::string_view reason) {
+  for (const ReasonInfo& info : kReasons) {
+    if (info.name == reason) return std::string(": ") + info.meaning + "; look at " + info.look_at;
+  }
+  return "";
+}
+
+/// One line an outage: once it has led to a safe mode, that line names what failed.
+void check_answers(const HealthInputs& in, std::vector<std::string>& reasons) {
+  std::vector<std::string> failed;
+  if (in.battery_status != "ok") {
+    failed.push_back("battery: no usable answer, " + std::string(in.battery_status));
+  }
+  if (!in.lost_reading.empty()) {
+    failed.push_back("battery: " + std::string(in.lost_reading) + " could not be read");
+  }
+  if (in.price_status != "ok") {
+    failed.push_back("prices: no usable answer, " + std::string(in.price_status));
+  }
+  if (in.mode == "running") {
+    for (const std::string& what : failed) reasons.push_back("WARN: " + what);
+    return;
+  }
+  std::string line = "WARN: mode is " + std::string(in.mode) + ", reason " +
+                     std::string(in.reason) + meaning_of(in.reason);
+  for (const std::string& what : failed) line += "; " + what;
+  reasons.push_back(line);
+}
+
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.trip != "none") {
     reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
                       ": find out why (bess-edge log), then bess-edge clear --yes");
   }
-  if (in.mode != "running") {
-    reasons.push_back("WARN: mode is " + std::string(in.mode) + ", reason " +
-                      std::string(in.reason));
-  }
-  if (in.battery_status != "ok") {
-    reasons.push_back("WARN: battery: " + std::string(in.battery_status));
-  }
-  if (!in.lost_reading.empty()) {
-    reasons.push_back("WARN: battery: " + std::string(in.lost_reading) + " could not be read");
-  }
+  check_answers(in, reasons);
   if (!in.cut_reading.empty()) {
     reasons.push_back("WARN: battery: " + std::string(in.cut_reading) +
                       " is beyond its range, and taken for the end of it");

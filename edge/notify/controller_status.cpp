@@ -26,6 +26,16 @@ std::string key_of_line(std::string_view line) {
   return key;
 }
 
+/// One outage is one trouble, from the first failed answer to the safe mode that follows.
+std::string key_of(std::string_view line, std::string_view reason) {
+  const bool is_mode = line.starts_with("WARN: mode is ");
+  if (is_mode ? reason == "link" : line.starts_with("WARN: battery: no usable ")) return "battery";
+  const bool is_late = reason == "no_price" || reason == "price_age" || reason == "price_qh";
+  if (is_mode ? is_late : line.starts_with("WARN: prices: no usable ")) return "prices";
+  // Holding becomes safe while the reason stays.
+  return is_mode ? "not running: " + std::string(reason) : key_of_line(line);
+}
+
 }  // namespace
 
 ControllerStatus ask_controller(const std::string& program, const std::string& config_path) {
@@ -50,10 +60,7 @@ std::vector<Trouble> troubles_of(const ControllerStatus& status) {
   std::vector<Trouble> troubles;
   for (const JsonValue reason : json["health_reasons"]) {
     const std::string line = one_line(reason.text_or(""));
-    // Holding becomes safe while the reason stays: one trouble, named by its reason.
-    const bool is_mode = line.starts_with("WARN: mode is ");
-    const std::string why = json["last"]["reason"].text_or("");
-    troubles.push_back({.key = is_mode ? "not running: " + why : key_of_line(line), .text = line});
+    troubles.push_back({.key = key_of(line, json["last"]["reason"].text_or("")), .text = line});
   }
   return troubles;
 }

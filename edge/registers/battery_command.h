@@ -14,9 +14,7 @@ enum class Argument : std::uint8_t {
   kPower,           ///< W, charge positive
   kChargePower,     ///< its charging part, 0 when discharging
   kDischargePower,  ///< its discharging part as a positive number
-  kAbsolutePower,
-  kPowerSign,  ///< 1 charge, 0 idle, -1 discharge
-  kSocLimit,   ///< ceiling when charging or idle, floor when discharging
+  kSocLimit,        ///< ceiling when charging or idle, floor when discharging
   kSocMin,
   kSocMax,
   kDuration,         ///< s
@@ -45,9 +43,6 @@ struct BlockWrite {
   ReadBack read_back = ReadBack::kExact;
   bool eeprom = false;         ///< at least one of its registers wears
   std::int32_t tolerance = 0;  ///< engineering units
-  std::int32_t delay_after_ms = 0;
-  std::int32_t wait_timeout_ms = 0;
-  Condition wait_after;  ///< the sequence goes on when this holds
 };
 
 enum class Command : std::uint8_t {
@@ -55,11 +50,10 @@ enum class Command : std::uint8_t {
   kIdle,
   kDischarge,
   kRelease,
-  kEnable,    ///< once before the first order
-  kRefresh,   ///< feeds the watchdog; empty = the order is written again
-  kRollback,  ///< after a failed order; empty = release
+  kEnable,   ///< once before the first order
+  kRefresh,  ///< feeds the watchdog; empty = the order is written again
 };
-inline constexpr int kCommandCount = 7;
+inline constexpr int kCommandCount = 6;
 
 struct CommandSequence {
   StaticVector<BlockWrite, 8> writes;
@@ -91,7 +85,6 @@ struct Watchdog {
 struct WritePolicy {
   std::int32_t eeprom_writes_per_day = 0;  ///< orders stop at this less the reserve; 0 = no limit
   std::int32_t reserve = 0;                ///< kept for releases; then no flash is written that day
-  std::int32_t read_back_delay_ms = 0;     ///< a device that shows what it was told only later
 };
 
 /// What the Modbus exception codes mean on this device, beside those that every device uses

@@ -20,10 +20,6 @@ std::int64_t argument_of(Argument argument, const PowerOrder& order, std::int64_
       return std::max<std::int64_t>(power_w, 0);
     case Argument::kDischargePower:
       return std::max<std::int64_t>(-power_w, 0);
-    case Argument::kAbsolutePower:
-      return std::abs(power_w);
-    case Argument::kPowerSign:
-      return (power_w > 0) - (power_w < 0);
     case Argument::kSocLimit:
       return power_w < 0 ? order.soc_min_e4 : order.soc_max_e4;
     case Argument::kSocMin:
@@ -44,8 +40,7 @@ std::int64_t argument_of(Argument argument, const PowerOrder& order, std::int64_
   return 0;
 }
 
-Rounding rounding_of(const RegisterPoint& point, Argument argument, const PowerOrder& order) {
-  if (point.rounding != Rounding::kAuto) return point.rounding;
+Rounding rounding_of(Argument argument, const PowerOrder& order) {
   const bool floor =
       argument == Argument::kSocMin || (argument == Argument::kSocLimit && order.power_w < 0);
   const bool ceiling = argument == Argument::kSocMax || argument == Argument::kSocLimit;
@@ -113,7 +108,7 @@ Status encode_value(const RegisterMap& map, const WriteValue& write, const Power
       return status;
     }
   }
-  return encode(point, value, rounding_of(point, write.argument, order), out, scaling);
+  return encode(point, value, rounding_of(write.argument, order), out, scaling);
 }
 
 }  // namespace
@@ -141,7 +136,7 @@ Status check_expressible(const RegisterMap& map, const PowerOrder& order) {
     return Status::kNotExpressible;
   }
   const Command commands[] = {command_of(order.power_w), Command::kEnable, Command::kRefresh,
-                              Command::kRollback, Command::kRelease};
+                              Command::kRelease};
   for (const bool high : {false, true}) {
     const LivePoints live = assumed_live_points(map, high);
     for (const Command command : commands) {

@@ -2,7 +2,6 @@
 //   "point = value"                     one write
 //   ["point = value", "point = value"]  one atomic write of neighbouring registers
 //   { write = ..., function = 6, read_back = "tolerance", tolerance = 50 }
-// or what follows a write: { delay_ms = 300 }, { wait = "point = value", timeout_ms = 5000 }
 #include "edge/registers/map_reader.h"
 #include "edge/registers/point_codec.h"
 
@@ -17,8 +16,6 @@ struct NamedArgument {
 constexpr NamedArgument kArguments[] = {{"power", Argument::kPower},
                                         {"charge_power", Argument::kChargePower},
                                         {"discharge_power", Argument::kDischargePower},
-                                        {"absolute_power", Argument::kAbsolutePower},
-                                        {"power_sign", Argument::kPowerSign},
                                         {"soc_limit", Argument::kSocLimit},
                                         {"soc_min", Argument::kSocMin},
                                         {"soc_max", Argument::kSocMax},
@@ -158,6 +155,7 @@ void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defa
   const bool has_options = node.as<TomlMembers>() != nullptr;
   TomlTable step{&node, table.file(), "write", table.error()};
   const TomlValue* values = has_options ? step.node("write") : &node;
+  if (values == nullptr) return step.require("write");
   read_values(table, *values, map, write);
   if (!table.ok() || write.values.empty()) return finish_write(table, node, map, write);
   if (has_options) {
@@ -178,27 +176,6 @@ void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defa
   if (!sequence.writes.try_push_back(write)) table.fail_at(node, "is one write too many");
 }
 
-/// A delay or a wait belongs to the write before it.
-void read_pause(TomlTable& table, const TomlValue& node, const RegisterMap& map,
-                CommandSequence& sequence) {
-  TomlTable step{&node, table.file(), "step", table.error()};
-  FixedText<63> wait;
-  std::int32_t delay_ms = 0;
-  std::int32_t timeout_ms = 0;
-  step.integer("delay_ms", delay_ms, 1, 10'000);
-  step.text("wait", wait);
-  step.integer("timeout_ms", timeout_ms, 1, 20'000);
-  if (step.has("wait")) step.require("timeout_ms");
-  step.finish();
-  if (!table.ok()) return;
-  if (sequence.writes.empty()) return table.fail_at(node, "a delay or wait must follow a write");
-  BlockWrite& write = sequence.writes[sequence.writes.size() - 1];
-  write.delay_after_ms += delay_ms;
-  if (wait.empty()) return;
-  write.wait_timeout_ms = timeout_ms;
-  parse_condition(table, node, wait.view(), map, write.wait_after);
-}
-
 void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& defaults,
                    const RegisterMap& map, CommandSequence& sequence) {
   const TomlValue* node = table.node(key);
@@ -206,11 +183,7 @@ void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& de
   const auto* steps = node->as<TomlArray>();
   if (steps == nullptr) return table.fail(key, "must be a list of steps in [ ]");
   for (const TomlValue& step : *steps) {
-    if (step.as<TomlMembers>() != nullptr && step.find("write") == nullptr) {
-      read_pause(table, step, map, sequence);
-    } else {
-      read_write(table, step, defaults, map, sequence);
-    }
+    read_write(table, step, defaults, map, sequence);
     if (!table.ok()) return;
   }
 }
@@ -230,8 +203,8 @@ void read_saved(TomlTable& table, RegisterMap& map) {
 }  // namespace
 
 void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap& map) {
-  constexpr std::string_view kNames[kCommandCount] = {"charge", "idle",    "discharge", "release",
-                                                      "enable", "refresh", "rollback"};
+  constexpr std::string_view kNames[kCommandCount] = {"charge",  "idle",   "discharge",
+                                                      "release", "enable", "refresh"};
   TomlTable table = map_child(root, "command");
   read_saved(table, map);
   read_conditions(table, "precondition", map, map.precondition);

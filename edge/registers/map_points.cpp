@@ -148,17 +148,14 @@ void read_policy(TomlTable& table, RegisterPoint& point) {
 }
 
 void read_scale(TomlTable& table, const RegisterMap& map, RegisterPoint& point) {
-  int rounding = 0;
   table.integer("scale", point.scale, 1, 1'000'000);
   table.integer("scale_divisor", point.scale_divisor, 1, 1'000'000);
   table.integer("offset", point.offset, -1'000'000'000, 1'000'000'000);
   table.integer("sign", point.sign, -1, 1);
   table.integer("step", point.step, 1, 1'000'000);
-  table.choice("rounding", rounding, {"auto", "nearest", "down", "up", "towards_zero"});
   table.integer("min", point.value_min, -kMapValueLimit, kMapValueLimit);
   table.integer("max", point.value_max, -kMapValueLimit, kMapValueLimit);
   read_policy(table, point);
-  point.rounding = static_cast<Rounding>(rounding);
   read_reference(table, "scale_from", map, point.scale_from);
   read_reference(table, "percent_of", map, point.percent_of);
   read_reference(table, "clamp_to", map, point.clamp_to);

@@ -66,7 +66,6 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
   TomlTable writes = map_child(root, "writes");
   writes.integer("eeprom_writes_per_day", map.writes.eeprom_writes_per_day, 1, 100'000);
   writes.integer("reserve", map.writes.reserve, 0, 1'000);
-  writes.integer("read_back_delay_ms", map.writes.read_back_delay_ms, 0, 10'000);
   if (map.writes.reserve > 0 && map.writes.reserve >= map.writes.eeprom_writes_per_day) {
     writes.fail("reserve", "must be below eeprom_writes_per_day");
   }

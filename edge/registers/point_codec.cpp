@@ -44,7 +44,6 @@ std::int64_t floor_divide(std::int64_t numerator, std::int64_t denominator) {
 
 /// `denominator` is positive.
 std::int64_t divide(std::int64_t numerator, std::int64_t denominator, Rounding rounding) {
-  if (rounding == Rounding::kTowardsZero) return numerator / denominator;
   const std::int64_t down = floor_divide(numerator, denominator);
   const std::int64_t rest = numerator - down * denominator;
   if (rest == 0 || rounding == Rounding::kDown) return down;

@@ -25,7 +25,7 @@ enum class WordOrder : std::uint8_t { kHighFirst, kLowFirst };
 
 /// How a value between two raw counts is rounded. kAuto: a SoC ceiling goes down, a SoC floor up,
 /// everything else to the nearest.
-enum class Rounding : std::uint8_t { kAuto, kNearest, kDown, kUp, kTowardsZero };
+enum class Rounding : std::uint8_t { kNearest, kDown, kUp };
 
 struct RegisterPoint {
   RegisterName name;
@@ -36,7 +36,6 @@ struct RegisterPoint {
   std::uint8_t read_function = 3;
   RegisterType type = RegisterType::kU16;
   WordOrder word_order = WordOrder::kHighFirst;
-  Rounding rounding = Rounding::kAuto;
   bool eeprom = false;          ///< each write wears memory: only changes are written, and counted
   bool optional = false;        ///< not every device has it: then it is left out, and told nowhere
   bool is_private = false;      ///< somebody's own, such as a serial number: a recording hides it

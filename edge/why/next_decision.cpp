@@ -113,9 +113,6 @@ std::string next_decision_text(const NextDecision& next) {
     if (!next.ends.empty()) text += ", " + next.ends;
   }
   text += '\n';
-  if (next.has_action) {
-    text.append("margins    it ").append(price_margins_text(next.margins)).append(" EUR/MWh\n");
-  }
   const std::string ahead = ahead_text(next);
   return ahead.empty() ? text : text + "ahead      " + ahead + "\n";
 }

@@ -81,16 +81,19 @@ TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
   EXPECT_EQ(count(rows, "usual"), 0);
   EXPECT_EQ(count(rows, "missing"), 0);
   int before_one = 0;
-  int after_one = 0;
+  int with_tomorrow = 0;
   for (const CsvRow& row : rows) {
     if (row.at("outlook") != "planned") continue;
     const bool knows_tomorrow = std::stoi(row.at("outlook_quarter_hours")) > 96;
     const bool is_after_one = row.at("utc") >= std::string(utc_text(kPublishedS).view());
-    EXPECT_EQ(knows_tomorrow, is_after_one) << row.at("utc");
-    ++(is_after_one ? after_one : before_one);
+    EXPECT_TRUE(is_after_one || !knows_tomorrow) << row.at("utc");
+    // A slow machine fetches it some cycles late; what is known stays known.
+    EXPECT_TRUE(knows_tomorrow || with_tomorrow == 0) << row.at("utc");
+    before_one += is_after_one ? 0 : 1;
+    with_tomorrow += knows_tomorrow ? 1 : 0;
   }
   EXPECT_GT(before_one, 0);
-  EXPECT_GT(after_one, 0);
+  EXPECT_GT(with_tomorrow, 0);
 }
 
 /// What came before is kept on the disk, on the day of 92 quarter-hours too.

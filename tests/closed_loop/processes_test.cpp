@@ -173,7 +173,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
     const std::string text = status.read_all();
     EXPECT_LE(status.wait(), 1) << text;
     EXPECT_THAT(text, HasSubstr("in control, process " + std::to_string(edge.pid())));
-    EXPECT_THAT(text, HasSubstr("state      running at 2023-03-26T0"));
+    EXPECT_THAT(text, HasSubstr("state      running at 2023-03-26 0"));
     EXPECT_THAT(text, HasSubstr("alphaess, variant block"));
     EXPECT_THAT(text, HasSubstr("EUR/MWh"));
     ChildProcess json({edge_program(), "status", "--json", "--config", config});

@@ -16,6 +16,7 @@ place of what another master has ordered, and prints the tick.
 """
 import argparse
 import re
+import struct
 import subprocess
 import time
 
@@ -124,7 +125,8 @@ class Simulator:
 
 
 class SunSpec124:
-    """A charging limit below 0 is a discharge, and the other way round; 10000 = 100 % of the
+    """callifo/fronius-modbus-control: a discharging limit below 0 charges (mode 2), and a charging
+    limit below 0 beside the same discharging limit discharges (mode 3); 10000 = 100 % of the
     rating."""
 
     def __init__(self, master, _):
@@ -138,16 +140,16 @@ class SunSpec124:
         share = abs(watts) * 10000 // RATED_W
         self.master.write(1, self.grid, 1)
         self.master.write(1, self.revert, 300)
-        self.master.write(1, self.discharge, -share if watts > 0 else 10000)
+        self.master.write(1, self.discharge, -share if watts > 0 else share)
         self.master.write(1, self.discharge + 1, 10000 if watts > 0 else -share)
-        self.master.write(1, self.mode, 2 if watts > 0 else 1)
+        self.master.write(1, self.mode, 2 if watts > 0 else 3)
 
     def stop(self):
         self.master.write(1, self.mode, 0)
 
     def other_mode(self):
-        """Of charging and discharging, the limit that was not written; where neither was, both."""
-        self.master.write(1, self.mode, 3 - self.master.read(1, self.mode)[0])
+        """The limit of charging in place of the other, or of both."""
+        self.master.write(1, self.mode, 1)
 
     def soc(self, read):
         return read(1, self.storage + 8)[0] / 10
@@ -237,8 +239,8 @@ class SungrowSh:
         return read(1, 13022, table=4)[0]
 
     def power(self, read):
-        state, size = read(1, 13000, table=4)[0], read(1, 13021, table=4)[0]
-        return size if state & 2 else -size if state & 4 else 0
+        low, high = read(1, 5213, 2, table=4)
+        return -signed(high << 16 | low, 32)
 
 
 class HuaweiLuna:
@@ -297,10 +299,127 @@ class Sma:
         return (charge[0] << 16 | charge[1]) - (discharge[0] << 16 | discharge[1])
 
 
+def low_first_float(value):
+    high, low = struct.unpack(">HH", struct.pack(">f", value))
+    return [low, high]
+
+
+def from_low_first_float(raw):
+    return struct.unpack(">f", struct.pack(">HH", raw[1], raw[0]))[0]
+
+
+class SolarEdge:
+    """Tables of solaredge-modbus-multi (const.py) and openWB (bat.py)."""
+
+    def __init__(self, master, _):
+        self.master = master
+
+    def order(self, watts):
+        self.master.write(1, 57348, 4)
+        self.master.write(1, 57354, 7)
+        self.master.write(1, 57355, 300, 0)
+        self.master.write(1, 57358 if watts > 0 else 57360, *low_first_float(abs(watts)))
+        self.master.write(1, 57357, 3 if watts > 0 else 4)
+
+    def stop(self):
+        self.master.write(1, 57357, 7)
+
+    def other_mode(self):
+        self.master.write(1, 57348, 1)
+
+    def soc(self, read):
+        return round(from_low_first_float(read(1, 57732, 2)) * 10)
+
+    def power(self, read):
+        return from_low_first_float(read(1, 57716, 2))
+
+
+class GoodWe:
+    """OpenEMS: EMS mode 11 charges, 12 discharges, mode and power in one write."""
+
+    def __init__(self, master, variant):
+        self.master, self.is_new = master, variant == "registers_42000"
+
+    def write(self, mode, watts):
+        if self.is_new:
+            return self.master.write(247, 42000, mode, *words(watts))
+        self.master.write(247, 47511, mode, watts)
+
+    def order(self, watts):
+        self.write(11 if watts > 0 else 12, abs(watts))
+
+    def stop(self):
+        self.write(1, 0)
+
+    def other_mode(self):
+        self.write(8, 0)
+
+    def soc(self, read):
+        return read(247, 37007)[0] * 10
+
+    def power(self, read):
+        high, low = read(247, 35182, 2)
+        return -signed(high << 16 | low, 32)
+
+
+class Kostal:
+    """Kostal's interface description: 1034 is a float, low word first, below 0 charges."""
+
+    def __init__(self, master, _):
+        self.master = master
+
+    def order(self, watts):
+        self.master.write(71, 1034, *low_first_float(-watts))
+
+    def stop(self):
+        self.order(0)
+
+    def other_mode(self):
+        self.order(-1500)
+
+    def soc(self, read):
+        return read(71, 514)[0] * 10
+
+    def power(self, read):
+        return -signed(read(71, 582)[0], 16)
+
+
+class Marstek:
+    """openWB: function 6 alone; evcc: other registers for the third generation."""
+
+    def __init__(self, master, variant):
+        self.master, self.is_new = master, variant == "gen_3"
+
+    def write(self, address, value):
+        reply = self.master.client.write_register(address, value, slave=1)
+        assert not reply.isError(), (address, reply)
+
+    def order(self, watts):
+        self.write(42000, 0x55AA)
+        self.write(42020 if watts > 0 else 42021, abs(watts))
+        self.write(42010, 1 if watts > 0 else 2)
+
+    def stop(self):
+        self.write(42010, 0)
+
+    def other_mode(self):
+        self.write(42010, 3 - self.master.read(1, 42010)[0])
+
+    def soc(self, read):
+        return read(1, 34002)[0] if self.is_new else read(1, 32104)[0] * 10
+
+    def power(self, read):
+        if self.is_new:
+            return -signed(read(1, 30006)[0], 16)
+        high, low = read(1, 32202, 2)
+        return -signed(high << 16 | low, 32)
+
+
 DEVICES = {"alphaess": AlphaEss, "simulator": Simulator, "sunspec_124": SunSpec124,
            "fronius_gen24": FroniusGen24,
            "sunspec_704": SunSpec704, "victron_ess3": VictronEss3, "sungrow_sh": SungrowSh,
-           "huawei_luna2000": HuaweiLuna, "sma": Sma}
+           "huawei_luna2000": HuaweiLuna, "sma": Sma, "solaredge": SolarEdge,
+           "goodwe_et": GoodWe, "kostal_plenticore": Kostal, "marstek_venus": Marstek}
 DAY = ((1, 2000, 2), (5, -1500, 2), (9, 4000, 1), (13, -3600, 1))  # hour, W, hours
 
 

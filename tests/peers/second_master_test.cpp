@@ -46,7 +46,8 @@ class SecondMasterPeer : public ::testing::TestWithParam<SecondMaster> {
                                600, {.mean_eur_per_mwh = -600, .amplitude_eur_per_mwh = 0}));
     std::string keys = "map = \"" + shipped_map(m.map) + "\"\nresponse_timeout_ms = 2000\n";
     if (!variant.empty()) keys += "variant = \"" + variant + "\"\n";
-    if (variant == "forced") keys += "allow_without_watchdog = true\n";
+    if (load_shipped_map(m).watchdog.kind == Watchdog::Kind::kNone)
+      keys += "allow_without_watchdog = true\n";
     return site_.commission({.battery_keys = keys});
   }
 

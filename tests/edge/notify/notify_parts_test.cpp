@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "edge/log/health.h"
 #include "edge/notify/controller_status.h"
 #include "edge/notify/mail.h"
 #include "edge/notify/notifier_state.h"
@@ -187,13 +188,39 @@ TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
   const TemporaryFolder folder;
   const std::string program = write_program(
       folder,
-      R"(echo '{"health": "degraded", "last": {"reason": "link"}, "health_reasons": [)"
-      R"("WARN: mode is holding, reason link", "CRITICAL: the last cycle ended 601 s ago", )"
+      R"(echo '{"health": "degraded", "last": {"reason": "alarm"}, "health_reasons": [)"
+      R"("WARN: mode is holding, reason alarm", "CRITICAL: the last cycle ended 601 s ago", )"
       R"("WARN: a rule of next year"]}'; exit 1)");
   const ControllerStatus status = ask_controller(program, "edge.toml");
   EXPECT_EQ(status.trouble, "");
-  EXPECT_THAT(keys_of(status), ElementsAre("not running: link", "the last cycle ended # s ago",
+  EXPECT_THAT(keys_of(status), ElementsAre("not running: alarm", "the last cycle ended # s ago",
                                            "a rule of next year"));
+}
+
+/// From the first answer that fails to the safe mode that follows.
+TEST(ControllerStatus, AnOutageIsOneTrouble) {
+  const auto keys_at = [](std::string_view mode, std::string_view reason, bool battery_fails) {
+    HealthInputs in{};
+    in.is_running = in.is_of_this_run = true;
+    in.cycles = 9;
+    in.mode = mode;
+    in.reason = reason;
+    in.battery_status = battery_fails ? "timeout" : "ok";
+    in.price_status = battery_fails ? "ok" : "http_error";
+    ControllerStatus status;
+    Json reasons = Json::list();
+    for (const std::string& line : assess_health(in).reasons) reasons.add(line);
+    status.json.set("last", Json::object({{"reason", reason}}));
+    status.json.set("health_reasons", std::move(reasons));
+    return keys_of(status);
+  };
+  EXPECT_THAT(keys_at("running", "student", false), ElementsAre("prices"));
+  for (const char* reason : {"no_price", "price_age", "price_qh"}) {
+    EXPECT_THAT(keys_at("safe", reason, false), ElementsAre("prices")) << reason;
+  }
+  EXPECT_THAT(keys_at("running", "student", true), ElementsAre("battery"));
+  EXPECT_THAT(keys_at("holding", "link", true), ElementsAre("battery"));
+  EXPECT_THAT(keys_at("safe", "link", true), ElementsAre("battery"));
 }
 
 TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {

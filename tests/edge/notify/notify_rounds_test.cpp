@@ -171,7 +171,7 @@ TEST_F(Rounds, AWebhookIsPostedAsJsonAndNothingButASuccessCounts) {
   const std::lock_guard lock(mutex);
   ASSERT_EQ(bodies.size(), 3U);  // two refused, one taken
   EXPECT_EQ(bodies[2],
-            R"({"node":"garage","kind":"alarm","key":"not running: no_price",)"
+            R"({"node":"garage","kind":"alarm","key":"prices",)"
             R"("text":"WARN: mode is safe, reason no_price","utc":"2023-03-27T00:02:00Z",)"
             R"("since_utc":"2023-03-27T00:02:00Z"})");
 }

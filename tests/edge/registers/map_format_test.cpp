@@ -75,11 +75,10 @@ class MapFormat : public ::testing::Test {
     return value;
   }
   std::vector<int> encoded(const std::string& keys, std::int64_t value,
-                           Rounding rounding = Rounding::kAuto) {
+                           Rounding rounding = Rounding::kNearest) {
     const RegisterMap map = with_point(keys);
     RegisterBlock block;
     const RegisterPoint& point = map.points[find_point(map, "power")];
-    if (point.rounding != Rounding::kAuto) rounding = point.rounding;
     status_ = encode(point, value, rounding, block);
     return {block.begin(), block.end()};
   }
@@ -180,11 +179,10 @@ TEST_F(MapFormat, OffsetSignScaleAndMissingValues) {
 TEST_F(MapFormat, RoundingAndSteps) {
   const std::string ten = "type = \"s16\"\nscale = 10\n";
   EXPECT_THAT(encoded(ten, 15), ElementsAre(2));
-  EXPECT_THAT(encoded(ten + "rounding = \"down\"", 19), ElementsAre(1));
-  EXPECT_THAT(encoded(ten + "rounding = \"up\"", 11), ElementsAre(2));
-  EXPECT_THAT(encoded(ten + "rounding = \"towards_zero\"", -19), ElementsAre(0xFFFF));
-  // "down" means the value, not the raw count behind a mirrored sign.
-  EXPECT_THAT(encoded(ten + "rounding = \"down\"\nsign = -1", 19), ElementsAre(0xFFFF));
+  EXPECT_THAT(encoded(ten, 19, Rounding::kDown), ElementsAre(1));
+  EXPECT_THAT(encoded(ten, 11, Rounding::kUp), ElementsAre(2));
+  // Down means the value, not the raw count behind a mirrored sign.
+  EXPECT_THAT(encoded(ten + "sign = -1", 19, Rounding::kDown), ElementsAre(0xFFFF));
   EXPECT_THAT(encoded("type = \"s16\"\nstep = 100", 999), ElementsAre(900));
   EXPECT_THAT(encoded("type = \"s16\"\nstep = 100", -999), ElementsAre(65'536 - 900));
 }
@@ -344,10 +342,7 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"measure = [\"soc\", ", "measure = [\"soc\", \"soc\", ", "holds \"soc\" twice"},
       {"name = \"battery_power\"", "name = \"battery power\"", "must be one word"},
       {"\"enable = on\", \"power", "\"enable\", \"power", "a step must say"},
-      {"\"enable = on\", \"power", "{ delay_ms = 3 }, \"power", "must follow a write"},
-      {"\"enable = on\", \"power", "{ wait = \"enable = on\" }, \"power", "timeout_ms is missing"},
-      {"\"enable = on\", \"power",
-       "\"enable = on\", { wait = \"enable = on\", timeout_ms = 20001 }, \"power", "timeout_ms"},
+      {"\"enable = on\", \"power", "{ function = 6 }, \"power", "write is missing"},
       {"\"enable = on\", \"power",
        "{ write = \"enable = on\", read_back = \"tolerance\" }, \"power", "tolerance is missing"},
       {"\"enable = on\", \"power", "{ write = \"enable = on\", function = 7 }, \"power",

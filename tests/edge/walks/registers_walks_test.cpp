@@ -35,8 +35,8 @@ void see_cases(Walk& walk, const StaticVector<PowerCase, 4>& cases) {
 void see_point(Walk& walk, const RegisterPoint& p) {
   walk.see_text(p.name.view());
   walk.see(p.address, p.model, p.unit_group, p.registers, p.read_function, p.type, p.word_order,
-           p.rounding, p.eeprom, p.optional, p.is_private, p.scale_from, p.percent_of, p.clamp_to,
-           p.mask, p.scale, p.scale_divisor, p.offset, p.sign, p.step, p.max_age_s, p.value_min,
+           p.eeprom, p.optional, p.is_private, p.scale_from, p.percent_of, p.clamp_to, p.mask,
+           p.scale, p.scale_divisor, p.offset, p.sign, p.step, p.max_age_s, p.value_min,
            p.value_max);
   for (const std::uint64_t raw : p.not_implemented) walk.see(raw);
 }
@@ -48,9 +48,7 @@ void see_commands(Walk& walk, const RegisterMap& map) {
       for (const WriteValue& v : w.values) {
         walk.see(v.point, v.argument, v.sign, v.divisor, v.constant);
       }
-      walk.see(w.address, w.function, w.read_back, w.eeprom, w.tolerance, w.delay_after_ms,
-               w.wait_timeout_ms);
-      see_condition(walk, w.wait_after);
+      walk.see(w.address, w.function, w.read_back, w.eeprom, w.tolerance);
     }
   }
 }
@@ -73,8 +71,7 @@ void see_map(Walk& walk, const RegisterMap& m) {
   for (const std::uint16_t model : m.models) walk.see(model);
   for (const std::uint16_t base : m.model_bases) walk.see(base);
   walk.see(m.watchdog.kind, m.watchdog.duration_s, m.watchdog.refresh_s, m.watchdog.remaining,
-           m.watchdog.expiry_visible, m.writes.eeprom_writes_per_day, m.writes.reserve,
-           m.writes.read_back_delay_ms);
+           m.watchdog.expiry_visible, m.writes.eeprom_writes_per_day, m.writes.reserve);
   for (const std::uint8_t code : m.exceptions.retry) walk.see(code);
   for (const std::uint8_t code : m.exceptions.not_permitted) walk.see(code);
   const ResponseBand& band = m.response;
@@ -210,7 +207,6 @@ void add_key(Walk& walk, std::vector<std::string>& lines, std::size_t at) {
       "bits = { a = 1, b = 64 }",
       "not_implemented = 32768",
       "not_implemented = [1, 2, 3]",
-      "rounding = \"up\"",
       "storage = \"eeprom\"",
       "private = true",
       "unit = \"pv\"",
@@ -246,9 +242,7 @@ void add_key(Walk& walk, std::vector<std::string>& lines, std::size_t at) {
       "[command]",
       "enable = [\"soc = 1\"]",
       "refresh = []",
-      "rollback = [\"soc = 0\"]",
       "charge = { write = \"soc = 1\", read_back = \"tolerance\", tolerance = 5 }",
-      "idle = [{ delay_ms = 300 }, \"soc = 1\", { wait = \"soc = 1\", timeout_ms = 5000 }]",
       "saved = [\"soc\"]",
       "saved = { soc = 1 }",
       "precondition = [\"soc = 1\"]"};
@@ -322,9 +316,9 @@ std::vector<std::string> overfull_lines() {
     return line + "]";
   };
   std::vector<std::string> lines;
-  for (const char* key : {"measure", "alarms", "warnings", "active", "precondition", "charge",
-                          "idle", "enable", "refresh", "rollback", "release", "save", "apply_on",
-                          "initial", "at_expiry", "read_points"}) {
+  for (const char* key :
+       {"measure", "alarms", "warnings", "active", "precondition", "charge", "idle", "enable",
+        "refresh", "release", "save", "apply_on", "initial", "at_expiry", "read_points"}) {
     for (const int count : {1, 4, 5, 6, 7, 8, 9, 16, 17, 40, 41}) {
       lines.push_back(many(key, "\"soc = 1\"", count));
     }
@@ -458,7 +452,6 @@ RegisterPoint drawn_point(Walk& walk) {
   RegisterPoint p;
   p.type = static_cast<RegisterType>(walk.from(0, 6));
   p.word_order = static_cast<WordOrder>(walk.from(0, 1));
-  p.rounding = static_cast<Rounding>(walk.from(0, 4));
   constexpr std::uint8_t kRegisters[] = {1, 1, 2, 2, 4, 2, 4};
   p.registers = kRegisters[static_cast<int>(p.type)];
   if (walk.once_in(2)) p.scale = walk.number(1, 100);
@@ -523,7 +516,7 @@ TEST(RegistersWalk, Points) {
       if (walk.once_in(9)) {
         for (int full = 0; full < kBlockRegistersMax - 1; ++full) out.push_back(0);
       }
-      walk.see(encode(p, wanted, static_cast<Rounding>(walk.from(1, 4)), out, scaling), out.size());
+      walk.see(encode(p, wanted, static_cast<Rounding>(walk.from(0, 2)), out, scaling), out.size());
       for (const std::uint16_t r : out) walk.see(r);
     }
     walk.end_line(block);

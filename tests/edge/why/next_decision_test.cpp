@@ -32,10 +32,6 @@ CycleRecord at_noon(double price_eur) {
   return r;
 }
 
-std::string margins_line(const NextDecision& next) {
-  return "margins    it " + price_margins_text(next.margins) + " EUR/MWh\n";
-}
-
 /// The margins are of the tick that comes: a price on either side of each is another decision.
 TEST(NextDecision, HasTheMarginsOfItsTick) {
   const ControlSettings settings;
@@ -63,8 +59,7 @@ TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
   EXPECT_EQ(cheap.utc_s, kNoon + 120);
   EXPECT_EQ(cheap.action, Action::kCharge);
   EXPECT_EQ(cheap.power_w, 4'000);
-  EXPECT_EQ(next_decision_text(cheap),
-            "next       12:02, charging 4000 W if price and SoC stay\n" + margins_line(cheap));
+  EXPECT_EQ(next_decision_text(cheap), "next       12:02, charging 4000 W if price and SoC stay\n");
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).action, Action::kDischarge);
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).utc_s, kNoon + 240);
 }
