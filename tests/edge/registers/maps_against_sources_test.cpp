@@ -39,6 +39,9 @@ TEST(SungrowPower, HasItsSignOnEveryFirmware) {
       {"unsigned 13021, charging", false, kCharging, 0, 1'500, 1'500},
       {"unsigned 13021, discharging", false, kDischarging, 0, 1'500, -1'500},
       {"unsigned 13021, at rest", false, 0x1, 0, 0, 0},
+      {"recorded in evcc 17598", false, 0x2B, 0, -1'216, 1'216},
+      {"recorded in evcc 18473", false, 0x2B, 0, 0x1F29, 7'977},
+      {"recorded in evcc 18838", false, 0, 0, 0xB8, -184},
   };
   for (const SungrowCase& c : cases) {
     MapUnderTest t(shipped_map("sungrow_sh"));
@@ -159,6 +162,25 @@ TEST(SmaHybrid, IsDrivenBySetPointWithoutRegister40153) {
   EXPECT_EQ(t.device.holding[40'150], 3'000);  // positive = discharge
 }
 
+/// A SMILE-B3 as dxoverdy/Alpha2MQTT recorded it on 2022-09-10, discharging at 3.1 A.
+TEST(AlphaEssRecording, ReadsAsItsOwnerSawIt) {
+  MapUnderTest t(shipped_map("alphaess"));
+  t.device.set(0x0102, {736});
+  t.device.set(0x010D, {210});
+  t.device.set(0x0110, {250});
+  t.device.set(0x0119, {114});
+  t.device.set(0x0126, {163});
+  t.device.set(0x012C, {5'280, 5'280});
+  t.device.set(0x0440, {1});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.soc_e4, 7'360);
+  EXPECT_EQ(t.measured.power_w, -163);
+  EXPECT_EQ(t.measured.capacity_wh, 11'400);
+  EXPECT_EQ(t.measured.temperature_min_deci_c, 210);
+  EXPECT_EQ(t.measured.temperature_max_deci_c, 250);
+  EXPECT_EQ(t.measured.charge_w_max, 5'280);
+}
+
 /// senalse, changelog v1.7.1: function 16 for a single register is answered with exception 2.
 TEST(AlphaEssSingles, AreWrittenAndReleasedByTheOtherFunction) {
   for (const char* const variant : {"five_writes", "ten_and_one"}) {
@@ -193,20 +215,29 @@ TEST(AlphaEssSoc, ACeilingOfAHundredPercentIsNone) {
   EXPECT_EQ(t.device.holding[0x0886], 225);
 }
 
-/// evcc solaredge-hybrid: the meter's W counts export as positive (scale -1).
-TEST(SolarEdgeMeter, CountsExportAsPositive) {
-  RegisterMap map;
-  std::string error;
-  const std::string path = std::string(BESS_SOURCE_DIR) + "/edge/meters/sunspec.toml";
-  ASSERT_TRUE(load_register_map(path, "solaredge", map, error)) << error;
-  LivePoints live;
-  const std::uint16_t exponent = 0;
-  const std::uint16_t export_w = 1'200;
-  live.keep(map, find_point(map, "power_sf"), &exponent);
-  live.keep(map, find_point(map, "grid_power"), &export_w);
-  std::int64_t power_w = 0;
-  ASSERT_TRUE(live_power(map, map.grid_power, live, power_w));
-  EXPECT_EQ(power_w, -1'200);
+/// evcc solaredge-hybrid: the meter's W counts export as positive (scale -1); the recording in its
+/// issue 15445 has -91 W. Kostal's counts import: 307 with exponent 1 on a January evening (18358).
+TEST(SunSpecMeter, SignsGridPowerAsTheMakerDoes) {
+  struct Recording {
+    const char* variant;
+    std::uint16_t raw;
+    std::uint16_t exponent;
+    int import_w;
+  };
+  for (const Recording& c :
+       {Recording{"solaredge", 0xFFA5, 0, 91}, Recording{"solaredge", 1'200, 0, -1'200},
+        Recording{"", 0x0133, 1, 3'070}}) {
+    RegisterMap map;
+    std::string error;
+    const std::string path = std::string(BESS_SOURCE_DIR) + "/edge/meters/sunspec.toml";
+    ASSERT_TRUE(load_register_map(path, c.variant, map, error)) << error;
+    LivePoints live;
+    live.keep(map, find_point(map, "power_sf"), &c.exponent);
+    live.keep(map, find_point(map, "grid_power"), &c.raw);
+    std::int64_t power_w = 0;
+    ASSERT_TRUE(live_power(map, map.grid_power, live, power_w));
+    EXPECT_EQ(power_w, c.import_w);
+  }
 }
 
 }  // namespace
