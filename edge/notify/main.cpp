@@ -169,7 +169,6 @@ int run(const Options& options) {
   }
   const sigset_t stop_signals = block_stop_signals();
   set_market_time_zone();
-  prepare_webhooks();
   if (options.task == Task::kTest) {  // beside one that watches
     return Notifier(settings, MqttPresence::kVisits).send_test(now_utc_s()) ? 0 : 1;
   }

@@ -7,9 +7,8 @@
 #include "edge/account/account_days.h"
 #include "edge/control/quarter_hour_energy.h"
 #include "edge/log/whole_file.h"
-#include "edge/notify/connection_trouble.h"
-#include "edge/notify/curl_handle.h"
 #include "edge/notify/journal_line.h"
+#include "shared/host/http_client.h"
 #include "shared/host/json.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -21,36 +20,20 @@ namespace {
 constexpr std::int64_t kDayS = 86'400;
 constexpr std::size_t kAnswerBytesMax = 16 * 1024 * 1024;  // 100 days, with every field: 3 MB
 
-std::size_t take_bytes(char* data, std::size_t size, std::size_t count, void* into) {
-  auto& text = *static_cast<std::string*>(into);
-  if (text.size() + size * count > kAnswerBytesMax) return 0;
-  text.append(data, size * count);
-  return size * count;
-}
-
 /// The answer; empty with a line in `trouble`.
 std::string ask(const SettledSource& source, const std::string& url, std::string& trouble,
                 const std::stop_token& stop) {
-  std::string text;
-  const Curl curl(curl_easy_init());
-  if (curl == nullptr) return trouble = "no memory", "";
-  curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
-  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(source.timeout_ms));
-  curl_easy_setopt(curl.get(), CURLOPT_USERAGENT, "bess-notify");
-  curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, take_bytes);
-  curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &text);
-  if (!source.ca_file.empty()) {
-    curl_easy_setopt(curl.get(), CURLOPT_CAINFO, source.ca_file.c_str());
-  }
-  trouble = perform_transfer(
-      curl.get(), "install ca-certificates, or name the file of its own authority, ca_file", stop);
-  if (!trouble.empty()) return "";
-  long http_code = 0;
-  curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &http_code);
-  if (http_code == 200) return text;
-  trouble = "answered with HTTP " + std::to_string(http_code);
+  HttpOutcome outcome = http_request(
+      {.url = url,
+       .limits = {.deadline_s = source.timeout_ms / 1'000.0, .bytes_max = kAnswerBytesMax},
+       .user_agent = "bess-notify",
+       .ca_file = source.ca_file,
+       .authorities = "install ca-certificates, or name the file of its own authority, ca_file"},
+      [&] { return stop.stop_requested(); });
+  if (outcome.kind == HttpOutcome::Kind::kDone) return std::move(outcome.body);
+  trouble = outcome.status == 0 || outcome.status == 200
+                ? outcome.reason
+                : "answered with HTTP " + std::to_string(outcome.status);
   return "";
 }
 

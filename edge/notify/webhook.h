@@ -10,9 +10,6 @@ namespace bess {
 
 struct NotifySettings;
 
-/// Once, before any other thread is started.
-void prepare_webhooks();
-
 /// https, or http to this very machine: what is told, and the secret in the URL, cross no wire in
 /// clear.
 bool is_allowed_webhook(const std::string& url);

@@ -14,7 +14,6 @@
 #include <functional>
 #include <random>
 
-#include "shared/local_text.h"
 #include "tests/support/edge_answer.h"
 #include "tests/support/simulated_site.h"
 #include "tests/support/thorough.h"
@@ -50,14 +49,6 @@ std::string utc_number(const std::string& utc) {
   std::int64_t utc_s = 0;
   EXPECT_TRUE(parse_utc(utc, utc_s)) << utc;
   return std::to_string(utc_s);
-}
-
-/// As the status has it for a person.
-std::string local_of(const std::string& utc) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(utc, utc_s)) << utc;
-  set_market_time_zone();
-  return local_text(utc_s).c_str();
 }
 
 /// The state folder as a disk of its own, and what can happen to it.
@@ -234,7 +225,7 @@ class DyingDisk : public ::testing::Test {
     Answers answers = ask_all();
     for (int i = 0; i < 20; ++i) {
       const std::string& utc = answers.decided.at("utc");
-      const bool is_told = answers.status.find(local_of(utc)) != std::string::npos &&
+      const bool is_told = answers.status.find(local_text_of(utc)) != std::string::npos &&
                            answers.json.find(utc) != std::string::npos &&
                            answers.metrics.find(utc_number(utc)) != std::string::npos;
       if (is_told || may_be_unknown) break;
@@ -252,7 +243,7 @@ class DyingDisk : public ::testing::Test {
         EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: unknown: "), Not(HasSubstr("in control"))));
         continue;
       }
-      EXPECT_THAT(text, AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_of(utc))), HasSubstr(reason)));
+      EXPECT_THAT(text, AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))), HasSubstr(reason)));
       if (is_tripped) {
         EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: tripped"), Not(HasSubstr("health     ok"))));
       }

@@ -69,7 +69,7 @@ TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
   EXPECT_THAT(await_line(controller, "reason=held"),
               AllOf(HasSubstr("ordered_power_w=-1000"), HasSubstr("written=1")));
   EXPECT_THAT(edge({"status", "--config", config_}).text,
-              HasSubstr("hold       -1000 W until 2023-03-26T"));
+              HasSubstr("hold       -1000 W until 2023-03-26 "));
   EXPECT_THAT(edge({"status", "--prometheus", "--config", config_}).text,
               AllOf(ContainsRegex("\nbess_hold_watts[{].*[}] -1000\n"),
                     HasSubstr(",reason=\"held\",mode=\"running\"} 1\n"),

@@ -76,6 +76,7 @@ class StateFiles : public ::testing::Test {
     ASSERT_THAT(run_controller(), AllOf(HasSubstr("reason=held"), Not(HasSubstr("damaged"))));
     ASSERT_THAT(notify(), HasSubstr("ALARM: CRITICAL: no bess-edge runs"));
     newest_utc_ = read_csv(site_.folder.file("edge.csv")).back().at("utc");
+    newest_local_ = local_text_of(newest_utc_);
     for (const char* folder : kFolders) {
       fs::copy(site_.folder.file(folder), pristine(folder), fs::copy_options::recursive);
     }
@@ -145,7 +146,7 @@ class StateFiles : public ::testing::Test {
     EXPECT_THAT(json.text, AllOf(HasSubstr("not running"), HasSubstr(newest_utc_)));
     const Said text = edge({"status", "--config", config_});
     EXPECT_THAT(text.text, AllOf(HasSubstr("controller none; the last one was"),
-                                 HasSubstr(newest_utc_), Not(HasSubstr("health     ok"))));
+                                 HasSubstr(newest_local_), Not(HasSubstr("health     ok"))));
     const Said metrics = edge({"status", "--prometheus", "--config", config_});
     EXPECT_THAT(metrics.text, AllOf(ContainsRegex("bess_tripped[{].*[}] 0\n"),
                                     HasSubstr("bess_last_cycle_timestamp_seconds{")))
@@ -198,7 +199,7 @@ class StateFiles : public ::testing::Test {
 
   SimulatedSite site_{kScale};
   std::string config_;
-  std::string newest_utc_;
+  std::string newest_utc_, newest_local_;
   std::string said_;
   int exit_code_ = 0;
   std::mt19937 random_{kSeed};

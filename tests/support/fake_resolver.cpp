@@ -22,13 +22,14 @@ struct Entry {
   sockaddr_storage address;
 };
 
-addrinfo* make_entry(const std::string& numeric, addrinfo* next) {
+addrinfo* make_entry(const std::string& numeric, std::uint16_t port, addrinfo* next) {
   auto* entry = static_cast<Entry*>(std::calloc(1, sizeof(Entry)));
   auto* v4 = reinterpret_cast<sockaddr_in*>(&entry->address);
   auto* v6 = reinterpret_cast<sockaddr_in6*>(&entry->address);
   const bool is_v4 = inet_pton(AF_INET, numeric.c_str(), &v4->sin_addr) == 1;
   if (!is_v4) inet_pton(AF_INET6, numeric.c_str(), &v6->sin6_addr);
   entry->address.ss_family = is_v4 ? AF_INET : AF_INET6;
+  (is_v4 ? v4->sin_port : v6->sin6_port) = htons(port);
   entry->info.ai_family = entry->address.ss_family;
   entry->info.ai_socktype = SOCK_STREAM;
   entry->info.ai_addrlen = is_v4 ? sizeof *v4 : sizeof *v6;
@@ -37,7 +38,7 @@ addrinfo* make_entry(const std::string& numeric, addrinfo* next) {
   return &entry->info;
 }
 
-int look_up(const char* name, addrinfo** found) {
+int look_up(const char* name, const char* service, addrinfo** found) {
   int wait_ms = 0;
   std::vector<std::string> addresses;
   {
@@ -48,7 +49,10 @@ int look_up(const char* name, addrinfo** found) {
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
   *found = nullptr;
-  for (auto it = addresses.rbegin(); it != addresses.rend(); ++it) *found = make_entry(*it, *found);
+  const auto port = static_cast<std::uint16_t>(service == nullptr ? 0 : std::atoi(service));
+  for (auto it = addresses.rbegin(); it != addresses.rend(); ++it) {
+    *found = make_entry(*it, port, *found);
+  }
   return *found == nullptr ? EAI_AGAIN : 0;
 }
 
@@ -71,8 +75,9 @@ int lookups(const std::string& name) {
 
 }  // namespace bess::fake_resolver
 
-extern "C" int getaddrinfo(const char* name, const char*, const addrinfo*, addrinfo** found) {
-  return bess::fake_resolver::look_up(name == nullptr ? "" : name, found);
+extern "C" int getaddrinfo(const char* name, const char* service, const addrinfo*,
+                           addrinfo** found) {
+  return bess::fake_resolver::look_up(name == nullptr ? "" : name, service, found);
 }
 
 extern "C" void freeaddrinfo(addrinfo* found) {

@@ -9,7 +9,7 @@
 #include "tests/support/train_commands.h"
 #include "tools/market_sim/market_server.h"
 #include "tools/site/site_programs.h"
-#include "workstation/market/feed/http_client.h"
+#include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/series/day_ahead.h"
 #include "workstation/market/series/local_date.h"
 

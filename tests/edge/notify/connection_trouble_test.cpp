@@ -32,7 +32,7 @@ struct BadCertificate {
 constexpr BadCertificate kBadCertificates[] = {
     {"IP:127.0.0.1", -2 * kDayS, -kDayS, "the server's certificate has expired: renew it there"},
     {"IP:127.0.0.1", kDayS, 2 * kDayS,
-     "is not valid yet: is this machine's clock right (timedatectl)?"},
+     "is not valid yet: is this computer's clock right (timedatectl)?"},
     {"IP:127.0.0.2", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
     {"DNS:localhost", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
 };

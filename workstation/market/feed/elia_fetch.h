@@ -10,14 +10,20 @@
 #include <optional>
 #include <string>
 
+#include "shared/host/http_client.h"
 #include "workstation/market/feed/fetch_plan.h"
-#include "workstation/market/feed/http_client.h"
 #include "workstation/market/feed/market_join.h"
 #include "workstation/market/series/judged_prices.h"
 
 namespace bess {
 
 inline constexpr const char* kEliaBaseUrl = "https://opendata.elia.be/api/explore/v2.1";
+
+inline HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
+                            const HttpLimits& limits) {
+  return http_request({.url = url, .limits = limits, .user_agent = "bess-train"},
+                      [&] { return interrupted.load(); });
+}
 
 struct RetryPolicy {
   int attempts_max = 6;

@@ -9,7 +9,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/market/feed/http_client.h"
+#include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/feed/market_json.h"
 #include "workstation/market/feed/recording_folder.h"
 

@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "shared/host/http_client.h"
 #include "shared/host/minute_file.h"
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
-#include "workstation/market/feed/http_client.h"
 
 namespace bess {
 namespace {
@@ -81,11 +81,6 @@ TEST(WaitSeconds, EveryFormServersUse) {
   EXPECT_EQ(describe_wait(kWaitMax_s), "a day or longer");
   EXPECT_EQ(wait_seconds("soon", kFetchTime_s), std::nullopt);
   EXPECT_EQ(wait_seconds("", kFetchTime_s), std::nullopt);
-}
-
-TEST(Redirects, NeverLeadFromHttpsToHttp) {
-  EXPECT_STREQ(redirect_protocols("https://opendata.elia.be/api"), "https");
-  EXPECT_STREQ(redirect_protocols("http://127.0.0.1:8080/api"), "http,https");
 }
 
 }  // namespace

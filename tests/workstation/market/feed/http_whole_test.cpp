@@ -12,7 +12,6 @@
 #include "tests/support/dated_certificate.h"
 #include "tests/support/test_server.h"
 #include "workstation/market/feed/day_ahead_fetch.h"
-#include "workstation/market/feed/http_client.h"
 
 namespace bess {
 namespace {

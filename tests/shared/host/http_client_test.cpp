@@ -1,0 +1,192 @@
+// The HTTP client against hosts with several addresses of which some are dead, redirects, and
+// servers that ask for less; on a fake resolver.
+#include "shared/host/http_client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/support/fake_resolver.h"
+#include "tests/support/test_server.h"
+#include "tests/support/throwaway_ca.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Kind = HttpOutcome::Kind;
+
+constexpr const char* kName = "prices.example";
+
+const ThrowawayCa& ca() {
+  static const ThrowawayCa authority(std::string("DNS:") + kName);
+  return authority;
+}
+
+TestServer::Options tls_at(const char* address, std::uint16_t port = 0) {
+  return {.address = address, .port = port, .certificate = ca().certificate(), .key = ca().key()};
+}
+
+HttpRequest request_of(const TestServer& server, const std::string& path = "/") {
+  return {.url = std::string("https://") + kName + ":" + std::to_string(server.port()) + path,
+          .limits = {.deadline_s = 4},
+          .ca_file = ca().ca()};
+}
+
+HttpOutcome get(const HttpRequest& request) {
+  return http_request(request, [] { return false; });
+}
+
+double seconds_of(const std::function<void()>& action) {
+  const auto begin = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+bool good_answer(TestConnection& connection, const std::string&) { return connection.answer("[]"); }
+bool no_answer(TestConnection&, const std::string&) { return false; }
+
+/// Takes connections, as the kernel does, and never says a word.
+class SilentPlace {
+ public:
+  SilentPlace(const char* address, std::uint16_t port) {
+    sockaddr_in place = loopback_address(port, address);
+    fd_ = bind_socket(place);
+    listen(fd_, 16);
+  }
+  SilentPlace(const SilentPlace&) = delete;
+  SilentPlace& operator=(const SilentPlace&) = delete;
+  ~SilentPlace() { close(fd_); }
+
+ private:
+  int fd_;
+};
+
+class HostOfManyAddresses : public ::testing::Test {
+ protected:
+  static void use(const std::vector<std::string>& addresses) {
+    fake_resolver::set(kName, addresses);
+  }
+  TestServer good_{good_answer, tls_at("127.0.0.3")};
+};
+
+TEST_F(HostOfManyAddresses, OneThatConnectsAndHangsInTlsCostsOneTimeOut) {
+  use({"127.0.0.1", "127.0.0.3"});
+  const SilentPlace silent("127.0.0.1", good_.port());
+  EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+  const double again_s = seconds_of([&] { EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone); });
+  EXPECT_LT(again_s, 1.5);  // the time to connect is 2 s
+}
+
+TEST_F(HostOfManyAddresses, OneThatBreaksOffIsPassedOver) {
+  use({"127.0.0.1", "127.0.0.2", "127.0.0.3"});
+  TestServer mute(no_answer, tls_at("127.0.0.1", good_.port()));
+  TestServer::Options in_clear;
+  in_clear.address = "127.0.0.2";
+  in_clear.port = good_.port();
+  const TestServer plain(no_answer, in_clear);
+  EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+  EXPECT_EQ(mute.requests(), 1);
+}
+
+TEST_F(HostOfManyAddresses, OneThatTakesTheRequestAndIsSilentIsLeftByTheNext) {
+  use({"127.0.0.1", "127.0.0.3"});
+  const TestServer* place = nullptr;
+  TestServer silent(
+      [&](TestConnection&, const std::string&) {
+        place->wait_for_end();
+        return false;
+      },
+      tls_at("127.0.0.1", good_.port()));
+  place = &silent;
+  EXPECT_NE(get(request_of(good_)).kind, Kind::kDone);
+  EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+}
+
+TEST_F(HostOfManyAddresses, AHostThatMovedIsFound) {
+  use({"127.0.0.3"});
+  EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+  TestServer elsewhere(good_answer, tls_at("127.0.0.4"));
+  use({"127.0.0.4"});
+  EXPECT_EQ(get(request_of(elsewhere)).kind, Kind::kDone);
+}
+
+TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
+  fake_resolver::set(kName, {"127.0.0.1"});
+  std::string seen;
+  TestServer elsewhere(
+      [&](TestConnection& connection, const std::string& request) {
+        seen = request;
+        return connection.answer("[]");
+      },
+      TestServer::Options{});
+  std::string target;
+  TestServer server(
+      [&](TestConnection& connection, const std::string& request) {
+        if (request.starts_with("GET /here")) {
+          EXPECT_THAT(request, HasSubstr("X-Key: secret"));
+          return connection.answer("[]");
+        }
+        return connection.answer("", "HTTP/1.1 302 Found\r\nLocation: " + target + "\r\n");
+      },
+      tls_at("127.0.0.1"));
+  HttpRequest request = request_of(server, "/from");
+  request.headers = {"X-Key: secret"};
+  target = "/here";
+  EXPECT_EQ(get(request).kind, Kind::kDone);
+  target = "http://127.0.0.1:" + std::to_string(elsewhere.port()) + "/";
+  EXPECT_EQ(get(request).status, 302);  // from https to http
+  EXPECT_EQ(elsewhere.requests(), 0);
+  TestServer plain(
+      [&](TestConnection& connection, const std::string&) {
+        return connection.answer("", "HTTP/1.1 302 Found\r\nLocation: " + target + "\r\n");
+      },
+      TestServer::Options{});
+  request.url = "http://127.0.0.1:" + std::to_string(plain.port()) + "/";
+  EXPECT_EQ(get(request).kind, Kind::kDone);
+  EXPECT_EQ(elsewhere.requests(), 1);
+  EXPECT_THAT(seen, Not(HasSubstr("secret")));
+  target = request.url;
+  EXPECT_EQ(get(request).status, 302);  // round and round
+}
+
+TEST(HttpClient, AServerThatAsksForLessIsHeard) {
+  TestServer server(
+      [](TestConnection& connection, const std::string&) {
+        return connection.answer("slow down", "HTTP/1.1 429 No\r\nRetry-After: 600\r\n");
+      },
+      TestServer::Options{});
+  const HttpOutcome outcome = get({.url = "http://127.0.0.1:" + std::to_string(server.port())});
+  EXPECT_EQ(outcome.kind, Kind::kBusy);
+  EXPECT_EQ(outcome.status, 429);
+  EXPECT_EQ(outcome.wait_s, 600);
+}
+
+TEST(HttpClient, StopsWhenItIsAskedTo) {
+  fake_resolver::set(kName, {"127.0.0.1"});
+  const TestServer* place = nullptr;
+  TestServer silent(
+      [&](TestConnection&, const std::string&) {
+        place->wait_for_end();
+        return false;
+      },
+      tls_at("127.0.0.1"));
+  place = &silent;
+  int asked = 0;
+  HttpOutcome outcome;
+  const double took_s =
+      seconds_of([&] { outcome = http_request(request_of(silent), [&] { return ++asked > 1; }); });
+  EXPECT_EQ(outcome.kind, Kind::kInterrupted);
+  EXPECT_LT(took_s, 3);
+}
+
+TEST(HttpClient, AnUnknownNameIsTold) {
+  fake_resolver::set("gone.example", {});
+  EXPECT_EQ(get({.url = "http://gone.example/", .limits = {.deadline_s = 4}}).kind,
+            Kind::kUnreachable);
+}
+
+}  // namespace
+}  // namespace bess
