@@ -243,7 +243,8 @@ class DyingDisk : public ::testing::Test {
         EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: unknown: "), Not(HasSubstr("in control"))));
         continue;
       }
-      EXPECT_THAT(text, AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))), HasSubstr(reason)));
+      EXPECT_THAT(text,
+                  AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))), HasSubstr(reason)));
       if (is_tripped) {
         EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: tripped"), Not(HasSubstr("health     ok"))));
       }

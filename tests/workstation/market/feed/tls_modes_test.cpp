@@ -117,7 +117,8 @@ TEST_F(TlsModes, AnAuthorityThatNobodyKnows) {
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   EXPECT_THAT(error_of(certificate), HasSubstr("is of no authority that is known here"));
   trust(DatedCertificate("IP:127.0.0.1", -kDay_s, kDay_s, "another CA"));
-  EXPECT_THAT(error_of(certificate), HasSubstr("SSL_CERT_FILE may name a file of others (1 attempt)"))
+  EXPECT_THAT(error_of(certificate),
+              HasSubstr("SSL_CERT_FILE may name a file of others (1 attempt)"))
       << "its folder is gone";
 }
 
