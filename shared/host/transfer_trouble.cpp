@@ -76,7 +76,8 @@ TransferTrouble handshake_trouble(const std::string& detail, const std::string& 
                 "): is the authority the one that signed the server's certificate? " + authorities};
   }
   return {Kind::kUnreachable,
-          "the server closed the connection in the TLS handshake: does it speak TLS there?"};
+          "the server closed the connection in the TLS handshake: is there no TLS there, is the "
+          "port right?"};
 }
 
 }  // namespace
