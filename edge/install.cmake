@@ -20,14 +20,14 @@ function(install_with_paths file folder name)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/installed/${name} DESTINATION ${folder} COMPONENT edge)
 endfunction()
 
-install(TARGETS bess-edge DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
+install(TARGETS bess-edge bess-prices DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
 install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
         FILES_MATCHING PATTERN "*.toml")
 install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf
         systemd/bess-notify-orders.conf
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
-foreach(room battery control log maps memory notify page prices recording site storage supervision
-        systemd update)
+foreach(room battery control fetch log maps memory notify page prices recording site storage
+        supervision systemd update)
   install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}
@@ -43,6 +43,10 @@ install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.tom
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-edge.service lib/systemd/system
   bess-edge.service
   "/usr/bin/bess-edge" "${CMAKE_INSTALL_FULL_BINDIR}/bess-edge"
+  "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
+install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-prices.service lib/systemd/system
+  bess-prices.service
+  "/usr/bin/bess-prices" "${CMAKE_INSTALL_FULL_BINDIR}/bess-prices"
   "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
 if(BESS_NOTIFY)
   install(TARGETS bess-notify DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)

@@ -26,11 +26,15 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kMalformed,       ///< the price server's answer is not what the configuration describes
     kNoRow,           ///< a good answer without any usable price
     kTooLarge,        ///< more bytes than the fixed buffer holds
-    kNoMemory,        ///< the static arena is exhausted
+    kNoMemory,        ///< of earlier versions
     kTooLate,         ///< an order was not written, because its time was over
+    kServerBusy,      ///< the price server asks for fewer requests (429, 503)
+    kNoFetcher,       ///< bess-prices does not run, or has been silent for cycles
+    kOtherVersion,    ///< what bess-prices publishes is of another version
+    kDoubtfulUnit,    ///< prices as small, or as large, as in another unit
 };
 
-inline constexpr int kStatusCount = static_cast<int>(Status::kTooLate) + 1;
+inline constexpr int kStatusCount = static_cast<int>(Status::kDoubtfulUnit) + 1;
 
 /// Trouble of the link or a busy device, which may pass within seconds; any other the same request
 /// would meet again.
@@ -45,7 +49,8 @@ constexpr std::string_view status_name(Status status) {
       "bus_busy",    "not_permitted",   "bad_reply",    "implausible",
       "not_applied", "not_expressible", "write_budget", "name_unresolved",
       "tls_refused", "http_error",      "malformed",    "no_row",
-      "too_large",   "no_memory",       "too_late"};
+      "too_large",   "no_memory",       "too_late",     "server_busy",
+      "no_fetcher",  "other_version",   "doubtful_unit"};
   static_assert(std::size(kNames) == kStatusCount);
   return kNames[static_cast<int>(status)];
 }
@@ -70,8 +75,12 @@ constexpr std::string_view status_text(Status status) {
       "the price server's answer is not the JSON that [price] describes (is rows_field right?)",
       "the price server's answer holds no usable price (are time_field and price_field right?)",
       "the answer is larger than the buffer",
-      "the static arena is exhausted",
-      "an order was not written, because its time was over (was this process stopped?)"};
+      "no memory",
+      "an order was not written, because its time was over (was this process stopped?)",
+      "the price server asks for fewer requests (see [price] requests_per_cycle)",
+      "bess-prices does not run, or publishes nothing (systemctl status bess-prices)",
+      "bess-prices is of another version (restart it)",
+      "the prices look like another unit (are they in EUR/MWh? see [price] unit)"};
   static_assert(std::size(kTexts) == kStatusCount);
   return kTexts[static_cast<int>(status)];
 }

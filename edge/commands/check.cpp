@@ -1,15 +1,13 @@
 #include "edge/commands/check.h"
 
 #include <cstdio>
-#include <memory>
 
 #include "edge/account/money_settings.h"
 #include "edge/battery/modbus_battery.h"
 #include "edge/battery/modbus_meter.h"
+#include "edge/commands/price_check.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
-#include "edge/prices/http_secrets.h"
-#include "edge/prices/price_feed.h"
 #include "edge/program/device_session.h"
 #include "edge/program/find_battery.h"
 #include "edge/program/level_note.h"
@@ -58,38 +56,6 @@ void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
   order.power_w = -guard.power_w;
   print_registers(config, battery, "discharge", order, Command::kDischarge);
   print_registers(config, battery, "release", order, Command::kRelease);
-}
-
-bool report_price(const EdgeConfig& config, PriceFeed& prices) {
-  PriceRow row;
-  const Status status = prices.fetch_once(row);
-  if (status != Status::kOk) {
-    report(JournalLevel::kError, "price from %s: %s",
-           loggable_url(config.price.feed.http.url.view()).c_str(),
-           price_status_text(status).data());
-    return false;
-  }
-  std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
-              utc_text(row.minute_utc_s).c_str());
-  return true;
-}
-
-/// Asked once; what is missing stops nothing.
-void report_day_ahead(const EdgeConfig& config) {
-  if (student_outlook() == nullptr) return;
-  const OutlookSettings& outlook = config.outlook;
-  const std::string source =
-      outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const auto feed = std::make_unique<DayAheadFeed>(outlook);
-  DayAheadBook book;
-  Status status = feed->ask(now_utc_s);
-  if (status == Status::kOk) status = book.take(feed->rows(), now_utc_s);
-  if (status != Status::kOk) {
-    return report(JournalLevel::kWarning, "day-ahead prices from %s: %s; planned on what is usual",
-                  source.c_str(), day_ahead_status_text(status, outlook).data());
-  }
-  std::printf("day-ahead  %zu prices from %s\n", feed->rows().size(), source.c_str());
 }
 
 /// What it was trained on and is to be expected to do; neither keeps a controller from driving.
@@ -225,7 +191,7 @@ void print_absent(const EdgeConfig& config, const ModbusBattery& battery) {
 }
 
 /// Settings, encoded orders, a battery reading and the newest price; true when all is well.
-bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::string& path,
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
@@ -263,8 +229,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   }
   const bool sign_ok = report_sign(config);
   const bool clock_ok = report_clock(config, clock);
-  report_day_ahead(config);
-  return report_price(config, prices) && battery_ok && sign_ok && clock_ok && twin <= 0;
+  const PriceCheck prices = check_prices(path);
+  std::fputs(prices.lines.c_str(), prices.is_well ? stdout : stderr);
+  return prices.is_well && battery_ok && sign_ok && clock_ok && twin <= 0;
 }
 
 }  // namespace
@@ -277,8 +244,7 @@ int run_check(const EdgeConfig& config, const std::string& path) {
   std::printf("contract   %s\n", money.contract.text().c_str());
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  const auto prices = std::make_unique<PriceFeed>(config.price.feed, config.clock);
-  const bool is_well = report_check(config, battery, *prices, session.clock());
+  const bool is_well = report_check(config, battery, path, session.clock());
   return report_site(config, battery, meter) && is_well ? 0 : 1;
 }
 

@@ -1,18 +1,16 @@
 // bess-edge without a command, or `run`: drives the battery. The composition root:
-//   price server -> PriceFeed (own thread) -+
-//   day-ahead ----> OutlookWatch (two own) -+-> ControlLoop -> student -> SafetyGuard
+//   bess-prices --> PriceReader ------------+-> ControlLoop -> student -> SafetyGuard
 //   battery ------> ModbusBattery ----------+         |                        |
 //   meter, limits -> SiteLimits ------------+         |                        +-> ModbusBattery
 //                                                     +-> EventLog (own thread), ServiceNotify
 #include "edge/commands/check.h"
 #include "edge/commands/command_list.h"
 #include "edge/commands/self_test.h"
+#include "edge/control/policy.h"
 #include "edge/log/journal.h"
-#include "edge/outlook/day_ahead_file.h"
 #include "edge/program/controller.h"
 #include "edge/program/device_session.h"
 #include "edge/program/real_world.h"
-#include "shared/outlook/exported_outlook.h"
 
 namespace bess {
 namespace {
@@ -43,7 +41,7 @@ constexpr const char* kHelp =
                  /etc/bess/edge.toml
   --check        check settings, map, student and sign check, print the registers that would be
                  written, read the battery and the newest price once, write nothing, exit
-  --self-test    try student, signature, memory, seal, clock, certificates, price server, storage
+  --self-test    try student, signature, seal, clock, certificates, price server, storage
                  and battery once; a table, nothing is written to the battery
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
@@ -74,31 +72,22 @@ int fail(const FileMessage& error) {
   return 1;
 }
 
-/// Static memory for the outlook, in builds whose student plans on it alone.
-template <bool kIsNeeded = kHasExportedOutlook>
-OutlookWatch* outlook_watch(const EdgeConfig& config) {
-  if constexpr (kIsNeeded) {
-    static OutlookWatch watch(config.outlook, *student_outlook(), config.clock,
-                              state_file(config, kDayAheadFileName).view());
-    return &watch;
-  }
-  return nullptr;
-}
-
 /// Once in a process: what lives as long as it is static, and the end of a run leaves it sealed.
 int run_controller(const RunGiven& given, const EdgeConfig& config) {
   static DeviceSession session;
   if (!session.begin(config)) return 1;
   static ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   static ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  static PriceFeed prices(config.price.feed, config.clock);
+  static PriceReader prices(
+      {.path = prices_file(config),
+       .step_flag_centi_eur_per_mwh = config.price.feed.step_flag_centi_eur_per_mwh,
+       .hold_flagged_step = config.price.feed.hold_flagged_step,
+       .model = student_outlook()},
+      config.clock);
   FileMessage error;
   if (!lock_state(config, session.locks(), error)) return fail(error);
-  static RealWorld world(config, {.clock = session.clock(),
-                                  .battery = battery,
-                                  .meter = meter,
-                                  .prices = prices,
-                                  .outlook = outlook_watch(config)});
+  static RealWorld world(
+      config, {.clock = session.clock(), .battery = battery, .meter = meter, .prices = prices});
   if (!world.record_battery(given.record_path, error)) return fail(error);
   static Controller<RealWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;
@@ -108,7 +97,7 @@ int run_controller(const RunGiven& given, const EdgeConfig& config) {
 }
 
 int run(const RunGiven& given, SettingsFile& settings) {
-  if (given.self_test) return run_self_test(settings.config);
+  if (given.self_test) return run_self_test(settings.config, settings.path);
   if (given.dry_run) settings.config.control.control = false;
   return given.check ? run_check(settings.config, settings.path)
                      : run_controller(given, settings.config);

@@ -7,17 +7,14 @@
 
 #include <cstdio>
 #include <fstream>
-#include <memory>
 #include <string>
 
 #include "edge/battery/modbus_battery.h"
+#include "edge/commands/price_check.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/seccomp_filter.h"
-#include "edge/memory/static_arena.h"
-#include "edge/prices/http_secrets.h"
-#include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/startup.h"
 #include "edge/storage/run_locks.h"
@@ -72,16 +69,6 @@ void test_signature(Table& table) {
             found == kExpected ? found : found + "; expected " + std::string(kExpected));
 }
 
-void test_arena(Table& table) {
-  const bool is_served = prepare_memory();
-  const ArenaStatistics arena = arena_statistics();
-  table.add(
-      "arena", is_served && arena.failures == 0,
-      text("%.1f of %.1f MiB used, %lld requests failed",
-           static_cast<double>(arena.used_bytes) / 1048576,
-           static_cast<double>(kArenaBytes) / 1048576, static_cast<long long>(arena.failures)));
-}
-
 #ifndef BESS_SANITIZED
 /// In a child, because a seal is for good.
 enum class SealExit : int { kHeld, kNoSeccomp, kMemoryGiven, kProcessGiven };
@@ -131,16 +118,10 @@ void test_clock(const EdgeConfig& config, const EdgeClock& clock, Table& table) 
   table.add("clock", is_set, now + (is_set ? ", set by NTP" : ", not set by NTP; see timedatectl"));
 }
 
-void test_network(const EdgeConfig& config, PriceFeed& prices, Table& table) {
-  const std::string server = loggable_url(config.price.feed.http.url.view()).c_str();
-  PriceRow row;
-  const Status status = prices.fetch_once(row);
-  if (status != Status::kOk) {
-    return table.add("network", false, server + ": " + std::string(price_status_text(status)));
-  }
-  table.add("network", true,
-            text("%s: %.2f EUR/MWh of minute %s", server.c_str(),
-                 row.price_centi_eur_per_mwh / 100.0, utc_text(row.minute_utc_s).c_str()));
+void test_network(const std::string& config_path, Table& table) {
+  const PriceCheck prices = check_prices(config_path);
+  std::string line = prices.lines.substr(0, prices.lines.find('\n'));
+  table.add("network", prices.is_well, line);
 }
 
 void test_ca_file(const EdgeConfig& config, Table& table) {
@@ -196,17 +177,16 @@ void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
 
 }  // namespace
 
-int run_self_test(const EdgeConfig& config) {
+int run_self_test(const EdgeConfig& config, const std::string& config_path) {
   Table table;
   test_student(table);
   test_signature(table);
-  test_arena(table);
   test_seal(table);  // before there is a thread
   prepare_process();
   EdgeClock clock(config.clock, config.require_synchronised_clock);
   test_clock(config, clock, table);
   test_ca_file(config, table);
-  test_network(config, *std::make_unique<PriceFeed>(config.price.feed, config.clock), table);
+  test_network(config_path, table);
   test_storage(config, table);
   test_battery(config, clock, table);
   std::printf("self-test  %s\n",

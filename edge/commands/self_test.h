@@ -2,11 +2,13 @@
 // stands on is tried once; nothing is written to the battery.
 #pragma once
 
+#include <string>
+
 #include "edge/settings/edge_config.h"
 
 namespace bess {
 
 /// A table on stdout, one line a part: ok, note or FAIL. Exit code 0, or 1 when a part fails.
-int run_self_test(const EdgeConfig& config);
+int run_self_test(const EdgeConfig& config, const std::string& config_path);
 
 }  // namespace bess

@@ -1,6 +1,6 @@
 // What a student by outlook is given at a tick: the break-even price that a plan on day-ahead
 // prices has for this moment and SoC (shared/outlook). Plans are made on a thread of their own
-// (edge/outlook), which offers the rows of the ticks ahead; a cycle takes what is there.
+// (edge/fetch), which offers the rows of the ticks ahead; a cycle takes what is there.
 //   planned   made for this tick, and the price of its quarter-hour was published
 //   usual     made for this tick, and it was not: what is usual at this hour and level
 //   late      the thread has not kept up: of a plan for an earlier tick, or another level

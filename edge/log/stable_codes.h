@@ -51,7 +51,8 @@ struct StableCodes<Status> {
       Status::kBusBusy,    Status::kNotPermitted,   Status::kBadReply,    Status::kImplausible,
       Status::kNotApplied, Status::kNotExpressible, Status::kWriteBudget, Status::kNameUnresolved,
       Status::kTlsRefused, Status::kHttpError,      Status::kMalformed,   Status::kNoRow,
-      Status::kTooLarge,   Status::kNoMemory,       Status::kTooLate};
+      Status::kTooLarge,   Status::kNoMemory,       Status::kTooLate,     Status::kServerBusy,
+      Status::kNoFetcher,  Status::kOtherVersion,   Status::kDoubtfulUnit};
   static constexpr auto kNameOf = status_name;
 };
 

@@ -1,18 +1,20 @@
 #include "edge/memory/heap_seal.h"
 
-#include <fcntl.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
 
+#include "edge/base/check.h"
 #include "edge/memory/seccomp_filter.h"
-#include "edge/memory/static_arena.h"
 
 namespace bess {
 namespace {
@@ -41,29 +43,14 @@ void prefault_stack() {
   for (std::size_t i = 0; i < sizeof stack; i += 512) stack[i] = 0;
 }
 
-/// True when /proc/self/maps names a heap segment: somebody has called brk.
-bool has_heap_segment() {
-  const int fd = open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  constexpr std::string_view kHeap = "[heap]";
-  char text[4'096 + kHeap.size()];
-  std::size_t kept = 0;  // the end of the block before: the name may lie across
-  bool found = false;
-  for (ssize_t got = 0; !found && (got = read(fd, text + kept, sizeof text - kept)) > 0;) {
-    const std::string_view block(text, kept + static_cast<std::size_t>(got));
-    found = block.find(kHeap) != std::string_view::npos;
-    kept = block.size() < kHeap.size() ? block.size() : kHeap.size();
-    std::memmove(text, block.data() + block.size() - kept, kept);
-  }
-  close(fd);
-  return found;
-}
+std::atomic<bool> is_sealed = false;
+std::atomic<std::uint32_t> allocator_calls = 0;
 
-bool arena_serves_malloc() {
-  char* text = strdup("whose memory is this?");
-  const bool served = arena_owns(text);
-  std::free(text);
-  return served;
+/// Is it malloc_family.cpp that answers?
+bool counts_allocator_calls() {
+  const std::uint32_t before = allocator_calls;
+  std::free(strdup("whose allocator is this?"));
+  return allocator_calls != before;
 }
 
 void lock_memory() {
@@ -91,19 +78,20 @@ void forbid_system_calls() {
 
 bool prepare_memory() {
   if (!kIsSealed) return true;
-  if (!arena_serves_malloc()) {
-    put_line("%s",
-             "bess-edge: malloc does not draw from the static arena: build bess-edge with "
-             "malloc_family.cpp and default visibility\n");
-    return false;
+  mallopt(M_ARENA_MAX, 1);  // of the C library: one for all threads, or each reserves 64 MiB
+  if (counts_allocator_calls()) return true;
+  put_line("%s",
+           "bess-edge: the malloc family is not ours: build bess-edge with malloc_family.cpp and "
+           "default visibility; unset LD_PRELOAD\n");
+  return false;
+}
+
+void require_unsealed_heap() {
+  allocator_calls.fetch_add(1, std::memory_order_relaxed);
+  if (is_sealed.load(std::memory_order_relaxed)) {
+    is_sealed = false;  // for what a failed CHECK still does
+    check_failed("no allocator call after start-up", "malloc_family.cpp", 0);
   }
-  if (has_heap_segment()) {
-    put_line("%s",
-             "bess-edge: the process has a heap segment: something called brk at start-up; unset "
-             "LD_PRELOAD\n");
-    return false;
-  }
-  return true;
 }
 
 HeapSeal::HeapSeal() {
@@ -111,23 +99,17 @@ HeapSeal::HeapSeal() {
     put_line("%s", "bess-edge: note: a sanitizer build, nothing is sealed\n");
     return;
   }
+  malloc_trim(0);  // what start-up has given back need not be locked
   prefault_stack();
   lock_memory();
   forbid_system_calls();
-  forbid_allocation_on_this_thread();
+  is_sealed = true;
 }
 
 HeapSeal::~HeapSeal() {
   if (!kIsSealed) return;
-  permit_allocation_on_this_thread();
-  const ArenaStatistics arena = arena_statistics();
-  put_line(
-      "bess-edge: arena used=%zu peak=%zu of=%zu calls=%lld failures=%lld "
-      "control_thread_calls=%lld "
-      "heap_segment=%d\n",
-      arena.used_bytes, arena.peak_bytes, kArenaBytes, static_cast<long long>(arena.calls),
-      static_cast<long long>(arena.failures), static_cast<long long>(arena.forbidden_calls),
-      has_heap_segment());
+  is_sealed = false;
+  put_line("%s", "bess-edge: ran sealed: no allocator call after start-up\n");
 }
 
 }  // namespace bess

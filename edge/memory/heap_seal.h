@@ -1,10 +1,11 @@
-// Makes "no heap after start-up" true for the running process, and checks that it is:
-//   prepare_memory   at start: the arena serves malloc, there is no [heap] segment
-//   HeapSeal         around the loop: memory locked, the control thread may not allocate, the
-//                    kernel refuses to give memory, threads or programs (seccomp)
-// The filter names only what is forbidden; sockets, files, clocks and futexes stay as they are.
+// "No heap after start-up", for the running process:
+//   prepare_memory   at start: the malloc family is ours
+//   HeapSeal         around the loop: memory locked, any call of the malloc family by any thread
+//                    ends the process through CHECK, which releases the battery; the kernel refuses
+//                    to give memory, threads, programs and other sockets (seccomp)
+// The filter names only what is forbidden; files, clocks and futexes stay as they are.
 // BESS_SECCOMP=kill in the environment ends the process at a forbidden call, for tests; otherwise
-// the call fails with ENOMEM (memory) or EPERM (threads, programs) and whoever made it copes.
+// the call fails with ENOMEM (memory) or EPERM (all else) and whoever made it copes.
 // Sanitizer builds allocate in their own ways: there nothing is sealed, and a note says so.
 #pragma once
 
@@ -19,6 +20,9 @@ inline constexpr std::size_t kControlStackBytes = 256 * 1024;
 /// process is not built as it must be.
 [[nodiscard]] bool prepare_memory();
 
+/// Of malloc_family.cpp, before each call: fails a CHECK once the process is sealed.
+void require_unsealed_heap();
+
 /// Exists as long as the loop runs, on the control thread. What the kernel or the limits of the
 /// process do not permit is noted on stderr, one line each, and left out.
 class HeapSeal {
@@ -26,8 +30,7 @@ class HeapSeal {
   HeapSeal();
   HeapSeal(const HeapSeal&) = delete;
   HeapSeal& operator=(const HeapSeal&) = delete;
-  /// Permits allocation again, for the destructors on the way out, and writes what the arena has
-  /// seen in one line on stderr. The filter stays.
+  /// Permits allocation again, for the destructors on the way out. The filter stays.
   ~HeapSeal();
 };
 

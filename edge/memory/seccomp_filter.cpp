@@ -4,6 +4,7 @@
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -45,9 +46,14 @@ constexpr std::uint32_t kProcessCalls[] = {
 #endif
 };
 
+/// Who drives a battery is a client: nobody connects to it.
+constexpr std::uint32_t kServerCalls[] = {__NR_bind, __NR_listen, __NR_accept4};
+
 constexpr std::size_t kPrologue = 5;
+constexpr std::size_t kSocketRule = 4;
 constexpr std::size_t kFilterSize =
-    kPrologue + 2 * (std::size(kMemoryCalls) + std::size(kProcessCalls)) + 1;
+    kPrologue + kSocketRule + 1 +
+    2 * (std::size(kMemoryCalls) + std::size(kProcessCalls) + std::size(kServerCalls));
 using Filter = std::array<sock_filter, kFilterSize>;
 
 constexpr sock_filter statement(std::uint16_t code, std::uint32_t value) {
@@ -80,6 +86,13 @@ Filter make_filter(std::uint32_t memory_answer, std::uint32_t process_answer) {
   };
   for (const std::uint32_t number : kMemoryCalls) forbid(number, memory_answer);
   for (const std::uint32_t number : kProcessCalls) forbid(number, process_answer);
+  for (const std::uint32_t number : kServerCalls) forbid(number, process_answer);
+  // A socket to a battery or meter; the one to systemd is open.
+  constexpr std::size_t kDomain = offsetof(seccomp_data, args);  // its low half: little-endian
+  filter[i++] = jump(BPF_JEQ, __NR_socket, 0, 3);
+  filter[i++] = statement(kLoad, kDomain);
+  filter[i++] = jump(BPF_JEQ, AF_INET, 1, 0);
+  filter[i++] = statement(kReturn, process_answer);
   filter[i] = statement(kReturn, SECCOMP_RET_ALLOW);
   return filter;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace bess {
@@ -17,6 +18,9 @@ enum class UrlTransport : std::uint8_t {
 /// Loopback is 127.0.0.0/8 and [::1] as numbers: the name localhost is what the resolver says it
 /// is.
 UrlTransport transport_of(std::string_view url);
+
+/// "host:port" of a URL; empty where it names no host.
+std::string place_of_url(std::string_view url);
 
 /// True when the URL holds a user or a password, which are sent with every request.
 bool holds_login(std::string_view url);

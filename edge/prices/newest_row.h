@@ -3,7 +3,7 @@
 #pragma once
 
 #include "edge/control/control_types.h"
-#include "edge/prices/price_json.h"
+#include "edge/prices/price_row.h"
 #include "edge/prices/step_hold.h"
 
 namespace bess {

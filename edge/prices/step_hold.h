@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "edge/prices/price_json.h"
+#include "edge/prices/price_row.h"
 
 namespace bess {
 

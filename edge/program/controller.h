@@ -10,10 +10,8 @@
 
 #include <concepts>
 #include <cstdint>
-#include <optional>
 #include <string>
 
-#include "edge/control/price_history.h"
 #include "edge/log/journal.h"
 #include "edge/loop/control_loop.h"
 #include "edge/prices/http_secrets.h"
@@ -25,9 +23,8 @@
 
 namespace bess {
 
-/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say,
-/// and the start that Prices can fetch_once and fetch_page. `Seal` exists as long as cycles run:
-/// nothing may allocate.
+/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say.
+/// `Seal` exists as long as cycles run: nothing may allocate.
 template <typename World>
 concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
                                    const CycleRecord& done, std::int64_t number, std::int32_t level,
@@ -41,6 +38,9 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
   { world.prices() } -> std::same_as<typename World::Prices&>;
   { world.meter() } -> std::same_as<typename World::Meter&>;
   { world.limits() } -> std::same_as<typename World::Limits&>;
+  // The first answer of whom prices come from, and what the last hours say of the price level.
+  { world.greet_prices() } -> std::same_as<Status>;
+  { world.find_history() } -> std::same_as<PublishedHistory>;
   // What is kept over the end of a run. `open` says itself why it failed, and so does `recall`.
   { world.open() } -> std::same_as<bool>;
   { world.recall() } -> std::same_as<Recall>;
@@ -122,10 +122,9 @@ class Controller {
     return record.battery_status == Status::kOk;
   }
 
-  /// Opens the connection before the first tick, and says it when there is no price yet.
+  /// Says it when there is no price yet.
   Status greet_price_server() {
-    PriceRow row;
-    const Status status = world_.prices().fetch_once(row);
+    const Status status = world_.greet_prices();
     if (status == Status::kOk) return status;
     world_.complain(JournalLevel::kWarning,
                     "note: price from " +
@@ -140,8 +139,7 @@ class Controller {
     const Recall recalled = world_.recall();
     const BatteryCounters& counters = recalled.before.counters;
     world_.battery().restore_flash_writes(counters.flash_day, counters.flash_writes_today);
-    const LevelNews news = starting_level(config_, recalled.before.price_level, greeting,
-                                          world_.prices(), world_.clock(), history_);
+    const LevelNews news = starting_level(config_, recalled.before.price_level, greeting, world_);
     if (needs_level) world_.write_line(journal_level_of(news), level_note(news));
     recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
     loop_.take_over(take_over_of(recalled.before, recalled.trip, news.start.level));
@@ -151,7 +149,6 @@ class Controller {
   const EdgeConfig& config_;
   World& world_;
   Loop loop_;
-  std::optional<PriceHistory> history_;  ///< of a first start
 };
 
 }  // namespace bess

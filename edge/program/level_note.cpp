@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "edge/prices/price_feed.h"
+#include "edge/prices/price_settings.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -1,5 +1,6 @@
 #include "edge/program/real_world.h"
 
+#include "edge/control/policy.h"
 #include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
 #include "edge/storage/commission_file.h"
@@ -11,6 +12,7 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kPlanningSMax = 30;  ///< of the first plans, on the slowest board
+constexpr std::int64_t kMillisecondsNs = 1'000'000;
 
 void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
   if (!is_in_control) {
@@ -68,18 +70,23 @@ const HoldMailbox& RealWorld::listen() {
   return people_.mailbox();
 }
 
-OutlookBoard* RealWorld::look_out(std::int32_t level_centi) {
-  if (devices_.outlook == nullptr) return nullptr;
-  needs_time(config_.outlook.http.timeout_ms / 1'000 + kPlanningSMax);
-  devices_.outlook->start(level_centi);
-  return &devices_.outlook->board();
+/// Wall time: bess-prices may just have been started.
+Status RealWorld::greet_prices() {
+  const std::int64_t request_ms = config_.price.feed.http.timeout_ms + 1'000;
+  return devices_.prices.first_answer(request_ms * kMillisecondsNs);
 }
 
-void RealWorld::keep(const CycleRecord& record) {
-  log_.write(record);
-  if (devices_.outlook != nullptr) {
-    devices_.outlook->plan_after(record.utc_s, record.price_level.centi_eur_per_mwh());
-  }
+PublishedHistory RealWorld::find_history() {
+  const std::int64_t wait_ns =
+      config_.clock.wall_ns(config_.price.history.wait_s * kNanosecondsPerSecond);
+  return devices_.prices.await_history(wait_ns + kNanosecondsPerSecond);
+}
+
+OutlookBoard* RealWorld::look_out(std::int32_t) {
+  if (student_outlook() == nullptr) return nullptr;
+  const std::int64_t patience_s = config_.outlook.http.timeout_ms / 1'000 + kPlanningSMax;
+  needs_time(patience_s);
+  return devices_.prices.await_outlook(patience_s * kNanosecondsPerSecond);
 }
 
 void RealWorld::complain(JournalLevel level, const std::string& line) {

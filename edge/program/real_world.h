@@ -9,8 +9,7 @@
 #include "edge/log/event_log.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
-#include "edge/outlook/outlook_watch.h"
-#include "edge/prices/price_feed.h"
+#include "edge/prices/price_reader.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/service_notify.h"
@@ -23,7 +22,7 @@ namespace bess {
 
 class RealWorld {
  public:
-  using Prices = PriceFeed;
+  using Prices = PriceReader;
   using Meter = ModbusMeter;
   using Limits = LimitFile;
   using Seal = HeapSeal;
@@ -33,14 +32,13 @@ class RealWorld {
     EdgeClock& clock;
     ModbusBattery& battery;
     ModbusMeter& meter;
-    PriceFeed& prices;
-    OutlookWatch* outlook;  ///< null unless the student's context is the outlook
+    PriceReader& prices;
   };
   RealWorld(const EdgeConfig& config, const Devices& devices);
 
   EdgeClock& clock() { return devices_.clock; }
   ModbusBattery& battery() { return devices_.battery; }
-  PriceFeed& prices() { return devices_.prices; }
+  PriceReader& prices() { return devices_.prices; }
   ModbusMeter& meter() { return devices_.meter; }
   LimitFile& limits() { return limits_; }
 
@@ -56,8 +54,10 @@ class RealWorld {
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return log_.read_back(records, record);
   }
-  void keep(const CycleRecord& record);
+  void keep(const CycleRecord& record) { log_.write(record); }
 
+  Status greet_prices();
+  PublishedHistory find_history();
   const HoldMailbox& listen();
   OutlookBoard* look_out(std::int32_t level_centi);
   bool is_cleared(std::int64_t trip_utc_s) { return people_.is_cleared(trip_utc_s); }

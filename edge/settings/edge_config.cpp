@@ -1,10 +1,15 @@
 #include "edge/settings/edge_config.h"
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <filesystem>
 
 #include "edge/log/battery_name.h"
+#include "edge/prices/published_prices.h"
 #include "edge/settings/guard_config.h"
 #include "edge/settings/operator_config.h"
+#include "shared/crc32.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -100,6 +105,21 @@ FixedText<639> state_file(const EdgeConfig& config, std::string_view name) {
 FixedText<639> run_file(const EdgeConfig& config, std::string_view name) {
   if (config.state.run_folder.empty()) return {};
   return file_in(config.state.run_folder.c_str(), name);
+}
+
+FixedText<639> prices_file(const EdgeConfig& config) {
+  const FixedText<639> run = run_file(config, kPricesFileName);
+  if (!run.empty()) return run;
+  // In memory whatever becomes of the disk; of this user and this state folder.
+  std::error_code ignored;
+  const std::string folder =
+      std::filesystem::absolute(config.state.folder.c_str(), ignored).lexically_normal().string();
+  Crc32 crc;
+  crc.add_bytes(folder.data(), folder.size());
+  char path[64];
+  std::snprintf(path, sizeof path, "/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()),
+                crc.value());
+  return {static_cast<const char*>(path)};
 }
 
 BothPlaces both_places(const EdgeConfig& config, std::string_view name) {

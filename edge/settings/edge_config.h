@@ -36,6 +36,9 @@ FixedText<639> state_file(const EdgeConfig& config, std::string_view name);
 /// In [state] run_folder; empty where there is none.
 FixedText<639> run_file(const EdgeConfig& config, std::string_view name);
 
+/// The record of bess-prices: in the run folder, or in /dev/shm where there is none.
+FixedText<639> prices_file(const EdgeConfig& config);
+
 /// The same file in both folders, for what must be known though one of two disks has died.
 struct BothPlaces {
   FixedText<639> state;

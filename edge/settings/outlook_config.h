@@ -1,7 +1,7 @@
 // [outlook]: whom to ask for day-ahead prices, for a student whose context is the outlook.
 #pragma once
 
-#include "edge/outlook/day_ahead_feed.h"
+#include "edge/prices/outlook_settings.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {

@@ -4,7 +4,9 @@
 
 #include <string>
 
+#include "edge/control/price_history.h"
 #include "edge/prices/http_secrets.h"
+#include "edge/prices/http_trust.h"
 #include "edge/settings/price_transport.h"
 #include "shared/units_and_limits.h"
 
@@ -29,15 +31,27 @@ void read_history(TomlTable& table, PriceConfig& price) {
   }
 }
 
-/// Names are looked up, and secrets sent, for one host alone.
+/// What a number of the source is in EUR/MWh, and which are none.
+void read_unit(TomlTable& table, PriceFields& fields) {
+  constexpr std::int32_t kEurPerMwhE1[] = {10, 10'000, 100};
+  int unit = 0;
+  table.choice("unit", unit, {"EUR/MWh", "EUR/kWh", "ct/kWh"});
+  fields.eur_per_mwh_e1 = kEurPerMwhE1[unit];
+  const TomlArray* const none = table.array("no_price");
+  if (none == nullptr) return;
+  for (const TomlValue& item : *none) {
+    const std::optional<double> number = item.number();
+    if (!number) return table.fail_at(item, "no_price must hold numbers");
+    if (!fields.no_price.try_push_back(*number)) return table.fail("no_price", "holds more than 8");
+  }
+}
+
+/// Secrets are sent to one host alone.
 void check_history_url(TomlTable& table, const PriceConfig& price) {
   const FixedText<511>& url = price.history.url;
   if (url.empty()) return;
-  HostAddresses here;
-  HostAddresses there;
-  const bool is_known = here.set_url(price.feed.http.url.c_str()) == Status::kOk &&
-                        there.set_url(url.c_str()) == Status::kOk;
-  if (!is_http(url.view()) || !is_known || !there.is_same_host(here)) {
+  if (!is_http(url.view()) || place_of_url(url.view()).empty() ||
+      place_of_url(url.view()) != place_of_url(price.feed.http.url.view())) {
     table.fail("history_url", "must start with http:// or https:// and be of the host of url");
   }
 }
@@ -55,7 +69,9 @@ void read_price(TomlTable table, PriceConfig& price, FrozenPriceSettings& frozen
   table.text("time_field", price.feed.fields.time);
   table.text("price_field", price.feed.fields.price);
   table.integer("timeout_ms", price.feed.http.timeout_ms, 10, 60'000);
-  table.integer("resolve_every_s", price.feed.http.resolve_every_s, 1, 86'400);
+  std::int32_t ignored = 0;
+  table.integer("resolve_every_s", ignored, 1, 86'400);  // of earlier versions
+  read_unit(table, price.feed.fields);
   table.integer("requests_per_cycle", price.feed.requests_per_cycle, 1, 4);
   table.integer("wait_s", price.feed.wait_s, 1, 60);
   table.scaled("step_flag_eur_per_mwh", price.feed.step_flag_centi_eur_per_mwh, kCentiPerEur, 0,

@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "edge/loop/control_settings.h"
-#include "edge/prices/history_pages.h"
-#include "edge/prices/price_feed.h"
+#include "edge/prices/price_settings.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {

@@ -180,14 +180,18 @@ HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& receiv
 /// HTTP/1 connection's end is the body's, and says nothing of a packed text that breaks off: then
 /// the text must end as a whole one does.
 bool is_whole(CURL* curl, std::string_view body) {
-  if (looks_like_json(body)) return Json::parse(body).value().exists();
   long version = 0;
   curl_off_t length = -1;
   curl_easy_getinfo(curl, CURLINFO_HTTP_VERSION, &version);
   curl_easy_getinfo(curl, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
   const bool is_framed = version >= CURL_HTTP_VERSION_2_0 || length >= 0 ||
                          header(curl, "Transfer-Encoding") == "chunked";
-  return body.ends_with('\n') || (is_framed && header(curl, "Content-Encoding").empty());
+  const bool is_safe = is_framed && header(curl, "Content-Encoding").empty();
+  if (!looks_like_json(body)) return body.ends_with('\n') || is_safe;
+  // Not all that servers write, such as NaN, is JSON; half of an answer ends otherwise.
+  const bool is_closed = body.find_last_of("]}") != body.npos &&
+                         body.find_last_of("]}") == body.find_last_not_of(" \t\r\n");
+  return Json::parse(body).value().exists() || (is_safe && is_closed);
 }
 
 HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received received) {

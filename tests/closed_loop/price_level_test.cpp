@@ -11,9 +11,11 @@
 #include <thread>
 
 #include "edge/control/level_start.h"
+#include "edge/fetch/history_pages.h"
+#include "edge/fetch/price_fetcher.h"
+#include "edge/fetch/price_json.h"
 #include "edge/log/ring_log.h"
 #include "edge/loop/control_loop.h"
-#include "edge/prices/history_pages.h"
 #include "tests/support/fake_plant.h"
 #include "tests/support/market_series.h"
 #include "tests/support/temporary_folder.h"
@@ -25,7 +27,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Prices as bess-sim serves them, kept as PriceFeed keeps them: the newest row of this process's
+/// Prices as bess-sim serves them, kept as PriceReader keeps them: the newest row of this process's
 /// life. At a stale tick the answer is ten minutes old, so the newest row comes a second time.
 class ServedPrices {
  public:
@@ -346,14 +348,15 @@ TEST(PriceLevelHistory, FetchedFromBessSimEqualsTheWorkstations) {
   const std::string root =
       "http://127.0.0.1:" + std::to_string(server.port()) + "/api/explore/v2.1/catalog/datasets/";
   const std::string order = "/records?order_by=datetime%20desc&limit=20&timezone=UTC";
-  PriceFeedSettings price;
+  const auto config = std::make_unique<EdgeConfig>();
+  config->clock = clock.scaled();
+  PriceFeedSettings& price = config->price.feed;
   price.http.url = FixedText<511>(root + "ods161" + order);
-  HistorySettings settings;
+  HistorySettings& settings = config->price.history;
   settings.url = FixedText<511>(root + "ods133" + order);
-  auto feed = std::make_unique<PriceFeed>(price, clock.scaled());
+  const PriceSource source(*config, {});
   PriceHistory history(settings.hours, now_utc_s);
-  EXPECT_EQ(fetch_history(*feed, price, settings, clock, history), Status::kOk);
-  feed.reset();  // hangs up: else the server waits for it
+  EXPECT_EQ(fetch_history(source, price, settings, source, history), Status::kOk);
   server.stop();
   serving.join();
   EXPECT_EQ(history.hours_covered(), 72);

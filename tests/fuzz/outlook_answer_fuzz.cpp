@@ -1,8 +1,9 @@
 // Day-ahead answers as the edge takes them, and the file that it keeps of them over a restart.
 #include <array>
 
-#include "edge/outlook/day_ahead_feed.h"
-#include "edge/outlook/day_ahead_file.h"
+#include "edge/fetch/day_ahead_feed.h"
+#include "edge/fetch/day_ahead_file.h"
+#include "edge/fetch/price_json.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "tests/fuzz/fuzz_target.h"

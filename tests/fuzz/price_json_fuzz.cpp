@@ -1,5 +1,5 @@
 // Answers of the price server, as the edge reads them.
-#include "edge/prices/price_json.h"
+#include "edge/fetch/price_json.h"
 #include "shared/units_and_limits.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -13,7 +13,7 @@ inline std::string program_under_test(const char* variable, const char* built) {
   return other != nullptr ? other : built;
 }
 inline std::string edge_program() {
-  return program_under_test("BESS_EDGE_UNDER_TEST", BESS_EDGE_PROGRAM);
+  return BESS_EDGE_PROGRAM;  // which itself looks at BESS_EDGE_UNDER_TEST
 }
 inline std::string sim_program() {
   return program_under_test("BESS_SIM_UNDER_TEST", BESS_SIM_PROGRAM);

@@ -21,7 +21,8 @@ import sys
 import tempfile
 import time
 
-PROGRAMS = ("bess-train", "bess-edge", "bess-sim", "bess-hil", "bess-page", "bess-notify")
+PROGRAMS = ("bess-train", "bess-edge", "bess-sim", "bess-hil", "bess-page", "bess-notify",
+            "bess-prices")
 OTHERS = set("apt apt-get cmake ctest install journalctl make man systemctl useradd".split())
 OPTION = re.compile(r"--[a-z][\w-]*")
 FOREIGN = {"--array-properties", "--collector", "--wrap"}

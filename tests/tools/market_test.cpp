@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/prices/price_json.h"
+#include "edge/fetch/price_json.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/market_sim/market_fault.h"

@@ -6,7 +6,7 @@ fail() { cat "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"
 mkdir -p "$folder/build-edge"
 ln -s "$source/edge" "$source/tests" "$folder"
-ln -s "$build/bess-sim" "$build/bess-edge" "$folder/build-edge"
+ln -s "$build/bess-sim" "$build/bess-edge" "$build/bess-prices" "$folder/build-edge"
 {
   echo "trap 'kill \$(jobs -p) 2>/dev/null || true' EXIT"  # of an example that fails on its way
   sed -n '/^```sh$/,/^```$/{/^```$/q;/^```/d;p}' "$source/README.md" | sed '1,/build build-edge$/d'

@@ -132,6 +132,7 @@ void add_site_command(ProgramCommand& app) {
       "  bess-sim site --folder site --prices minutes.csv --map edge/maps/alphaess.toml "
       "--utc-start 2023-03-26T00:00:00Z --time-scale 900\n"
       "  bess-edge commission --config site/edge.toml --yes\n"
+      "  bess-prices --config site/edge.toml &\n"
       "  bess-edge --config site/edge.toml --cycles 50\n"
       "  bess-sim site --folder site --prices minutes.csv --map edge/maps/alphaess.toml "
       "--utc-start 2023-03-26T00:00:00Z \\\n"

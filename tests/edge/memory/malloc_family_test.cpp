@@ -1,22 +1,22 @@
-// This test program runs on the static arena, as bess-edge does: the whole C allocator, its errors,
-// several threads at once, and the end of a thread that had forbidden it to itself.
+// This test program has the malloc family of bess-edge: every member works until the process is
+// sealed, and ends it from then on, on whatever thread.
 #include <gtest/gtest.h>
 #include <malloc.h>
-#include <pthread.h>
 #include <stdlib.h>
-#include <unistd.h>
+#include <sys/prctl.h>
 
 #include <cerrno>
 #include <cstring>
-#include <random>
-#include <vector>
+#include <functional>
+#include <thread>
 
 #include "edge/base/check.h"
 #include "edge/memory/heap_seal.h"
-#include "edge/memory/static_arena.h"
 
 namespace bess {
 namespace {
+
+constexpr int kCheckFailed = 70;
 
 // The compiler may drop a pair of malloc and free whose pointer goes nowhere.
 void* volatile kept = nullptr;
@@ -25,208 +25,104 @@ bool is_aligned(const void* payload, std::size_t alignment) {
   return reinterpret_cast<std::uintptr_t>(payload) % alignment == 0;
 }
 
-TEST(MallocFamily, EveryMemberDrawsFromTheArena) {
-  void* aligned = nullptr;
-  ASSERT_EQ(posix_memalign(&aligned, 64, 100), 0);
-  struct Member {
-    const char* name;
-    void* payload;
-    std::size_t alignment;
-  };
-  const Member members[] = {{"malloc", malloc(100), 16},
-                            {"calloc", calloc(10, 10), 16},
-                            {"realloc", realloc(nullptr, 100), 16},
-                            {"reallocarray", reallocarray(nullptr, 10, 10), 16},
-                            {"aligned_alloc", aligned_alloc(256, 256), 256},
-                            {"memalign", memalign(4'096, 100), 4'096},
-                            {"valloc", valloc(100), 4'096},
-                            {"pvalloc", pvalloc(100), 4'096},
-                            {"posix_memalign", aligned, 64},
-                            {"strdup", strdup("text"), 16},
-                            {"operator new", operator new(100), 16}};
-  for (const Member& member : members) {
-    EXPECT_TRUE(arena_owns(member.payload)) << member.name;
-    EXPECT_TRUE(is_aligned(member.payload, member.alignment)) << member.name;
-    EXPECT_GE(malloc_usable_size(member.payload), 5U) << member.name;
-    free(member.payload);
+struct Member {
+  const char* name;
+  std::function<void*()> call;
+  std::size_t alignment;
+};
+
+const Member kMembers[] = {
+    {"malloc", [] { return malloc(100); }, 16},
+    {"calloc", [] { return calloc(10, 10); }, 16},
+    {"realloc", [] { return realloc(nullptr, 100); }, 16},
+    {"reallocarray", [] { return reallocarray(nullptr, 10, 10); }, 16},
+    {"aligned_alloc", [] { return aligned_alloc(256, 256); }, 256},
+    {"memalign", [] { return memalign(4'096, 100); }, 4'096},
+    {"valloc", [] { return valloc(100); }, 4'096},
+    {"pvalloc", [] { return pvalloc(100); }, 4'096},
+    {"posix_memalign",
+     [] {
+       void* payload = nullptr;
+       return posix_memalign(&payload, 64, 100) == 0 ? payload : nullptr;
+     },
+     64},
+    {"strdup", [] { return static_cast<void*>(strdup("text")); }, 16},
+    {"operator new", [] { return operator new(100); }, 16},
+};
+
+TEST(MallocFamily, EveryMemberGivesMemoryBeforeTheSeal) {
+  EXPECT_TRUE(prepare_memory());
+  for (const Member& member : kMembers) {
+    void* const payload = member.call();
+    ASSERT_NE(payload, nullptr) << member.name;
+    EXPECT_TRUE(is_aligned(payload, member.alignment)) << member.name;
+    std::memset(payload, 0xA5, 5);
+    free(payload);
   }
-  EXPECT_EQ(malloc_usable_size(nullptr), 0U);
-  free(nullptr);
+  void* grown = malloc(10);
+  std::memcpy(grown, "123456789", 10);
+  grown = realloc(grown, 10'000);
+  EXPECT_STREQ(static_cast<char*>(grown), "123456789");
+  free(grown);
 }
 
-TEST(MallocFamily, CallocClearsWhatWasUsedBefore) {
-  void* used = malloc(1'000);
-  std::memset(used, 0xff, 1'000);
-  kept = used;
-  free(used);
-  auto* cleared = static_cast<unsigned char*>(calloc(1'000, 1));
-  for (int i = 0; i < 1'000; ++i) ASSERT_EQ(cleared[i], 0) << i;
-  free(cleared);
-}
-
-TEST(MallocFamily, ReallocKeepsTheContentInPlaceOrNot) {
-  auto* text = static_cast<char*>(malloc(8));
-  std::strcpy(text, "kept");
-  for (std::size_t size = 16; size <= (1 << 20); size *= 2) {
-    void* wall = malloc(16);  // now and then in the way
-    text = static_cast<char*>(realloc(text, size));
-    ASSERT_NE(text, nullptr);
-    ASSERT_STREQ(text, "kept");
-    free(wall);
-  }
-  text = static_cast<char*>(realloc(text, 5));
-  EXPECT_STREQ(text, "kept");
-  EXPECT_EQ(realloc(text, 0), nullptr);
-}
-
-TEST(MallocFamily, WhatDoesNotFitIsRefusedWithErrno) {
-  volatile std::size_t huge = kArenaBytes + 1;  // else the compiler sees it and warns
-  volatile std::size_t half = SIZE_MAX / 2 + 2;
-  const std::int64_t failures = arena_statistics().failures;
-  const auto is_refused = [](void* payload) {
-    const int error = errno;
-    errno = 0;
-    return payload == nullptr && error == ENOMEM;
-  };
+TEST(MallocFamily, ErrorsAreAsTheStandardHasThem) {
+  void* untouched = &untouched;
+  EXPECT_EQ(posix_memalign(&untouched, 3, 10), EINVAL);
+  EXPECT_EQ(untouched, &untouched);
   errno = 0;
-  EXPECT_TRUE(is_refused(malloc(huge)));
-  EXPECT_TRUE(is_refused(calloc(half, 2)));
-  EXPECT_TRUE(is_refused(reallocarray(nullptr, half, 2)));
-  EXPECT_TRUE(is_refused(pvalloc(huge)));
-  void* payload = malloc(10);
-  EXPECT_TRUE(is_refused(realloc(payload, huge)));
-  free(payload);
-  EXPECT_EQ(posix_memalign(&payload, 16, huge), ENOMEM);
-  EXPECT_EQ(posix_memalign(&payload, 24, 8), EINVAL);
-  volatile std::size_t odd = 24;
-  EXPECT_EQ(memalign(odd, 8), nullptr);
-  EXPECT_EQ(errno, EINVAL);
-  EXPECT_EQ(arena_statistics().failures, failures + 3);  // the three that only size forbade
+  volatile std::size_t many = SIZE_MAX;
+  EXPECT_EQ(reallocarray(nullptr, many, 2), nullptr);
+  EXPECT_EQ(errno, ENOMEM);
 }
 
-TEST(MallocFamily, AnExhaustedArenaServesAgainOnceSomethingIsFreed) {
-  std::vector<void*> blocks(100, nullptr);
-  std::size_t count = 0;
-  while (count < blocks.size() && (blocks[count] = malloc(1 << 20)) != nullptr) ++count;
-  EXPECT_GE(count, 6U);
-  EXPECT_LE(count, 8U);
-  for (void* block : blocks) free(block);
-  void* again = malloc(6 << 20);
-  EXPECT_NE(again, nullptr);
-  free(again);
-}
+using MallocFamilyDeathTest = ::testing::Test;
 
-void* churn(void* seed) {
-  std::mt19937 random(reinterpret_cast<std::uintptr_t>(seed));
-  unsigned char* slots[32] = {};
-  std::size_t sizes[32] = {};
-  for (int step = 0; step < 20'000; ++step) {
-    const std::size_t i = random() % 32;
-    for (std::size_t k = 0; k < sizes[i]; ++k) {
-      if (slots[i][k] != static_cast<unsigned char>(i)) return slots[i];
-    }
-    sizes[i] = random() % 2'000;
-    auto* moved = static_cast<unsigned char*>(realloc(slots[i], sizes[i] + 1));
-    if (moved == nullptr) return slots[i];
-    slots[i] = moved;
-    std::memset(slots[i], static_cast<int>(i), sizes[i]);
+TEST(MallocFamilyDeathTest, EveryMemberEndsASealedProcess) {
+  for (const Member& member : kMembers) {
+    EXPECT_EXIT(
+        {
+          const HeapSeal seal;
+          kept = member.call();
+          _exit(0);
+        },
+        ::testing::ExitedWithCode(kCheckFailed), "no allocator call after start-up")
+        << member.name;
   }
-  for (unsigned char* slot : slots) free(slot);
-  return nullptr;
-}
-
-TEST(MallocFamily, ThreadsDoNotDisturbEachOther) {
-  pthread_t threads[4];
-  for (std::uintptr_t i = 0; i < 4; ++i) {
-    ASSERT_EQ(pthread_create(&threads[i], nullptr, churn, reinterpret_cast<void*>(i + 1)), 0);
-  }
-  for (pthread_t& thread : threads) {
-    void* damaged = nullptr;
-    pthread_join(thread, &damaged);
-    EXPECT_EQ(damaged, nullptr);
-  }
-}
-
-TEST(MallocFamily, AForbiddenCallEndsTheProcessAndOnlyOnItsThread) {
-  const auto call = [](auto allocator_call) {
-    void* before = malloc(10);
-    kept = before;
-    forbid_allocation_on_this_thread();
-    allocator_call(before);
-  };
-  EXPECT_DEATH(call([](void*) { kept = malloc(1); }), "CHECK failed: no allocation on the sealed");
-  EXPECT_DEATH(call([](void* p) { free(p); }), "CHECK failed: no allocation on the sealed");
-  EXPECT_DEATH(call([](void* p) { kept = realloc(p, 99); }), "CHECK failed: no allocation");
-  EXPECT_DEATH(call([](void*) { kept = new int(3); }), "CHECK failed: no allocation");
-
-  pthread_t other{};
-  forbid_allocation_on_this_thread();
-  permit_allocation_on_this_thread();
-  ASSERT_EQ(pthread_create(
-                &other, nullptr,
-                [](void*) -> void* {
-                  forbid_allocation_on_this_thread();
-                  return nullptr;
-                },
-                nullptr),
-            0);
-  pthread_join(other, nullptr);
-  kept = malloc(1);  // this thread's permission is its own
-  free(kept);
-}
-
-TEST(MallocFamily, ThisProgramPassesTheCheckAtStart) { EXPECT_TRUE(prepare_memory()); }
-
-TEST(MallocFamily, TheSealForbidsAndItsEndPermits) {
-  EXPECT_DEATH(
+  EXPECT_EXIT(
       {
+        void* const payload = malloc(10);
         const HeapSeal seal;
-        kept = malloc(1);
+        free(payload);
+        _exit(0);
       },
-      "CHECK failed: no allocation on the sealed");
+      ::testing::ExitedWithCode(kCheckFailed), "no allocator call after start-up");
+}
+
+TEST(MallocFamilyDeathTest, AnotherThreadEndsItToo) {
+  EXPECT_EXIT(
+      {
+        std::atomic<bool> is_sealed = false;
+        std::thread other([&] {
+          while (!is_sealed) std::this_thread::yield();
+          kept = malloc(10);
+        });
+        const HeapSeal seal;
+        is_sealed = true;
+        other.join();
+        _exit(0);
+      },
+      ::testing::ExitedWithCode(kCheckFailed), "no allocator call after start-up");
+}
+
+TEST(MallocFamilyDeathTest, BehindTheSealItGivesMemoryAgain) {
   EXPECT_EXIT(
       {
         { const HeapSeal seal; }
-        kept = malloc(1);
-        _exit(arena_owns(kept) ? 7 : 1);
+        kept = malloc(10);  // the filter stays; what is there already is enough
+        _exit(kept != nullptr ? 7 : 1);
       },
-      ::testing::ExitedWithCode(7), "arena used=.* control_thread_calls=0 heap_segment=0");
-}
-
-/// What a broken promise calls first may allocate: the release of the battery must not be stopped.
-TEST(MallocFamily, TheCheckHandlerMayStillAllocate) {
-  const auto call = [] {
-    check_handler() = [](const char*, const char*, int) {
-      kept = malloc(1);
-      std::fprintf(stderr, "handler ran\n");
-    };
-    forbid_allocation_on_this_thread();
-    kept = malloc(1);
-  };
-  EXPECT_DEATH(call(), "handler ran");
-}
-
-/// The handler drives the very code whose promise was broken: a second failure must end it.
-TEST(MallocFamily, AFailureInTheCheckHandlerEndsTheProcess) {
-  const auto call = [] {
-    check_handler() = [](const char*, const char*, int) { BESS_CHECK(kept == &kept); };
-    BESS_CHECK(kept == &kept);
-  };
-  EXPECT_EXIT(call(), ::testing::ExitedWithCode(70), "CHECK failed");
-}
-
-TEST(MallocFamily, StatisticsCountCallsAndBytes) {
-  const ArenaStatistics before = arena_statistics();
-  kept = malloc(100'000);
-  const ArenaStatistics during = arena_statistics();
-  free(kept);
-  const ArenaStatistics after = arena_statistics();
-  EXPECT_EQ(during.calls, before.calls + 1);
-  EXPECT_EQ(after.calls, before.calls + 2);
-  EXPECT_GE(during.used_bytes, before.used_bytes + 100'000);
-  EXPECT_EQ(after.used_bytes, before.used_bytes);
-  EXPECT_GE(after.peak_bytes, during.used_bytes);
-  EXPECT_EQ(after.forbidden_calls, 0);
+      ::testing::ExitedWithCode(7), "");
 }
 
 }  // namespace

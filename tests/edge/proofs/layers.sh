@@ -34,12 +34,11 @@ layer edge/loop                     edge/loop edge/supervision edge/site edge/co
   shared
 layer edge/registers                edge/registers edge/control/power_order.h edge/base shared
 layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
-layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
 layer edge/log                      edge/log edge/control edge/memory edge/base shared
-outlook_stands_on="edge/prices edge/log edge/control edge/memory edge/base shared"
-layer edge/outlook                 edge/outlook $outlook_stands_on
+prices_stand_on="edge/prices edge/log edge/control edge/memory edge/base shared"
+layer edge/prices                   $prices_stand_on
 grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/registers"
-grounds="$grounds edge/outlook $outlook_stands_on"
+grounds="$grounds $prices_stand_on"
 layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
 layer edge/storage                  edge/storage edge/settings $grounds
@@ -48,17 +47,19 @@ layer edge/update                   edge/update edge/log edge/control edge/base 
 layer edge/commands                 edge/commands edge/update edge/account edge/why edge/program \
   edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
+# bess-prices: by itself, with the heap.
+layer edge/fetch                    edge/fetch edge/companion edge/storage edge/settings $grounds
 # Beside the controller: they read what the log wrote.
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/companion                edge/companion edge/log edge/control edge/base shared
 layer edge/notify                   edge/notify edge/companion edge/account edge/log edge/control \
-  edge/prices/http_secrets.h edge/base shared
+  edge/prices/http_secrets.h edge/prices/http_trust.h edge/base shared
 layer edge/page                     edge/page edge/companion edge/why edge/log edge/loop \
   edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
-  grep -vE '^edge/(why/|update/|companion/|notify/|page/)')" \
+  grep -vE '^edge/(why/|update/|companion/|notify/|page/|fetch/)')" \
   "the heap is of start-up, commands, companion programs, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
@@ -116,9 +117,9 @@ layer $w/main.cpp                   $w shared
 # begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
-only curl/   'edge/prices/|edge/notify/curl_handle.h:'
+only curl/   'edge/fetch/fetch.cpp:|edge/notify/connection_trouble.cpp:|shared/host/(http_client|transfer_trouble).cpp:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
-only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
+only cjson/  'edge/fetch/price_json.cpp:|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 reports='(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp'
 only pugixml "(workstation/market/feed/entsoe_element.h|$reports):" 'edge shared workstation tools'

@@ -13,7 +13,7 @@ wrong() {  # wrong FILE LINE: FILE gets it as its last one
   echo "$1:$(wc -l <"$copy/$1"): $2" >>"$places"
 }
 wrong shared/features.h '#include "edge/registers/codec.h"'
-wrong edge/memory/static_arena.h '#include "edge/control/mode.h"'
+wrong edge/memory/seccomp_filter.h '#include "edge/control/mode.h"'
 wrong edge/registers/codec.h '#include "edge/control/control_types.h"'
 wrong edge/control/mode.h '#include "edge/registers/codec.h"'
 wrong edge/control/mode.h '#include "edge/log/journal.h"'

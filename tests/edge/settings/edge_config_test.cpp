@@ -289,7 +289,6 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
   EXPECT_EQ(config.price.feed.http.headers, "X-Api-Key: k");
   EXPECT_EQ(config.price.feed.http.ca_file, headers);  // relative to the configuration
-  EXPECT_EQ(config.price.feed.http.resolve_every_s, 30);
   EXPECT_EQ(config.price.feed.fields.rows, "data.rows");
   EXPECT_EQ(config.price.feed.step_flag_centi_eur_per_mwh, 100'050);
 }

@@ -1,5 +1,6 @@
 #include "tools/hil_runner/virtual/virtual_outlook.h"
 
+#include "edge/fetch/price_json.h"
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 

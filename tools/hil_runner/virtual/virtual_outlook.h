@@ -1,14 +1,14 @@
 // Day-ahead prices and their plans in virtual time, for a student by outlook: the simulated
 // auction's answers, read by the edge's own parser into its own book, planned on by its own
-// planner. Looks up once in a cycle, where the edge's OutlookWatch has two threads; plans are never
+// planner. Looks up once in a cycle, where bess-prices has two threads; plans are never
 // late.
 #pragma once
 
 #include <memory>
 
 #include "edge/control/control_types.h"
-#include "edge/outlook/day_ahead_feed.h"
-#include "edge/outlook/outlook_planner.h"
+#include "edge/fetch/day_ahead_feed.h"
+#include "edge/fetch/outlook_planner.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
 

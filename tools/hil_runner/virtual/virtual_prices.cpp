@@ -4,6 +4,7 @@
 #include <charconv>
 #include <string_view>
 
+#include "edge/fetch/price_json.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -64,7 +65,7 @@ bool VirtualPrices::wait(std::int64_t until_monotonic_ns) {
   return true;
 }
 
-/// Spread over the wait like PriceFeed's; false when the cycle's requests are used up.
+/// Spread over the wait as by bess-prices; false when the cycle's requests are used up.
 bool VirtualPrices::begin_next() {
   const std::int64_t spacing_ns =
       settings_.wait_s * kNanosecondsPerSecond / settings_.requests_per_cycle;

@@ -1,13 +1,12 @@
 // The control loop's price source in virtual time: the answers of the simulated market, read by the
-// edge's own parser into its own newest row. Asks as often as the edge's PriceFeed would, without
-// its thread.
+// edge's own parser into its own newest row. Asks as often as bess-prices would.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "edge/prices/newest_row.h"
-#include "edge/prices/price_feed.h"
+#include "edge/prices/price_settings.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
 #include "tools/market_sim/market_fault.h"
@@ -26,7 +25,7 @@ class VirtualPrices {
   bool wait(std::int64_t until_monotonic_ns);
   [[nodiscard]] PriceReport latest() const { return newest_.report(); }
 
-  // One request, which takes its time, as PriceFeed has them for the start.
+  // One request, which takes its time, as bess-prices has them for the start.
   Status fetch_once(PriceRow& row);
   Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
                     int& items);

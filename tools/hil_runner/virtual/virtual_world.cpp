@@ -1,7 +1,9 @@
 #include "tools/hil_runner/virtual/virtual_world.h"
 
 #include <iterator>
+#include <memory>
 
+#include "edge/fetch/history_pages.h"
 #include "edge/log/record_codec.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
@@ -30,6 +32,7 @@ Trip EdgeState::trip() const {
 VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
                            const Surroundings& around)
     : around_(around),
+      price_(config.price),
       drives_without_state_(config.state.drive_without_state),
       clock_(config.clock, config.require_synchronised_clock),
       battery_(config.battery.link, config.battery.map, config.clock),
@@ -46,6 +49,17 @@ Recall VirtualWorld::recall() const {
   recalled.trip = trip_without_state(recalled, drives_without_state_,
                                      around_.time.edge_utc_ns() / kNanosecondsPerSecond);
   return recalled;
+}
+
+PublishedHistory VirtualWorld::find_history() {
+  const auto history = std::make_unique<PriceHistory>(
+      price_.history.hours, around_.time.edge_utc_ns() / kNanosecondsPerSecond);
+  const Status status = fetch_history(prices_, price_.feed, price_.history, clock_, *history);
+  return {.is_done = true,
+          .hours = history->hours_covered(),
+          .rows = history->rows(),
+          .status = status,
+          .level = history->level()};
 }
 
 void VirtualWorld::cycle_done(const CycleRecord&) {

@@ -78,6 +78,11 @@ class VirtualWorld {
     around_.state.add(record);
     if (around_.outlook != nullptr) around_.outlook->cycle_done(record);
   }
+  Status greet_prices() {
+    PriceRow row;
+    return prices_.fetch_once(row);
+  }
+  PublishedHistory find_history();
   const HoldMailbox& listen() { return around_.people.holds(); }
   OutlookBoard* look_out(std::int32_t level_centi) {
     return around_.outlook == nullptr ? nullptr : around_.outlook->start(level_centi);
@@ -97,6 +102,7 @@ class VirtualWorld {
 
  private:
   Surroundings around_;
+  const PriceConfig& price_;
   bool drives_without_state_;
   EdgeClock clock_;
   ModbusBattery battery_;

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <filesystem>
+#include <string_view>
 
 #include "edge/log/log_reader.h"
 #include "shared/host/file.h"
@@ -24,6 +25,14 @@ std::int64_t EdgeProcess::now_utc_s() const {
 void EdgeProcess::start(const std::string& recording) {
   std::vector<std::string> words;
   if (!recording.empty()) words = {"--record", recording};
+  if (prices_ == nullptr) {
+    std::filesystem::path program(program_);
+    std::string name = program.filename().string();
+    name.replace(0, std::string_view("bess-edge").size(), "bess-prices");
+    program.replace_filename(name);
+    prices_ = start_logged({program.string(), "--config", folder_.file("edge.toml")},
+                           folder_.file("prices.log"));
+  }
   start_command(std::move(words));
 }
 

@@ -1,4 +1,5 @@
-// bess-edge as a process of a run in wall time: started again and again on one configuration,
+// bess-edge and bess-prices as processes of a run in wall time: started again and again on one
+// configuration,
 // spoken to by its own commands, read by its own log.
 #pragma once
 
@@ -54,6 +55,7 @@ class EdgeProcess {
   const std::string& program_;
   const WorkFolder& folder_;
   EdgeConfig config_;
+  std::unique_ptr<ChildProcess> prices_;  ///< bess-prices; goes on while the edge is down
   std::unique_ptr<ChildProcess> process_;
   std::string log_;
   int started_ = 0;

@@ -1,0 +1,198 @@
+// bess-prices: fetches what the controller decides on, and publishes it. A program of its own,
+// beside the control process, where heap and libraries may do as they like: killed, stuck or
+// absent, it costs a price and never a cycle.
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "edge/companion/stop_signals.h"
+#include "edge/control/policy.h"
+#include "edge/fetch/outlook_fetcher.h"
+#include "edge/fetch/price_fetcher.h"
+#include "edge/log/journal.h"
+#include "edge/log/log_reader.h"
+#include "edge/prices/http_secrets.h"
+#include "edge/storage/instance_lock.h"
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kHelp =
+    R"(bess-prices: fetches imbalance and day-ahead prices for bess-edge
+
+  bess-prices [--config FILE]            publishes them, until SIGTERM
+  bess-prices [--config FILE] --check    asks each server once and says what came
+
+  --config FILE  the controller's settings; sections [price] and [outlook]; default
+                 /etc/bess/edge.toml
+  --help         this text
+  --version      the version
+
+The newest price, the price level of the last hours and, for a student by outlook, the plan on
+day-ahead prices go to one file in [state] run_folder (or folder), which bess-edge reads. It may be
+started before bess-edge and after it, and restarted at any time. One bess-prices to one file.
+Exit codes:
+  0 done
+  1 the settings are bad, another bess-prices runs; with --check also: no usable price came
+  2 the command line is bad
+)";
+
+struct Options {
+  std::string config_path = "/etc/bess/edge.toml";
+  bool check = false;
+  const char* started_as = "";
+};
+
+/// -1 to go on; else the exit code.
+int parse(int argc, char** argv, Options& options) {
+  if (argc > 0) options.started_as = argv[0];
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--help" || argument == "-h") return std::fputs(kHelp, stdout), 0;
+    if (argument == "--version") return std::printf("bess-prices %s\n", BESS_VERSION), 0;
+    if (argument == "--check") {
+      options.check = true;
+    } else if (argument == "--config" && i + 1 < argc) {
+      options.config_path = argv[++i];
+    } else {
+      std::fprintf(stderr, "bess-prices: unknown option or missing value: %s (see --help)\n",
+                   argv[i]);
+      return 2;
+    }
+  }
+  return -1;
+}
+
+void complain(const std::string& text) { std::fprintf(stderr, "bess-prices: %s\n", text.c_str()); }
+
+bool check_price(const EdgeConfig& config) {
+  UnitWatch unit;
+  const PriceSource::Answer answer = PriceSource(config, {}).ask(unit);
+  const Status status = unit.is_doubtful() ? Status::kDoubtfulUnit : answer.status;
+  if (status != Status::kOk) {
+    complain("price from " + std::string(loggable_url(config.price.feed.http.url.view()).view()) +
+             ": " +
+             (answer.reason.empty() ? std::string(price_status_text(status)) : answer.reason));
+    return false;
+  }
+  std::printf("price      %.2f EUR/MWh of minute %s\n",
+              answer.newest.price_centi_eur_per_mwh / 100.0,
+              utc_text(answer.newest.minute_utc_s).c_str());
+  if (answer.passed_over > 0) {
+    std::printf("rows       %d without a price that is known by now\n", answer.passed_over);
+  }
+  return true;
+}
+
+/// What is missing stops nothing.
+void check_day_ahead(const EdgeConfig& config) {
+  const OutlookSettings& outlook = config.outlook;
+  const std::string source =
+      outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  DayAheadFeed feed(outlook, [] { return false; });
+  DayAheadBook book;
+  Status status = feed.ask(now_utc_s);
+  if (status == Status::kOk) status = book.take(feed.rows(), now_utc_s);
+  if (status != Status::kOk) {
+    return complain("day-ahead prices from " + source + ": " +
+                    std::string(day_ahead_status_text(status, outlook)) +
+                    "; planned on what is usual");
+  }
+  std::printf("day-ahead  %zu prices from %s\n", feed.rows().size(), source.c_str());
+}
+
+/// Whether a controller that starts now would know the level by its log.
+bool knows_level(const EdgeConfig& config) {
+  LogReader log;
+  FileMessage ignored;
+  CycleRecord newest;
+  return log.open(config.log, ignored) && log.newest(newest) && newest.price_level.is_known() &&
+         newest.price_level.is_sound();
+}
+
+/// The level of a first start, then the plans.
+void run_beside(const EdgeConfig& config, PricePublisher& publisher, const std::stop_token& stop) {
+  const bool needs_level = student_context().kind != ContextKind::kMonth;
+  PublishedHistory history{.is_done = true};
+  if (needs_level && !knows_level(config)) {
+    history = find_history(config, PriceSource(config, stop));
+  }
+  publisher.publish([&](PublishedPrices& prices) { prices.history = history; });
+  const OutlookModel* const model = student_outlook();
+  if (model == nullptr) return;
+  const std::int32_t level_centi = history.level.is_known()
+                                       ? history.level.centi_eur_per_mwh()
+                                       : config.price.level_start_centi_eur_per_mwh.value_or(0);
+  OutlookFetcher outlook(config, *model, publisher, stop);
+  outlook.start(level_centi);
+  const std::jthread planning([&] { outlook.plan_for_ever(); });
+  outlook.fetch_for_ever();
+}
+
+/// Another version was installed under the name that this one was started by: systemd starts that
+/// one when this one ends.
+bool is_replaced(const char* started_as) {
+  struct stat now {};
+  struct stat self {};
+  return std::strchr(started_as, '/') != nullptr && stat(started_as, &now) == 0 &&
+         stat("/proc/self/exe", &self) == 0 &&
+         (now.st_ino != self.st_ino || now.st_dev != self.st_dev);
+}
+
+int publish(const EdgeConfig& config, const char* started_as) {
+  const std::string path(prices_file(config).view());
+  InstanceLock lock;
+  FileMessage error;
+  const bool is_folder = make_folder(folder_of(path.c_str()).c_str());
+  if (!is_folder) return complain(path + ": its folder cannot be made"), 1;
+  if (!lock.take((path + ".lock").c_str(), "bess-prices", error)) {
+    return complain(error.c_str()), 1;
+  }
+  const sigset_t stop_signals = block_stop_signals();
+  std::stop_source stop;
+  std::thread signals([&] {
+    int ignored = 0;
+    sigwait(&stop_signals, &ignored);
+    stop.request_stop();
+  });
+  write_journal_line(JournalLevel::kNotice, "bess-prices: started");
+  PricePublisher publisher(path);
+  std::jthread beside([&] { run_beside(config, publisher, stop.get_token()); });
+  PriceFetcher(config, publisher, stop.get_token()).run([&] { return is_replaced(started_as); });
+  if (!stop.stop_requested()) kill(getpid(), SIGTERM);
+  signals.join();
+  beside.join();
+  static_cast<void>(unlink(path.c_str()));  // nobody renews it
+  write_journal_line(JournalLevel::kNotice, "bess-prices: stopped");
+  return 0;
+}
+
+int run(const Options& options) {
+  EdgeConfig config;
+  std::string error;
+  if (!load_edge_config(options.config_path, config, error)) return complain(error), 1;
+  set_market_time_zone();
+  if (!options.check) return publish(config, options.started_as);
+  const bool is_well = check_price(config);
+  if (student_outlook() != nullptr) check_day_ahead(config);
+  return is_well ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace bess
+
+int main(int argc, char** argv) {
+  bess::Options options;
+  const int exit_code = bess::parse(argc, argv, options);
+  return exit_code >= 0 ? exit_code : bess::run(options);
+}

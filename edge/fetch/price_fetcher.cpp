@@ -1,0 +1,147 @@
+#include "edge/fetch/price_fetcher.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "edge/fetch/fetch.h"
+#include "edge/fetch/history_pages.h"
+#include "edge/log/journal.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
+constexpr double kPauseOfTheBusyS = 60;  ///< where a server refuses and does not say for how long
+
+std::string text_of(const std::string& reason, Status status) {
+  return reason.empty() ? std::string(status_text(status)) : reason;
+}
+
+}  // namespace
+
+PriceSource::Answer PriceSource::ask(UnitWatch& watch) const {
+  const PriceFeedSettings& feed = config_.price.feed;
+  const FetchResult fetched = fetch(feed.http, feed.http.url.c_str(), feed.http.timeout_ms,
+                                    [this] { return stop_requested(); });
+  Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
+  if (fetched.status != Status::kOk) return answer;
+  std::vector<PriceRow> rows;
+  int items = 0;
+  answer.status = parse_prices(fetched.body, feed.fields, now_utc_s(),
+                               {&rows,
+                                [](void* self, const PriceRow& row) {
+                                  static_cast<std::vector<PriceRow>*>(self)->push_back(row);
+                                }},
+                               items);
+  answer.passed_over = items - static_cast<int>(rows.size());
+  std::ranges::stable_sort(rows, {}, &PriceRow::minute_utc_s);
+  for (const PriceRow& row : rows) watch.observe(row);
+  if (!rows.empty()) answer.newest = rows.back();
+  return answer;
+}
+
+Status PriceSource::fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
+                               int& items) const {
+  items = 0;
+  const FetchResult fetched =
+      fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
+  if (fetched.status != Status::kOk) return fetched.status;
+  return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s(), taker, items);
+}
+
+PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {
+  PublishedHistory found{.is_done = true};
+  if (config.price.history.hours == 0) return found;
+  const auto history =
+      std::make_unique<PriceHistory>(config.price.history.hours, source.now_utc_s());
+  found.status = fetch_history(source, config.price.feed, config.price.history, source, *history);
+  found.hours = history->hours_covered();
+  found.rows = history->rows();
+  found.level = history->level();
+  return found;
+}
+
+void PriceFetcher::run(const std::function<bool()>& is_over) {
+  static_cast<void>(ask_and_publish());
+  std::int64_t served_utc_s = 0;
+  while (!stop_.stop_requested()) {
+    const std::int64_t tick_utc_s = std::max(
+        source_.now_utc_s() / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
+    // Begun long after a tick: what it waited for was asked for at the start.
+    const bool is_waited_for =
+        served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + config_.price.feed.wait_s;
+    const bool is_new = tick_utc_s > served_utc_s && is_waited_for;
+    if (is_new) serve(tick_utc_s);
+    served_utc_s = tick_utc_s;
+    if (is_over()) return;
+    if (!sleep_until(tick_utc_s + kSecondsPerStep)) return;
+  }
+}
+
+void PriceFetcher::serve(std::int64_t tick_utc_s) {
+  const std::int64_t minute_utc_s = tick_utc_s - 60;
+  const PriceFeedSettings& feed = config_.price.feed;
+  bool is_refused = false;
+  bool is_found = false;
+  for (int i = 0; i < feed.requests_per_cycle && !is_found; ++i) {
+    const std::int64_t at_utc_s =
+        std::max(tick_utc_s + timing_.first_s() + i * timing_.spacing_s(), not_before_utc_s_);
+    if (at_utc_s >= tick_utc_s + std::max(feed.wait_s, 1) && i > 0) break;
+    if (at_utc_s >= tick_utc_s + kSecondsPerStep || !sleep_until(at_utc_s)) break;
+    const PriceSource::Answer answer = ask_and_publish();
+    is_found = answer.status == Status::kOk && answer.newest.minute_utc_s >= minute_utc_s;
+    is_refused = is_refused || answer.status == Status::kServerBusy;
+    const bool has_learnt = answer.status == Status::kOk || answer.status == Status::kNoRow;
+    if (i == 0 && has_learnt) timing_.learn(is_found, false);
+  }
+  if (is_refused) timing_.learn(true, true);
+  publisher_.publish([&](PublishedPrices& prices) { prices.served_minute_utc_s = minute_utc_s; });
+}
+
+PriceSource::Answer PriceFetcher::ask_and_publish() {
+  const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+  PriceSource::Answer answer = source_.ask(unit_);
+  const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+  if (answer.status == Status::kOk && unit_.is_doubtful()) {
+    answer.status = Status::kDoubtfulUnit;
+    answer.reason = status_text(answer.status);
+  }
+  if (answer.status == Status::kServerBusy) {
+    const double pause_s = std::max(answer.wait_s, answer.wait_s > 0 ? 0.0 : kPauseOfTheBusyS);
+    not_before_utc_s_ = source_.now_utc_s() + static_cast<std::int64_t>(pause_s) + 1;
+  }
+  if (answer.status != told_) {
+    const bool is_well = answer.status == Status::kOk;
+    write_journal_line(is_well ? JournalLevel::kNotice : JournalLevel::kWarning,
+                       "bess-prices: prices: " +
+                           (is_well ? std::string("ok") : text_of(answer.reason, answer.status)));
+    told_ = answer.status;
+  }
+  publisher_.publish([&](PublishedPrices& prices) {
+    ++prices.answers;
+    prices.status = answer.status;
+    prices.rows_passed_over = answer.passed_over;
+    if (answer.status != Status::kOk) return;
+    prices.row = answer.newest;
+    prices.received_monotonic_ns = now_ns;
+    prices.fetch_us = static_cast<std::int32_t>((now_ns - begin_ns) / 1'000);
+  });
+  return answer;
+}
+
+bool PriceFetcher::sleep_until(std::int64_t utc_s) const {
+  constexpr std::int64_t kSliceNs = kSecondNs / 10;
+  const ScaledClock& clock = config_.clock;
+  std::int64_t left_before_ns = INT64_MAX - kSecondNs;
+  while (!stop_.stop_requested()) {
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t left_ns = clock.monotonic_ns_at(utc_s * kSecondNs) - now_ns;
+    if (left_ns <= 0 || left_ns > left_before_ns + kSecondNs) return true;
+    left_before_ns = left_ns;
+    sleep_until_monotonic(now_ns + std::min(left_ns, kSliceNs));
+  }
+  return false;
+}
+
+}  // namespace bess
