@@ -11,7 +11,6 @@ constexpr int kDays = 3;               ///< yesterday, today, tomorrow
 constexpr int kDisagreeingShare = 10;  ///< one in this many
 constexpr int kPublicationHour = 13;
 constexpr std::int64_t kLongestStepS = 3'600;
-constexpr std::int64_t kLongestRunS = 3 * kLongestStepS;  ///< of one price
 
 std::int64_t begin_of(const OutlookDays& days, int day) {
   const std::int64_t midnights[] = {days.yesterday_utc_s, days.today_utc_s, days.tomorrow_utc_s,
@@ -28,59 +27,32 @@ void for_each_quarter_hour(const OutlookDays& days, int day, const Take& take) {
   }
 }
 
-/// Times that rise by quarter-hours. Twice the same is once; twice otherwise, nobody knows which is
-/// meant.
-bool are_sound(std::span<const TimedPrice> rows) {
+/// The step from row to row, a quarter of an hour to an hour; 0 where there is none.
+std::int64_t step_of(std::span<const TimedPrice> rows) {
+  std::int64_t step_s = rows.size() == 1 ? kSecondsPerQuarterHour : kLongestStepS;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].utc_s <= 0 || rows[i].utc_s % kSecondsPerQuarterHour != 0) return false;
+    if (rows[i].utc_s <= 0 || rows[i].utc_s % kSecondsPerQuarterHour != 0) return 0;
     if (i == 0) continue;
     const std::int64_t rise_s = rows[i].utc_s - rows[i - 1].utc_s;
+    // Twice the same is once; twice otherwise, nobody knows which is meant.
     const bool is_again = rise_s == 0 && rows[i].centi_eur_per_mwh == rows[i - 1].centi_eur_per_mwh;
-    if (rise_s < 0 || (rise_s == 0 && !is_again)) return false;
-  }
-  return true;
-}
-
-/// How long the last row lasts: as the shortest of those shortly before it, an hour at most.
-std::int64_t last_step_of(std::span<const TimedPrice> rows) {
-  constexpr std::size_t kLooked = 12;
-  std::int64_t step_s = rows.size() == 1 ? kSecondsPerQuarterHour : kLongestStepS;
-  for (std::size_t i = rows.size() < kLooked ? 1 : rows.size() - kLooked; i < rows.size(); ++i) {
-    const std::int64_t rise_s = i == 0 ? 0 : rows[i].utc_s - rows[i - 1].utc_s;
+    if (rise_s < 0 || (rise_s == 0 && !is_again)) return 0;
     if (rise_s > 0) step_s = std::min(step_s, rise_s);
   }
   return step_s;
 }
 
-/// What an answer says of the days around now; false where it says nothing of them. A row lasts
-/// until the next one: sources have hours for one day and quarter-hours for another, and leave out
-/// rows whose price repeats.
-bool lay_out(std::span<const TimedPrice> rows, OutlookDays& days) {
+/// What an answer says of the days around now; false where it says nothing of them.
+bool lay_out(std::span<const TimedPrice> rows, std::int64_t step_s, OutlookDays& days) {
   bool is_any = false;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::int64_t next_s =
-        i + 1 < rows.size() ? rows[i + 1].utc_s : rows[i].utc_s + last_step_of(rows);
-    const std::int64_t until_s = std::min(next_s, rows[i].utc_s + kLongestRunS);
-    for (std::int64_t t = rows[i].utc_s; t < until_s; t += kSecondsPerQuarterHour) {
+  for (const TimedPrice& row : rows) {
+    for (std::int64_t t = row.utc_s; t < row.utc_s + step_s; t += kSecondsPerQuarterHour) {
       if (t < days.yesterday_utc_s || t >= days.end_utc_s) continue;
-      days.day_ahead_centi[days.index_of(t)] = rows[i].centi_eur_per_mwh;
+      days.day_ahead_centi[days.index_of(t)] = row.centi_eur_per_mwh;
       is_any = true;
     }
   }
   return is_any;
-}
-
-/// One price all day: what a source has until the auction is over.
-bool is_flat(const OutlookDays& answer, int day) {
-  std::int32_t first = kDayAheadUnknown;
-  bool is_whole = true;
-  bool moves = false;
-  for_each_quarter_hour(answer, day, [&](std::int64_t, std::int32_t centi) {
-    if (first == kDayAheadUnknown) first = centi;
-    is_whole = is_whole && centi != kDayAheadUnknown;
-    moves = moves || centi != first;
-  });
-  return is_whole && !moves;
 }
 
 std::size_t place_of(std::int64_t utc_s) {
@@ -122,7 +94,7 @@ bool DayAheadBook::disagrees(const OutlookDays& answer, std::int64_t now_utc_s) 
   return different * kDisagreeingShare > shared;
 }
 
-/// Of days of one length alone.
+/// Of days of one length alone; a day of one price all through may well come twice.
 bool DayAheadBook::repeats_day_before(const OutlookDays& answer, int day,
                                       std::int64_t now_utc_s) const {
   const std::int64_t before = begin_of(answer, day - 1);
@@ -158,13 +130,14 @@ void DayAheadBook::keep_day(const OutlookDays& answer, int day, std::int64_t now
 
 Status DayAheadBook::take(std::span<const TimedPrice> rows, std::int64_t now_utc_s) {
   if (rows.empty()) return Status::kNoRow;
-  if (!are_sound(rows)) return Status::kMalformed;
+  const std::int64_t step_s = step_of(rows);
+  if (step_s == 0) return Status::kMalformed;
   OutlookDays answer = outlook_days_around(now_utc_s);
-  if (!lay_out(rows, answer)) return Status::kNoRow;
+  if (!lay_out(rows, step_s, answer)) return Status::kNoRow;
   if (disagrees(answer, now_utc_s)) return Status::kImplausible;
   Status status = Status::kOk;
   for (int day = 0; day < kDays; ++day) {
-    if (is_flat(answer, day) || (day > 0 && repeats_day_before(answer, day, now_utc_s))) {
+    if (day > 0 && repeats_day_before(answer, day, now_utc_s)) {
       status = Status::kImplausible;
     } else {
       keep_day(answer, day, now_utc_s);

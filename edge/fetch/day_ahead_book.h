@@ -6,7 +6,6 @@
 // Answers are judged against what is kept, of a whole day the first that came:
 //   disagrees   with more than a tenth of it: shifted by an hour or a day, or another market's
 //   repeats     the day before, price by price: an old answer
-//   is flat     one price all day, as zeros until the auction is over
 // Such an answer, or such a day of it, is refused; what is kept counts until its day is over.
 #pragma once
 
@@ -18,7 +17,7 @@
 
 namespace bess {
 
-/// A price from a time on, until the next row of its answer, at most three hours.
+/// A price from a time on, until the next row of its answer, at most an hour.
 struct TimedPrice {
   std::int64_t utc_s = 0;
   std::int32_t centi_eur_per_mwh = 0;

@@ -37,8 +37,7 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
       return "no price of yesterday, today or tomorrow (are time_field, price_field and the dates "
              "of url right?)";
     case Status::kImplausible:
-      return "contradicts what was published before, repeats the day before, or is one price all "
-             "day: refused, and asked for again";
+      return "contradicts what was published before, or repeats the day before: refused";
     default:
       break;
   }

@@ -18,8 +18,8 @@ void HistoryPages::take(const PriceRow& row) {
   oldest_utc_s_ = std::min(oldest_utc_s_, row.minute_utc_s);
 }
 
-HistoryPages::PageUrl HistoryPages::page_url() const {
-  const std::string_view url = url_.view().substr(0, url_.view().find('#'));
+FixedText<639> page_url(std::string_view url, int offset) {
+  url = url.substr(0, url.find('#'));
   const std::size_t query_at = url.find('?');
   char page[640];
   std::size_t size = 0;
@@ -40,9 +40,9 @@ HistoryPages::PageUrl HistoryPages::page_url() const {
   }
   char limits[64];
   const int length = std::snprintf(limits, sizeof limits, "%climit=%d&offset=%d", separator,
-                                   kRowsPerPage, offset_);
+                                   HistoryPages::kRowsPerPage, offset);
   add({limits, static_cast<std::size_t>(length)});
-  return PageUrl(std::string_view(page, size));
+  return FixedText<639>(std::string_view(page, size));
 }
 
 }  // namespace bess

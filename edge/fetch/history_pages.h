@@ -15,6 +15,9 @@
 
 namespace bess {
 
+/// `url` with a limit of 100 rows and an offset, in place of its own.
+FixedText<639> page_url(std::string_view url, int offset);
+
 class HistoryPages {
  public:
   static constexpr int kRowsPerPage = 100;  ///< the API's own limits
@@ -32,7 +35,8 @@ class HistoryPages {
     int items = 0;
     const PriceRowTaker taker{
         this, [](void* self, const PriceRow& row) { static_cast<HistoryPages*>(self)->take(row); }};
-    const Status status = prices.fetch_page(page_url().c_str(), timeout_ms, taker, items);
+    const Status status =
+        prices.fetch_page(page_url(url_.view(), offset_).c_str(), timeout_ms, taker, items);
     return goes_on(status, items, oldest_before_utc_s);
   }
   /// Of the last request; a page behind the last row is no failure.
@@ -42,9 +46,6 @@ class HistoryPages {
   }
 
  private:
-  using PageUrl = FixedText<639>;
-
-  [[nodiscard]] PageUrl page_url() const;
   bool goes_on(Status status, int items, std::int64_t oldest_before_utc_s);
   void take(const PriceRow& row);
 

@@ -76,7 +76,7 @@ void complain(const std::string& text) { std::fprintf(stderr, "bess-prices: %s\n
 
 bool check_price(const EdgeConfig& config) {
   UnitWatch unit;
-  const PriceSource::Answer answer = PriceSource(config, {}).ask(unit);
+  const PriceSource::Answer answer = PriceSource(config, {}).ask_first(unit);
   const Status status = unit.is_doubtful() ? Status::kDoubtfulUnit : answer.status;
   if (status != Status::kOk) {
     complain("price from " + std::string(loggable_url(config.price.feed.http.url.view()).view()) +

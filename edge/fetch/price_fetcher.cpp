@@ -20,10 +20,15 @@ std::string text_of(const std::string& reason, Status status) {
 
 }  // namespace
 
-PriceSource::Answer PriceSource::ask(UnitWatch& watch) const {
+PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
+  Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0).c_str());
+  return answer.status == Status::kOk ? answer : ask(watch);
+}
+
+PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) const {
   const PriceFeedSettings& feed = config_.price.feed;
-  const FetchResult fetched = fetch(feed.http, feed.http.url.c_str(), feed.http.timeout_ms,
-                                    [this] { return stop_requested(); });
+  const FetchResult fetched =
+      fetch(feed.http, url, feed.http.timeout_ms, [this] { return stop_requested(); });
   Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
   if (fetched.status != Status::kOk) return answer;
   std::vector<PriceRow> rows;
@@ -63,7 +68,8 @@ PublishedHistory find_history(const EdgeConfig& config, const PriceSource& sourc
 }
 
 void PriceFetcher::run(const std::function<bool()>& is_over) {
-  static_cast<void>(ask_and_publish());
+  const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+  static_cast<void>(publish(source_.ask_first(unit_), begin_ns));
   std::int64_t served_utc_s = 0;
   while (!stop_.stop_requested()) {
     const std::int64_t tick_utc_s = std::max(
@@ -89,7 +95,8 @@ void PriceFetcher::serve(std::int64_t tick_utc_s) {
         std::max(tick_utc_s + timing_.first_s() + i * timing_.spacing_s(), not_before_utc_s_);
     if (at_utc_s >= tick_utc_s + std::max(feed.wait_s, 1) && i > 0) break;
     if (at_utc_s >= tick_utc_s + kSecondsPerStep || !sleep_until(at_utc_s)) break;
-    const PriceSource::Answer answer = ask_and_publish();
+    const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+    const PriceSource::Answer answer = publish(source_.ask(unit_), begin_ns);
     is_found = answer.status == Status::kOk && answer.newest.minute_utc_s >= minute_utc_s;
     is_refused = is_refused || answer.status == Status::kServerBusy;
     const bool has_learnt = answer.status == Status::kOk || answer.status == Status::kNoRow;
@@ -99,9 +106,7 @@ void PriceFetcher::serve(std::int64_t tick_utc_s) {
   publisher_.publish([&](PublishedPrices& prices) { prices.served_minute_utc_s = minute_utc_s; });
 }
 
-PriceSource::Answer PriceFetcher::ask_and_publish() {
-  const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
-  PriceSource::Answer answer = source_.ask(unit_);
+PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64_t begin_ns) {
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
   if (answer.status == Status::kOk && unit_.is_doubtful()) {
     answer.status = Status::kDoubtfulUnit;

@@ -28,7 +28,9 @@ class PriceSource {
     double wait_s = 0;     ///< what the server asked for
   };
   /// Each usable row is shown to `watch`, oldest first.
-  Answer ask(UnitWatch& watch) const;
+  Answer ask(UnitWatch& watch) const { return ask(watch, config_.price.feed.http.url.c_str()); }
+  /// The first: of more rows, where the server knows pages, so that a wrong unit shows at once.
+  Answer ask_first(UnitWatch& watch) const;
   /// As history_pages.h asks.
   Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
                     int& items) const;
@@ -42,6 +44,8 @@ class PriceSource {
   [[nodiscard]] bool stop_requested() const { return stop_.stop_requested(); }
 
  private:
+  Answer ask(UnitWatch& watch, const std::string& url) const;
+
   const EdgeConfig& config_;
   std::stop_token stop_;
 };
@@ -61,7 +65,7 @@ class PriceFetcher {
 
  private:
   void serve(std::int64_t tick_utc_s);
-  PriceSource::Answer ask_and_publish();
+  PriceSource::Answer publish(PriceSource::Answer answer, std::int64_t begin_ns);
   /// In slices; false when it is to stop. A clock that is stepped back ends the wait.
   bool sleep_until(std::int64_t utc_s) const;
 

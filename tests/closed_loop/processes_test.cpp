@@ -572,6 +572,7 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
   site.start_battery();
   site.start_market();
   const std::string config = site.commission();
+  const ChildProcess prices({BESS_PRICES_PROGRAM, "--config", config});  // it outlasts the change
   ChildProcess before({edge_program(), "--config", config});
   ASSERT_THAT(line_with_power(before), HasSubstr("mode=running"));
   before.signal(SIGHUP);

