@@ -50,7 +50,11 @@ FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int
   std::string_view lines = settings.headers.view();
   while (!lines.empty()) request.headers.emplace_back(take_line(lines));
   HttpOutcome outcome = http_request(request, stop_requested);
-  return {.status = status_of(outcome),
+  const Status status = status_of(outcome);
+  if (status == Status::kHttpError) {
+    outcome.reason += " (are url and the key in header_file right?)";
+  }
+  return {.status = status,
           .body = std::move(outcome.body),
           .reason = std::move(outcome.reason),
           .wait_s = outcome.wait_s.value_or(0)};

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "edge/companion/stop_signals.h"
+#include "edge/control/level_start.h"
 #include "edge/control/policy.h"
 #include "edge/fetch/outlook_fetcher.h"
 #include "edge/fetch/price_fetcher.h"
@@ -116,8 +117,9 @@ bool knows_level(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
   CycleRecord newest;
-  return log.open(config.log, ignored) && log.newest(newest) && newest.price_level.is_known() &&
-         newest.price_level.is_sound();
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  return log.open(config.log, ignored) && log.newest(newest) &&
+         level_from_log(newest.price_level, now_utc_s).is_known();
 }
 
 /// The level of a first start, then the plans.
@@ -172,7 +174,7 @@ int publish(const EdgeConfig& config, const char* started_as) {
   if (!stop.stop_requested()) kill(getpid(), SIGTERM);
   signals.join();
   beside.join();
-  static_cast<void>(unlink(path.c_str()));  // nobody renews it
+  static_cast<void>(unlink(path.c_str()));  // it would only grow old
   write_journal_line(JournalLevel::kNotice, "bess-prices: stopped");
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "edge/control/level_start.h"
 #include "edge/fetch/day_ahead_file.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
@@ -48,9 +49,8 @@ OutlookFetcher::Decision OutlookFetcher::next_decision() const {
   FileMessage ignored;
   CycleRecord newest;
   if (!log.open(config_.log, ignored) || !log.newest(newest)) return next;
-  if (newest.price_level.is_known() && newest.price_level.is_sound()) {
-    next.level_centi = newest.price_level.centi_eur_per_mwh();
-  }
+  const PriceLevel level = level_from_log(newest.price_level, now_utc_s());
+  if (level.is_known()) next.level_centi = level.centi_eur_per_mwh();
   // A controller that runs decides some seconds behind its tick: until then its plan stays.
   constexpr std::int64_t kLateSMax = 90;
   const std::int64_t after_newest_s = newest.utc_s + kSecondsPerStep;

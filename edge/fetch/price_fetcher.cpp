@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "edge/fetch/fetch.h"
 #include "edge/fetch/history_pages.h"
 #include "edge/log/journal.h"
 
@@ -22,18 +21,19 @@ std::string text_of(const std::string& reason, Status status) {
 
 PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
   Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0).c_str());
-  return answer.status == Status::kOk ? answer : ask(watch);
+  // A server that knows no pages may refuse them; one that is busy or gone is not asked twice.
+  const bool may_know_no_pages =
+      answer.status == Status::kHttpError || answer.status == Status::kMalformed;
+  return may_know_no_pages ? ask(watch) : answer;
 }
 
 PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) const {
-  const PriceFeedSettings& feed = config_.price.feed;
-  const FetchResult fetched =
-      fetch(feed.http, url, feed.http.timeout_ms, [this] { return stop_requested(); });
+  const FetchResult fetched = get(url, config_.price.feed.http.timeout_ms);
   Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
   if (fetched.status != Status::kOk) return answer;
   std::vector<PriceRow> rows;
   int items = 0;
-  answer.status = parse_prices(fetched.body, feed.fields, now_utc_s(),
+  answer.status = parse_prices(fetched.body, config_.price.feed.fields, now_utc_s(),
                                {&rows,
                                 [](void* self, const PriceRow& row) {
                                   static_cast<std::vector<PriceRow>*>(self)->push_back(row);
@@ -46,11 +46,14 @@ PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) c
   return answer;
 }
 
+FetchResult PriceSource::get(const std::string& url, std::int32_t timeout_ms) const {
+  return fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
+}
+
 Status PriceSource::fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
                                int& items) const {
   items = 0;
-  const FetchResult fetched =
-      fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
+  const FetchResult fetched = get(url, timeout_ms);
   if (fetched.status != Status::kOk) return fetched.status;
   return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s(), taker, items);
 }
@@ -113,7 +116,7 @@ PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64
     answer.reason = status_text(answer.status);
   }
   if (answer.status == Status::kServerBusy) {
-    const double pause_s = std::max(answer.wait_s, answer.wait_s > 0 ? 0.0 : kPauseOfTheBusyS);
+    const double pause_s = answer.wait_s > 0 ? answer.wait_s : kPauseOfTheBusyS;
     not_before_utc_s_ = source_.now_utc_s() + static_cast<std::int64_t>(pause_s) + 1;
   }
   if (answer.status != told_) {

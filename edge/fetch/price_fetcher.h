@@ -8,6 +8,7 @@
 #include <string>
 
 #include "edge/fetch/ask_timing.h"
+#include "edge/fetch/fetch.h"
 #include "edge/fetch/price_publisher.h"
 #include "edge/fetch/unit_watch.h"
 #include "edge/settings/edge_config.h"
@@ -44,6 +45,7 @@ class PriceSource {
   [[nodiscard]] bool stop_requested() const { return stop_.stop_requested(); }
 
  private:
+  [[nodiscard]] FetchResult get(const std::string& url, std::int32_t timeout_ms) const;
   Answer ask(UnitWatch& watch, const std::string& url) const;
 
   const EdgeConfig& config_;

@@ -15,7 +15,7 @@ namespace bess {
 /// Its time is text with an offset (2023-03-26T01:02:00+00:00) or a number of seconds or
 /// milliseconds since 1970. Rows without a price that is a number, later than now, beyond +-100,000
 /// EUR/MWh, or with time or price twice, are passed over. Malformed is also an answer with anything
-/// behind its end, and one whose field of rows stands twice: nobody knows which is meant.
+/// behind its end, and one whose field of rows stands twice, which is ambiguous.
 Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                           PriceRow& row);
 

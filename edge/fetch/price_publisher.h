@@ -1,4 +1,4 @@
-// The record of published_prices.h, changed by several threads of bess-prices and written anew with
+// The record of published_prices.h, changed by several threads of bess-prices and rewritten after
 // each change.
 #pragma once
 
@@ -15,7 +15,7 @@ class PricePublisher {
  public:
   explicit PricePublisher(std::string path) : path_(std::move(path)) {}
 
-  /// `change(prices)`, then the file. A file that cannot be written is told once in the journal.
+  /// `change(prices)`, then the file. A failure to write is logged once.
   template <typename Change>
   void publish(const Change& change) {
     const std::lock_guard lock(mutex_);

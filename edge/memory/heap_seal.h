@@ -5,7 +5,7 @@
 //                    to give memory, threads, programs and other sockets (seccomp)
 // The filter names only what is forbidden; files, clocks and futexes stay as they are.
 // BESS_SECCOMP=kill in the environment ends the process at a forbidden call, for tests; otherwise
-// the call fails with ENOMEM (memory) or EPERM (all else) and whoever made it copes.
+// the call fails with ENOMEM (memory) or EPERM (all else), and the caller handles the error.
 // Sanitizer builds allocate in their own ways: there nothing is sealed, and a note says so.
 #pragma once
 

@@ -46,7 +46,7 @@ constexpr std::uint32_t kProcessCalls[] = {
 #endif
 };
 
-/// Who drives a battery is a client: nobody connects to it.
+/// The controller is a client only: it accepts no connections.
 constexpr std::uint32_t kServerCalls[] = {__NR_bind, __NR_listen, __NR_accept4};
 
 constexpr std::size_t kPrologue = 5;

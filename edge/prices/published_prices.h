@@ -55,7 +55,7 @@ inline constexpr std::size_t kPublishedBytesMax =
 /// none.
 std::size_t encode_published(const PublishedPrices& prices, const PublishedOutlook* outlook,
                              std::span<char> file);
-/// kMalformed: damaged, or values that nobody publishes; kOtherVersion.
+/// kMalformed: damaged, or values out of range; kOtherVersion: another format.
 Status decode_published(std::span<const char> file, PublishedPrices& prices);
 /// The second part, of a file that has one.
 Status decode_outlook(std::span<const char> file, PublishedOutlook& outlook);

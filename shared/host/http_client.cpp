@@ -303,7 +303,7 @@ struct Transfer {
     curl_easy_getinfo(curl.get(), CURLINFO_PRIMARY_IP, &text);
     return text == nullptr ? "" : text;
   }
-  /// Nobody answers at this address, or somebody who speaks no TLS, breaks off, or is too slow.
+  /// Failures that another address of the host may not have: connection, TLS, reset, time-out.
   [[nodiscard]] bool may_be_the_address(const HttpOutcome& outcome) const {
     switch (outcome.transfer_code) {
       case CURLE_OPERATION_TIMEDOUT:
