@@ -260,7 +260,7 @@ class SunSpec(Battery):
 
 
 class AlphaEss(Battery):
-    """"full" is what 100 % is in 0x0886 (250 or 255), "limit_max" the most that it takes;
+    """"full" is what 100 % is in 0x0886 (250 or 255), "limit_max" the most that it keeps;
     "single_16" false refuses function 16 for one register."""
     units = (85,)
     BLOCK = 0x0880
@@ -287,10 +287,9 @@ class AlphaEss(Battery):
     def write(self, unit, function, first, words, now):
         if function == 16 and len(words) == 1 and not self.firmware.get("single_16", True):
             raise Refused(2)
-        at = self.BLOCK + 6 - first
-        if 0 <= at < len(words) and words[at] > self.firmware.get("limit_max", 255):
-            raise Refused(3)
         super().write(unit, function, first, words, now)
+        limit = (unit, self.BLOCK + 6)
+        self.held[limit] = min(self.held[limit], self.firmware.get("limit_max", 255))
 
     def take(self, unit, address, word, now):
         self.until = now + (self.at(7) << 16 | self.at(8)) if self.at(0) else math.inf
