@@ -157,6 +157,9 @@ int failed(const std::string& message);
 std::optional<int> take_options(const EdgeCommand& command, const Words& words, void* given,
                                 SettingsFile& settings);
 
+/// The one that a process runs with, still as it is by default: large, and not on the stack.
+SettingsFile& settings_of_the_command();
+
 /// Of --config, or the installed ones. Otherwise the exit code: 2 where there are none, 1 where
 /// they are bad.
 std::optional<int> load_settings(const EdgeCommand& command, SettingsFile& settings);
@@ -171,8 +174,7 @@ template <typename Given, int (*kDo)(const Given&, SettingsFile&),
           const char* (*kComplaint)(const Given&) = all_fit<Given>>
 int run_with(const EdgeCommand& command, const Words& words) {
   Given given;
-  static SettingsFile settings;  // large, and what the controller runs on
-  settings = {};
+  SettingsFile& settings = settings_of_the_command();
   if (const auto code = take_options(command, words, &given, settings)) return *code;
   if (const char* const why = kComplaint(given)) return usage_error(command, why);
   if (command.settings == EdgeCommand::Settings::kLoaded) {

@@ -184,6 +184,12 @@ std::optional<int> take_options(const EdgeCommand& command, const Words& words, 
   return std::nullopt;
 }
 
+SettingsFile& settings_of_the_command() {
+  static SettingsFile settings;
+  settings = {};
+  return settings;
+}
+
 std::optional<int> load_settings(const EdgeCommand& command, SettingsFile& settings) {
   if (settings.path.empty()) {
     if (access(kDefaultConfigPath, F_OK) != 0) {

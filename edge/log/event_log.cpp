@@ -49,7 +49,7 @@ JournalLevel level_of(const CycleRecord& record) {
 }  // namespace
 
 EventLog::~EventLog() {
-  if (thread_.is_running()) {
+  if (thread_.joinable()) {
     ending_ = true;
     queue_.wake();
     thread_.join();
@@ -79,12 +79,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   publish_in_memory();
   tell_of_disk(totals_.disk_is_failing, nullptr);
   tell_of_run_folder();
-  thread_.start(
-      [](void* log) -> void* {
-        static_cast<EventLog*>(log)->run();
-        return nullptr;
-      },
-      this);
+  thread_ = std::thread([this] { run(); });
   return true;
 }
 

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <thread>
 
 #include "edge/control/control_types.h"
 #include "edge/log/handover_queue.h"
@@ -18,7 +19,6 @@
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
 #include "edge/log/whole_file.h"
-#include "edge/memory/static_thread.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -69,7 +69,6 @@ class EventLog {
   static constexpr std::size_t kQueueRecords = 64;
   // Measured on 21 November 2026 (x86-64, glibc 2.36) over 3,000 records: 9,768 bytes, with what
   // the C library keeps there. Sanitizers need far more.
-  static constexpr std::size_t kStackBytes = 256 * 1024;
 
   bool open_ring(FileMessage& error);
   void open_run_ring();
@@ -120,7 +119,7 @@ class EventLog {
   std::atomic<bool> ending_{false};
   char status_text_[kStatusBytes];
   char metrics_text_[kMetricsBytes];
-  StaticThread<kStackBytes> thread_;
+  std::thread thread_;
 };
 
 }  // namespace bess

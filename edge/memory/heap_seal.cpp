@@ -1,6 +1,7 @@
 #include "edge/memory/heap_seal.h"
 
 #include <malloc.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@ constexpr bool kIsSealed = false;
 #else
 constexpr bool kIsSealed = true;
 #endif
+constexpr std::size_t kThreadStackBytes = 256 * 1024;  // measured use of any: 20 KiB
 
 /// One line on stderr by write(2): stdio would allocate its buffer.
 template <typename... Values>
@@ -78,6 +80,11 @@ void forbid_system_calls() {
 
 bool prepare_memory() {
   if (!kIsSealed) return true;
+  pthread_attr_t thread;
+  pthread_attr_init(&thread);
+  pthread_attr_setstacksize(&thread, kThreadStackBytes);
+  pthread_setattr_default_np(&thread);  // stacks are locked in whole
+  pthread_attr_destroy(&thread);
   mallopt(M_ARENA_MAX, 1);  // of the C library: one for all threads, or each reserves 64 MiB
   if (counts_allocator_calls()) return true;
   put_line("%s",

@@ -16,7 +16,7 @@ namespace bess {
 /// Of the control thread's stack, touched before the loop so that no page fault comes later.
 inline constexpr std::size_t kControlStackBytes = 256 * 1024;
 
-/// Once, on the control thread, before any other thread. False with one line on stderr when the
+/// Once, on the control thread, before any other thread, whose stacks get a size of their own. False with one line on stderr when the
 /// process is not built as it must be.
 [[nodiscard]] bool prepare_memory();
 

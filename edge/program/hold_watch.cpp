@@ -1,13 +1,33 @@
 #include "edge/program/hold_watch.h"
 
+#include <time.h>
+
+#include <cerrno>
+
 #include "edge/log/journal.h"
-#include "edge/memory/timed_wait.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
+namespace {
+
+/// By the monotonic clock; false when the semaphore was posted before the time was over.
+bool wait_ns(sem_t& semaphore, std::int64_t ns) {
+  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + ns;
+  const timespec until{.tv_sec = static_cast<time_t>(until_ns / kNanosecondsPerSecond),
+                       .tv_nsec = static_cast<long>(until_ns % kNanosecondsPerSecond)};
+  int result = 0;
+  do result = sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until);
+  while (result != 0 && errno == EINTR);
+  return result != 0;
+}
+
+}  // namespace
+
 HoldWatch::HoldWatch() { sem_init(&ending_, 0, 0); }
 
 HoldWatch::~HoldWatch() {
-  if (thread_.is_running()) {
+  if (thread_.joinable()) {
     sem_post(&ending_);
     thread_.join();
   }
@@ -21,12 +41,7 @@ void HoldWatch::start(const BothPlaces& paths, const BothPlaces& cleared, std::i
   const std::int64_t period_ns = kNanosecondsPerSecond / time_scale;
   period_ns_ = period_ns > kPeriodNsMin ? period_ns : kPeriodNsMin;
   look();
-  thread_.start(
-      [](void* watch) -> void* {
-        static_cast<HoldWatch*>(watch)->run();
-        return nullptr;
-      },
-      this);
+  thread_ = std::thread([this] { run(); });
 }
 
 void HoldWatch::run() {

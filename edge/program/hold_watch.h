@@ -1,16 +1,15 @@
 // Looks every second at the files through which people speak to the controller, and publishes what
-// they say: the hold, and whether a trip was cleared. A thread of its own, on a static stack,
-// because a card that stands still must not keep the control thread waiting. After `start` it
-// allocates nothing.
+// they say: the hold, and whether a trip was cleared. A thread of its own, because a card that
+// stands still must not keep the control thread waiting. After `start` it allocates nothing.
 #pragma once
 
 #include <semaphore.h>
 
 #include <atomic>
 #include <cstdint>
+#include <thread>
 
 #include "edge/control/hold.h"
-#include "edge/memory/static_thread.h"
 #include "edge/storage/hold_file.h"
 #include "edge/storage/trip_clearance.h"
 #include "shared/fixed_text.h"
@@ -34,8 +33,6 @@ class HoldWatch {
   bool is_cleared(std::int64_t trip_utc_s);
 
  private:
-  static constexpr std::size_t kStackBytes = 256 * 1024;  // for sanitizers: it uses a few KiB
-
   void run();
   void look();
 
@@ -49,7 +46,7 @@ class HoldWatch {
   std::int64_t period_ns_ = 0;
   HoldMailbox mailbox_;
   sem_t ending_;
-  StaticThread<kStackBytes> thread_;
+  std::thread thread_;
 };
 
 }  // namespace bess

@@ -79,12 +79,7 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
   if (!write_line(first.data(), first.size())) {
     return fail_with_errno(part_path_.c_str(), "cannot be written", error);
   }
-  thread_.start(
-      [](void* recorder) -> void* {
-        static_cast<ExchangeRecorder*>(recorder)->run();
-        return nullptr;
-      },
-      this);
+  thread_ = std::thread([this] { run(); });
   return true;
 }
 
@@ -163,7 +158,7 @@ bool ExchangeRecorder::write_end() {
 
 bool ExchangeRecorder::finish(FileMessage& error) {
   if (fd_ < 0) return true;
-  if (thread_.is_running()) {
+  if (thread_.joinable()) {
     ending_ = true;
     queue_.wake();
     thread_.join();

@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "edge/battery/modbus_link.h"
 #include "edge/log/handover_queue.h"
 #include "edge/log/whole_file.h"
-#include "edge/memory/static_thread.h"
 #include "edge/recording/recording_mask.h"
 #include "shared/host/bus_recording.h"
 #include "shared/scaled_clock.h"
@@ -49,8 +49,7 @@ class ExchangeRecorder {
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
 
  private:
-  static constexpr std::size_t kStackBytes = 256 * 1024;  // for sanitizers: it uses a few KiB
-  static constexpr std::size_t kQueueLength = 128;        // a cycle makes some twenty
+  static constexpr std::size_t kQueueLength = 128;  // a cycle makes some twenty
 
   void push(BusExchange exchange);
   void run();
@@ -72,7 +71,7 @@ class ExchangeRecorder {
   bool is_writing_ = false;
   bool has_failed_ = false;
   int fd_ = -1;
-  StaticThread<kStackBytes> thread_;
+  std::thread thread_;
 };
 
 }  // namespace bess
