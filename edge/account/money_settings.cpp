@@ -4,14 +4,14 @@ namespace bess {
 
 MoneySettings read_money_settings(TomlTable& root) {
   MoneySettings settings;
-  std::string folder = "notify";
+  std::string folder = "state";
   read_contract(TomlTable(root.table("contract"), root.file(), "[contract]", root.error()),
                 settings.contract);
-  // Of the two others the keys alone that count here: their own readers complain.
+  // Of the other two the keys alone that count here: their own readers complain.
   TomlTable battery(root.table("battery"), root.file(), "[battery]", root.error());
   battery.integer("capacity_wh", settings.capacity_wh, 1, 1'000'000'000);
-  TomlTable notify(root.table("notify"), root.file(), "[notify]", root.error());
-  notify.line("folder", folder);
+  TomlTable state(root.table("state"), root.file(), "[state]", root.error());
+  state.line("folder", folder);
   settings.settled_file = root.resolved(folder) + "/settled.csv";
   return settings;
 }

@@ -14,7 +14,7 @@ namespace bess {
 struct MoneySettings {
   Contract contract{};
   std::int32_t capacity_wh = 8'000;  ///< [battery] capacity_wh
-  std::string settled_file;          ///< of bess-notify; there may be none
+  std::string settled_file;          ///< of bess-prices; there may be none
 };
 
 /// `root` is the whole configuration.

@@ -1,4 +1,4 @@
-// Prices of quarter-hours as they are billed: written by bess-notify once a day, read by whoever
+// Prices of quarter-hours as they are billed: written by bess-prices once a day, read by whoever
 // counts money. A text of one line a quarter-hour, with a checksum at its end, replaced at once.
 //   2026-11-23T22:45:00Z,131.07,published
 // A quarter-hour is published on the day after, and may change until it is validated, after the

@@ -45,7 +45,7 @@ constexpr const char* kHelp =
   --json         one JSON object: the days, and all of them together
   --html         a page to print, to hold beside the bill
 
-Earned is what flowed, by quarter-hours: at the settled price where bess-notify has fetched it
+Earned is what flowed, by quarter-hours: at the settled price where bess-prices has fetched it
 ([settled]), else at the last of the minutes, an estimate. Then what [contract] takes; what is
 stored more or less at the end than at the beginning; and where the student did not decide, by
 reasons, with what it would have earned there.

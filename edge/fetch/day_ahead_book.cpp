@@ -1,6 +1,7 @@
 #include "edge/fetch/day_ahead_book.h"
 
-#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 #include "shared/local_time.h"
 
@@ -10,7 +11,7 @@ namespace {
 constexpr int kDays = 3;               ///< yesterday, today, tomorrow
 constexpr int kDisagreeingShare = 10;  ///< one in this many
 constexpr int kPublicationHour = 13;
-constexpr std::int64_t kLongestStepS = 3'600;
+constexpr std::int64_t kBelievedAfterS = 3 * 3'600;  ///< what an answer still says
 
 std::int64_t begin_of(const OutlookDays& days, int day) {
   const std::int64_t midnights[] = {days.yesterday_utc_s, days.today_utc_s, days.tomorrow_utc_s,
@@ -27,32 +28,17 @@ void for_each_quarter_hour(const OutlookDays& days, int day, const Take& take) {
   }
 }
 
-/// The step from row to row, a quarter of an hour to an hour; 0 where there is none.
-std::int64_t step_of(std::span<const TimedPrice> rows) {
-  std::int64_t step_s = rows.size() == 1 ? kSecondsPerQuarterHour : kLongestStepS;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].utc_s <= 0 || rows[i].utc_s % kSecondsPerQuarterHour != 0) return 0;
-    if (i == 0) continue;
-    const std::int64_t rise_s = rows[i].utc_s - rows[i - 1].utc_s;
-    // Twice the same is once; twice otherwise, nobody knows which is meant.
-    const bool is_again = rise_s == 0 && rows[i].centi_eur_per_mwh == rows[i - 1].centi_eur_per_mwh;
-    if (rise_s < 0 || (rise_s == 0 && !is_again)) return 0;
-    if (rise_s > 0) step_s = std::min(step_s, rise_s);
+/// As of EUR/kWh: no auction's day stays within this.
+bool is_in_another_unit(const OutlookDays& days) {
+  constexpr std::int32_t kNoDayStaysWithinCenti = 500;
+  constexpr int kDayOfPrices = 92;
+  int known = 0;
+  for (const std::int32_t centi : days.day_ahead_centi) {
+    if (centi == kDayAheadUnknown) continue;
+    if (std::abs(centi) >= kNoDayStaysWithinCenti) return false;
+    ++known;
   }
-  return step_s;
-}
-
-/// What an answer says of the days around now; false where it says nothing of them.
-bool lay_out(std::span<const TimedPrice> rows, std::int64_t step_s, OutlookDays& days) {
-  bool is_any = false;
-  for (const TimedPrice& row : rows) {
-    for (std::int64_t t = row.utc_s; t < row.utc_s + step_s; t += kSecondsPerQuarterHour) {
-      if (t < days.yesterday_utc_s || t >= days.end_utc_s) continue;
-      days.day_ahead_centi[days.index_of(t)] = row.centi_eur_per_mwh;
-      is_any = true;
-    }
-  }
-  return is_any;
+  return known >= kDayOfPrices;
 }
 
 std::size_t place_of(std::int64_t utc_s) {
@@ -75,18 +61,19 @@ const KnownPrice* DayAheadBook::find(std::int64_t utc_s, std::int64_t now_utc_s)
 bool DayAheadBook::has_all(std::int64_t from_utc_s, std::int64_t until_utc_s,
                            std::int64_t now_utc_s) const {
   for (std::int64_t t = from_utc_s; t < until_utc_s; t += kSecondsPerQuarterHour) {
-    if (find(t, now_utc_s) == nullptr) return false;
+    const KnownPrice* const known = find(t, now_utc_s);
+    if (known == nullptr || known->is_assumed) return false;
   }
   return true;
 }
 
-bool DayAheadBook::disagrees(const OutlookDays& answer, std::int64_t now_utc_s) const {
+bool DayAheadBook::disagrees(const Answer& answer, std::int64_t now_utc_s) const {
   int shared = 0;
   int different = 0;
   for (int day = 0; day < kDays; ++day) {
     if (!has_all(begin_of(answer, day), begin_of(answer, day + 1), now_utc_s)) continue;
     for_each_quarter_hour(answer, day, [&](std::int64_t t, std::int32_t centi) {
-      if (centi == kDayAheadUnknown) return;
+      if (centi == kDayAheadUnknown || answer.is_assumed[answer.index_of(t)]) return;
       ++shared;
       different += find(t, now_utc_s)->centi_eur_per_mwh != centi ? 1 : 0;
     });
@@ -94,15 +81,13 @@ bool DayAheadBook::disagrees(const OutlookDays& answer, std::int64_t now_utc_s) 
   return different * kDisagreeingShare > shared;
 }
 
-/// Of days of one length alone; a day of one price all through may well come twice.
+/// Of days of one length alone.
 bool DayAheadBook::repeats_day_before(const OutlookDays& answer, int day,
                                       std::int64_t now_utc_s) const {
   const std::int64_t before = begin_of(answer, day - 1);
   const std::int64_t begin = begin_of(answer, day);
   if (begin_of(answer, day + 1) - begin != begin - before) return false;
   bool is_same = true;
-  bool moves = false;
-  std::int32_t first = kDayAheadUnknown;
   for_each_quarter_hour(answer, day, [&](std::int64_t t, std::int32_t centi) {
     const std::int64_t t_before = t - (begin - before);
     const KnownPrice* const kept = find(t_before, now_utc_s);
@@ -110,40 +95,56 @@ bool DayAheadBook::repeats_day_before(const OutlookDays& answer, int day,
                                           ? kept->centi_eur_per_mwh
                                           : answer.day_ahead_centi[answer.index_of(t_before)];
     is_same = is_same && centi != kDayAheadUnknown && centi == centi_before;
-    if (first == kDayAheadUnknown) first = centi;
-    moves = moves || centi != first;
   });
-  return is_same && moves;
+  return is_same;
 }
 
 /// Of a whole day what came first stays.
-void DayAheadBook::keep_day(const OutlookDays& answer, int day, std::int64_t now_utc_s) {
+void DayAheadBook::keep_day(const Answer& answer, int day, std::int64_t now_utc_s) {
   if (has_all(begin_of(answer, day), begin_of(answer, day + 1), now_utc_s)) return;
   for_each_quarter_hour(answer, day, [&](std::int64_t t, std::int32_t centi) {
     if (centi == kDayAheadUnknown) return;
+    const bool is_assumed = answer.is_assumed[answer.index_of(t)];
     const KnownPrice* const kept = find(t, now_utc_s);
-    if (kept != nullptr && kept->centi_eur_per_mwh == centi) return;
-    prices_[place_of(t)] = {.utc_s = t, .received_utc_s = now_utc_s, .centi_eur_per_mwh = centi};
-    ++changes_;
+    if (kept == nullptr || kept->centi_eur_per_mwh != centi) {
+      prices_[place_of(t)] = {.utc_s = t,
+                              .received_utc_s = now_utc_s,
+                              .centi_eur_per_mwh = centi,
+                              .is_assumed = is_assumed};
+      ++changes_;
+    } else if (kept->is_assumed &&
+               (!is_assumed || now_utc_s >= kept->received_utc_s + kBelievedAfterS)) {
+      prices_[place_of(t)].is_assumed = false;
+      ++changes_;
+    }
   });
 }
 
-Status DayAheadBook::take(std::span<const TimedPrice> rows, std::int64_t now_utc_s) {
-  if (rows.empty()) return Status::kNoRow;
-  const std::int64_t step_s = step_of(rows);
-  if (step_s == 0) return Status::kMalformed;
-  OutlookDays answer = outlook_days_around(now_utc_s);
-  if (!lay_out(rows, step_s, answer)) return Status::kNoRow;
+Status DayAheadBook::take(std::span<const DayAheadDay> days, std::int64_t now_utc_s) {
+  Answer answer{outlook_days_around(now_utc_s)};
+  Status status = Status::kNoRow;
+  bool is_refused = false;
+  for (const DayAheadDay& day : days) {
+    for (const DayAheadQuarterHour& q : day.quarter_hours) {
+      if (q.utc_s < answer.yesterday_utc_s || q.utc_s >= answer.end_utc_s) continue;
+      is_refused = is_refused || day.is_constant();
+      if (day.is_constant() || is_day_ahead_sentinel(q.eur_per_mwh)) continue;
+      answer.day_ahead_centi[answer.index_of(q.utc_s)] =
+          static_cast<std::int32_t>(std::lround(q.eur_per_mwh * kCentiPerEur));
+      answer.is_assumed[answer.index_of(q.utc_s)] = q.is_assumed;
+      status = Status::kOk;
+    }
+  }
+  if (status == Status::kOk && is_in_another_unit(answer)) return Status::kDoubtfulUnit;
   if (disagrees(answer, now_utc_s)) return Status::kImplausible;
-  Status status = Status::kOk;
   for (int day = 0; day < kDays; ++day) {
     if (day > 0 && repeats_day_before(answer, day, now_utc_s)) {
-      status = Status::kImplausible;
+      is_refused = true;
     } else {
       keep_day(answer, day, now_utc_s);
     }
   }
-  return status;
+  return is_refused ? Status::kImplausible : status;
 }
 
 bool DayAheadBook::restore(const KnownPrice& price) {

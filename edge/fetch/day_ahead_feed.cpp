@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "edge/fetch/fetch.h"
-#include "edge/fetch/price_json.h"
 #include "edge/log/whole_file.h"
 #include "shared/local_time.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -37,7 +37,8 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
       return "no price of yesterday, today or tomorrow (are time_field, price_field and the dates "
              "of url right?)";
     case Status::kImplausible:
-      return "contradicts what was published before, or repeats the day before: refused";
+      return "contradicts what was published before, repeats the day before, or is one price all "
+             "day: refused";
     default:
       break;
   }
@@ -67,38 +68,39 @@ DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days) {
   return {std::string_view(text, size)};
 }
 
-Status DayAheadFeed::fetch_answer(std::int64_t now_utc_s, std::string& answer) const {
-  if (settings_.file.empty()) {
-    const DayAheadUrl url =
-        day_ahead_url(settings_.http.url.view(), outlook_days_around(now_utc_s));
+DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields) {
+  DayAheadAnswer parsed = parse_day_ahead_json(
+      answer,
+      {.rows = fields.rows.view(), .time = fields.time.view(), .price = fields.price.view()});
+  if (!parsed.trouble.empty()) return {.status = Status::kMalformed, .reason = parsed.trouble};
+  DayAheadLayout layout = lay_out_day_ahead(std::move(parsed.rows));
+  // Of two prices of one time nobody knows which is meant.
+  if (!layout.trouble.empty() || layout.contradiction_utc_s != 0) {
+    return {
+        .status = Status::kMalformed,
+        .reason = layout.trouble.empty()
+                      ? "two prices of " + std::string(utc_text(layout.contradiction_utc_s).view())
+                      : layout.trouble};
+  }
+  return {.status = Status::kOk, .days = std::move(layout.days)};
+}
+
+DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
+                            const StopRequested& stop_requested) {
+  if (settings.file.empty()) {
+    const DayAheadUrl url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
     FetchResult fetched =
-        fetch(settings_.http, url.c_str(), settings_.http.timeout_ms, stop_requested_);
-    answer = std::move(fetched.body);
-    return fetched.status;
+        fetch(settings.http, url.c_str(), settings.http.timeout_ms, stop_requested);
+    if (fetched.status != Status::kOk) return {fetched.status, std::move(fetched.reason)};
+    return read_day_ahead(fetched.body, settings.fields);
   }
   constexpr std::size_t kFileBytesMax = 256 * 1024;
-  answer.resize(kFileBytesMax);
-  const ssize_t size = read_beginning(settings_.file.c_str(), answer, Links::kFollowed);
-  if (size < 0) return Status::kNotConnected;
+  std::string answer(kFileBytesMax, 0);
+  const ssize_t size = read_beginning(settings.file.c_str(), answer, Links::kFollowed);
+  if (size < 0) return {.status = Status::kNotConnected};
   answer.resize(static_cast<std::size_t>(size));
-  return answer.size() == kFileBytesMax ? Status::kTooLarge : Status::kOk;
-}
-
-void DayAheadFeed::take_row(void* self, const PriceRow& row) {
-  auto& feed = *static_cast<DayAheadFeed*>(self);
-  feed.is_too_large_ = feed.count_ == kRowsMax;
-  if (feed.is_too_large_) return;
-  feed.rows_[feed.count_++] = {row.minute_utc_s, row.price_centi_eur_per_mwh};
-}
-
-Status DayAheadFeed::ask(std::int64_t now_utc_s) {
-  count_ = 0;
-  is_too_large_ = false;
-  std::string answer;
-  const Status fetched = fetch_answer(now_utc_s, answer);
-  if (fetched != Status::kOk) return fetched;
-  const Status parsed = parse_day_ahead(answer, settings_.fields, {this, take_row});
-  return is_too_large_ ? Status::kTooLarge : parsed;
+  if (answer.size() == kFileBytesMax) return {.status = Status::kTooLarge};
+  return read_day_ahead(answer, settings.fields);
 }
 
 std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
@@ -120,10 +122,10 @@ std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& set
   return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
 }
 
-bool DayAheadInquiry::take(Status asked, std::span<const TimedPrice> rows,
-                           const OutlookSettings& settings, std::int64_t now_utc_s) {
+bool DayAheadInquiry::take(const DayAheadAsked& asked, const OutlookSettings& settings,
+                           std::int64_t now_utc_s) {
   const std::uint32_t changes_before = book.changes();
-  status = asked == Status::kOk ? book.take(rows, now_utc_s) : asked;
+  status = asked.status == Status::kOk ? book.take(asked.days, now_utc_s) : asked.status;
   last_utc_s = now_utc_s;
   tries = due_utc_s(book, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
   return book.changes() != changes_before;

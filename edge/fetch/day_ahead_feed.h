@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "edge/base/status.h"
 #include "edge/fetch/day_ahead_book.h"
 #include "edge/prices/outlook_settings.h"
+#include "shared/host/day_ahead_rows.h"
 #include "shared/host/http_client.h"
 
 namespace bess {
@@ -17,28 +20,16 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
 using DayAheadUrl = FixedText<639>;
 DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days);
 
-class DayAheadFeed {
- public:
-  static constexpr std::size_t kRowsMax = 4 * kLongestDayQuarterHours;
-
-  DayAheadFeed(const OutlookSettings& settings, StopRequested stop_requested)
-      : settings_(settings), stop_requested_(std::move(stop_requested)) {}
-
-  /// Asks for the days around now and gives `rows()` what is answered; within the time-out.
-  /// kTooLarge: also of more rows than four days have.
-  Status ask(std::int64_t now_utc_s);
-  [[nodiscard]] std::span<const TimedPrice> rows() const { return {rows_, count_}; }
-
- private:
-  Status fetch_answer(std::int64_t now_utc_s, std::string& answer) const;
-  static void take_row(void* self, const PriceRow& row);
-
-  OutlookSettings settings_;
-  StopRequested stop_requested_;
-  TimedPrice rows_[kRowsMax];
-  std::size_t count_ = 0;
-  bool is_too_large_ = false;
+/// What came of asking; `days` of kOk alone.
+struct DayAheadAsked {
+  Status status = Status::kNotConnected;
+  std::string reason{};  ///< of anything else: one line, where there is more to say than the status
+  std::vector<DayAheadDay> days{};
 };
+DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields);
+/// Asks for the days around now, within the time-out.
+DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
+                            const StopRequested& stop_requested);
 
 /// From when on there is something to ask for: now where something of today is missing, for
 /// tomorrow 12:50 local time.
@@ -60,8 +51,7 @@ struct DayAheadInquiry {
     return next_ask_utc_s(book, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
   }
   /// An answer, or why there is none. True when the book holds something new.
-  bool take(Status asked, std::span<const TimedPrice> rows, const OutlookSettings& settings,
-            std::int64_t now_utc_s);
+  bool take(const DayAheadAsked& asked, const OutlookSettings& settings, std::int64_t now_utc_s);
 };
 
 }  // namespace bess

@@ -42,7 +42,7 @@ bool keep_day_ahead(const char* path, const DayAheadBook& book) {
   char* const text = file_text();
   std::size_t size = kHead.copy(text, kHead.size());
   for (const KnownPrice& price : book.prices()) {
-    if (price.utc_s == 0) continue;
+    if (price.utc_s == 0 || price.is_assumed) continue;
     size += static_cast<std::size_t>(std::snprintf(
         text + size, kFileBytesMax - size, "%s %d %s\n", utc_text(price.utc_s).c_str(),
         price.centi_eur_per_mwh, utc_text(price.received_utc_s).c_str()));

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "edge/control/price_history.h"
+#include "edge/fetch/price_json.h"
 #include "edge/prices/price_settings.h"
 #include "shared/fixed_text.h"
 #include "shared/scaled_clock.h"
@@ -32,12 +33,9 @@ class HistoryPages {
   template <typename Prices>
   bool fetch_next(Prices& prices, std::int32_t timeout_ms) {
     const std::int64_t oldest_before_utc_s = oldest_utc_s_;
-    int items = 0;
-    const PriceRowTaker taker{
-        this, [](void* self, const PriceRow& row) { static_cast<HistoryPages*>(self)->take(row); }};
-    const Status status =
-        prices.fetch_page(page_url(url_.view(), offset_).c_str(), timeout_ms, taker, items);
-    return goes_on(status, items, oldest_before_utc_s);
+    const PriceAnswer page = prices.fetch_page(page_url(url_.view(), offset_).c_str(), timeout_ms);
+    for (const PriceRow& row : page.rows) take(row);
+    return goes_on(page.status, page.items, oldest_before_utc_s);
   }
   /// Of the last request; a page behind the last row is no failure.
   [[nodiscard]] Status status() const { return status_; }
@@ -58,7 +56,7 @@ class HistoryPages {
 
 /// Fills the history within `wait_s` of the clock. Anything but kOk: it ended before its time, what
 /// came in is there. On the caller's thread.
-///   Prices  Status fetch_page(const char* url, int32 timeout_ms, const PriceRowTaker&, int& items)
+///   Prices  PriceAnswer fetch_page(const char* url, int32 timeout_ms)
 ///   Clock   monotonic_ns(), scaled(), stop_requested()
 template <typename Prices, typename Clock>
 Status fetch_history(Prices& prices, const PriceFeedSettings& price,

@@ -17,6 +17,7 @@
 #include "edge/control/policy.h"
 #include "edge/fetch/outlook_fetcher.h"
 #include "edge/fetch/price_fetcher.h"
+#include "edge/fetch/settled_fetch.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/prices/http_secrets.h"
@@ -32,24 +33,29 @@ constexpr const char* kHelp =
 
   bess-prices [--config FILE]            publishes them, until SIGTERM
   bess-prices [--config FILE] --check    asks each server once and says what came
+  bess-prices [--config FILE] --settle   fetches the settled prices of past days now
 
-  --config FILE  the controller's settings; sections [price] and [outlook]; default
-                 /etc/bess/edge.toml
+  --config FILE  the controller's settings; sections [price], [outlook] and
+                 [settled]; default /etc/bess/edge.toml
   --help         this text
   --version      the version
 
 The newest price, the price level of the last hours and, for a student by outlook, the plan on
 day-ahead prices go to one file in [state] run_folder (or folder), which bess-edge reads. It may be
 started before bess-edge and after it, and restarted at any time. One bess-prices to one file.
+Once a day it fetches what past quarter-hours are billed at, where [settled] url is given, for
+bess-edge earned.
 Exit codes:
   0 done
-  1 the settings are bad, another bess-prices runs; with --check also: no usable price came
+  1 the settings are bad, another bess-prices runs; with --check also: no usable price came; with
+    --settle: no settled price came
   2 the command line is bad
 )";
 
 struct Options {
   std::string config_path = "/etc/bess/edge.toml";
   bool check = false;
+  bool settle = false;
   const char* started_as = "";
 };
 
@@ -62,6 +68,8 @@ int parse(int argc, char** argv, Options& options) {
     if (argument == "--version") return std::printf("bess-prices %s\n", BESS_VERSION), 0;
     if (argument == "--check") {
       options.check = true;
+    } else if (argument == "--settle") {
+      options.settle = true;
     } else if (argument == "--config" && i + 1 < argc) {
       options.config_path = argv[++i];
     } else {
@@ -100,16 +108,28 @@ void check_day_ahead(const EdgeConfig& config) {
   const std::string source =
       outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  DayAheadFeed feed(outlook, [] { return false; });
+  const DayAheadAsked asked = ask_day_ahead(outlook, now_utc_s, [] { return false; });
   DayAheadBook book;
-  Status status = feed.ask(now_utc_s);
-  if (status == Status::kOk) status = book.take(feed.rows(), now_utc_s);
+  const Status status =
+      asked.status == Status::kOk ? book.take(asked.days, now_utc_s) : asked.status;
   if (status != Status::kOk) {
     return complain("day-ahead prices from " + source + ": " +
-                    std::string(day_ahead_status_text(status, outlook)) +
+                    (asked.reason.empty() ? std::string(day_ahead_status_text(status, outlook))
+                                          : asked.reason) +
                     "; planned on what is usual");
   }
-  std::printf("day-ahead  %zu prices from %s\n", feed.rows().size(), source.c_str());
+  std::printf("day-ahead  %u quarter-hours from %s\n", book.changes(), source.c_str());
+}
+
+int settle_now(const EdgeConfig& config, const SettledSource& source) {
+  if (source.url.empty()) return complain("[settled] url is not set: nothing to fetch"), 1;
+  const SettledResult result =
+      fetch_settled(source, config.clock.now_utc_ns() / kNanosecondsPerSecond, {});
+  if (!result.trouble.empty()) return complain("settled prices: " + result.trouble), 1;
+  std::printf("%d quarter-hours, %s, kept in %s\n", result.fetched,
+              result.is_whole ? "up to yesterday's last" : "yesterday is not whole yet",
+              source.file.c_str());
+  return 0;
 }
 
 /// Whether a controller that starts now would know the level by its log.
@@ -151,7 +171,7 @@ bool is_replaced(const char* started_as) {
          (now.st_ino != self.st_ino || now.st_dev != self.st_dev);
 }
 
-int publish(const EdgeConfig& config, const char* started_as) {
+int publish(const EdgeConfig& config, const SettledSource& settled, const char* started_as) {
   const std::string path(prices_file(config).view());
   InstanceLock lock;
   FileMessage error;
@@ -170,10 +190,15 @@ int publish(const EdgeConfig& config, const char* started_as) {
   write_journal_line(JournalLevel::kNotice, "bess-prices: started");
   PricePublisher publisher(path);
   std::jthread beside([&] { run_beside(config, publisher, stop.get_token()); });
+  std::jthread settling;
+  if (!settled.url.empty()) {
+    settling = std::jthread([&] { fetch_settled_daily(settled, config.clock, stop.get_token()); });
+  }
   PriceFetcher(config, publisher, stop.get_token()).run([&] { return is_replaced(started_as); });
   if (!stop.stop_requested()) kill(getpid(), SIGTERM);
   signals.join();
   beside.join();
+  if (settling.joinable()) settling.join();
   static_cast<void>(unlink(path.c_str()));  // it would only grow old
   write_journal_line(JournalLevel::kNotice, "bess-prices: stopped");
   return 0;
@@ -184,8 +209,18 @@ int run(const Options& options) {
   std::string error;
   if (!load_edge_config(options.config_path, config, error)) return complain(error), 1;
   set_market_time_zone();
-  if (!options.check) return publish(config, options.started_as);
+  SettledSource settled;
+  if (!load_settled_source(options.config_path, settled, error)) {
+    complain(error);  // it must not stop the prices that are traded on
+    if (options.check || options.settle) return 1;
+    settled.url.clear();
+  }
+  if (options.settle) return settle_now(config, settled);
+  if (!options.check) return publish(config, settled, options.started_as);
   const bool is_well = check_price(config);
+  if (!settled.url.empty()) {
+    std::printf("settled    prices of %d days, fetched once a day\n", settled.days);
+  }
   if (student_outlook() != nullptr) check_day_ahead(config);
   return is_well ? 0 : 1;
 }

@@ -27,7 +27,6 @@ OutlookFetcher::OutlookFetcher(const EdgeConfig& config, const OutlookModel& mod
       publisher_(publisher),
       stop_(stop),
       kept_path_(state_file(config, kDayAheadFileName).view()),
-      feed_(config.outlook, [stop] { return stop.stop_requested(); }),
       planner_(model, board_) {}
 
 void OutlookFetcher::start(std::int32_t start_centi) {
@@ -112,10 +111,11 @@ void OutlookFetcher::fetch_for_ever() {
 }
 
 void OutlookFetcher::fetch(std::int64_t now_utc_s) {
-  const Status asked = feed_.ask(now_utc_s);
+  const DayAheadAsked asked =
+      ask_day_ahead(config_.outlook, now_utc_s, [this] { return stop_.stop_requested(); });
   {
     const std::lock_guard lock(mutex_);
-    const bool is_new = inquiry_.take(asked, feed_.rows(), config_.outlook, now_utc_s);
+    const bool is_new = inquiry_.take(asked, config_.outlook, now_utc_s);
     is_kept_ = is_kept_ && !is_new;
     ++answers_;
   }

@@ -1,6 +1,6 @@
 // What bess-prices does for a student by outlook: one thread fetches day-ahead prices, one plans on
 // them for the tick after the newest decision, whose level it reads from the decision log.
-//   server or file -> DayAheadFeed -> DayAheadBook -> OutlookPlanner -> the published record
+//   server or file -> day_ahead_feed -> DayAheadBook -> OutlookPlanner -> the published record
 //                                     kept on disk
 #pragma once
 
@@ -48,7 +48,6 @@ class OutlookFetcher {
   PricePublisher& publisher_;
   std::stop_token stop_;
   const std::string kept_path_;
-  DayAheadFeed feed_;
   OutlookBoard board_;
   OutlookPlanner planner_;
   std::int32_t start_centi_ = 0;

@@ -31,14 +31,8 @@ PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) c
   const FetchResult fetched = get(url, config_.price.feed.http.timeout_ms);
   Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
   if (fetched.status != Status::kOk) return answer;
-  std::vector<PriceRow> rows;
-  int items = 0;
-  answer.status = parse_prices(fetched.body, config_.price.feed.fields, now_utc_s(),
-                               {&rows,
-                                [](void* self, const PriceRow& row) {
-                                  static_cast<std::vector<PriceRow>*>(self)->push_back(row);
-                                }},
-                               items);
+  auto [status, rows, items] = parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
+  answer.status = status;
   answer.passed_over = items - static_cast<int>(rows.size());
   std::ranges::stable_sort(rows, {}, &PriceRow::minute_utc_s);
   for (const PriceRow& row : rows) watch.observe(row);
@@ -50,12 +44,10 @@ FetchResult PriceSource::get(const std::string& url, std::int32_t timeout_ms) co
   return fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
 }
 
-Status PriceSource::fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
-                               int& items) const {
-  items = 0;
+PriceAnswer PriceSource::fetch_page(const char* url, std::int32_t timeout_ms) const {
   const FetchResult fetched = get(url, timeout_ms);
-  if (fetched.status != Status::kOk) return fetched.status;
-  return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s(), taker, items);
+  if (fetched.status != Status::kOk) return {.status = fetched.status};
+  return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
 }
 
 PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {

@@ -9,6 +9,7 @@
 
 #include "edge/fetch/ask_timing.h"
 #include "edge/fetch/fetch.h"
+#include "edge/fetch/price_json.h"
 #include "edge/fetch/price_publisher.h"
 #include "edge/fetch/unit_watch.h"
 #include "edge/settings/edge_config.h"
@@ -33,8 +34,7 @@ class PriceSource {
   /// The first: of more rows, where the server knows pages, so that a wrong unit shows at once.
   Answer ask_first(UnitWatch& watch) const;
   /// As history_pages.h asks.
-  Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
-                    int& items) const;
+  [[nodiscard]] PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms) const;
 
   [[nodiscard]] std::int64_t now_utc_s() const {
     return config_.clock.now_utc_ns() / kNanosecondsPerSecond;

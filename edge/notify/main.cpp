@@ -31,7 +31,6 @@ constexpr const char* kHelp =
   bess-notify [--config FILE]            every [notify] every_s, until SIGTERM
   bess-notify [--config FILE] --once     one round, for a timer
   bess-notify [--config FILE] --test     one message by every way that is configured
-  bess-notify [--config FILE] --settle   fetches the settled prices of past days now
   bess-notify [--config FILE] --check    is [notify] right? Sends nothing
 
   --config FILE  the controller's settings; section [notify]; default /etc/bess/edge.toml
@@ -40,18 +39,16 @@ constexpr const char* kHelp =
 
 Each alarm is told once, and its end once, also over restarts. Every way has a queue and a thread
 of its own: one that hangs holds up neither the others nor the next look. It reads what bess-edge
-publishes and takes no lock of it: the controller does not know that it exists. Once a day it
-fetches what past quarter-hours are billed at, where [settled] url is given, for bess-edge earned.
+publishes and takes no lock of it: the controller does not know that it exists.
 One bess-notify to one [notify] folder: a second one is refused; --test and --check may run beside
 it.
 Exit codes:
   0 done
-  1 the settings are bad, another bess-notify runs, a test message was not taken, no settled price
-    came
+  1 the settings are bad, another bess-notify runs, a test message was not taken
   2 the command line is bad
 )";
 
-enum class Task { kWatch, kOnce, kTest, kSettle, kCheck };
+enum class Task { kWatch, kOnce, kTest, kCheck };
 
 struct Options {
   std::string config_path = "/etc/bess/edge.toml";
@@ -68,8 +65,6 @@ int parse(int argc, char** argv, Options& options) {
       options.task = Task::kOnce;
     else if (argument == "--test")
       options.task = Task::kTest;
-    else if (argument == "--settle")
-      options.task = Task::kSettle;
     else if (argument == "--check")
       options.task = Task::kCheck;
     else if (argument == "--config" && i + 1 < argc)
@@ -99,25 +94,6 @@ void print_check(const NotifySettings& settings) {
                 settings.mqtt.port, settings.mqtt.ca_file.empty() ? "" : " with TLS",
                 settings.name.c_str(), settings.mqtt.orders ? ", holds may be ordered" : "");
   }
-  if (!settings.settled.url.empty()) {
-    std::printf("settled    prices of %d days, fetched once a day\n", settings.settled.days);
-  }
-}
-
-int settle_now(const SettledSource& source) {
-  if (source.url.empty()) {
-    say(JournalLevel::kError, "[settled] url is not set: nothing to fetch");
-    return 1;
-  }
-  const SettledResult result = fetch_settled(source, now_utc_s(), {});
-  if (!result.trouble.empty()) {
-    say(JournalLevel::kError, "settled prices: " + result.trouble);
-    return 1;
-  }
-  std::printf("%d quarter-hours, %s, kept in %s\n", result.fetched,
-              result.is_whole ? "up to yesterday's last" : "yesterday is not whole yet",
-              source.file.c_str());
-  return 0;
 }
 
 /// Until an instant of the monotonic clock; false when it is to end before.
@@ -172,7 +148,6 @@ int run(const Options& options) {
   if (options.task == Task::kTest) {  // beside one that watches
     return Notifier(settings, MqttPresence::kVisits).send_test(now_utc_s()) ? 0 : 1;
   }
-  if (options.task == Task::kSettle) return settle_now(settings.settled);
   NotifyLock lock;
   if (!lock.take(settings.lock, error)) {
     say(JournalLevel::kError, error);
@@ -181,8 +156,6 @@ int run(const Options& options) {
   Notifier notifier(settings);
   if (options.task == Task::kOnce) return run_once(notifier);
   say(JournalLevel::kNotice, "started");
-  std::optional<SettledFetcher> fetcher;
-  if (!settings.settled.url.empty()) fetcher.emplace(settings.settled);
   watch(notifier, settings.every_s, stop_signals);
   say(JournalLevel::kNotice, "stopped");
   return 0;

@@ -50,6 +50,20 @@ NotifierState recall(const NotifySettings& settings) {
   return std::move(reading.told);
 }
 
+/// Why what should have been published days ago is not there, in one line; empty: it is.
+std::string settled_trouble(const std::string& file, std::int64_t now_utc_s) {
+  constexpr std::int64_t kLateS = 3 * 86'400;  // a day is published on the next
+  constexpr const char* kMend = ": bess-prices --settle says why";
+  SettledPrices prices;
+  const std::string loss = prices.read(file);
+  if (!loss.empty()) return loss;
+  if (prices.quarters().empty()) return std::string("no settled price has come yet") + kMend;
+  const std::int64_t newest_utc_s = prices.quarters().back().start_utc_s;
+  const std::int64_t midnight_utc_s = DayAccount(local_day_at(now_utc_s)).start_utc_s();
+  if (midnight_utc_s - newest_utc_s <= kLateS) return "";
+  return "no settled price is newer than " + std::string(utc_text(newest_utc_s).view()) + kMend;
+}
+
 }  // namespace
 
 Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
@@ -115,8 +129,8 @@ void Notifier::run_round(std::int64_t now_utc_s) {
 
 void Notifier::look_at_settled(std::int64_t now_utc_s) {
   constexpr std::int64_t kEveryS = 3'600, kSoonS = 300;
-  if (settings_.settled.url.empty() || now_utc_s < settled_due_utc_s_) return;
-  settled_trouble_ = settled_trouble(settings_.settled, now_utc_s);
+  if (!settings_.awaits_settled || now_utc_s < settled_due_utc_s_) return;
+  settled_trouble_ = settled_trouble(settings_.money.settled_file, now_utc_s);
   settled_due_utc_s_ = now_utc_s + (settled_trouble_.empty() ? kEveryS : kSoonS);
 }
 

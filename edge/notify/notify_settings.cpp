@@ -114,25 +114,6 @@ void read_notify(TomlTable table, NotifySettings& settings) {
   settings.lock = folder + "/lock";
 }
 
-/// Fetched day by day; what it gives is public, so that plain http would only let it be forged.
-void read_settled(TomlTable table, SettledSource& source) {
-  table.line("url", source.url);
-  table.line("ca_file", source.ca_file);
-  table.integer("days", source.days, 1, kSettledDaysMax);
-  table.finish();
-  if (source.url.empty() || !table.ok()) return;
-  if (!is_allowed_webhook(settled_url(source, 0, 0))) {
-    return table.fail("url", "must start with https://, or lead to this machine: http://127.0.0.1");
-  }
-  const bool has_from = source.url.find("{from}") != std::string::npos;
-  const bool has_until = source.url.find("{until}") != std::string::npos;
-  const bool has_query = source.url.find('?') != std::string::npos;
-  if (has_from != has_until || (has_query && !has_from)) {
-    return table.fail("url", "must hold {from} and {until}, or be without any query: Elia's");
-  }
-  if (!source.ca_file.empty()) source.ca_file = readable_file(table, "ca_file", source.ca_file);
-}
-
 }  // namespace
 
 bool load_notify_settings(const std::string& path, NotifySettings& settings, std::string& error) {
@@ -144,8 +125,10 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   TomlTable battery(root.table("battery"), path, "[battery]", error);
   battery.integer("power_w", settings.power_w, 1, 1'000'000'000);
   settings.money = read_money_settings(root);
-  settings.settled.file = settings.money.settled_file;
-  read_settled(TomlTable(root.table("settled"), path, "[settled]", error), settings.settled);
+  TomlTable settled(root.table("settled"), path, "[settled]", error);
+  std::string settled_url;
+  settled.line("url", settled_url);
+  settings.awaits_settled = !settled_url.empty();
   read_notify(TomlTable(root.table("notify"), path, "[notify]", error), settings);
   return error.empty();
 }

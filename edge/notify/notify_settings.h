@@ -7,7 +7,6 @@
 
 #include "edge/account/money_settings.h"
 #include "edge/companion/controller_places.h"
-#include "edge/notify/settled_fetch.h"
 
 namespace bess {
 
@@ -42,7 +41,7 @@ struct NotifySettings : ControllerPlaces {
   std::int32_t mailer_ms_max = 60'000;
   MqttSettings mqtt;
   MoneySettings money;
-  SettledSource settled;
+  bool awaits_settled = false;  ///< bess-prices fetches what quarter-hours are billed at
 
   [[nodiscard]] bool has_channel() const {
     return !mail_to.empty() || !webhook_url.empty() || !mqtt.host.empty();

@@ -24,10 +24,4 @@ struct PriceRow {
   bool is_finer_than_cents = false;  ///< the source's number has more than two decimals
 };
 
-/// Who is given the rows of an answer, one by one.
-struct PriceRowTaker {
-  void* self;
-  void (*take)(void* self, const PriceRow& row);
-};
-
 }  // namespace bess

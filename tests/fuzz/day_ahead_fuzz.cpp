@@ -17,7 +17,7 @@ void check_day_ahead(std::string_view text) {
   try {
     series = is_day_ahead_csv(text)
                  ? parse_day_ahead_csv(text, "fuzz")
-                 : join_day_ahead(parse_day_ahead_text(text, "fuzz"), "fuzz").series;
+                 : join_day_ahead(parse_day_ahead_text(text, "fuzz").rows, "fuzz").series;
   } catch (const UserError&) {
     return;
   }

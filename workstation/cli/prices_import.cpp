@@ -21,10 +21,9 @@ struct PricesImportArguments {
 };
 
 void import_day_ahead(const PricesImportArguments& options) {
-  std::vector<DayAheadRow> rows;
-  for (const std::string& file : options.files) {
-    for (const DayAheadRow& row : parse_day_ahead_text(read_file(file), file)) rows.push_back(row);
-  }
+  std::vector<std::string> notes;
+  std::vector<DayAheadRow> rows = rows_of_one_zone(options.files, notes);
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   write_judged_day_ahead(join_day_ahead(std::move(rows), options.files.front()),
                          options.price_input.accepted(), options.files,
                          fmt::format("Day-ahead prices imported by bess-train {} from {}",

@@ -17,31 +17,37 @@ class Feed : public InMarketZone, public testing::Test {
   Feed() { settings_.file = folder_.file("answer.json").c_str(); }
   Status ask(const std::string& answer) {
     EXPECT_EQ(settings_.file.view(), folder_.write("answer.json", answer));
-    feed_ = std::make_unique<DayAheadFeed>(settings_, [] { return false; });
-    return feed_->ask(now_);
+    asked_ = ask_day_ahead(settings_, now_, [] { return false; });
+    rows_.clear();
+    for (const DayAheadDay& day : asked_.days) {
+      rows_.insert(rows_.end(), day.quarter_hours.begin(), day.quarter_hours.end());
+    }
+    if (asked_.status != Status::kOk) return asked_.status;
+    return DayAheadBook().take(asked_.days, now_);
   }
   std::int64_t now_ = utc_from_civil({2025, 6, 11, 10, 0, 0});
   TemporaryFolder folder_;
   OutlookSettings settings_;
-  std::unique_ptr<DayAheadFeed> feed_;
+  DayAheadAsked asked_;
+  std::vector<DayAheadQuarterHour> rows_;
 };
 
 TEST_F(Feed, TakesListsSideBySide) {
   ASSERT_EQ(ask(R"({"license_info":"x","unix_seconds":[1749600000,1749600900,1749601800],
                     "price":[12.345,null,-500.01],"unit":"EUR/MWh","deprecated":false})"),
             Status::kOk);
-  ASSERT_EQ(feed_->rows().size(), 2U);
-  EXPECT_EQ(feed_->rows()[0].centi_eur_per_mwh, 1'235);
-  EXPECT_EQ(feed_->rows()[1].utc_s, 1'749'601'800);
-  EXPECT_EQ(feed_->rows()[1].centi_eur_per_mwh, -50'001);
+  ASSERT_EQ(rows_.size(), 2U);
+  EXPECT_EQ(rows_[0].eur_per_mwh, 12.345);
+  EXPECT_EQ(rows_[1].utc_s, 1'749'601'800);
+  EXPECT_EQ(rows_[1].eur_per_mwh, -500.01);
 }
 
 TEST_F(Feed, TakesRows) {
   settings_.fields = {.rows = "data.rows", .time = "start", .price = "eur"};
   ASSERT_EQ(ask(R"({"data":{"rows":[{"start":"2025-06-11T02:00:00+02:00","eur":41.5}]}})"),
             Status::kOk);
-  ASSERT_EQ(feed_->rows().size(), 1U);
-  EXPECT_EQ(feed_->rows()[0].utc_s, utc_from_civil({2025, 6, 11, 0, 0, 0}));
+  ASSERT_EQ(rows_.size(), 1U);
+  EXPECT_EQ(rows_[0].utc_s, utc_from_civil({2025, 6, 11, 0, 0, 0}));
 }
 
 TEST_F(Feed, WhatIsNoAnswerIsRefused) {
@@ -64,21 +70,20 @@ TEST_F(Feed, WhatIsNoAnswerIsRefused) {
   }
 }
 
-TEST_F(Feed, AnswersOfMoreThanFourDaysAreTooLarge) {
+TEST_F(Feed, OfManyDaysThoseAroundNowCountAndLargeFilesDoNot) {
   std::string times;
   std::string prices;
   for (int i = 0; i < 500; ++i) {
     times += (i > 0 ? "," : "") + std::to_string(1'749'600'000 + 900 * i);
-    prices += i > 0 ? ",1" : "1";
+    prices += (i > 0 ? "," : "") + std::to_string(i % 97);
   }
-  EXPECT_EQ(ask(R"({"unix_seconds":[)" + times + R"(],"price":[)" + prices + "]}"),
-            Status::kTooLarge);
+  EXPECT_EQ(ask(R"({"unix_seconds":[)" + times + R"(],"price":[)" + prices + "]}"), Status::kOk);
   EXPECT_EQ(ask(std::string(400'000, ' ')), Status::kTooLarge);
 }
 
 TEST_F(Feed, NoFileIsNoConnection) {
   settings_.file = folder_.file("nothing").c_str();
-  EXPECT_EQ(DayAheadFeed(settings_, [] { return false; }).ask(now_), Status::kNotConnected);
+  EXPECT_EQ(ask_day_ahead(settings_, now_, [] { return false; }).status, Status::kNotConnected);
   EXPECT_NE(day_ahead_status_text(Status::kNotConnected, settings_).find("[outlook] file"),
             std::string_view::npos);
   settings_.file = {};
@@ -98,11 +103,11 @@ class Schedule : public Feed {
     return utc_from_local({2025, 6, 11, hour, minute, 0});
   }
   void know_until(std::int64_t until) {
-    std::vector<TimedPrice> rows;
+    std::vector<DayAheadRow> rows;
     for (std::int64_t t = outlook_days_around(now_).today_utc_s; t < until; t += 900) {
-      rows.push_back({t, static_cast<std::int32_t>(t / 900 % 97)});
+      rows.push_back({t, static_cast<double>(t / 900 % 97)});
     }
-    ASSERT_EQ(book_.take(rows, local(0, 0)), Status::kOk);
+    ASSERT_EQ(book_.take(lay_out_day_ahead(rows).days, local(0, 0)), Status::kOk);
   }
   [[nodiscard]] std::int64_t next(std::int64_t now, std::int64_t last, int tries) const {
     return next_ask_utc_s(book_, settings_, now, last, tries);

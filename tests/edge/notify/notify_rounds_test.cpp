@@ -99,10 +99,10 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
 TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   use_mail();
   settings_.after_s = 0;
-  settings_.settled.url = "http://127.0.0.1:1/";
-  settings_.settled.file = folder_.file("notify/settled.csv");
+  settings_.awaits_settled = true;
+  settings_.money.settled_file = folder_.file("notify/settled.csv");
   round_of_its_own(settings_, kNow);
-  EXPECT_THAT(mails(), HasSubstr("ALARM: no settled price has come yet: bess-notify --settle"));
+  EXPECT_THAT(mails(), HasSubstr("ALARM: no settled price has come yet: bess-prices --settle"));
   const auto settle_until = [&](std::int64_t utc_s) {
     SettledPrices prices;
     prices.put(std::vector<SettledQuarter>{{utc_s / 900 * 900 - 900, 80}});

@@ -38,12 +38,12 @@ class Edge {
   void take_answers(std::int64_t t) {
     for (; next_ < inputs_.answers.size() && inputs_.answers[next_].received_utc_s <= t; ++next_) {
       const DrawnAnswer& answer = inputs_.answers[next_];
-      std::vector<TimedPrice> rows;
+      std::vector<DayAheadRow> rows;
       for (std::size_t q = 0; q < answer.centi.size(); ++q) {
         rows.push_back({answer.first_utc_s + static_cast<std::int64_t>(q) * kSecondsPerQuarterHour,
-                        answer.centi[q]});
+                        answer.centi[q] / 100.0});
       }
-      ASSERT_EQ(book_.take(rows, answer.received_utc_s), Status::kOk);
+      ASSERT_EQ(book_.take(lay_out_day_ahead(rows).days, answer.received_utc_s), Status::kOk);
     }
   }
   bool see_newest_row(std::int64_t t) {

@@ -48,7 +48,8 @@ layer edge/commands                 edge/commands edge/update edge/account edge/
   edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # bess-prices: by itself, with the heap.
-layer edge/fetch                    edge/fetch edge/companion edge/storage edge/settings $grounds
+layer edge/fetch                    edge/fetch edge/account edge/companion edge/storage \
+  edge/settings $grounds
 # Beside the controller: they read what the log wrote.
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
@@ -119,7 +120,7 @@ only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only 
 only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   'edge/fetch/fetch.cpp:|edge/notify/connection_trouble.cpp:|shared/host/(http_client|transfer_trouble).cpp:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
-only cjson/  'edge/fetch/price_json.cpp:|shared/host/json.cpp:' 'edge shared workstation tools'
+only cjson/  'shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 reports='(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp'
 only pugixml "(workstation/market/feed/entsoe_element.h|$reports):" 'edge shared workstation tools'

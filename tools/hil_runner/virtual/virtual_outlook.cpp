@@ -1,6 +1,6 @@
 #include "tools/hil_runner/virtual/virtual_outlook.h"
 
-#include "edge/fetch/price_json.h"
+#include "edge/fetch/day_ahead_feed.h"
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 
@@ -30,28 +30,22 @@ void VirtualOutlook::cycle_done(const CycleRecord& record) {
 }
 
 void VirtualOutlook::fetch(std::int64_t now_utc_s) {
-  std::vector<TimedPrice> rows;
-  const Status asked = ask(now_utc_s, rows);
   DayAheadInquiry& inquiry = process_->inquiry;
-  if (inquiry.take(asked, rows, settings_, now_utc_s)) kept_ = inquiry.book;
+  if (inquiry.take(ask(now_utc_s), settings_, now_utc_s)) kept_ = inquiry.book;
 }
 
 /// The server answers by the true time, and is asked for the days of the edge's.
-Status VirtualOutlook::ask(std::int64_t now_utc_s, std::vector<TimedPrice>& rows) const {
-  if (time_.market() == VirtualTime::Market::kPaused) return Status::kTimeout;
-  if (time_.market() == VirtualTime::Market::kDead) return Status::kNotConnected;
+DayAheadAsked VirtualOutlook::ask(std::int64_t now_utc_s) const {
+  if (time_.market() == VirtualTime::Market::kPaused) return {.status = Status::kTimeout};
+  if (time_.market() == VirtualTime::Market::kDead) return {.status = Status::kNotConnected};
   const OutlookDays days = outlook_days_around(now_utc_s);
   const AuctionAnswer answer =
       auction_.answer(std::string(day_ahead_url("{today}", days).view()),
                       std::string(day_ahead_url("{tomorrow}", days).view()),
                       time_.utc_ns() / kNanosecondsPerSecond);
-  if (answer.fault == AuctionFault::kSlow) return Status::kTimeout;
-  if (answer.status != 200) return Status::kHttpError;
-  const auto take = [](void* taken, const PriceRow& row) {
-    static_cast<std::vector<TimedPrice>*>(taken)->push_back(
-        {row.minute_utc_s, row.price_centi_eur_per_mwh});
-  };
-  return parse_day_ahead(answer.body, settings_.fields, {&rows, take});
+  if (answer.fault == AuctionFault::kSlow) return {.status = Status::kTimeout};
+  if (answer.status != 200) return {.status = Status::kHttpError};
+  return read_day_ahead(answer.body, settings_.fields);
 }
 
 void VirtualOutlook::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {

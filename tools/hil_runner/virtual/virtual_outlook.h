@@ -36,7 +36,7 @@ class VirtualOutlook {
     DayAheadInquiry inquiry;
   };
   void fetch(std::int64_t now_utc_s);
-  [[nodiscard]] Status ask(std::int64_t now_utc_s, std::vector<TimedPrice>& rows) const;
+  [[nodiscard]] DayAheadAsked ask(std::int64_t now_utc_s) const;
   void plan(std::int64_t tick_utc_s, std::int32_t level_centi);
   [[nodiscard]] std::int64_t edge_utc_s() const;
 

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "edge/fetch/price_json.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -95,17 +94,15 @@ Status VirtualPrices::fetch_once(PriceRow& row) {
   return parse_newest_price(reply.text, settings_.fields, edge_utc_s(), row);
 }
 
-Status VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms,
-                                 const PriceRowTaker& taker, int& items) {
-  items = 0;
+PriceAnswer VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms) {
   const bool is_past = std::string_view(url).find("/ods133/") != std::string_view::npos;
   const Reply reply = ask({.dataset = is_past ? Dataset::kMinutesOfPastDays : Dataset::kMinutes,
                            .limit = number_of(url, "limit="),
                            .offset = number_of(url, "offset=")},
                           timeout_ms);
   time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
-  if (reply.status != Status::kOk) return reply.status;
-  return parse_prices(reply.text, settings_.fields, edge_utc_s(), taker, items);
+  if (reply.status != Status::kOk) return {.status = reply.status};
+  return parse_prices(reply.text, settings_.fields, edge_utc_s());
 }
 
 std::int64_t VirtualPrices::edge_utc_s() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "edge/fetch/price_json.h"
 #include "edge/prices/newest_row.h"
 #include "edge/prices/price_settings.h"
 #include "tools/hil_runner/scenario/scenario.h"
@@ -27,8 +28,7 @@ class VirtualPrices {
 
   // One request, which takes its time, as bess-prices has them for the start.
   Status fetch_once(PriceRow& row);
-  Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
-                    int& items);
+  PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms);
 
  private:
   /// What the server answers to a request of now, and how long that takes.

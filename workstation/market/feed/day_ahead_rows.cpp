@@ -6,10 +6,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "shared/host/csv.h"
+#include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/plain_text.h"
 #include "shared/host/text.h"
@@ -17,13 +17,9 @@
 #include "shared/utc_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
 #include "workstation/market/feed/market_rows.h"
-#include "workstation/market/series/local_date.h"
 
 namespace bess {
 namespace {
-
-/// Seconds that no calendar here reaches: 2200-01-01.
-constexpr double kUnixSecondsMax = 7'258'118'400;
 
 struct TidyColumns {
   char separator = ',';
@@ -95,68 +91,6 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
   return row;
 }
 
-/// By local day, in order of time.
-using RowsByDay = std::map<LocalDate, std::vector<DayAheadRow>>;
-
-/// Seconds that each price of a day holds; 0 when they do not come every 15, 30 or 60 minutes.
-std::int64_t step_of_day(const std::vector<DayAheadRow>& day) {
-  const std::int64_t said_s = 60 * std::int64_t{day.front().resolution_min};
-  if (day.size() < 2) return said_s;
-  std::int64_t step_s = day[1].utc_s - day[0].utc_s;
-  for (std::size_t r = 1; r < day.size(); ++r) {
-    step_s = std::min(step_s, day[r].utc_s - day[r - 1].utc_s);
-  }
-  if (said_s != 0) step_s = std::min(step_s, said_s);  // longer where a price is missing
-  return step_s == 900 || step_s == 1800 || step_s == 3600 ? step_s : 0;
-}
-
-/// A day of quarter-hours is one of hours when each of its hours, and there are many, has one
-/// price.
-bool are_repeated_hours(const std::vector<DayAheadRow>& day) {
-  constexpr std::size_t kHoursMin = 20;
-  std::map<std::int64_t, std::vector<double>> hours;
-  for (const DayAheadRow& row : day) {
-    if (is_published(row.eur_per_mwh)) hours[row.utc_s / 3600].push_back(row.eur_per_mwh);
-  }
-  std::size_t whole = 0;
-  for (const auto& [hour, prices] : hours) {
-    if (std::ranges::adjacent_find(prices, std::not_equal_to<>{}) != prices.end()) return false;
-    whole += prices.size() == 4 ? 1 : 0;
-  }
-  return whole >= kHoursMin;
-}
-
-/// Sorted and without doubles; later rows of the list win.
-RowsByDay by_day(std::vector<DayAheadRow> rows, std::string_view name,
-                 std::vector<Finding>& findings) {
-  std::ranges::stable_sort(rows, {}, &DayAheadRow::utc_s);
-  RowsByDay days;
-  std::vector<DayAheadRow> distinct;
-  for (const DayAheadRow& row : rows) {
-    if (row.utc_s % kSecondsPerQuarterHour != 0) {
-      fail("{}: {} is not the start of a quarter-hour; mend the times", name,
-           utc_text(row.utc_s).view());
-    }
-    if (distinct.empty() || distinct.back().utc_s != row.utc_s) {
-      distinct.push_back(row);
-      continue;
-    }
-    if (!is_published(row.eur_per_mwh)) continue;
-    const bool disagree =
-        is_published(distinct.back().eur_per_mwh) && distinct.back().eur_per_mwh != row.eur_per_mwh;
-    if (disagree && findings.empty()) {
-      findings.push_back({"overlap", true,
-                          fmt::format("two day-ahead prices of one time, {} and {}: which is it? "
-                                      "the later one counts when it is accepted",
-                                      distinct.back().eur_per_mwh, row.eur_per_mwh),
-                          row.utc_s});
-    }
-    distinct.back() = row;
-  }
-  for (const DayAheadRow& row : distinct) days[local_date_of(row.utc_s)].push_back(row);
-  return days;
-}
-
 }  // namespace
 
 std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string_view name) {
@@ -177,71 +111,65 @@ std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string
 }
 
 std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_view name) {
-  const Json json = Json::parse(text);
-  const JsonValue times = json.value()["unix_seconds"];
-  const JsonValue prices = json.value()["price"];
-  if (!times.is_list() || !prices.is_list() || times.size() != prices.size()) {
-    fail(
-        "{}: no day-ahead prices of energy-charts (unix_seconds and price, one of each), or cut "
-        "short; get it again",
-        name);
+  DayAheadAnswer answer = parse_day_ahead_json(text);
+  if (!answer.trouble.empty()) {
+    fail("{}: no day-ahead prices of energy-charts, or cut short: {}; get it again", name,
+         answer.trouble);
   }
-  const JsonValue unit = json.value()["unit"];
-  if (unit.exists() && plain_name(unit.text_or("")) != "eurmwh") {
-    fail("{}: prices in \"{}\" where EUR / MWh is needed; use an area that publishes it", name,
-         one_line(unit.text_or(""), 20));
+  if (answer.passed_over > 0) {
+    fail("{}: unix_seconds has {} that are no times; get it again", name, answer.passed_over);
   }
+  return std::move(answer.rows);
+}
+
+DayAheadFile parse_day_ahead_text(std::string_view text, std::string_view name) {
+  if (looks_like_xml(text)) return parse_entsoe_day_ahead(text, name);
+  if (looks_like_json(text)) return {.rows = parse_energy_charts(text, name)};
+  return {.rows = parse_tidy_day_ahead(text, name)};
+}
+
+std::vector<DayAheadRow> rows_of_one_zone(const std::vector<std::string>& paths,
+                                          std::vector<std::string>& notes) {
   std::vector<DayAheadRow> rows;
-  auto price = prices.begin();
-  for (const JsonValue time : times) {
-    const std::optional<double> utc_s = time.number();
-    const JsonValue of_time = *price;
-    ++price;
-    if (!utc_s || !(*utc_s >= 0 && *utc_s < kUnixSecondsMax) || std::floor(*utc_s) != *utc_s) {
-      fail("{}: unix_seconds[{}] is no time; get it again", name, rows.size());
+  std::string zone, path_of_zone;
+  for (const std::string& path : paths) {
+    const DayAheadFile file = parse_day_ahead_text(read_file(path), path);
+    if (!zone.empty() && !file.zone.empty() && file.zone != zone) {
+      fail("{}: prices of the zone {}, and {} has those of {}; import one zone at a time", path,
+           file.zone, path_of_zone, zone);
     }
-    if (!of_time.is_null() && !of_time.number()) {
-      fail("{}: price[{}] is not a number; get it again", name, rows.size());
-    }
-    rows.push_back({static_cast<std::int64_t>(*utc_s), of_time.number().value_or(kNotPublished)});
+    if (zone.empty() && !file.zone.empty()) zone = file.zone, path_of_zone = path;
+    if (!file.unused.empty()) notes.push_back(fmt::format("{}: {}", path, file.unused));
+    rows.insert(rows.end(), file.rows.begin(), file.rows.end());
   }
   return rows;
 }
 
-std::vector<DayAheadRow> parse_day_ahead_text(std::string_view text, std::string_view name) {
-  if (looks_like_xml(text)) return parse_entsoe_day_ahead(text, name);
-  return looks_like_json(text) ? parse_energy_charts(text, name) : parse_tidy_day_ahead(text, name);
-}
-
 JoinedDayAhead join_day_ahead(std::vector<DayAheadRow> rows, std::string_view name) {
+  const DayAheadLayout layout = lay_out_day_ahead(std::move(rows));
+  if (!layout.trouble.empty()) fail("{}: {}; mend the times", name, layout.trouble);
   JoinedDayAhead joined;
-  for (const auto& [date, day] : by_day(std::move(rows), name, joined.findings)) {
-    const std::int64_t step_s = step_of_day(day);
-    if (step_s == 0) {
-      fail(
-          "{}: the day-ahead prices of {} do not come every 15, 30 or 60 minutes ({}); get the day "
-          "again",
-          name, format_local_date(date), counted(day.size(), "row"));
-    }
-    const bool repeated = step_s == kSecondsPerQuarterHour && are_repeated_hours(day);
-    const int said_min = day.front().resolution_min;
-    const int resolution_min = repeated ? 60 : std::max(said_min, static_cast<int>(step_s / 60));
-    const std::int64_t midnight_utc_s = local_midnight_utc_s(add_days(date, 1));
-    for (std::size_t r = 0; r < day.size(); ++r) {
-      if (!is_published(day[r].eur_per_mwh)) continue;
-      const std::int64_t end_utc_s = r + 1 < day.size()
-                                         ? std::min(day[r].utc_s + step_s, day[r + 1].utc_s)
-                                         : std::min(day[r].utc_s + step_s, midnight_utc_s);
-      for (std::int64_t utc_s = day[r].utc_s; utc_s < end_utc_s; utc_s += kSecondsPerQuarterHour) {
-        const DayAheadPrice price{utc_s, day[r].eur_per_mwh, resolution_min,
-                                  day[r].published_utc_s};
-        if (!append_day_ahead(joined.series, price)) {
-          fail("{}: {} lies more than 40 years behind the first row; mend the date", name,
-               utc_text(utc_s).view());
-        }
+  if (layout.contradiction_utc_s != 0) {
+    joined.findings.push_back(
+        {"overlap", true,
+         fmt::format("two day-ahead prices of one time, {} and {}: which is it? the later one "
+                     "counts when it is accepted",
+                     layout.contradicting_eur_per_mwh[0], layout.contradicting_eur_per_mwh[1]),
+         layout.contradiction_utc_s});
+  }
+  for (const DayAheadDay& day : layout.days) {
+    joined.constant_days += day.is_constant() ? 1 : 0;
+    if (day.is_constant()) continue;
+    for (const DayAheadQuarterHour& q : day.quarter_hours) {
+      joined.assumed += q.is_assumed ? 1 : 0;
+      if (q.is_assumed) continue;
+      if (!append_day_ahead(joined.series,
+                            {q.utc_s, q.eur_per_mwh, day.resolution_min, q.published_utc_s})) {
+        fail("{}: {} lies more than 40 years behind the first row; mend the date", name,
+             utc_text(q.utc_s).view());
       }
     }
-    if (resolution_min == 60) joined.repeated_hours += step_s == 900 ? day.size() / 4 : day.size();
+    if (day.resolution_min == 60) joined.repeated_hours += day.quarter_hours.size() / 4;
   }
   if (joined.series.size() == 0) fail("{}: holds no day-ahead prices; choose other days", name);
   return joined;
@@ -255,6 +183,16 @@ std::string describe_day_ahead(const JoinedDayAhead& joined) {
       fmt::format("{} of day-ahead prices from {} to {}, of them {} repeated\n",
                   counted(prices, "quarter-hour"), utc_text(series.utc_s(0)).view(),
                   utc_text(series.end_utc_s()).view(), counted(joined.repeated_hours, "hour"));
+  if (joined.assumed > 0) {
+    text += fmt::format(
+        "{} left out: merged rows, or missing ones; a source that has every row "
+        "fills them\n",
+        counted(joined.assumed, "quarter-hour"));
+  }
+  if (joined.constant_days > 0) {
+    text += fmt::format("{} of one price all day left out: zeros until the auction?\n",
+                        counted(joined.constant_days, "day"));
+  }
   const std::vector<IncompleteDay> incomplete = incomplete_days(series);
   if (incomplete.empty()) return text;
   const IncompleteDay& day = incomplete.front();

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "shared/host/day_ahead_rows.h"
 #include "shared/host/text.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
@@ -20,8 +20,6 @@ constexpr double kCorrelationMore = 0.02;              ///< that a shift must ha
 /// Limits of the coupled auction, raised by steps when reached (harmonised clearing prices).
 constexpr double kAuctionMinEurPerMwh = -500, kAuctionMaxEurPerMwh = 5'000;
 constexpr double kNoDayStaysWithinEurPerMwh = 5;  ///< as in EUR/kWh
-constexpr std::array kNoPrice{-9'999.0, 9'999.0,
-                              -999.0};  ///< what instruments write; nobody bids so low
 constexpr std::int64_t kYear2000_s = 946'684'800, kYear2100_s = 4'102'444'800;
 
 class DayAheadJudge {
@@ -63,10 +61,8 @@ class DayAheadJudge {
   }
 
   void check_prices() {
-    tell_first(
-        "sentinel", true,
-        [](double price) { return std::ranges::find(kNoPrice, price) != kNoPrice.end(); },
-        "stands for \"no price\"; leave the row out if your source says so");
+    tell_first("sentinel", true, is_day_ahead_sentinel,
+               "stands for \"no price\"; leave the row out if your source says so");
     tell_first(
         "price-range", true,
         [](double price) { return std::fabs(price) > kPlausiblePriceMaxEurPerMwh; },

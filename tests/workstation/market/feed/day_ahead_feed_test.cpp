@@ -8,6 +8,7 @@
 #include "shared/utc_text.h"
 #include "tests/support/market_series.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/train_commands.h"
 #include "tests/workstation/market/feed/fake_charts.h"
 #include "workstation/market/feed/day_ahead_fetch.h"
@@ -39,7 +40,7 @@ std::string a44(const std::string& points, const std::string& curve = "A03",
 }
 
 JoinedDayAhead joined(const std::string& text) {
-  return join_day_ahead(parse_day_ahead_text(text, "da"), "da");
+  return join_day_ahead(parse_day_ahead_text(text, "da").rows, "da");
 }
 
 std::string error_of(const std::string& text) {
@@ -88,14 +89,79 @@ TEST(DayAheadRows, EnergyChartsOfHoursAndItsDamages) {
   EXPECT_TRUE(std::isnan(day.series.eur_per_mwh[4]));
   EXPECT_EQ(day.series.eur_per_mwh[11], 12);
   EXPECT_THAT(error_of(charts("1748728800,1748732400", "10.5")), HasSubstr("cut short"));
-  EXPECT_THAT(error_of(charts("1748728800,-5", "1,2")), HasSubstr("unix_seconds[1]"));
-  EXPECT_THAT(error_of(charts("1748728800,1e300", "1,2")), HasSubstr("unix_seconds[1]"));
-  EXPECT_THAT(error_of(charts("1748728800,1748732400", "1,\"2\"")), HasSubstr("price[1]"));
+  EXPECT_THAT(error_of(charts("1748728800,-5", "1,2")), HasSubstr("unix_seconds"));
+  EXPECT_THAT(error_of(charts("1748728800,1e300", "1,2")), HasSubstr("unix_seconds"));
+  EXPECT_EQ(joined(charts("1748728800,1748732400", "1,\"2\"")).series.size(), 4u);
   EXPECT_THAT(error_of(charts("1748728800,1748732400", "1,2", "GBP / MWh")),
               HasSubstr("EUR / MWh"));
   EXPECT_THAT(error_of("{\"unix_seconds\":[1748"), HasSubstr("energy-charts"));
   EXPECT_THAT(error_of(charts("1748728800,1748729400", "1,2")), HasSubstr("quarter-hour"));
-  EXPECT_THAT(error_of(charts("1748728800,1748736000", "1,2")), HasSubstr("every 15, 30 or 60"));
+  const JoinedDayAhead apart = joined(charts("1748728800,1748736000", "1,2"));
+  EXPECT_EQ(apart.series.size(), 12u);  // merged, or one is missing: not trained on
+  EXPECT_TRUE(std::isnan(apart.series.eur_per_mwh[4]));
+  EXPECT_EQ(apart.assumed, 4u);
+}
+
+/// A series of a zone and a sequence, quarter-hours or hours of one local day.
+std::string a44_series(const std::string& zone, int sequence, const std::string& resolution,
+                       double first) {
+  const int count = resolution == "PT15M" ? 96 : 24;
+  std::string points;
+  for (int p = 1; p <= count; ++p) points += a44_point(p, fmt::format("{}", first + p));
+  const std::string document = a44(points, "A01", resolution);
+  const std::size_t begin = document.find("<TimeSeries>") + 12;
+  const std::string body = document.substr(begin, document.find("</TimeSeries>") - begin);
+  return fmt::format(
+      "<TimeSeries><out_Domain.mRID codingScheme=\"A01\">{}</out_Domain.mRID>"
+      "<classificationSequence_AttributeInstanceComponent.position>{}"
+      "</classificationSequence_AttributeInstanceComponent.position>{}</TimeSeries>",
+      zone, sequence, body);
+}
+
+std::string document_of(const std::string& series) {
+  return "<Publication_MarketDocument>" + series + "</Publication_MarketDocument>";
+}
+
+TEST(DayAheadRows, OfTwoAuctionsTheDayAheadOneCounts) {
+  const std::string hours = a44_series("10YDE", 1, "PT60M", 100);
+  const std::string quarters = a44_series("10YDE", 2, "PT15M", 500);
+  for (const std::string& both : {hours + quarters, quarters + hours}) {
+    const DayAheadFile file = parse_day_ahead_text(document_of(both), "da");
+    EXPECT_EQ(file.zone, "10YDE");
+    EXPECT_THAT(file.unused, HasSubstr("96"));
+    const JoinedDayAhead day = join_day_ahead(file.rows, "da");
+    EXPECT_TRUE(day.findings.empty());
+    ASSERT_EQ(day.series.size(), 96u);
+    EXPECT_EQ(day.series.eur_per_mwh[0], 101);
+    EXPECT_EQ(day.series.eur_per_mwh[95], 124);
+  }
+  // A later sequence alone is all there is.
+  EXPECT_EQ(joined(document_of(quarters)).series.eur_per_mwh[0], 501);
+}
+
+TEST(DayAheadRows, OfTwoZonesNothingIsJoined) {
+  const std::string be = a44_series("10YBE----------2", 1, "PT60M", 100);
+  const std::string pt = a44_series("10YPT-REN------W", 1, "PT60M", 50);
+  EXPECT_THAT(error_of(document_of(be + pt)),
+              AllOf(HasSubstr("10YBE----------2"), HasSubstr("10YPT-REN------W")));
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const std::vector<std::string> files{folder.write("be.xml", document_of(be)),
+                                       folder.write("pt.xml", document_of(pt))};
+  EXPECT_THAT(user_error_of([&] { rows_of_one_zone(files, notes); }),
+              AllOf(HasSubstr("be.xml"), HasSubstr("pt.xml"), HasSubstr("10YPT-REN------W")));
+  EXPECT_EQ(rows_of_one_zone({files[0], files[0]}, notes).size(), 48u);
+}
+
+TEST(DayAheadRows, ADayOfOnePriceIsLeftOut) {
+  std::string times, prices;
+  for (int h = 0; h < 48; ++h) {
+    times += fmt::format("{}{}", h == 0 ? "" : ",", 1'748'728'800 + 3'600 * h);
+    prices += fmt::format("{}{}", h == 0 ? "" : ",", h < 24 ? h : 0);
+  }
+  const JoinedDayAhead day = joined(charts(times, prices));
+  EXPECT_EQ(day.series.size(), 96u);
+  EXPECT_EQ(day.constant_days, 1u);
 }
 
 std::string table_of_day(const LocalDate& date, std::int64_t step_s, bool repeats_hours) {

@@ -1,13 +1,13 @@
-#include "edge/notify/settled_fetch.h"
+#include "edge/fetch/settled_fetch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "edge/account/account_days.h"
+#include "edge/account/money_settings.h"
 #include "edge/control/quarter_hour_energy.h"
+#include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
-#include "edge/notify/journal_line.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
 #include "shared/scaled_clock.h"
@@ -20,13 +20,17 @@ namespace {
 constexpr std::int64_t kDayS = 86'400;
 constexpr std::size_t kAnswerBytesMax = 16 * 1024 * 1024;  // 100 days, with every field: 3 MB
 
+void say(JournalLevel level, const std::string& text) {
+  write_journal_line(level, "bess-prices: settled prices: " + text);
+}
+
 /// The answer; empty with a line in `trouble`.
 std::string ask(const SettledSource& source, const std::string& url, std::string& trouble,
                 const std::stop_token& stop) {
   HttpOutcome outcome = http_request(
       {.url = url,
        .limits = {.deadline_s = source.timeout_ms / 1'000.0, .bytes_max = kAnswerBytesMax},
-       .user_agent = "bess-notify",
+       .user_agent = "bess-prices",
        .ca_file = source.ca_file,
        .authorities = "install ca-certificates, or name the file of its own authority, ca_file"},
       [&] { return stop.stop_requested(); });
@@ -49,6 +53,30 @@ bool is_validated(std::string_view quality) {
   return std::ranges::equal(quality, kValidated, [](char a, char b) {
     return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
   });
+}
+
+/// What it gives is public, and plain http would let it be forged.
+bool is_safe_url(const std::string& url) {
+  return url.starts_with("https://") || url.starts_with("http://127.0.0.1") ||
+         url.starts_with("http://localhost");
+}
+
+void read_settled(TomlTable table, SettledSource& source) {
+  table.line("url", source.url);
+  table.line("ca_file", source.ca_file);
+  table.integer("days", source.days, 1, kSettledDaysMax);
+  table.finish();
+  if (source.url.empty() || !table.ok()) return;
+  if (!is_safe_url(source.url)) {
+    return table.fail("url", "must start with https://, or lead to this machine: http://127.0.0.1");
+  }
+  const bool has_from = source.url.find("{from}") != std::string::npos;
+  const bool has_until = source.url.find("{until}") != std::string::npos;
+  const bool has_query = source.url.find('?') != std::string::npos;
+  if (has_from != has_until || (has_query && !has_from)) {
+    return table.fail("url", "must hold {from} and {until}, or be without any query: Elia's");
+  }
+  if (!source.ca_file.empty()) source.ca_file = table.resolved(source.ca_file);
 }
 
 bool parse_row(JsonValue row, SettledQuarter& quarter) {
@@ -79,6 +107,15 @@ std::string keep(const SettledSource& source, const SettledPrices& prices) {
 }
 
 }  // namespace
+
+bool load_settled_source(const std::string& path, SettledSource& source, std::string& error) {
+  TomlValue document;
+  if (!parse_toml_file(path, document, error)) return false;
+  TomlTable root(&document, path, "", error);
+  source.file = read_money_settings(root).settled_file;
+  read_settled(TomlTable(root.table("settled"), path, "[settled]", error), source);
+  return error.empty();
+}
 
 std::string settled_url(const SettledSource& source, std::int64_t from_utc_s,
                         std::int64_t until_utc_s) {
@@ -142,39 +179,26 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   return result;
 }
 
-std::string settled_trouble(const SettledSource& source, std::int64_t now_utc_s) {
-  constexpr std::int64_t kLateS = 3 * kDayS;  // a day is published on the next
-  constexpr const char* kMend = ": bess-notify --settle says why";
-  SettledPrices prices;
-  const std::string loss = prices.read(source.file);
-  if (!loss.empty()) return loss;
-  if (prices.quarters().empty()) return std::string("no settled price has come yet") + kMend;
-  const std::int64_t newest_utc_s = prices.quarters().back().start_utc_s;
-  if (midnight_before(now_utc_s) - newest_utc_s <= kLateS) return "";
-  return "no settled price is newer than " + std::string(utc_text(newest_utc_s).view()) + kMend;
-}
-
-SettledFetcher::SettledFetcher(const SettledSource& source)
-    : source_(source), thread_([this](const std::stop_token& stop) { run(stop); }) {}
-
-void SettledFetcher::run(const std::stop_token& stop) {
-  constexpr std::chrono::seconds kLook(60);
+void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
+                         const std::stop_token& stop) {
   SettledSchedule schedule;
   std::string trouble_before;
   while (!stop.stop_requested()) {
-    const std::int64_t now_utc_s = clock_ns(CLOCK_REALTIME) / kNanosecondsPerSecond;
+    const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
     if (schedule.is_due(now_utc_s)) {
-      const SettledResult result = fetch_settled(source_, now_utc_s, stop);
+      const SettledResult result = fetch_settled(source, now_utc_s, stop);
       schedule.tried(now_utc_s, result.is_whole && result.trouble.empty());
       if (!result.trouble.empty() && result.trouble != trouble_before) {
-        say(JournalLevel::kWarning, "settled prices: " + result.trouble + "; tried again");
+        say(JournalLevel::kWarning, result.trouble + "; tried again");
       } else if (result.trouble.empty() && !trouble_before.empty()) {
-        say(JournalLevel::kNotice, "settled prices are fetched again");
+        say(JournalLevel::kNotice, "fetched again");
       }
       trouble_before = result.trouble;
     }
-    std::unique_lock lock(lock_);
-    wake_.wait_for(lock, stop, kLook, [] { return false; });
+    constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
+    for (int slice = 0; slice < 600 && !stop.stop_requested(); ++slice) {
+      sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kSliceNs);
+    }
   }
 }
 

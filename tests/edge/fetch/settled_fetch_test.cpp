@@ -1,6 +1,6 @@
 // Settled prices: rows as Elia's portal gives them, a server that has them late, fails or talks
 // nonsense, and the file that comes of it.
-#include "edge/notify/settled_fetch.h"
+#include "edge/fetch/settled_fetch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,6 +19,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
+const std::string kSettings =
+    "[battery]\nmap = \"" BESS_SOURCE_DIR
+    "/edge/maps/simulator.toml\"\n[price]\nurl = \"http://127.0.0.1:1/p\"\n";
 constexpr std::int64_t kSettleNow = 1'679'911'200;       // 2023-03-27, 12:00 in Brussels
 constexpr std::int64_t kSettleMidnight = 1'679'868'000;  // 22:00Z: the day before had 23 hours
 
@@ -95,7 +98,7 @@ class SettledServer : public ::testing::Test {
         "http://127.0.0.1:" + std::to_string(server_.port()) +
         "/exports/json?where=datetime%20%3E%3D%20%22{from}%22%20AND%20datetime%20%3C%20%22"
         "{until}%22";
-    source_.file = folder_.file("notify/settled.csv");
+    source_.file = folder_.file("state/settled.csv");
     source_.days = 1;
     source_.timeout_ms = 2'000;
   }
@@ -170,7 +173,7 @@ TEST_F(SettledServer, ADamagedFileIsFetchedAgain) {
   body_ = rows(kSettleMidnight - 86'400, kSettleMidnight, 12.5, "Validated");
   EXPECT_EQ(fetch().trouble, "");
   const std::string whole = text_of_file(source_.file);
-  EXPECT_EQ(folder_.write("notify/settled.csv", whole.substr(0, 200)), source_.file);
+  EXPECT_EQ(folder_.write("state/settled.csv", whole.substr(0, 200)), source_.file);
   EXPECT_EQ(fetch().trouble, "");
   EXPECT_EQ(text_of_file(source_.file), whole);
 }
@@ -181,8 +184,8 @@ TEST_F(SettledServer, IsAskedByTheProgram) {
   const std::int64_t start = now / 900 * 900 - 96 * 900;
   body_ = rows(start, start + 900, 7, "NV");
   const std::string config =
-      folder_.write("edge.toml", "[settled]\nurl = \"" + source_.url + "\"\n");
-  EXPECT_EQ(std::system((std::string(BESS_NOTIFY_PROGRAM) + " --settle --config " + config + " > " +
+      folder_.write("edge.toml", kSettings + "[settled]\nurl = \"" + source_.url + "\"\n");
+  EXPECT_EQ(std::system((std::string(BESS_PRICES_PROGRAM) + " --settle --config " + config + " > " +
                          folder_.file("said"))
                             .c_str()),
             0);
@@ -190,7 +193,8 @@ TEST_F(SettledServer, IsAskedByTheProgram) {
               HasSubstr("1 quarter-hours, yesterday is not whole"));
   EXPECT_EQ(kept().find(start)->eur_per_mwh, 7);
   std::filesystem::remove(source_.file);
-  SettledFetcher fetcher(source_);
+  const std::jthread fetcher(
+      [&](const std::stop_token& stop) { fetch_settled_daily(source_, ScaledClock{}, stop); });
   for (int i = 0; i < 500 && !std::filesystem::exists(source_.file); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -199,8 +203,8 @@ TEST_F(SettledServer, IsAskedByTheProgram) {
 
 TEST_F(SettledServer, KeysAreRefusedByFileAndLine) {
   const auto refused = [&](const std::string& lines) {
-    const std::string config = folder_.write("bad.toml", "[settled]\n" + lines);
-    std::system((std::string(BESS_NOTIFY_PROGRAM) + " --check --config " + config + " > " +
+    const std::string config = folder_.write("bad.toml", "[settled]\n" + lines + kSettings);
+    std::system((std::string(BESS_PRICES_PROGRAM) + " --check --config " + config + " > " +
                  folder_.file("said") + " 2>&1")
                     .c_str());
     return text_of_file(folder_.file("said"));

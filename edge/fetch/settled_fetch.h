@@ -1,6 +1,5 @@
-// Fetches the settled prices of past quarter-hours once a day, and keeps them for whoever counts
-// money (settled_prices.h). In a thread of its own: a server that hangs holds up no alarm, and the
-// controller has no part in it.
+// Fetches the settled prices of past quarter-hours once a day, and keeps them in the state folder
+// for whoever counts money (settled_prices.h).
 //
 // Asked for is what is not validated yet, since the oldest day that is kept, up to today's local
 // midnight: the day before, and what has become of the days before that. A day that is not there
@@ -8,15 +7,13 @@
 // every four hours.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <stop_token>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "edge/account/settled_prices.h"
+#include "shared/scaled_clock.h"
 
 namespace bess {
 
@@ -28,6 +25,9 @@ struct SettledSource {
   std::int32_t days = 62;
   std::int32_t timeout_ms = 60'000;
 };
+
+/// Of a whole configuration. False with one line: file, key, and what to do.
+bool load_settled_source(const std::string& path, SettledSource& source, std::string& error);
 
 /// The url for those instants.
 std::string settled_url(const SettledSource& source, std::int64_t from_utc_s,
@@ -54,25 +54,12 @@ struct SettledResult {
   bool is_whole = false;  ///< up to the last of yesterday
   std::string trouble;    ///< empty: fetched and kept
 };
-/// Why what days ago should have been published is not there, in one line; empty: it is.
-std::string settled_trouble(const SettledSource& source, std::int64_t now_utc_s);
-
 /// Now, at once; waits as long as the settings say.
 SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
                             const std::stop_token& stop);
 
-/// Tries whenever it is due, until it goes.
-class SettledFetcher {
- public:
-  explicit SettledFetcher(const SettledSource& source);
-
- private:
-  void run(const std::stop_token& stop);
-
-  SettledSource source_;
-  std::mutex lock_;
-  std::condition_variable_any wake_;
-  std::jthread thread_;  ///< after what it uses
-};
+/// Tries whenever it is due, until a stop is requested.
+void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
+                         const std::stop_token& stop);
 
 }  // namespace bess
