@@ -128,7 +128,9 @@ Status DayAheadBook::take(std::span<const DayAheadDay> days, std::int64_t now_ut
     for (const DayAheadQuarterHour& q : day.quarter_hours) {
       if (q.utc_s < answer.yesterday_utc_s || q.utc_s >= answer.end_utc_s) continue;
       is_refused = is_refused || day.is_constant();
-      if (day.is_constant() || is_day_ahead_sentinel(q.eur_per_mwh)) continue;
+      const bool is_price = std::fabs(q.eur_per_mwh) <= kPlausiblePriceMaxEurPerMwh &&
+                            !is_day_ahead_sentinel(q.eur_per_mwh);
+      if (day.is_constant() || !is_price) continue;
       answer.day_ahead_centi[answer.index_of(q.utc_s)] =
           static_cast<std::int32_t>(std::lround(q.eur_per_mwh * kCentiPerEur));
       answer.is_assumed[answer.index_of(q.utc_s)] = q.is_assumed;

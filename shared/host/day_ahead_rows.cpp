@@ -11,7 +11,6 @@
 #include "shared/host/json_rows.h"
 #include "shared/host/text.h"
 #include "shared/local_time.h"
-#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -24,15 +23,10 @@ constexpr double kNoPrice = std::numeric_limits<double>::quiet_NaN();
 
 bool has_price(const DayAheadRow& row) { return !std::isnan(row.eur_per_mwh); }
 
-double price_of(JsonValue value) {
-  const double price = value.number().value_or(kNoPrice);
-  return std::fabs(price) <= kPlausiblePriceMaxEurPerMwh ? price : kNoPrice;
-}
-
 void add_row(JsonValue time, JsonValue price, DayAheadAnswer& answer) {
   const std::optional<std::int64_t> utc_s = time_in(time);
   if (utc_s) {
-    answer.rows.push_back({.utc_s = *utc_s, .eur_per_mwh = price_of(price)});
+    answer.rows.push_back({.utc_s = *utc_s, .eur_per_mwh = price.number().value_or(kNoPrice)});
   } else {
     ++answer.passed_over;
   }

@@ -35,8 +35,7 @@ struct DayAheadAnswer {
   std::string trouble{};            ///< why it is no such answer; then there are no rows
 };
 
-/// What is not a number (null, NaN, text), stands for none or lies beyond +-100,000 EUR/MWh is no
-/// price. "unit" must be EUR/MWh where it is there.
+/// What is not a number (null, NaN, text) is no price. "unit" must be EUR/MWh where it is there.
 DayAheadAnswer parse_day_ahead_json(std::string_view text, const DayAheadFields& fields = {});
 
 /// -999 and the like: what instruments write for "no price"; nobody bids so.

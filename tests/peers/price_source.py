@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""A price server that behaves as users report them, of Python's standard library alone: it shares
+r"""A price server that behaves as users report them, of Python's standard library alone: it shares
 nothing with bess.
 
-    price_source.py --behaviour JSON --prices wave|walk --seed 7 --scale 60 --anchor-ns N --start-s N
+    price_source.py --behaviour JSON --prices wave|walk --seed 7 \
+        --scale 60 --anchor-ns N --start-s N
 
 It prints "port N", then serves rows of ods161 (datetime, imbalanceprice, newest first, limit and
 offset) at any path, by a clock that runs `scale` times as fast. "wave": ten minutes of -600, then

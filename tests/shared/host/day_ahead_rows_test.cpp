@@ -184,7 +184,7 @@ TEST_F(DayAheadRows, AConstantDayIsNoResult) {
 
 TEST_F(DayAheadRows, WhatIsNoPriceIsNoneAndWhatIsNoAnswerIsTold) {
   const DayAheadAnswer nan = parse_day_ahead_json(
-      R"({"unix_seconds":[1749600000,"x",1749600900,1749601800],"price":[NaN,2,"3",1e9]})");
+      R"({"unix_seconds":[1749600000,"x",1749600900,1749601800],"price":[NaN,2,"3",null]})");
   EXPECT_EQ(nan.trouble, "");
   EXPECT_EQ(nan.passed_over, 1);
   ASSERT_EQ(nan.rows.size(), 3U);
