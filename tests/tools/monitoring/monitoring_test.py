@@ -48,7 +48,7 @@ FAULTS = {
 }
 ONLY_IN_UNIT_TESTS = {
     "BessUnreachable", "BessOrdersUnanswered", "BessRampSlow", "BessBatteryLocked",
-    "BessBatteryWarns", "BessLogLost", "BessCardWorn", "BessUpdateRolledBack", "BessUpdateFailed",
+    "BessBatteryWarns", "BessLogLost", "BessCardWorn", "BessUpdateTrouble",
     "BessStudentsDiffer", "BessStudentUnexpected", "BessOutlookUnplanned", "BessSourceLate"}
 # Nothing is wrong in these: nobody is called.
 WELL = {"quiet_hour", "rtu_quiet_hour", "a_day_of_2023", "a_week_of_2023", "summer_time_begins",
@@ -226,7 +226,7 @@ class Scenarios(Folder):
         asked = set(re.findall(r"\b(bess_\w+)", "\n".join(expressions)))
         of_this_machine = {"bess_card_used_life_ratio", "bess_card_spare_level",
                            "bess_file_system_errors"}
-        of_an_update = {"bess_update_rolled_back", "bess_update_failed"}
+        of_an_update = {"bess_update_trouble"}
         of_an_outlook = {"bess_outlook_planned_timestamp_seconds"}  # the built-in student has none
         of_an_inventory = {"bess_expected_student_info"}
         elsewhere = of_this_machine | of_an_update | of_an_outlook | of_an_inventory
