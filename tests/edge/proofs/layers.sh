@@ -55,8 +55,7 @@ layer edge/why                      edge/why edge/log edge/loop edge/control edg
 layer edge/companion                edge/companion edge/log edge/control edge/base shared
 layer edge/notify                   edge/notify edge/companion edge/account edge/log edge/control \
   edge/prices/http_secrets.h edge/prices/http_trust.h edge/base shared
-layer edge/page                     edge/page edge/companion edge/why edge/log edge/loop \
-  edge/control edge/base shared
+layer edge/page                     edge/page edge/companion edge/why edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
   grep -vE '^edge/(why/|companion/|notify/|page/|fetch/)')" \

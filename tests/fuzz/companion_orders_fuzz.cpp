@@ -1,8 +1,5 @@
-// What reaches bess-page from outside: a host, an origin, an order's fields, and the file of
-// tokens. Lines: host, origin, fields as name=value&..., a token, then the file.
+// Fields of an order from outside, as name=value&...: words of bess-edge alone come of them.
 #include "edge/companion/orders.h"
-#include "edge/page/access_tokens.h"
-#include "edge/page/request_guard.h"
 #include "shared/host/text.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -35,33 +32,8 @@ bool is_plain(std::string_view word) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace bess;
   const std::string text(text_of(data, size));
-  std::string_view rest = text;
-  const std::string host(take_line(rest));
-  const std::string origin(take_line(rest));
-  const std::string_view form = take_line(rest);
-  const std::string_view token = take_line(rest);
-
-  PageSettings settings;
-  settings.hosts = {"battery.example.org"};
-  if (is_our_origin(origin, settings) && !origin.empty()) {
-    must(origin.starts_with("http"), "an origin of ours is a page");
-  }
-  if (is_our_host(host, settings)) {
-    must(host.starts_with("127.0.0.1") || (host[0] | 32) == 'l' || (host[0] | 32) == 'b' ||
-             host[0] == '[',
-         "a host of ours begins as one of its names");
-  }
-
-  const Order order = read_order(fields_of(form));
+  const Order order = read_order(fields_of(text));
   must(order.words.empty() != order.complaint.empty(), "an order or a complaint");
   for (const std::string& word : order.words) must(is_plain(word), "words of bess-edge alone");
-
-  AccessTokens tokens;
-  std::string trouble;
-  must(tokens.parse(rest, trouble) == trouble.empty(), "refused with a reason");
-  must(tokens.owner_of("").empty(), "nothing is no token");
-  if (!tokens.owner_of(token).empty()) {
-    must(token.size() >= AccessTokens::kTokenBytesMin, "no short token");
-  }
   return 0;
 }
