@@ -16,8 +16,8 @@ namespace bess {
 /// Of the control thread's stack, touched before the loop so that no page fault comes later.
 inline constexpr std::size_t kControlStackBytes = 256 * 1024;
 
-/// Once, on the control thread, before any other thread, whose stacks get a size of their own. False with one line on stderr when the
-/// process is not built as it must be.
+/// Once, on the control thread, before any other thread, whose stacks get a size of their own.
+/// False with one line on stderr when the process is not built as it must be.
 [[nodiscard]] bool prepare_memory();
 
 /// Of malloc_family.cpp, before each call: fails a CHECK once the process is sealed.

@@ -303,8 +303,10 @@ struct Transfer {
     curl_easy_getinfo(curl.get(), CURLINFO_PRIMARY_IP, &text);
     return text == nullptr ? "" : text;
   }
-  /// Failures that another address of the host may not have: connection, TLS, reset, time-out.
+  /// Failures that another address of the host may not have: connection, TLS, reset, time-out, a
+  /// gateway with nothing behind it.
   [[nodiscard]] bool may_be_the_address(const HttpOutcome& outcome) const {
+    if (outcome.status == 502 || outcome.status == 504) return !stop_requested();
     switch (outcome.transfer_code) {
       case CURLE_OPERATION_TIMEDOUT:
       case CURLE_COULDNT_CONNECT:

@@ -33,6 +33,7 @@ class Place:
     def __init__(self, command, programs, map_path):
         self.command = command
         self.edge, self.sim, self.map = f"{programs}/bess-edge", f"{programs}/bess-sim", map_path
+        self.prices = f"{programs}/bess-prices"
         self.folder = self.run("mktemp -d").strip()
         self.map = self.run(f"readlink -f {map_path}").strip()
         self.children = []
@@ -60,6 +61,10 @@ class Place:
         pid = int(self.run(f"nohup {command} >{log} 2>&1 </dev/null & echo $!").split()[-1])
         self.children.append(pid)
         return pid
+
+    def fetch_prices(self, config):
+        """bess-prices for that configuration; one that runs already stays."""
+        return self.start(f"{self.prices} --config {config}", f"{self.folder}/prices.log")
 
     def is_running(self, pid):
         """A child that has ended and was not waited for is none."""

@@ -88,6 +88,7 @@ def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
     own = f"{config}.limited.toml"
     place.write(own, limited(place.read(config), limits.power_w, limits.soc_min, limits.soc_max))
     log = f"{place.folder}/real.log"
+    prices = place.fetch_prices(own)
     pid = place.start(f"{place.edge} --config {own} --cycles {cycles}", log)
     why = ""
     try:
@@ -101,7 +102,7 @@ def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
                 why = "it did not end in time"
             time.sleep(min(1, cycle_s / 10))
     finally:
-        place.attempt(f"kill -TERM {pid}")
+        place.attempt(f"kill -TERM {pid} {prices}")
         for _ in range(700):  # a battery without a watchdog is tried to be released for 65 s
             if not place.is_running(pid):
                 break

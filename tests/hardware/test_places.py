@@ -42,6 +42,7 @@ class Site:
         self.config = f"{folder}/edge.toml"
         assert "the sign is right" in place.run(
             f"{place.edge} commission --config {self.config} --yes")
+        place.fetch_prices(self.config)
 
 
 @pytest.fixture(scope="module")
