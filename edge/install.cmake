@@ -61,5 +61,4 @@ if(BESS_PAGE)
     bess-page.service
     "/usr/bin/bess-page" "${CMAKE_INSTALL_FULL_BINDIR}/bess-page"
     "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
-  install(FILES systemd/bess-page-orders.conf DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
 endif()

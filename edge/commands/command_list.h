@@ -20,9 +20,7 @@ namespace bess {
   ROW(Limit)               \
   ROW(Record)              \
   ROW(MapCheck)            \
-  ROW(Signature)           \
-  ROW(History)             \
-  ROW(Trial)
+  ROW(Signature)
 
 #define BESS_ROW(name) extern const EdgeCommand k##name##Command;
 BESS_COMMANDS(BESS_ROW)

@@ -12,8 +12,6 @@
 #include "edge/settings/idle_keys.h"
 #include "edge/storage/published_status.h"
 #include "edge/storage/storage_health.h"
-#include "edge/update/trial_machine.h"
-#include "edge/update/trial_state.h"
 #include "edge/why/explanation.h"
 #include "edge/why/next_decision.h"
 #include "shared/host/json.h"
@@ -97,6 +95,8 @@ bool has_outlook(JsonValue s) {
 }
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
+
+constexpr const char* kUpdateFolder = "/var/lib/bess-update";
 
 /// Of a number as records have it: 1 + index, 0 = none.
 std::string_view point_name(const EdgeConfig& config, long long number) {
@@ -354,7 +354,7 @@ std::string retraining_note(const EdgeConfig& config, JsonValue s) {
 }
 
 void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
-                const TrialState& update) {
+                const std::string& update) {
   const JsonValue status = published.status.value();
   print_health(health, config);
   if (!published.unknown.empty()) {
@@ -374,24 +374,12 @@ void print_text(const EdgeConfig& config, const PublishedStatus& published, cons
     if (is_running) print_next(config);
     print_counters(status);
   }
-  const std::string note = update_note(update);
-  if (!note.empty()) std::printf("update     %s\n", note.c_str());
+  if (!update.empty()) std::printf("update     %s\n", update.c_str());
   print_last_orders(config);
 }
 
-Json update_json(const TrialState& update) {
-  return Json::object({{"phase", trial_phase_name(update.phase)},
-                       {"version", update.version},
-                       {"previous", update.previous},
-                       {"rolled_back", update.refused},
-                       {"reason", update.reason},
-                       {"delivered", update.delivered},
-                       {"good_cycles", update.good_cycles},
-                       {"needed_cycles", update.needed_cycles}});
-}
-
 void print_json(const EdgeConfig& config, PublishedStatus published, const Health& health,
-                const TrialState& update) {
+                const std::string& update) {
   // What is of another run would say the opposite of "unknown".
   const bool is_known = published.unknown.empty() && published.status.value().is_object();
   Json status = is_known ? std::move(published.status) : Json::object();
@@ -409,7 +397,7 @@ void print_json(const EdgeConfig& config, PublishedStatus published, const Healt
   Json no_effect = Json::list();
   for (const std::string& key : keys_without_effect(config)) no_effect.add(key);
   status.set("no_effect", std::move(no_effect));
-  if (update.phase != TrialPhase::kUnknown) status.set("update", update_json(update));
+  if (!update.empty()) status.set("update", update);
   std::fputs(status.text().c_str(), stdout);
 }
 
@@ -451,7 +439,7 @@ bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) 
   if (is_running && find_next(config, next)) {
     print_labelled(config, next_decision_metrics(next));
   }
-  // Where this is a package: the supervisor's own, and what a fleet's inventory expects here.
+  // Where this is a package: what bess-probation says, and what a fleet's inventory expects here.
   for (const char* file : {"/update.prom", "/expected.prom"}) {
     std::string more;
     if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
@@ -461,19 +449,18 @@ bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) 
   return true;
 }
 
-/// What dpkg has is asked anew: work that it broke off before or after a trial, nobody has noted.
-TrialState upgrade_by_now() {
-  TrialState update = read_trial_state(kUpdateFolder).state;
-  if (update.phase == TrialPhase::kUnknown || update.phase == TrialPhase::kHidden) return update;
-  const std::string delivered = TrialMachine::delivered();
-  if (!delivered.empty()) update.delivered = delivered;
-  return update;
+/// What bess-probation has to tell, one line; empty: nothing, or this is no package.
+std::string update_note() {
+  std::string note;
+  read_text((std::string(kUpdateFolder) + "/note").c_str(), note);
+  return note.substr(0, note.find('\n'));
 }
 
 int print_once(const StatusGiven& given, const EdgeConfig& config) {
   PublishedStatus published = read_published_status(config, given.no_lock);
-  const TrialState update = upgrade_by_now();
-  const Health health = health_of(config, published, update_trouble(update));
+  const std::string update = update_note();
+  const bool is_trouble = update.starts_with("WARN: ");
+  const Health health = health_of(config, published, is_trouble ? update.substr(6) : "");
   if (given.prometheus) {
     const bool is_running = health.level != HealthLevel::kNotRunning;
     if (!print_metrics(config, published.status.value(), is_running)) return 1;

@@ -1,4 +1,4 @@
-// What may be ordered by page or broker, as the command of bess-edge that does it: the same checks,
+// What may be ordered by a broker, as the command of bess-edge that does it: the same checks,
 // the same refusals, the same line in the journal.
 #pragma once
 

@@ -1,12 +1,14 @@
-# What only the Debian package of the edge has, besides edge/install.cmake: the supervisor of
-# upgrades, rules for users, folders and devices, and what tools/package makes of the built programs
+# What only the Debian package of the edge has, besides edge/install.cmake: the probation of
+# new versions, rules for users, folders and devices, and what tools/package makes of the built programs
 # (man pages, completion, certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
-install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/trial DESTINATION lib/bess COMPONENT edge_package)
-install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess
+install(PROGRAMS ${package_dir}/bess-probation DESTINATION sbin
+        COMPONENT edge_package)
+install(FILES ${package_dir}/update.conf DESTINATION /etc/bess
         RENAME update.conf.example
         COMPONENT edge_package)
-install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-trial.service
+install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-probation.service
+        ${CMAKE_SOURCE_DIR}/edge/systemd/bess-probation.timer
         ${CMAKE_SOURCE_DIR}/edge/systemd/bess-recover.service
         DESTINATION lib/systemd/system COMPONENT edge_package)
 install(FILES ${package_dir}/bess.tmpfiles DESTINATION lib/tmpfiles.d RENAME bess.conf

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 
 #include "edge/why/margins.h"
 #include "shared/host/json.h"
@@ -25,13 +24,8 @@ DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds
 
 Json decision_map_json(const DecisionMap& map);
 
-/// Where the battery is now.
-struct PresentPoint {
-  double soc_percent = 0;
-  double price_eur_per_mwh = 0;
-};
-
-/// As an SVG element.
-std::string decision_map_picture(const DecisionMap& map, const PresentPoint& now);
+/// Of the cycle that `why --json` tells of; without columns where the student was not asked, or it
+/// was another one than ours.
+Json decision_map_of(JsonValue why);
 
 }  // namespace bess

@@ -1,6 +1,6 @@
 // bess-page: the controller, to look at in a browser. A program of its own, outside the control
-// process: it asks `bess-edge` and reads the decision log. Killed, stuck or absent, it changes
-// nothing for the controller.
+// process, which passes on what `bess-edge` answers. If it is killed, hangs or is absent, nothing
+// changes for the controller.
 #include <signal.h>
 
 #include <charconv>
@@ -27,12 +27,11 @@ constexpr const char* kHelp =
   --help         this text
   --version      the version
 
-Price and orders of the day, state of charge, why the last order was given and at which price it
-would be another, the month's money, alarms, versions: light, dark, on a phone, without a script.
-By itself it listens on 127.0.0.1 alone and orders nothing; with [page] token_file holds, limits
-and clearing can be ordered by who knows a token. /api/... has the numbers as JSON, /metrics those
-for Prometheus, /statement the month to print. It reads what bess-edge publishes and takes no lock
-of it: the controller does not know that it exists.
+Price, power and state of charge of the last 24 hours, why the last order was given and at which
+price it would be another, the month's money, alarms, versions. It reads alone: orders are given by
+bess-edge. By itself it listens on 127.0.0.1 alone. /api/status, why, month and map have
+the numbers as JSON, /api/log as CSV, /metrics for Prometheus: as bess-edge prints them. It takes no
+lock of the controller, which does not know that it exists.
 Exit codes: 0 done   1 the settings are bad, or the port is taken   2 the command line is bad
 
   bess-page --check
@@ -79,7 +78,6 @@ void print_check(const PageSettings& settings) {
               settings.refresh_s);
   std::printf("asks       %s --config %s\n", settings.program.c_str(),
               settings.config_path.c_str());
-  std::printf("orders     %s\n", settings.tokens.is_empty() ? "none may be given" : "with a token");
 }
 
 int fail(const std::string& message) {
@@ -91,6 +89,7 @@ int run(const Options& options) {
   PageSettings settings;
   std::string error;
   if (!load_page_settings(options.config_path, settings, error)) return fail(error);
+  if (!settings.note.empty()) std::fprintf(stderr, "bess-page: %s\n", settings.note.c_str());
   if (options.port >= 0) settings.port = options.port;
   if (options.is_check) return print_check(settings), 0;
   const sigset_t stop_signals = block_stop_signals();

@@ -1,21 +1,290 @@
-// What changes is fetched anew every ten seconds; without a script the page stays as it was opened.
+// Shows what bess-edge answers: the state every ten seconds, the rest once a cycle.
 "use strict";
-(() => {
-  const live = document.getElementById("live");
-  if (!live) return;
-  const renew = async () => {
-    if (document.hidden) return;
-    try {
-      const answer = await fetch(".", { cache: "no-store", redirect: "error" });
-      if (!answer.ok) throw new Error(answer.status);
-      const page = new DOMParser().parseFromString(await answer.text(), "text/html");
-      const fresh = page.getElementById("live");
-      const focused = document.activeElement?.closest("#live [tabindex]");
-      if (fresh && !focused) live.replaceChildren(...fresh.childNodes);
-      document.body.classList.remove("stale");
-    } catch (error) {
-      document.body.classList.add("stale");
+
+const kEveryMs = 10000;
+const kStepMs = 120000;
+const kHourMs = 3600000;
+const charts = {};  // by canvas: {chart, draw}
+let shownCycle = null;
+let state = null;  // newest answer of api/status
+let isAsking = false;  // a controller that hangs is not asked twice at a time
+
+const byId = (id) => document.getElementById(id);
+const colour = (name) =>
+  getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+const clock = (time) => new Date(time).toLocaleTimeString(
+  "en-GB", {timeZone: "Europe/Brussels", hour: "2-digit", minute: "2-digit"});
+const moment = (time) =>
+  new Date(time).toLocaleString("sv-SE", {timeZone: "Europe/Brussels"}).slice(0, 16);
+
+/** "−1,200 W"; a dash where there is no number. */
+function say(value, decimals = 0, unit = "") {
+  if (typeof value !== "number") return "\u2013";
+  const digits = {minimumFractionDigits: decimals, maximumFractionDigits: decimals};
+  return value.toLocaleString("en", digits).replace("-", "\u2212") + (unit && "\u00a0" + unit);
+}
+const price = (value) => say(value, 2, "EUR/MWh");
+const percent = (value) => say(value, 1, "%");
+const eur = (value) => say(value, 2, "EUR");
+
+function element(name, text = "", ...children) {
+  const made = document.createElement(name);
+  made.append(text, ...children);
+  return made;
+}
+const fill = (id, elements) => byId(id).replaceChildren(...elements);
+const lines = (id, texts, name) =>
+  fill(id, texts.filter((text) => text).map((text) => element(name, text)));
+
+async function ask(path) {
+  const answer = await fetch(path, {cache: "no-store", redirect: "error"});
+  const text = await answer.text();
+  if (answer.status === 503) throw new Error(JSON.parse(text).trouble);
+  if (!answer.ok) throw new Error(`${path}: ${text}`);
+  return answer.headers.get("Content-Type").startsWith("text/csv") ? text : JSON.parse(text);
+}
+
+const doing = (watts) => watts > 0 ? `charge at ${say(watts, 0, "W")}`
+  : watts < 0 ? `discharge at ${say(-watts, 0, "W")}` : "rest";
+const isRunning = () => state.health !== "not running";
+
+function showStatus(status) {
+  const last = status.last || {};
+  const measured = (value) => last.has_measurement ? value : undefined;
+  const kind = {ok: "good", degraded: "fair"}[status.health] || "bad";
+  document.title = byId("name").textContent = status.name || "Battery";
+  byId("health").textContent = status.health;
+  byId("health").className = "badge " + kind;
+  lines("alarms", [...status.health_reasons, status.unknown,
+                   status.contact && "Call: " + status.contact], "li");
+  const tiles = [
+    ["State of charge", percent(measured(last.soc_e4 / 100))],
+    ["Ordered", say(last.ordered_power_w, 0, "W"), `by ${last.reason}`],
+    ["Measured", say(measured(last.battery_power_w), 0, "W"), "charging is positive"],
+    ["Price", say(last.has_price ? last.price_centi_eur_per_mwh / 100 : undefined, 2), "EUR/MWh"],
+    ["Mode", last.mode || "\u2013"]];
+  if (last.outlook && last.outlook !== "none") {
+    tiles.push(["Break-even", say(last.break_even_centi / 100, 2), `EUR/MWh, ${last.outlook}`]);
+  }
+  fill("numbers", tiles.map(([name, value, note]) =>
+    element("div", "", element("dt", name),
+            element("dd", value, ...(note ? [element("br"), element("small", note)] : [])))));
+  const facts = {
+    version: status.version, student: status.student, "learnt from": status.provenance,
+    retrain: status.retrain, battery: status.battery, map: status.map,
+    since: status.start_utc && moment(status.start_utc), update: status.update?.phase};
+  fill("facts", Object.entries(facts).filter(([, value]) => value).flatMap(
+    ([name, value]) => [element("dt", name), element("dd", value)]));
+  showNext(status.next, status.no_effect);
+}
+
+function showNext(next, noEffect) {
+  const told = [];
+  if (!next) {
+    told.push("Nothing is decided next.");
+  } else if (next.action === null) {
+    told.push(`At ${next.local} nothing is driven without a price and a measurement.`);
+  } else {
+    told.push(
+      `At ${next.local} it would ${doing(next.power_w)} if price and state of charge stay.`);
+  }
+  if (next?.reason) told.push(`${next.reason} stands above it${next.ends && ", " + next.ends}.`);
+  for (const change of next?.reserve_changes || []) {
+    told.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
+  }
+  if (typeof next?.full_charge_in_days === "number") {
+    told.push(`Days to the next full charge: ${next.full_charge_in_days}.`);
+  }
+  lines("next", [...told, ...noEffect.map((key) => `Set, and without effect: ${key}`)], "li");
+}
+
+function showWhy(why) {
+  const ends = why.ends ? `; ${why.ends}` : "";
+  byId("sentence").textContent =
+    `At ${why.local} the battery was to ${doing(why.ordered_power_w)}, decided by ${why.reason}, ` +
+    `for ${say(why.cycles_with_reason)} cycles by now${ends}.`;
+  const told = [`Price ${price(why.price_eur_per_mwh)}, state of charge ` +
+                `${percent(why.soc_percent)}. The student would ${why.student || "not be asked"}.`];
+  const at = why.margins;
+  if (at) {
+    told.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
+              `${price(at.discharge_from_eur_per_mwh)} on; between them it rests.`);
+  }
+  if (at?.charge_up_to_soc_percent != null) {
+    told.push(`At this price it would charge up to ${percent(at.charge_up_to_soc_percent)}.`);
+  }
+  if (at?.discharge_from_soc_percent != null) {
+    told.push(
+      `At this price it would discharge from ${percent(at.discharge_from_soc_percent)} on.`);
+  }
+  lines("why", told, "p");
+}
+
+const kColumns = [  // head, key, decimals
+  ["earned, EUR", "earned_eur", 2], ["of it an estimate", "estimated_eur", 2],
+  ["contract, EUR", "contract_eur", 2], ["net, EUR", "net_eur", 2],
+  ["charged, kWh", "charged_kwh", 1], ["discharged, kWh", "discharged_kwh", 1],
+  ["full cycles", "full_cycles", 2], ["EUR/MWh, mean", "mean_price_eur_per_mwh", 2],
+  ["cycles driven", "driven_cycles", 0]];
+
+function showMonth(month) {
+  const stops = month.stops.by_reason.map((stop) =>
+    ` ${stop.reason}: ${say(stop.cycles)} cycles, cost ` +
+    `${stop.cost_eur === null ? "not known" : eur(stop.cost_eur)}.`);
+  byId("money").textContent =
+    `${eur(month.earned_eur)} earned, ${eur(month.estimated_eur)} of it an estimate: ` +
+    `${say(month.settled_quarter_hours)} of ${say(month.quarter_hours)} quarter-hours are at ` +
+    `their settled price. The contract takes ${eur(month.contract_eur)}: ` +
+    `${eur(month.net_eur)} net; with the same charge at both ends ` +
+    `${eur(month.earned_at_equal_soc_eur)}. ` +
+    `Driven ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
+  lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
+  fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
+    ...kColumns.map(([, key, decimals]) => element("td", say(day[key], decimals))))));
+}
+
+/** Draws a chart, and draws it again when the page turns dark or light. */
+function drawChart(id, draw) {
+  charts[id]?.chart.destroy();
+  const config = draw();
+  Object.assign(config.options, {maintainAspectRatio: false, animation: false, parsing: false});
+  config.options.plugins = {...config.options.plugins, legend: {
+    position: "bottom", labels: {color: colour("ink"), boxWidth: 14}}};
+  charts[id] = {chart: new Chart(byId(id), config), draw};
+}
+
+const axis = (title, options) => ({
+  type: "linear", title: {display: true, text: title, color: colour("muted")},
+  grid: {color: colour("grid"), borderColor: colour("muted")}, ...options,
+  ticks: {color: colour("muted"), maxTicksLimit: 7, maxRotation: 0, ...options?.ticks}});
+const strip = (title, stackWeight, options) =>
+  axis(title, {axis: "y", stack: "day", stackWeight, offset: true, ...options});
+const line = (label, name, data, more) => ({
+  label, data, borderColor: colour(name), backgroundColor: colour(name), borderWidth: 1.6,
+  pointRadius: 0, ...more});
+
+/** Steps through the cycles; a hole of the log is a hole of the line. */
+function steps(cycles, value) {
+  return cycles.flatMap((cycle, index) => {
+    const x = cycle.time, y = value(cycle), next = cycles[index + 1];
+    const isHole = !next || next.time - x > kStepMs;
+    return isHole ? [{x, y}, {x: x + kStepMs, y}, {x: x + kStepMs, y: NaN}] : [{x, y}];
+  });
+}
+
+function drawDay(csv) {
+  const [head, ...rows] = csv.trim().split("\n").map((row) => row.split(","));
+  const column = (name) => head.indexOf(name);
+  const number = (row, name, divisor) => Number(row[column(name)]) / divisor;
+  const cycles = rows.filter((row) => row[column("mode")] !== "stopping").map((row) => ({
+    time: Date.parse(row[column("utc")]),
+    price: row[column("price_minute_utc")] === "none" ? NaN
+      : number(row, "price_centi_eur_per_mwh", 100),
+    // What was not measured stands there as 0.
+    soc: number(row, "soc_e4", 100) || NaN,
+    measured: number(row, "soc_e4", 1) ? number(row, "battery_power_w", 1000) : NaN,
+    ordered: row[column("written")] === "1" ? number(row, "ordered_power_w", 1000) : NaN,
+  })).sort((a, b) => a.time - b.time);
+  const stepped = {stepped: true};
+  const hours = (scale) => {
+    const all = [];
+    for (let t = Math.ceil(scale.min / kHourMs) * kHourMs; t <= scale.max; t += kHourMs) {
+      if (Number(clock(t).slice(0, 2)) % 3 === 0) all.push({value: t});
     }
+    scale.ticks = all;
   };
-  setInterval(renew, 10000);
-})();
+  drawChart("day", () => ({
+    type: "line",
+    data: {datasets: [
+      line("price", "ink", steps(cycles, (c) => c.price), {...stepped, yAxisID: "price"}),
+      line("state of charge", "soc", steps(cycles, (c) => c.soc), {yAxisID: "soc"}),
+      line("power measured", "measured", steps(cycles, (c) => c.measured),
+           {...stepped, yAxisID: "power"}),
+      line("power ordered: charging", "charge", steps(cycles, (c) => c.ordered),
+           {...stepped, yAxisID: "power", borderWidth: 0,
+            fill: {target: "origin", above: colour("charge"), below: colour("discharge")}}),
+      line("discharging", "discharge", [], {yAxisID: "power"})]},
+    options: {
+      interaction: {mode: "index", intersect: false},
+      scales: {
+        x: axis("", {title: {}, bounds: "data", afterBuildTicks: hours, ticks: {callback: clock}}),
+        power: strip("kW", 2), soc: strip("%", 2, {min: 0, max: 100}), price: strip("EUR/MWh", 4),
+      },
+      plugins: {tooltip: {callbacks: {title: ([item]) => clock(item.parsed.x)}}},
+    },
+  }));
+}
+
+function drawMap({columns}) {
+  if (columns.length === 0) return "The student decided nothing in this cycle.";
+  const last = state.last;
+  const now = {x: last.soc_e4 / 100, y: last.price_centi_eur_per_mwh / 100};
+  const points = (key) => columns.map((column) => ({x: column.soc_percent, y: column[key]}));
+  const prices = [now.y, ...points("charge_up_to_eur_per_mwh").map(({y}) => y),
+                  ...points("discharge_from_eur_per_mwh").map(({y}) => y)];
+  const min = 50 * Math.floor(Math.min(...prices) / 50 - 1);
+  const max = 50 * Math.ceil(Math.max(...prices) / 50 + 1);
+  drawChart("map", () => ({
+    type: "line",
+    data: {datasets: [
+      line("now", "ink", [now], {pointRadius: 6, showLine: false}),
+      line("charges below", "charge", points("charge_up_to_eur_per_mwh"),
+           {fill: "start", stepped: "middle"}),
+      line("discharges above", "discharge", points("discharge_from_eur_per_mwh"),
+           {fill: "end", stepped: "middle"})]},
+    options: {
+      interaction: {mode: "nearest", axis: "x", intersect: false},
+      scales: {x: axis("state of charge, %", {min: 0, max: 100}),
+               y: axis("price, EUR/MWh", {min, max})},
+      plugins: {tooltip: {callbacks: {title: ([item]) => percent(item.parsed.x)}}},
+    },
+  }));
+}
+
+/** Asks and shows; false when there was trouble. That, or what `draw` says, stands at `trouble`. */
+async function show(path, trouble, draw) {
+  try {
+    byId(trouble).textContent = draw(await ask(path)) || "";
+    return true;
+  } catch (error) {
+    byId(trouble).textContent = error.message;
+    return false;
+  }
+}
+
+/** What is shown is from `last`, and this is why there is nothing newer. */
+function markOld(why) {
+  const last = state?.last?.utc;
+  byId("old").textContent = why && (last ? `${why} What is shown is of ${moment(last)}.` : why);
+  byId("old").hidden = !why;
+  document.body.classList.toggle("old", Boolean(why));
+}
+
+async function renew() {
+  if (document.hidden || isAsking) return;
+  isAsking = true;
+  try {
+    state = await ask("api/status");
+    showStatus(state);
+    const cycle = `${state.health} ${state.last?.utc}`;
+    if (cycle !== shownCycle) {
+      const shown = await Promise.all([
+        show("api/why", "why-trouble", showWhy), show("api/log", "log-trouble", drawDay),
+        show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
+      shownCycle = shown.every(Boolean) ? cycle : null;
+    }
+    markOld(isRunning() ? "" : "No controller runs.");
+  } catch (error) {
+    markOld(`The controller does not answer: ${error.message}.`);
+    if (!state) byId("health").textContent = "not known";
+  }
+  isAsking = false;
+  document.documentElement.dataset.ready = "true";
+}
+
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  for (const [id, {draw}] of Object.entries(charts)) drawChart(id, draw);
+});
+document.addEventListener("visibilitychange", renew);
+setInterval(renew, kEveryMs);
+renew();

@@ -1,22 +1,24 @@
-// The page over HTTP: reads by anybody who reaches it, orders by who knows a token.
+// The page over HTTP, to be read by anybody who reaches it: static files, and the controller's
+// answers, which the page's script shows.
 //
-//   /             the page                    /api/status /api/why /api/month /api/today /api/map
-//   its numbers /statement    the month, to print         /metrics      for Prometheus POST /orders
-//   a form, or the same fields as JSON's poor cousin from curl: -d order=hold -d power_w=0 ...
+//   /                                        page.html, page.css, page.js, chart.min.js
+//   /api/status /api/why /api/month          what bess-edge prints with --json
+//   /api/log                                 its last 24 hours, as CSV
+//   /api/map                                 the student's decisions around the present
+//   /metrics                                 for Prometheus
 //
-// Small requests only, one a connection; a slow client makes nobody else wait.
+// GET and HEAD alone, one request a connection; a slow client makes nobody else wait.
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "edge/page/controller_view.h"
+#include "edge/page/controller_answers.h"
 #include "edge/page/page_settings.h"
-#include "edge/page/request_guard.h"
 
 namespace httplib {
 class Server;
-struct Request;
-struct Response;
 }  // namespace httplib
 
 namespace bess {
@@ -36,13 +38,12 @@ class PageServer {
   void stop();
 
  private:
-  void add_pages();
+  void add_files();
   void add_answers();
-  void take_order(const httplib::Request& request, httplib::Response& response);
+  KeptAnswer& add_answer(const char* path, const char* type, KeptAnswer::Make make);
 
   const PageSettings& settings_;
-  ControllerViews views_;
-  WrongTokens wrong_tokens_;
+  std::vector<std::unique_ptr<KeptAnswer>> answers_;
   std::unique_ptr<httplib::Server> server_;
   int listening_socket_ = -1;
   int port_ = 0;

@@ -1,7 +1,6 @@
 #include "edge/page/page_settings.h"
 
 #include "edge/companion/numeric_address.h"
-#include "edge/companion/secret_file.h"
 
 namespace bess {
 namespace {
@@ -18,37 +17,21 @@ void read_hosts(TomlTable& table, std::vector<std::string>& hosts) {
   }
 }
 
-/// Orders may be given by who knows a token of this file.
-void read_tokens(TomlTable& table, const std::string& name, AccessTokens& tokens) {
-  std::string text;
-  const SecretFile file{.key = "token_file",
-                        .name = name,
-                        .bytes_max = 4'095,
-                        .shape = "must be a text of less than 4 KiB"};
-  const std::string path = read_secret(table, file, text);
-  std::string trouble;
-  if (!table.ok() || tokens.parse(text, trouble)) return;
-  table.fail("token_file", "= " + path + ": " + trouble);
-}
-
 void read_page(TomlTable table, PageSettings& settings) {
   std::string token_file;
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
   table.integer("refresh_s", settings.refresh_s, 1, 600);
-  table.line("token_file", token_file);
+  table.line("token_file", token_file);  // of earlier versions
   read_program(table, settings);
   read_hosts(table, settings.hosts);
   if (!is_numeric_address(settings.host)) {
     table.fail("host", "must be a numeric address: 127.0.0.1, ::1, or one of this machine");
   }
-  if (!token_file.empty() && table.ok()) {
-    if (is_loopback_address(settings.host)) {
-      read_tokens(table, token_file, settings.tokens);
-    } else {
-      table.fail("token_file",
-                 "would be asked for in clear: listen on 127.0.0.1, behind a proxy with TLS");
-    }
+  if (!token_file.empty()) {
+    settings.note =
+        "[page] token_file has no effect any more: the page orders nothing; "
+        "bess-edge hold, limit and clear do";
   }
   table.finish();
 }

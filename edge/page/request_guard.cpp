@@ -1,12 +1,9 @@
 #include "edge/page/request_guard.h"
 
 #include "edge/companion/numeric_address.h"
-#include "shared/scaled_clock.h"
 
 namespace bess {
 namespace {
-
-constexpr std::int64_t kMinuteNs = 60 * kNanosecondsPerSecond;
 
 /// Without its port; of "[::1]:80" what stands in the brackets.
 std::string_view without_port(std::string_view host) {
@@ -39,28 +36,6 @@ bool is_our_host(std::string_view host, const PageSettings& settings) {
   // Listening everywhere: any address is one of ours, but no name that is not in `hosts`.
   return (settings.host == "0.0.0.0" || settings.host == "::") &&
          is_numeric_address(std::string(name));
-}
-
-bool is_our_origin(std::string_view origin, const PageSettings& settings) {
-  if (origin.empty()) return true;
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.starts_with(scheme)) return is_our_host(origin.substr(scheme.size()), settings);
-  }
-  return false;  // "null" too
-}
-
-bool WrongTokens::are_too_many(std::int64_t monotonic_ns) {
-  const std::scoped_lock lock(lock_);
-  return monotonic_ns < minute_ends_ns_ && count_ >= kMax;
-}
-
-void WrongTokens::count(std::int64_t monotonic_ns) {
-  const std::scoped_lock lock(lock_);
-  if (monotonic_ns >= minute_ends_ns_) {
-    minute_ends_ns_ = monotonic_ns + kMinuteNs;
-    count_ = 0;
-  }
-  ++count_;
 }
 
 }  // namespace bess

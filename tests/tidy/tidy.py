@@ -130,8 +130,6 @@ def figures(tree):
             (r"\b(\d+) faults\b(?! of bus)", "tests/trial/trial_fault.cpp", r'^    \{"'),
             (r"\b(\d+) honest (?:variants|batteries)", "tests/trial/battery_nature.cpp",
              r'^    \{(?:\.name = )?"'),
-            (r"\b(\d+) (?:mutants|named defects)\b|\ball (\d+) in `tools/test --full`",
-             "tests/tools/hil/mutants.txt", r"^[a-z]"),
             (r"\b(\d+) alerts, each", "tools/monitoring/bess_rules.yml", r"^ *- alert:")):
         rows = (tree / name).read_text(encoding="utf-8") if (tree / name).exists() else ""
         yield pattern, str(len(re.findall(row, rows, re.M)))

@@ -3,14 +3,13 @@
 set -eu
 source=$1 tree=$2
 rm -rf "$tree"
-mkdir -p "$tree/edge/generated" "$tree/edge/maps" "$tree/tests/tidy" "$tree/tests/tools/hil"
-printf '# NAME | SCENARIO\noff | one\non | two\n' >"$tree/tests/tools/hil/mutants.txt"
+mkdir -p "$tree/edge/generated" "$tree/edge/maps" "$tree/tests/tidy"
 cp "$source"/edge/generated/* "$tree/edge/generated"
 echo "1 edge/long.cpp" >"$tree/tests/tidy/long_lines.txt"
 long="// $(printf 'word %.0s' $(seq 30))"
 echo "$long" >"$tree/edge/long.cpp"
-printf '# tree\n`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n%s\n' \
-  'with `hil/mutants.txt`: 2 mutants' >"$tree/README.md"
+printf '# tree\n`edge/` and `tests/`, proved over 6,950,033,280 inputs: `edge/long.cpp`\n' \
+  >"$tree/README.md"
 git -C "$tree" init -q
 says() { git -C "$tree" add -A; "$source/tests/tidy/tidy.py" "$tree" >"$tree/../said" 2>&1; }
 says || { cat "$tree/../said"; echo "a tidy tree is refused"; exit 1; }

@@ -5,7 +5,6 @@
 
 #include "edge/commands/command_line.h"
 #include "edge/commands/command_list.h"
-#include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -147,18 +146,6 @@ timeout_ms = 100
                                  HasSubstr("\ncharge     0x"), HasSubstr("\nrelease    0x"),
                                  HasSubstr("battery at 127.0.0.1:1"), HasSubstr("price from ")));
   }
-}
-
-/// What people and scripts have read before; renewed as the failing test says.
-TEST(EdgeWords, TheHelpOfAllIsTheGoldenOne) {
-  std::string all =
-      "# generator edge_commands_unit_test, no seed, command: BESS_UPDATE_GOLDEN=1 "
-      "edge_commands_unit_test --gtest_filter=EdgeWords.*\n";
-  all += general_help();
-  for (const EdgeCommand* const command : kCommands) {
-    if (command->name != "run") all += std::string("\n") + command->help;
-  }
-  expect_golden(BESS_SOURCE_DIR "/tests/golden/edge_help.txt", all);
 }
 
 }  // namespace

@@ -35,9 +35,7 @@ class PageSite {
         "[simulation]\ntime_scale = 1\nutc_start = \"" +
             std::string(utc_text(kStart + cycles * kSecondsPerStep).view()) +
             "\"\nanchor_monotonic_ns = " + std::to_string(clock_ns(CLOCK_MONOTONIC)) +
-            "\n[page]\nport = 1\nprogram = \"" BESS_EDGE_PROGRAM "\"\ntoken_file = \"tokens\"\n");
-    const std::string tokens = folder.write("tokens", "# who\nanna  0123456789abcdef\n");
-    EXPECT_EQ(chmod(tokens.c_str(), 0600), 0);
+            "\n[page]\nport = 1\nprogram = \"" BESS_EDGE_PROGRAM "\"\n");
   }
 
   [[nodiscard]] const std::string& config() const { return config_; }

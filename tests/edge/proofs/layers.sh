@@ -43,8 +43,7 @@ layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
 layer edge/storage                  edge/storage edge/settings $grounds
 layer edge/program                  edge/program edge/storage edge/recording edge/settings $grounds
-layer edge/update                   edge/update edge/log edge/control edge/base shared
-layer edge/commands                 edge/commands edge/update edge/account edge/why edge/program \
+layer edge/commands                 edge/commands edge/account edge/why edge/program \
   edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # bess-prices: by itself, with the heap.
@@ -56,11 +55,10 @@ layer edge/why                      edge/why edge/log edge/loop edge/control edg
 layer edge/companion                edge/companion edge/log edge/control edge/base shared
 layer edge/notify                   edge/notify edge/companion edge/account edge/log edge/control \
   edge/prices/http_secrets.h edge/prices/http_trust.h edge/base shared
-layer edge/page                     edge/page edge/companion edge/why edge/log edge/loop \
-  edge/control edge/base shared
+layer edge/page                     edge/page edge/companion edge/why edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
-  grep -vE '^edge/(why/|update/|companion/|notify/|page/|fetch/)')" \
+  grep -vE '^edge/(why/|companion/|notify/|page/|fetch/)')" \
   "the heap is of start-up, commands, companion programs, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
