@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """pages_test.py FIXTURE_PROGRAM BESS_TRAIN: each page that bess-train writes, in a headless
-Chromium: it is drawn in whole, without complaint, and nothing hangs over at 1280 and 390 px.
+Chromium: it is drawn in whole, without complaint, and nothing hangs over at 1280 and 390 px; and
+the student on it decides as the edge's.
 
 Exit code 77 where Chromium is not installed (tools/setup --test installs it).
 """
@@ -47,10 +48,24 @@ class Pages(unittest.TestCase):
 
     def test_reports_of_runs_show_their_figures(self):
         for run in RUNS:
-            with open(os.path.join(self.folder.name, run, "expected.json"), encoding="utf-8") as file:
-                self.assertGreater(len(json.load(file)), 3)
             page = self.look_at(os.path.join(run, "report.html"), DRAWN)
             self.assertGreater(page.run("document.querySelectorAll('canvas').length"), 2, run)
+
+    def test_students_on_the_page_are_those_of_the_edge_to_the_bit(self):
+        with open(os.path.join(self.folder.name, "expected.json"), encoding="utf-8") as file:
+            students = json.load(file)["students"]
+        page = self.look_at("report.html", DRAWN)
+        for name, student in students.items():
+            self.assertGreaterEqual(len(student["answers"]), 4000)
+            self.assertEqual(page.run(f"""(() => {{
+              const map = page.map.maps.find((map) => map.name === {json.dumps(name)});
+              return {json.dumps(student["answers"])}.filter(
+                ([minute, quarterHour, contextClass, soc, price, ...answer]) => {{
+                  const context = {{minute, quarterHour, contextClass}};
+                  const action = map.student.decide(context, soc, price);
+                  return [...map.student.logits, action].join() !== answer.join();
+                }}).length;
+            }})()"""), 0, name)
 
     def test_backtests_and_many_runs_are_tables(self):
         subprocess.run([BESS_TRAIN, "runs", "compare", *("many/" + name for name in MANY), "--html",
