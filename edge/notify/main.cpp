@@ -1,5 +1,5 @@
 // bess-notify: calls for help. A program of its own, outside the control process: it asks
-// `bess-edge status` and reads the decision log, and tells what is wrong by mail, webhook and MQTT.
+// `bess-edge status` and reads the decision log, and tells what is wrong by a command and MQTT.
 // Killed, stuck or absent, it changes nothing for the controller.
 #include <poll.h>
 #include <signal.h>
@@ -17,7 +17,6 @@
 #include "edge/notify/notifier.h"
 #include "edge/notify/notify_lock.h"
 #include "edge/notify/notify_settings.h"
-#include "edge/notify/webhook.h"
 #include "shared/file_descriptor.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
@@ -26,7 +25,7 @@ namespace bess {
 namespace {
 
 constexpr const char* kHelp =
-    R"(bess-notify: tells by mail, webhook and MQTT when a battery controller needs help
+    R"(bess-notify: tells by a command and MQTT when a battery controller needs help
 
   bess-notify [--config FILE]            every [notify] every_s, until SIGTERM
   bess-notify [--config FILE] --once     one round, for a timer
@@ -85,8 +84,7 @@ void print_check(const NotifySettings& settings) {
               settings.every_s, settings.after_s);
   std::printf("asks       %s status --config %s\n", settings.program.c_str(),
               settings.config_path.c_str());
-  std::printf("mail       %s\n", settings.mail_to.empty() ? "none" : settings.mail_to.c_str());
-  std::printf("webhook    %s\n", settings.webhook_url.empty() ? "none" : "configured");
+  std::printf("command    %s\n", settings.command.empty() ? "none" : "configured");
   if (settings.mqtt.host.empty()) {
     std::printf("mqtt       none\n");
   } else {
@@ -124,7 +122,7 @@ void watch(Notifier& notifier, std::int32_t every_s, const sigset_t& stop_signal
 }
 
 int run_once(Notifier& notifier) {
-  constexpr std::chrono::minutes kPatience(2);  // a mailer's time, and as much again
+  constexpr std::chrono::minutes kPatience(2);  // a command's time, and as much again
   notifier.run_round(now_utc_s());
   static_cast<void>(notifier.wait_for_channels(kPatience));
   return 0;
@@ -140,7 +138,7 @@ int run(const Options& options) {
   if (options.task == Task::kCheck) return print_check(settings), 0;
   if (!settings.has_channel()) {
     say(JournalLevel::kWarning,
-        "[notify] names no way (mail_to, webhook_url, mqtt_host): alarms stand in the journal "
+        "[notify] names no way (command, mqtt_host): alarms stand in the journal "
         "alone");
   }
   const sigset_t stop_signals = block_stop_signals();

@@ -22,7 +22,7 @@ MessageKind kind_of(const std::string& name);
 
 /// "ALARM: ...", one line, for a subject or a bell.
 std::string headline(const Message& message);
-/// As the webhook and MQTT carry it, in one line.
+/// As MQTT carries it, in one line.
 std::string message_json(const std::string& node, const Message& message);
 
 }  // namespace bess

@@ -6,10 +6,9 @@
 #include "edge/account/account_days.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/log/log_reader.h"
+#include "edge/notify/alarm_command.h"
 #include "edge/notify/journal_line.h"
-#include "edge/notify/mail.h"
 #include "edge/notify/topics.h"
-#include "edge/notify/webhook.h"
 #include "shared/host/run_program.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
@@ -73,14 +72,9 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
       book_(settings.after_s, told_.alarms),
       desk_(settings.mqtt.hold_minutes, settings.power_w),
       kept_(notifier_state_text(told_)) {
-  if (!settings_.mail_to.empty()) {
-    open_outbox("mail", [this](const Message& message, const std::stop_token& stop) {
-      return send_mail(settings_, message, stop);
-    });
-  }
-  if (!settings_.webhook_url.empty()) {
-    open_outbox("webhook", [this](const Message& message, const std::stop_token& stop) {
-      return post_webhook(settings_, message, stop);
+  if (!settings_.command.empty()) {
+    open_outbox("command", [this](const Message& message, const std::stop_token& stop) {
+      return run_alarm_command(settings_, message, stop);
     });
   }
   if (!settings_.mqtt.host.empty()) open_mqtt(presence);

@@ -1,6 +1,6 @@
 // One round of the notifier: ask, compare with what was told, hand the rest to every way's outbox.
 //   bess-edge status, decision log -> AlarmBook, DayAccount -> messages
-//   messages -> outboxes: mail, webhook, MQTT
+//   messages -> outboxes: command, MQTT
 // It reads files and asks a program; nothing here holds what the controller needs. A round waits
 // for no way: what a way does not take is tried again every round, for three days, from its own
 // outbox.

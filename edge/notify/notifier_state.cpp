@@ -110,7 +110,7 @@ NotifierState notifier_state_in(JsonValue all) {
 
 KeptTold read_place(const std::string& path) {
   constexpr std::size_t kBytesMax =
-      4 * 1024 * 1024;  // three ways that owe 200 messages each need a tenth
+      4 * 1024 * 1024;  // two ways that owe 200 messages each need a tenth
   KeptTold place{.path = path};
   std::string text(kBytesMax, '\0');
   const ssize_t size = read_beginning(path.c_str(), text, Links::kRefused);

@@ -19,7 +19,7 @@ struct NotifierState {
   std::uint64_t number = 0;  ///< grows with every time that it is kept
   std::vector<Alarm> alarms{};
   std::int32_t local_day = 0;          ///< the last that was told; 0 = none yet
-  std::map<std::string, Owed> owed{};  ///< by way: "mail", "webhook", "mqtt"
+  std::map<std::string, Owed> owed{};  ///< by way: "command", "mqtt"
   EnergyTotals energy{};
 };
 

@@ -7,9 +7,6 @@
 #include "edge/companion/numeric_address.h"
 #include "edge/companion/secret_file.h"
 #include "edge/log/installed_folders.h"
-#include "edge/notify/webhook.h"
-#include "edge/prices/http_secrets.h"
-#include "shared/fixed_text.h"
 
 namespace bess {
 namespace {
@@ -21,36 +18,19 @@ std::string readable_file(TomlTable& table, std::string_view key, const std::str
   return path;
 }
 
-void read_mail(TomlTable& table, NotifySettings& settings) {
-  settings.sendmail = "/usr/sbin/sendmail";
-  table.line("mail_to", settings.mail_to);
-  table.line("mail_from", settings.mail_from);
-  table.line("sendmail", settings.sendmail);
-  if (settings.mail_to.empty()) return;
-  settings.sendmail = table.resolved(settings.sendmail);
-  if (access(settings.sendmail.c_str(), X_OK) != 0) {
-    table.fail("sendmail", "= " + settings.sendmail +
-                               " cannot be run: install a mailer (msmtp-mta, for one), or name it");
+/// Alarms that nobody would get any more are no matter for a note in the journal.
+void refuse_former_ways(TomlTable& table) {
+  for (const char* const key : {"mail_to", "webhook_url"}) {
+    if (!table.has(key)) continue;
+    table.fail(key,
+               "is of earlier versions: alarms go to a command now, such as "
+               "command = 'mail -s \"$BESS_TITLE\" operator@example.org', or apprise");
   }
-}
-
-void read_webhook(TomlTable& table, NotifySettings& settings) {
-  std::string header_file;
-  table.line("webhook_url", settings.webhook_url);
-  table.line("webhook_header_file", header_file);
-  table.line("webhook_ca_file", settings.webhook_ca_file);
-  if (settings.webhook_url.empty() || !table.ok()) return;
-  if (!is_allowed_webhook(settings.webhook_url)) {
-    return table.fail("webhook_url",
-                      "must start with https://, or lead to this machine: http://127.0.0.1");
+  std::string ignored;
+  for (const char* const key :
+       {"mail_from", "sendmail", "webhook_header_file", "webhook_ca_file"}) {
+    table.line(key, ignored);
   }
-  if (!settings.webhook_ca_file.empty()) {
-    settings.webhook_ca_file = readable_file(table, "webhook_ca_file", settings.webhook_ca_file);
-  }
-  if (header_file.empty() || !table.ok()) return;
-  FixedText<2047> headers;
-  if (!load_http_headers(table.resolved(header_file).c_str(), headers, table.error())) return;
-  settings.webhook_headers = headers.view();
 }
 
 /// The first line of a file that others may not read.
@@ -99,8 +79,8 @@ void read_notify(TomlTable table, NotifySettings& settings) {
   table.boolean("daily", settings.daily);
   table.line("folder", folder);
   read_program(table, settings);
-  read_mail(table, settings);
-  read_webhook(table, settings);
+  table.line("command", settings.command);
+  refuse_former_ways(table);
   read_mqtt(table, settings.mqtt);
   folder = table.resolved(folder);
   std::string run_folder(kInstalledNotify.run_beside(folder));

@@ -27,25 +27,17 @@ struct NotifySettings : ControllerPlaces {
   std::string memory;                      ///< file of what was told
   std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
   std::string lock;                        ///< file that the one notifier of this memory holds
-  std::string contact;                     ///< stands in each mail; empty: not said
+  std::string contact;                     ///< stands in each message; empty: not said
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;
   bool daily = true;
-  std::string mail_to;  ///< empty: no mail
-  std::string mail_from;
-  std::string sendmail;
-  std::string webhook_url;      ///< empty: no webhook
-  std::string webhook_headers;  ///< one "Name: value" a line
-  std::string webhook_ca_file;  ///< empty: the system's
-  std::int32_t webhook_ms_max = 20'000;
-  std::int32_t mailer_ms_max = 60'000;
+  std::string command;  ///< alarm_command.h; empty: none
+  std::int32_t command_ms_max = 60'000;
   MqttSettings mqtt;
   MoneySettings money;
   bool awaits_settled = false;  ///< bess-prices fetches what quarter-hours are billed at
 
-  [[nodiscard]] bool has_channel() const {
-    return !mail_to.empty() || !webhook_url.empty() || !mqtt.host.empty();
-  }
+  [[nodiscard]] bool has_channel() const { return !command.empty() || !mqtt.host.empty(); }
 };
 
 /// False with one line: file, key, and the mend. Makes nothing and connects to nothing.

@@ -369,13 +369,12 @@ INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), name_o
 class DyingDiskNotify : public DyingDiskRun {
  protected:
   void add_notifier() const {
-    const std::string mailer =
-        site_.folder.write("mailer", "#!/bin/sh\ncat >>" + site_.folder.file("mails") + "\n");
-    ASSERT_EQ(chmod(mailer.c_str(), 0755), 0);
+    const std::string command =
+        "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + site_.folder.file("mails");
     std::ofstream(config_, std::ios::app)
         << "[notify]\nevery_s = 1\nafter_s = 0\nfolder = \"state/notify\"\nrun_folder = "
-           "\"run/notify\"\nmail_to = \"a@b.example\"\nsendmail = \""
-        << mailer << "\"\nprogram = \"" << edge_program() << "\"\n";
+           "\"run/notify\"\ncommand = '"
+        << command << "'\nprogram = \"" << edge_program() << "\"\n";
   }
   void start_notifier() {
     notifier_ = std::make_unique<ChildProcess>(

@@ -82,13 +82,11 @@ class StateFiles : public ::testing::Test {
     }
   }
   void add_notifier() {
-    const std::string mailer =
-        site_.folder.write("mailer", "#!/bin/sh\ncat >>" + site_.folder.file("mails") + "\n");
-    chmod(mailer.c_str(), 0755);
+    const std::string command =
+        "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + site_.folder.file("mails");
     std::ofstream(config_, std::ios::app)
-        << "[notify]\nafter_s = 0\nfolder = \"notify\"\nrun_folder = \"notify_run\"\nmail_to = "
-           "\"a@b.example\"\nsendmail = \""
-        << mailer << "\"\nprogram = \"" << edge_program() << "\"\n";
+        << "[notify]\nafter_s = 0\nfolder = \"notify\"\nrun_folder = \"notify_run\"\ncommand = '"
+        << command << "'\nprogram = \"" << edge_program() << "\"\n";
   }
   [[nodiscard]] std::string pristine(const char* folder) const {
     return site_.folder.file(std::string("pristine_") + folder);

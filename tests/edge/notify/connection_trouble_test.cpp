@@ -1,4 +1,4 @@
-// Why a webhook or a broker cannot be reached is told by its cause: each cause by a real server, or
+// Why a broker cannot be reached is told by its cause: each cause by a real server, or
 // a real broker, that has it.
 #include "edge/notify/connection_trouble.h"
 
@@ -9,7 +9,6 @@
 
 #include "edge/notify/mqtt_client.h"
 #include "edge/notify/notify_settings.h"
-#include "edge/notify/webhook.h"
 #include "tests/support/dated_certificate.h"
 #include "tests/support/mqtt_broker.h"
 #include "tests/support/test_server.h"
@@ -36,79 +35,6 @@ constexpr BadCertificate kBadCertificates[] = {
     {"IP:127.0.0.2", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
     {"DNS:localhost", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
 };
-
-NotifySettings webhook_to(const std::string& scheme, int port, const std::string& ca_file) {
-  NotifySettings settings;
-  settings.webhook_url = scheme + "://127.0.0.1:" + std::to_string(port) + "/secret";
-  settings.webhook_ca_file = ca_file;
-  settings.webhook_ms_max = 5'000;
-  return settings;
-}
-
-std::string post(const NotifySettings& settings) {
-  const std::string trouble = post_webhook(settings, {.text = "t"}, {});
-  EXPECT_THAT(trouble, Not(HasSubstr("secret")));
-  return trouble;
-}
-
-bool answer(TestConnection& connection, const std::string&) { return connection.answer(""); }
-
-TestServer::Options tls_of(const DatedCertificate& certificate) {
-  TestServer::Options options;
-  options.certificate = certificate.certificate();
-  options.key = certificate.key();
-  return options;
-}
-
-TEST(WebhookTrouble, AGoodCertificateIsTaken) {
-  const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
-  TestServer server(answer, tls_of(good));
-  EXPECT_EQ(post(webhook_to("https", server.port(), good.ca())), "");
-  EXPECT_THAT(post(webhook_to("https", server.port(), "")),
-              StartsWith("webhook: the server's certificate is of no authority that is known here: "
-                         "install ca-certificates, or name"));
-}
-
-TEST(WebhookTrouble, EachBadCertificateIsToldByItsCause) {
-  for (const auto& [name, from_s, to_s, cause] : kBadCertificates) {
-    const DatedCertificate bad(name, from_s, to_s);
-    TestServer server(answer, tls_of(bad));
-    EXPECT_THAT(post(webhook_to("https", server.port(), bad.ca())), HasSubstr(cause)) << name;
-  }
-}
-
-TEST(WebhookTrouble, ServersThatAreNone) {
-  TestServer cutting([](TestConnection&, const std::string&) { return false; });
-  EXPECT_THAT(post(webhook_to("http", cutting.port(), "")),
-              HasSubstr("closed the connection without an answer"));
-  TestServer silent([&silent](TestConnection&, const std::string&) {
-    silent.wait_for_end();
-    return false;
-  });
-  NotifySettings settings = webhook_to("http", silent.port(), "");
-  settings.webhook_ms_max = 300;
-  EXPECT_THAT(post(settings), HasSubstr("no answer in time"));
-  EXPECT_THAT(post(webhook_to("http", Broker::free_port(), "")),
-              HasSubstr("connection refused: does the server run, is the port right?"));
-  settings = webhook_to("https", 1, "");
-  settings.webhook_url = "https://no-such-host.invalid/secret";
-  EXPECT_THAT(post(settings), HasSubstr("the host's name is not known"));
-}
-
-/// What is not wanted any more ends, however silent the server is.
-TEST(WebhookTrouble, AStopEndsIt) {
-  TestServer silent([&silent](TestConnection&, const std::string&) {
-    silent.wait_for_end();
-    return false;
-  });
-  NotifySettings settings = webhook_to("http", silent.port(), "");
-  settings.webhook_ms_max = 60'000;
-  std::stop_source source;
-  source.request_stop();
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_NE(post_webhook(settings, {}, source.get_token()), "");
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
-}
 
 class MqttTrouble : public ::testing::Test {
  protected:

@@ -1,4 +1,4 @@
-// Ways that hang, beside ways that do not: the whole program with a mailer that sleeps, servers
+// Ways that hang, beside ways that do not: the whole program with a command that sleeps, servers
 // that are silent or drip, and a broker that comes and goes. What is told, when, how often, and
 // what of it outlasts a kill.
 #include <gmock/gmock.h>
@@ -20,37 +20,21 @@ using ::testing::HasSubstr;
 
 double seconds_now() { return static_cast<double>(clock_ns(CLOCK_MONOTONIC)) / 1e9; }
 
-/// One byte of an endless answer now and then, until the client goes.
-bool drip(TestConnection& connection, const std::string&) {
-  if (!connection.send("HTTP/1.1 200 OK\r\nContent-Length: 1000000\r\n\r\n")) return false;
-  while (connection.send("x")) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  return false;
-}
-
 class Outboxes : public Mqtt {
  protected:
   void SetUp() override {
     Mqtt::SetUp();
     settings_.every_s = 1;
   }
-  void use_stuck_mailer() {
-    settings_.mail_to = "a@b.example";
-    settings_.sendmail =
-        write_script("stuck", "echo x >>" + folder_.file("mailer_began") + "; sleep 1000");
-  }
-  void use_webhook(const TestServer& server) {
-    settings_.webhook_url = "http://127.0.0.1:" + std::to_string(server.port()) + "/hook";
+  void use_stuck_command() {
+    settings_.command = "echo x >>" + folder_.file("command_began") + "; sleep 1000";
   }
   /// The same settings as a file.
   std::string config() {
     std::string text = "[battery]\nname = \"garage\"\n[notify]\nevery_s = 1\nafter_s = " +
                        std::to_string(settings_.after_s) + "\nprogram = \"" + settings_.program +
                        "\"\n";
-    if (!settings_.mail_to.empty()) {
-      text +=
-          "mail_to = \"" + settings_.mail_to + "\"\nsendmail = \"" + settings_.sendmail + "\"\n";
-    }
-    if (!settings_.webhook_url.empty()) text += "webhook_url = \"" + settings_.webhook_url + "\"\n";
+    if (!settings_.command.empty()) text += "command = '" + settings_.command + "'\n";
     text += "mqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n";
     return folder_.write("edge.toml", text);
   }
@@ -79,17 +63,12 @@ class Outboxes : public Mqtt {
 TEST_F(Outboxes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
-  TestServer silent([&silent](TestConnection&, const std::string&) {
-    silent.wait_for_end();
-    return false;
-  });
-  use_stuck_mailer();
-  use_webhook(silent);
+  use_stuck_command();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
   ASSERT_EQ(all.await("/status", "online"), "online");
   set_status("degraded", R"("WARN: the first")");
   ASSERT_NE(all.await("/event", "the first"), "");
-  ASSERT_TRUE(await_lines("mailer_began", 1));  // and it stays at it
+  ASSERT_TRUE(await_lines("command_began", 1));  // and it stays at it
   double slowest_s = 0;
   for (const char* name : {"the second", "the third", "the fourth"}) {
     const double begin_s = seconds_now();
@@ -111,9 +90,7 @@ TEST_F(Outboxes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
 TEST_F(Outboxes, AnOutageIsToldAsLongAsItWas) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
-  TestServer dripping(drip);
-  use_stuck_mailer();
-  use_webhook(dripping);
+  use_stuck_command();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
   ASSERT_EQ(all.await("/status", "online"), "online");
   set_status("degraded", R"("WARN: an outage")");
@@ -144,17 +121,17 @@ TEST_F(Outboxes, FortyFiveSecondsAreFortyFiveSeconds) {
 }
 
 /// The broker stands still for longer than a delivery waits, goes away, and is there again: each
-/// event comes once and in order, and the mail goes out meanwhile.
+/// event comes once and in order, and the command is run meanwhile.
 TEST_F(Outboxes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   Broker broker(folder_, port());
   auto all = std::make_unique<Listener>(port(), "bess/#");
-  use_mail();
+  use_command();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
   ASSERT_EQ(all->await("/status", "online"), "online");
   broker.freeze();
   set_status("degraded", R"("WARN: one")");
-  ASSERT_TRUE(await_lines("mails", 1));
-  EXPECT_THAT(mails(), HasSubstr("ALARM: WARN: one"));
+  ASSERT_TRUE(await_lines("told", 1));
+  EXPECT_THAT(told(), HasSubstr("ALARM: WARN: one"));
   std::this_thread::sleep_for(std::chrono::seconds(6));  // several tries
   broker.thaw();
   ASSERT_NE(all->await("/event", "WARN: one"), "");
@@ -162,8 +139,8 @@ TEST_F(Outboxes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   ASSERT_TRUE(await_nothing_pending());
   broker.stop();
   set_status("ok");
-  for (int i = 0; i < 600 && count_of(mails(), "over: WARN: one") == 0; ++i) usleep(50'000);
-  EXPECT_THAT(mails(), HasSubstr("over: WARN: one"));
+  for (int i = 0; i < 600 && count_of(told(), "over: WARN: one") == 0; ++i) usleep(50'000);
+  EXPECT_THAT(told(), HasSubstr("over: WARN: one"));
   broker.start();
   all = std::make_unique<Listener>(port(), "bess/#");
   ASSERT_NE(all->await("/event", "over"), "");
@@ -188,19 +165,18 @@ TEST_F(Outboxes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
   EXPECT_EQ(owed("mqtt").messages.size(), 1U) << "told after the next start";
 }
 
-/// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole
+/// Killed again and again while its command takes its time: no alarm is lost, and the file is whole
 /// each time.
 TEST_F(Outboxes, AKillLosesNothing) {
-  settings_.mail_to = "a@b.example";
-  settings_.sendmail = write_script("slow", "echo x >>" + folder_.file("mailer_began") +
-                                                "; sleep 0.3; cat >>" + folder_.file("mails"));
+  settings_.command = "echo x >>" + folder_.file("command_began") +
+                      "; sleep 0.3; echo \"$BESS_TITLE\" >>" + folder_.file("told");
   const std::string file = config();
   constexpr int kKills = 12;
   for (int i = 0; i < kKills; ++i) {
     set_status("degraded",
                "\"WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i)) + "\"");
     ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
-    ASSERT_TRUE(await_lines("mailer_began", static_cast<std::size_t>(i) + 1));
+    ASSERT_TRUE(await_lines("command_began", static_cast<std::size_t>(i) + 1));
     usleep(static_cast<useconds_t>(37'000 * i));
     notify.signal(SIGKILL);
     notify.wait();
@@ -209,8 +185,8 @@ TEST_F(Outboxes, AKillLosesNothing) {
   for (int i = 0; i < kKills; ++i) {
     const std::string headline =
         "ALARM: WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i));
-    for (int wait = 0; wait < 600 && count_of(mails(), headline) == 0; ++wait) usleep(50'000);
-    EXPECT_GE(count_of(mails(), headline), 1U) << headline;
+    for (int wait = 0; wait < 600 && count_of(told(), headline) == 0; ++wait) usleep(50'000);
+    EXPECT_GE(count_of(told(), headline), 1U) << headline;
   }
   EXPECT_EQ(notify.signal(SIGTERM), true);
   EXPECT_EQ(notify.wait(), 0);

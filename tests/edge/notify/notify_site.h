@@ -1,5 +1,5 @@
 // What the tests of whole rounds stand on: a site without a controller, whose status is a file and
-// whose mailer is a script.
+// whose alarm command writes into another.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,11 +25,11 @@ inline std::size_t count_of(const std::string& text, const std::string& piece) {
   return count;
 }
 
-/// A site without a controller: its status is a file, its mailer writes into another.
+/// A site without a controller: its status is a file, its command writes into another.
 class Rounds : public ::testing::Test {
  protected:
   Rounds() {
-    signal(SIGPIPE, SIG_IGN);  // as the program does: a mailer need not read what it is given
+    signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read what it is given
     set_market_time_zone();
     settings_.config_path = "edge.toml";
     settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
@@ -46,9 +46,8 @@ class Rounds : public ::testing::Test {
     EXPECT_EQ(chmod(path.c_str(), 0755), 0);
     return path;
   }
-  void use_mail() {
-    settings_.mail_to = "a@b.example";
-    settings_.sendmail = write_script("sendmail", "cat >>" + folder_.file("mails"));
+  void use_command() {
+    settings_.command = "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + folder_.file("told");
   }
   void set_status(const std::string& health, const std::string& reasons = "",
                   std::int64_t utc_s = kNow) {
@@ -63,7 +62,7 @@ class Rounds : public ::testing::Test {
   [[nodiscard]] Owed owed(const char* way) const {
     return read_newest_notifier_state({settings_.memory}).told.owed[way];
   }
-  [[nodiscard]] std::string mails() const { return text_of_file(folder_.file("mails")); }
+  [[nodiscard]] std::string told() const { return text_of_file(folder_.file("told")); }
 
   const TemporaryFolder folder_;
   NotifySettings settings_;

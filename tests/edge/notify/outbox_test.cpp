@@ -66,7 +66,7 @@ class Recorder {
 class OutboxTest : public ::testing::Test {
  protected:
   std::unique_ptr<Outbox> outbox_with(Owed owed = {}) {
-    return std::make_unique<Outbox>("mail", way_.way(), std::move(owed), bell_);
+    return std::make_unique<Outbox>("command", way_.way(), std::move(owed), bell_);
   }
   static void run_round(Outbox& outbox, std::int64_t now_utc_s = kNow) {
     outbox.begin_round(now_utc_s);
@@ -131,7 +131,7 @@ TEST_F(OutboxTest, WhatDoesNotFitIsCountedAndTold) {
   const std::vector<std::string> taken = way_.taken();
   ASSERT_EQ(taken.size(), Outbox::kMessagesMax + 1);
   EXPECT_EQ(taken[0],
-            "5 messages of 2023-03-27T00:02:00Z to 2023-03-27T00:06:00Z dropped: mail took "
+            "5 messages of 2023-03-27T00:02:00Z to 2023-03-27T00:06:00Z dropped: command took "
             "none for too long; the journal of bess-notify has them");
   EXPECT_EQ(taken[1], "m5");
   EXPECT_EQ(taken.back(), "m204");
