@@ -18,6 +18,7 @@
 #include "shared/local_time.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test_server.h"
 
 namespace bess {
 namespace {
@@ -282,7 +283,8 @@ TEST_F(AlarmCommand, MayBeApprise) {
   if (!std::filesystem::exists("/usr/bin/apprise")) GTEST_SKIP() << "apprise is not installed";
   std::string body;
   TestServer server([&body](TestConnection& to, const std::string& request) {
-    body = request;
+    const std::size_t at = request.find("Content-Length: ");
+    EXPECT_TRUE(to.read_bytes(std::stoul(request.substr(at + 16)), body));
     return to.answer("{}");
   });
   settings_.command_ms_max = 60'000;
