@@ -1,4 +1,4 @@
-// The operator's command: `apprise`, `mail` or a script. It is run by /bin/sh for each message, with
+// The operator's command: `apprise`, `mail` or a script. /bin/sh runs it for each message, with
 //   BESS_SEVERITY  alarm, over (its end), day (yesterday in a line), test or dropped
 //   BESS_TITLE     "[bess NAME] ALARM: ...", one line
 //   BESS_TEXT      the same with since when, what to run and whom to call; also its input

@@ -18,7 +18,6 @@ constexpr int kExitInterruptedTwice = 130;  // what a shell gives a program that
 
 char note_text[512] = "";  // a handler may not allocate
 std::atomic<std::size_t> note_size{0};
-std::atomic<void (*)()> last_thing{nullptr};
 
 void say(std::string_view text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
@@ -26,7 +25,6 @@ void say(std::string_view text) {
 
 [[noreturn]] void end_now(int exit_code) {
   remove_unfinished_files();
-  if (auto* const last = last_thing.load()) last();
   say("\n");
   say({note_text, note_size.load()});
   say("bess-train: interrupted\n");
@@ -48,8 +46,6 @@ void end_when_interrupted(const std::string& note) {
   note_size = size;
   handle_with([](int) { end_now(kExitInterrupted); });
 }
-
-void before_interrupted_end(void (*last)()) { last_thing = last; }
 
 std::atomic<bool>& interruption() {
   static std::atomic<bool> interrupted{false};

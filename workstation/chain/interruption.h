@@ -11,8 +11,6 @@ namespace bess {
 /// From here on they end the program at once, with exit code 3: files being written are removed,
 /// and `note` is said, one line on what is kept and how to go on.
 void end_when_interrupted(const std::string& note = "");
-/// The last thing before such an end: calls nothing that a handler may not.
-void before_interrupted_end(void (*last)());
 
 /// From here on the first only raises the flag: a loop looks at it, saves what it has and returns.
 /// The second ends the program at once, with exit code 130.

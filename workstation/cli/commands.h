@@ -34,7 +34,6 @@ void add_sweep_commands(ProgramCommand& app);
 void add_sweep_plan(ProgramCommand& sweep);
 void add_sweep_run(ProgramCommand& sweep);
 void add_sweep_task(ProgramCommand& sweep);
-void add_sweep_status(ProgramCommand& sweep);
 void add_sweep_collect(ProgramCommand& sweep);
 void add_sweep_packages(ProgramCommand& sweep);
 void add_battery_commands(ProgramCommand& app);  ///< fit

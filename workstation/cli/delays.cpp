@@ -20,8 +20,8 @@
 #include "workstation/cli/commands.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/comparison.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/report_page.h"
-#include "workstation/sweep/heat_map.h"
 
 namespace bess {
 namespace {
@@ -105,20 +105,17 @@ void print_ramp_table(const std::string& name, const std::vector<std::vector<Cel
   }
 }
 
-std::vector<FoldedSettings> map_of(const std::vector<std::vector<Cell>>& table,
-                                   const DelaysArguments& options) {
-  std::vector<FoldedSettings> rows;
+std::vector<HeatPoint> map_of(const std::vector<std::vector<Cell>>& table,
+                              const DelaysArguments& options) {
+  std::vector<HeatPoint> points;
   for (std::size_t r = 0; r < table.size(); ++r) {
     for (std::size_t delay = 0; delay < table[r].size(); ++delay) {
-      FoldedSettings row;
-      row.settings = {{"delay, minutes", std::to_string(delay)},
-                      {"ramp, % a minute", fmt::format("{:g}", options.ramps_percent_per_min[r])}};
-      row.tasks = row.proved = 1;
-      row.mean = table[r][delay].profit;
-      rows.push_back(std::move(row));
+      points.push_back({std::to_string(delay),
+                        fmt::format("{:g}", options.ramps_percent_per_min[r]),
+                        table[r][delay].profit});
     }
   }
-  return rows;
+  return points;
 }
 
 void print_table(const std::string& name, const Table& table) {
@@ -176,8 +173,9 @@ void tell_of_ramps(const Markets& markets, const RunConfig& config,
   std::string maps;
   for (const std::string& name : options.policies) {
     const auto table = ramp_table(name, markets, config, options);
-    maps += heat_map_html(map_of(table, options), "delay, minutes", "ramp, % a minute",
-                          name + ", EUR per day per MWh", fmt::format("map-{}", name));
+    maps += heat_map_html(map_of(table, options),
+                          {"delay, minutes", "ramp, % a minute", name + ", EUR per day per MWh",
+                           fmt::format("map-{}", name)});
     if (!options.json) print_ramp_table(name, table, options);
     if (!options.json) continue;
     for (std::size_t r = 0; r < table.size(); ++r) {

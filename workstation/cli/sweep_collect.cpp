@@ -1,12 +1,17 @@
-// bess-train sweep collect: what all tasks came to, as tables and a page.
+// bess-train sweep collect: what all tasks came to, as tables, and what is still to be done.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/sweep_page.h"
+#include "workstation/sweep/collected.h"
+#include "workstation/sweep/engines.h"
+#include "workstation/sweep/sweep_plan.h"
 
 namespace bess {
 namespace {
@@ -14,38 +19,59 @@ namespace {
 struct CollectArguments {
   std::string folder;
   bool partial = false;
-  std::vector<std::string> map;
+  bool json = false;
 };
 
-void require_whole(const SweepFolder& folder, const std::vector<TaskState>& states) {
+std::size_t count_of(const std::vector<CollectedTask>& tasks, TaskState state) {
+  return static_cast<std::size_t>(std::ranges::count(tasks, state, &CollectedTask::state));
+}
+
+/// Those without an output, why, and what runs them.
+void tell_holes(const SweepFolder& folder, const std::vector<CollectedTask>& tasks) {
+  constexpr int kShown = 20;
   std::vector<int> holes;
-  for (std::size_t t = 0; t < states.size(); ++t) {
-    const bool is_done = states[t] == TaskState::kProved || states[t] == TaskState::kUnproved;
-    if (!is_done) holes.push_back(static_cast<int>(t) + 1);
+  int shown = 0;
+  for (const CollectedTask& task : tasks) {
+    if (task.state == TaskState::kProved || task.state == TaskState::kUnproved) continue;
+    holes.push_back(task.task.number);
+    if (task.said.empty() || ++shown > kShown) continue;
+    fmt::print("  task {}{} {}\n", task.task.number,
+               task.state == TaskState::kFailed ? "" : " has begun, and last said:", task.said);
   }
   if (holes.empty()) return;
-  std::string names = ranges_text(holes);
-  if (names.size() > 80) names = names.substr(0, names.rfind(',', 80)) + ",...";
-  fail(
-      "{}: {} of {} tasks have no result: {}; 'bess-train sweep run {}' goes on, --partial "
-      "collects what there is",
-      folder.path.string(), holes.size(), states.size(), names, folder.path.string());
+  fmt::print("{} without an output; to run them:\n{}\nor on Slurm:\n{}",
+             counted(holes.size(), "task"),
+             shell_line({"bess-train", "sweep", "run", folder.path.string(), "--again"}),
+             sbatch_lines(folder, holes));
 }
 
 void collect_sweep(const CollectArguments& options) {
-  if (options.map.size() > 2) fail("--map: give one or two settings");
   const SweepFolder folder{options.folder};
-  const SweepRecord record = load_sweep_record(folder);
-  const std::vector<SweepTask> planned = load_tasks(folder);
-  const auto states = task_states(folder, static_cast<int>(planned.size()));
-  if (!options.partial) require_whole(folder, states);
-  const std::vector<CollectedTask> tasks = collect_tasks(folder, planned, states);
-  const std::vector<CollectedSite> sites = collect_sites(folder, tasks, load_sites(folder));
+  load_sweep_record(folder);
+  const auto tasks = collect_tasks(folder, load_tasks(folder));
+  const std::size_t proved = count_of(tasks, TaskState::kProved);
+  const std::size_t unproved = count_of(tasks, TaskState::kUnproved);
+  if (options.json) {
+    Json json = answer("sweep_collect");
+    json.set("sweep", options.folder);
+    json.set("tasks", tasks.size());
+    json.set("proved", proved);
+    json.set("not_proved", unproved);
+    json.set("failed", count_of(tasks, TaskState::kFailed));
+    json.set("missing", count_of(tasks, TaskState::kMissing));
+    fmt::print("{}\n", json.line());
+  } else {
+    fmt::print("{}: {}, {} proved, {} not proved\n", options.folder, counted(tasks.size(), "task"),
+               proved, unproved);
+    tell_holes(folder, tasks);
+  }
+  if (proved + unproved < tasks.size() && !options.partial) {
+    fail("{}: no tables of a part of the tasks without --partial", options.folder);
+  }
+  const auto sites = collect_sites(folder, tasks, load_sites(folder));
   write_file(folder.path / "tasks.csv", tasks_csv(tasks));
+  write_file(folder.path / "settings.csv", settings_csv(tasks));
   if (!sites.empty()) write_file(folder.path / "sites.csv", sites_csv(sites));
-  write_file(folder.path / "sweep.html", sweep_page(record, tasks, sites, options.map));
-  fmt::print("{}: tasks.csv{} and sweep.html of {} tasks\n", options.folder,
-             sites.empty() ? "" : ", sites.csv", tasks.size());
 }
 
 }  // namespace
@@ -53,14 +79,11 @@ void collect_sweep(const CollectArguments& options) {
 void add_sweep_collect(ProgramCommand& sweep) {
   auto options = std::make_shared<CollectArguments>();
   ProgramCommand command = sweep.subcommand(
-      "collect", "What all tasks came to: tasks.csv, sites.csv and sweep.html, in the folder");
+      "collect", "What the tasks came to: tasks.csv, settings.csv and sites.csv, in the folder");
   command.option("folder", options->folder, "Folder of the sweep").required();
   command.flag("--partial", options->partial, "Also when tasks are missing or failed");
-  command.option("--map", options->map, "The one or two settings of the heat map");
-  command.footer(
-      "Examples:\n"
-      "  bess-train sweep collect sweeps/first\n"
-      "  bess-train sweep collect sweeps/first --partial --map distil.fidelity train.steps");
+  command.flag("--json", options->json, "One JSON object: how many tasks are done");
+  command.footer("Example:\n  bess-train sweep collect sweeps/first --partial");
   command.runs([options] { collect_sweep(*options); });
 }
 

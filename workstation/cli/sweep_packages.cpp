@@ -31,24 +31,19 @@ void package_sweep(const PackagesArguments& options) {
   const PackageRequest request{fs::canonical(options.source), fs::absolute(options.out),
                                options.architectures};
   const SweepFolder folder{options.folder};
-  const std::vector<SweepTask> planned = load_tasks(folder);
-  const auto states = task_states(folder, static_cast<int>(planned.size()));
-  const auto tasks = collect_tasks(folder, planned, states);
+  const auto tasks = collect_tasks(folder, load_tasks(folder));
   const std::vector<Site> sites = load_sites(folder);
   if (sites.empty()) fail("{}: was planned without --sites: it has no classes", options.folder);
   auto classes = classes_to_package(tasks, collect_sites(folder, tasks, sites), options.partial);
-  std::size_t packaged = 0;
   for (PackagedClass& one : classes) {
     const bool is_new = package_class(folder, request, one);
     fmt::print("class {}: student {}, {}: {}{}\n", one.name, one.student,
                counted(one.sites.size(), "site"), one.version, is_new ? "" : " is there already");
     std::fflush(stdout);
-    packaged += one.sites.size();
   }
   const fs::path inventory = fs::path(options.out) / "inventory.yml";
   write_file(inventory, format_inventory(classes, options.architectures.front()));
-  fmt::print("{}: {} of {}, {}\n", inventory.string(), packaged, counted(sites.size(), "site"),
-             counted(classes.size(), "student"));
+  fmt::print("{}: {}\n", inventory.string(), counted(classes.size(), "student"));
 }
 
 }  // namespace
@@ -67,13 +62,9 @@ void add_sweep_packages(ProgramCommand& sweep) {
       .with_default();
   command.flag("--partial", options->partial, "Leave sites out that have no proved student");
   command.footer(
-      "The student is that of the class's first proved task, as in sites.csv. A class whose "
-      "packages are there, of the same student, is left alone: remove its folder to have it made "
-      "anew.\n"
-      "Examples:\n"
-      "  bess-train sweep packages sweeps/fleet --out debs\n"
-      "  bess-train sweep packages sweeps/fleet --out debs --arch arm64 armhf --source ~/bess\n"
-      "  ansible-playbook -i debs/inventory.yml tools/ansible/roll_out.yml --limit rollout_1");
+      "A class whose packages are there, of the same student, is left alone.\n"
+      "Example:\n  bess-train sweep packages sweeps/fleet --out debs --arch arm64 armhf --source "
+      "~/bess");
   command.runs([options] { package_sweep(*options); });
 }
 

@@ -13,6 +13,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/made/build_info.h"
+#include "shared/host/shell_word.h"
 #include "shared/utc_text.h"
 #include "workstation/chain/changed_keys.h"
 
@@ -26,17 +27,6 @@ std::optional<std::string> bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || fs::is_directory(path)) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
-/// Quoted where a shell needs it.
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-./:,=+@%") == word.npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 /// Of this process, as it was given.

@@ -410,7 +410,9 @@ RunStages::Names RunStages::make_report() {
 }
 
 std::string how_to_go_on(const RunFolder& folder, const RunRecord& record) {
-  if (!record.value(kFoldKey).empty()) return "what is done is kept: the same command goes on";
+  if (!record.value(kFoldKey).empty() || record.is_lean()) {
+    return "what is done is kept: the same command goes on";
+  }
   return fmt::format("what is done is kept: bess-train run --resume --out {} goes on",
                      folder.path.string());
 }

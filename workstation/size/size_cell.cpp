@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "workstation/sweep/sites.h"
+#include "workstation/chain/learning_class.h"
 
 namespace bess {
 namespace {

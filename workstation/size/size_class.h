@@ -1,6 +1,6 @@
 // What a battery of one C-rate earns under the linear terms of a contract, walk-forward, of any
 // size: profit, throughput and peaks of two batteries that differ in size alone are as their sizes,
-// so a class is traded once at the size of the defaults (sweep/sites.h, canonical()).
+// so a class is traded once at the size of the defaults (chain/learning_class.h).
 #pragma once
 
 #include <string>

@@ -8,12 +8,12 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/sort_table.h"
 #include "workstation/report/report_page.h"
-#include "workstation/sweep/heat_map.h"
 
 namespace bess {
 namespace {
@@ -70,20 +70,15 @@ std::string best_text(const SizeCells& weighed) {
                      kilo(best.power_w), kilo(best.capacity_wh), best.contract->name);
 }
 
-/// A contract's cells as the heat map takes them; what is not known is left empty.
-std::vector<FoldedSettings> rows_of(const SizeReport& report, const SizeContract& contract,
-                                    double (*value)(const SizeCell&)) {
-  std::vector<FoldedSettings> rows;
+/// A contract's cells as the heat map takes them.
+std::vector<HeatPoint> points_of(const SizeReport& report, const SizeContract& contract,
+                                 double (*value)(const SizeCell&)) {
+  std::vector<HeatPoint> points;
   for (const SizeCell& cell : report.weighed.cells) {
     if (cell.contract != &contract) continue;
-    const double figure = value(cell);
-    FoldedSettings row;
-    row.settings = {{"kW", kilo(cell.power_w)}, {"kWh", kilo(cell.capacity_wh)}};
-    row.proved = std::isnan(figure) ? 0 : 1;
-    row.mean = figure;
-    rows.push_back(std::move(row));
+    points.push_back({kilo(cell.power_w), kilo(cell.capacity_wh), value(cell)});
   }
-  return rows;
+  return points;
 }
 
 std::string maps_html(const SizeReport& report) {
@@ -91,8 +86,8 @@ std::string maps_html(const SizeReport& report) {
   int number = 0;
   for (const SizeContract& contract : report.plan.contracts) {
     const auto map = [&](const char* what, double (*value)(const SizeCell&)) {
-      text += heat_map_html(rows_of(report, contract, value), "kW", "kWh", what,
-                            fmt::format("map-{}", ++number));
+      text += heat_map_html(points_of(report, contract, value),
+                            {"kW", "kWh", what, fmt::format("map-{}", ++number)});
     };
     text += fmt::format("<h2>{}</h2>\n", html_escaped(contract.name));
     map("EUR a year and kWh", [](const SizeCell& c) { return c.eur_per_kwh_year(); });

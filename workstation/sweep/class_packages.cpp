@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 
 #include "shared/host/child_process.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/fnv1a.h"
 #include "workstation/run/run_folder.h"
 #include "workstation/student/export.h"
 
@@ -18,10 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void require_host_name(const std::string& id) {
-  const auto is_of_a_name = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
-  };
-  if (std::ranges::all_of(id, is_of_a_name)) return;
+  constexpr const char* kOfAName =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_";
+  if (id.find_first_not_of(kOfAName) == id.npos) return;
   fail("site \"{}\" is no name of a host: use letters, digits, dots, hyphens and underscores", id);
 }
 
@@ -119,7 +118,7 @@ std::string format_inventory(const std::vector<PackagedClass>& classes,
         one.name, one.student, one.version);
     for (const CollectedSite& site : one.sites) {
       text += fmt::format("        \"{}\": {{bess_expected_eur_per_day: {:.4f}}}\n", site.site.id,
-                          site.eur_per_day.value_or(0));
+                          site.eur_per_day());
       shares[rollout_percent(site.site.id)] += fmt::format("        \"{}\":\n", site.site.id);
     }
   }

@@ -1,6 +1,4 @@
-// The folder of a sweep: names, and nothing else. Every state of a task is a file or folder that
-// was made by one rename or one exclusive creation, so that any number of programs on any number of
-// machines may look at it and work in it at once.
+// The folder of a sweep: names, and nothing else.
 //
 //   sweep.json      which program, prices and kind of tasks
 //   base.toml       what all tasks have in common
@@ -8,12 +6,11 @@
 //   rules/          rule files, by content
 //   tasks.tsv       a task a line; more may be appended, none is changed
 //   sites.tsv       which class of students each site belongs to
-//   tasks/000/000017/       what task 17 came to, published by one rename
-//   attempts/000017/WHO/    at work on it, or left behind; WHO.ended: ended on purpose
-//   failures/000017/WHO     why an attempt came to nothing
-//   different/000017.WHO/   a second copy that came to something else, or half of one
-//   submissions/3.tsv       what was sent to Slurm at once, an element of the array a line
-//   log/                    what tasks said
+//   array.sbatch    runs one task on Slurm
+//   joblog          what GNU parallel ran
+//   tasks/000/000017        the output of task 17, complete from the moment it has this name
+//   tasks/000/000017.part/  folders of those who work on it
+//   log/000017.txt          what they said, until it is complete
 #pragma once
 
 #include <fmt/format.h>
@@ -34,22 +31,16 @@ struct SweepFolder {
   }
   [[nodiscard]] std::filesystem::path tasks() const { return path / "tasks.tsv"; }
   [[nodiscard]] std::filesystem::path sites() const { return path / "sites.tsv"; }
-  [[nodiscard]] std::filesystem::path results() const { return path / "tasks"; }
+  [[nodiscard]] std::filesystem::path array_script() const { return path / "array.sbatch"; }
+  [[nodiscard]] std::filesystem::path joblog() const { return path / "joblog"; }
   /// A thousand to a folder: no file system likes ten thousand.
   [[nodiscard]] std::filesystem::path result(int task) const {
-    return results() / fmt::format("{:03}", task / 1000) / number_text(task);
+    return path / "tasks" / fmt::format("{:03}", task / 1000) / fmt::format("{:06}", task);
   }
-  [[nodiscard]] std::filesystem::path attempts(int task) const {
-    return path / "attempts" / number_text(task);
+  [[nodiscard]] std::filesystem::path parts(int task) const { return result(task) += ".part"; }
+  [[nodiscard]] std::filesystem::path log(int task) const {
+    return path / "log" / fmt::format("{:06}.txt", task);
   }
-  [[nodiscard]] std::filesystem::path failures(int task) const {
-    return path / "failures" / number_text(task);
-  }
-  [[nodiscard]] std::filesystem::path different() const { return path / "different"; }
-  [[nodiscard]] std::filesystem::path submissions() const { return path / "submissions"; }
-  [[nodiscard]] std::filesystem::path log() const { return path / "log"; }
-
-  static std::string number_text(int task) { return fmt::format("{:06}", task); }
 };
 
 }  // namespace bess

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -18,21 +17,12 @@ std::string_view take_field(std::string_view& rest) {
   return field;
 }
 
-SweepTask parse_line(std::string_view line, int number, const std::string& name) {
-  SweepTask task;
-  const std::string_view first = take_field(line);
-  const auto [end, error] = std::from_chars(first.data(), first.data() + first.size(), task.number);
-  if (error != std::errc{} || end != first.data() + first.size() || task.number != number) {
-    fail("{}:{}: does not begin with its number; plan the sweep again in another folder", name,
-         number);
+std::string joined(const Entries& settings, const char* between, const char* equals) {
+  std::string text;
+  for (const auto& [name, value] : settings) {
+    text.append(text.empty() ? "" : between).append(name).append(equals).append(value);
   }
-  while (!line.empty()) {
-    const std::string_view field = take_field(line);
-    const std::size_t equals = field.find('=');
-    if (equals == field.npos) fail("{}:{}: \"{}\" has no value", name, number, one_line(field, 60));
-    task.settings.emplace_back(field.substr(0, equals), field.substr(equals + 1));
-  }
-  return task;
+  return text;
 }
 
 }  // namespace
@@ -42,20 +32,18 @@ std::string SweepTask::value(std::string_view name) const {
   return found == settings.end() ? std::string() : found->second;
 }
 
-std::string settings_text(const Entries& settings) {
-  std::string text;
-  for (const auto& [name, value] : settings) {
-    text.append(text.empty() ? "" : "\t").append(name).append("=").append(value);
-  }
-  return text;
+Entries SweepTask::without_seed_and_fold() const {
+  Entries kept = settings;
+  std::erase_if(kept, [](const auto& entry) {
+    return entry.first == setting::kSeed || entry.first == setting::kFold;
+  });
+  return kept;
 }
 
+std::string settings_text(const Entries& settings) { return joined(settings, "\t", "="); }
+
 std::string settings_shown(const Entries& settings) {
-  std::string text;
-  for (const auto& [name, value] : settings) {
-    text.append(text.empty() ? "" : ", ").append(name).append(" ").append(value);
-  }
-  return text.empty() ? "as configured" : text;
+  return settings.empty() ? "as configured" : joined(settings, ", ", " ");
 }
 
 std::string format_tasks(const std::vector<SweepTask>& tasks) {
@@ -69,18 +57,21 @@ std::string format_tasks(const std::vector<SweepTask>& tasks) {
 std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name) {
   std::vector<SweepTask> tasks;
   while (!text.empty()) {
-    tasks.push_back(parse_line(take_line(text), static_cast<int>(tasks.size()) + 1, name));
+    std::string_view line = take_line(text);
+    SweepTask task{static_cast<int>(tasks.size()) + 1, {}};
+    if (take_field(line) != std::to_string(task.number)) {
+      fail("{}:{}: does not begin with its number; plan the sweep again in another folder", name,
+           task.number);
+    }
+    while (!line.empty()) {
+      const std::string_view field = take_field(line);
+      const std::size_t equals = field.find('=');
+      if (equals == field.npos) fail("{}:{}: \"{}\" has no value", name, task.number, field);
+      task.settings.emplace_back(field.substr(0, equals), field.substr(equals + 1));
+    }
+    tasks.push_back(std::move(task));
   }
   return tasks;
-}
-
-SweepTask parse_one_task(std::string_view text, int number, const std::string& name) {
-  int at = 1;
-  for (; at < number && !text.empty(); ++at) (void)take_line(text);
-  if (number < 1 || text.empty()) {
-    fail("there is no task {}: {} has {} of them", number, name, at - 1);
-  }
-  return parse_line(take_line(text), number, name);
 }
 
 }  // namespace bess

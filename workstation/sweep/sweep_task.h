@@ -23,6 +23,7 @@ struct SweepTask {
   Entries settings;  ///< those above, then "section.key" and its value as TOML writes it
 
   [[nodiscard]] std::string value(std::string_view name) const;  ///< empty: it has none
+  [[nodiscard]] Entries without_seed_and_fold() const;
 };
 
 /// "seed=1 <tab> distil.fidelity=2": the same settings give the same text.
@@ -33,7 +34,5 @@ std::string settings_shown(const Entries& settings);
 std::string format_tasks(const std::vector<SweepTask>& tasks);
 /// Throws UserError naming `name` and the line.
 std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name);
-/// Line `number` of such a text alone. Throws UserError when there is none.
-SweepTask parse_one_task(std::string_view text, int number, const std::string& name);
 
 }  // namespace bess

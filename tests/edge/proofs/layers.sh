@@ -107,7 +107,7 @@ learnt="$w/student $w/correction $w/rules $w/rl $w/nn $w/planners $w/env $market
 layer $w/chain                      $w/chain $learnt shared
 layer $w/run                        $w/run $w/chain $w/report $w/backtest $learnt shared
 layer $w/sweep                      $w/sweep $w/run $w/chain $w/report $learnt shared
-layer $w/size                       $w/size $w/sweep $w/chain $w/report $w/backtest $learnt shared
+layer $w/size                       $w/size $w/chain $w/report $w/backtest $learnt shared
 layer $w/impact                     $w/impact $w/chain $w/report $learnt shared
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared

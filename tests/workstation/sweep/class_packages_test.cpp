@@ -41,8 +41,7 @@ class ClassPackages : public testing::Test {
   }
   /// A site whose class's student is `header`, which is written; empty: it has none.
   CollectedSite site(const std::string& id, const std::string& of, const std::string& header) {
-    CollectedSite one{
-        {id, "", 4000, 8000, 0.5, of}, 1, header.empty() ? 0 : 1, {}, 3.25, "", {}, {}};
+    CollectedSite one{{id, "", 4000, 8000, of}, 1, header.empty() ? 0 : 1, 406.25};
     if (header.empty()) return one;
     one.header = of + "/student_weights.h";
     write_file(folder_.path / one.header, header);

@@ -27,12 +27,13 @@ CATALOGUE = [
     ([1000, 2000, 2150, 2500, 3440, 3727, 5015], [500, 1000, 1250, 1720, 2500], 1),
 ]
 IMPORT_EUR_PER_MWH = [0, 2, 5, 10, 20]
-THRESHOLDS = ["0:300", "-50:250"]
+THRESHOLDS = ["0,300", "-50,250"]
 
 count = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
 is_measured = sys.argv[2:] == ["measured"]
 draw = random.Random("plausible fleet")
-print("id,battery.power_w,battery.capacity_wh,costs.import_adder_eur_per_mwh,thresholds")
+print("id,battery.power_w,battery.capacity_wh,costs.import_adder_eur_per_mwh,"
+      "correction.low_price_eur_per_mwh,correction.high_price_eur_per_mwh")
 for number in range(1, count + 1):
     capacities, powers, _ = draw.choices(CATALOGUE, [weight for *_, weight in CATALOGUE])[0]
     capacity_kwh, power_kw = draw.choice(capacities), draw.choice(powers)

@@ -1,8 +1,9 @@
-#include "workstation/sweep/heat_map.h"
+#include "workstation/report/figures/heat_map.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "workstation/report/figures/html.h"
@@ -10,11 +11,6 @@
 
 namespace bess {
 namespace {
-
-std::string value_of(const FoldedSettings& row, const std::string& name) {
-  const auto found = std::ranges::find(row.settings, name, &Entries::value_type::first);
-  return found == row.settings.end() ? std::string() : found->second;
-}
 
 /// Numbers as numbers, other values as texts.
 bool comes_before(const std::string& a, const std::string& b) {
@@ -26,12 +22,11 @@ bool comes_before(const std::string& a, const std::string& b) {
   return are_numbers ? x < y : a < b;
 }
 
-std::vector<std::string> values_of(const std::vector<FoldedSettings>& rows,
-                                   const std::string& name) {
+std::vector<std::string> values_of(const std::vector<HeatPoint>& points,
+                                   std::string HeatPoint::*setting) {
   std::vector<std::string> values;
-  for (const FoldedSettings& row : rows) {
-    const std::string value = value_of(row, name);
-    if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+  for (const HeatPoint& point : points) {
+    if (std::ranges::find(values, point.*setting) == values.end()) values.push_back(point.*setting);
   }
   std::ranges::sort(values, comes_before);
   return values;
@@ -42,8 +37,6 @@ struct Mean {
   int count = 0;
   [[nodiscard]] double value() const { return sum / count; }
 };
-
-using Means = std::map<std::pair<std::string, std::string>, Mean>;
 
 /// Faint for the lowest, strong for the highest: both leave the number legible, light and dark.
 std::string cell_html(const Mean& mean, double low, double high, const std::string& label) {
@@ -59,46 +52,42 @@ std::string shown(const std::string& value) { return value.empty() ? "as configu
 
 }  // namespace
 
-std::string heat_map_html(const std::vector<FoldedSettings>& rows, const std::string& across,
-                          const std::string& down, const std::string& what, const std::string& id) {
-  Means means;
-  double low = 0, high = 0;
-  for (const FoldedSettings& row : rows) {
-    if (row.proved == 0) continue;
-    Mean& mean = means[{value_of(row, down), value_of(row, across)}];
-    mean.sum += row.mean;
+std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text) {
+  std::map<std::pair<std::string, std::string>, Mean> means;  // by down, then across
+  for (const HeatPoint& point : points) {
+    if (std::isnan(point.value)) continue;
+    Mean& mean = means[{point.down, point.across}];
+    mean.sum += point.value;
     ++mean.count;
   }
+  double low = 0, high = 0;
   for (bool is_first = true; const auto& [at, mean] : means) {
     low = is_first ? mean.value() : std::min(low, mean.value());
     high = is_first ? mean.value() : std::max(high, mean.value());
     is_first = false;
   }
-  const std::vector<std::string> columns = values_of(rows, across);
-  std::string text = fmt::format(
+  const std::vector<std::string> columns = values_of(points, &HeatPoint::across);
+  std::string html = fmt::format(
       "<div class=\"wide\"><table id=\"{}\">\n<caption style=\"white-space:nowrap\">{}: "
-      "{} across{}</caption>\n"
+      "{} across, {} down</caption>\n"
       "<thead><tr><th scope=\"col\">{}</th>",
-      html_escaped(id), html_escaped(what), html_escaped(across),
-      down.empty() ? "" : ", " + html_escaped(down) + " down",
-      html_escaped(down.empty() ? "all" : down));
+      html_escaped(text.id), html_escaped(text.what), html_escaped(text.across),
+      html_escaped(text.down), html_escaped(text.down));
   for (const std::string& column : columns) {
-    text += fmt::format("<th scope=\"col\">{}</th>", html_escaped(shown(column)));
+    html += fmt::format("<th scope=\"col\">{}</th>", html_escaped(shown(column)));
   }
-  text += "</tr></thead>\n<tbody>\n";
-  for (const std::string& row :
-       down.empty() ? std::vector<std::string>{""} : values_of(rows, down)) {
-    text += fmt::format("<tr><th scope=\"row\">{}</th>",
-                        html_escaped(down.empty() ? "mean" : shown(row)));
+  html += "</tr></thead>\n<tbody>\n";
+  for (const std::string& row : values_of(points, &HeatPoint::down)) {
+    html += fmt::format("<tr><th scope=\"row\">{}</th>", html_escaped(shown(row)));
     for (const std::string& column : columns) {
       const auto found = means.find({row, column});
-      text += found == means.end() ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>",
+      html += found == means.end() ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>",
                                                  html_escaped(shown(column)), kNoValue)
                                    : cell_html(found->second, low, high, shown(column));
     }
-    text += "</tr>\n";
+    html += "</tr>\n";
   }
-  return text + "</tbody></table></div>\n";
+  return html + "</tbody></table></div>\n";
 }
 
 }  // namespace bess
