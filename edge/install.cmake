@@ -26,8 +26,8 @@ install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONEN
 install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf
         systemd/bess-notify-orders.conf
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
-foreach(room battery control fetch log maps memory notify page prices recording site storage
-        supervision systemd update)
+foreach(room battery control fetch log maps memory notify package page prices recording site
+        storage supervision systemd)
   install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}

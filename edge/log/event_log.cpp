@@ -49,7 +49,7 @@ JournalLevel level_of(const CycleRecord& record) {
 }  // namespace
 
 EventLog::~EventLog() {
-  if (thread_.joinable()) {
+  if (thread_.is_running()) {
     ending_ = true;
     queue_.wake();
     thread_.join();
@@ -79,7 +79,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   publish_in_memory();
   tell_of_disk(totals_.disk_is_failing, nullptr);
   tell_of_run_folder();
-  thread_ = std::thread([this] { run(); });
+  thread_.start<&EventLog::run>(this);
   return true;
 }
 

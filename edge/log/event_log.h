@@ -9,7 +9,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <thread>
 
 #include "edge/control/control_types.h"
 #include "edge/log/handover_queue.h"
@@ -19,6 +18,7 @@
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
 #include "edge/log/whole_file.h"
+#include "edge/memory/plain_thread.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -119,7 +119,7 @@ class EventLog {
   std::atomic<bool> ending_{false};
   char status_text_[kStatusBytes];
   char metrics_text_[kMetricsBytes];
-  std::thread thread_;
+  PlainThread thread_;
 };
 
 }  // namespace bess

@@ -27,7 +27,7 @@ bool wait_ns(sem_t& semaphore, std::int64_t ns) {
 HoldWatch::HoldWatch() { sem_init(&ending_, 0, 0); }
 
 HoldWatch::~HoldWatch() {
-  if (thread_.joinable()) {
+  if (thread_.is_running()) {
     sem_post(&ending_);
     thread_.join();
   }
@@ -41,7 +41,7 @@ void HoldWatch::start(const BothPlaces& paths, const BothPlaces& cleared, std::i
   const std::int64_t period_ns = kNanosecondsPerSecond / time_scale;
   period_ns_ = period_ns > kPeriodNsMin ? period_ns : kPeriodNsMin;
   look();
-  thread_ = std::thread([this] { run(); });
+  thread_.start<&HoldWatch::run>(this);
 }
 
 void HoldWatch::run() {

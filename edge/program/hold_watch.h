@@ -7,9 +7,9 @@
 
 #include <atomic>
 #include <cstdint>
-#include <thread>
 
 #include "edge/control/hold.h"
+#include "edge/memory/plain_thread.h"
 #include "edge/storage/hold_file.h"
 #include "edge/storage/trip_clearance.h"
 #include "shared/fixed_text.h"
@@ -46,7 +46,7 @@ class HoldWatch {
   std::int64_t period_ns_ = 0;
   HoldMailbox mailbox_;
   sem_t ending_;
-  std::thread thread_;
+  PlainThread thread_;
 };
 
 }  // namespace bess

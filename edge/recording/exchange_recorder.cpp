@@ -79,7 +79,7 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
   if (!write_line(first.data(), first.size())) {
     return fail_with_errno(part_path_.c_str(), "cannot be written", error);
   }
-  thread_ = std::thread([this] { run(); });
+  thread_.start<&ExchangeRecorder::run>(this);
   return true;
 }
 
@@ -158,7 +158,7 @@ bool ExchangeRecorder::write_end() {
 
 bool ExchangeRecorder::finish(FileMessage& error) {
   if (fd_ < 0) return true;
-  if (thread_.joinable()) {
+  if (thread_.is_running()) {
     ending_ = true;
     queue_.wake();
     thread_.join();

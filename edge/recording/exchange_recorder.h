@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "edge/battery/modbus_link.h"
 #include "edge/log/handover_queue.h"
 #include "edge/log/whole_file.h"
+#include "edge/memory/plain_thread.h"
 #include "edge/recording/recording_mask.h"
 #include "shared/host/bus_recording.h"
 #include "shared/scaled_clock.h"
@@ -71,7 +71,7 @@ class ExchangeRecorder {
   bool is_writing_ = false;
   bool has_failed_ = false;
   int fd_ = -1;
-  std::thread thread_;
+  PlainThread thread_;
 };
 
 }  // namespace bess

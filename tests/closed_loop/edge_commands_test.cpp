@@ -83,7 +83,6 @@ TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   EXPECT_EQ(code_of({"hold", "5000", "--for", "2h"}), 1);
   EXPECT_EQ(code_of({"record", "--for", "1s", "--out", site_.folder.file("none.jsonl")}), 1);
   EXPECT_EQ(code_of({"map", "check", "--against", "/nonexistent"}), 1);
-  EXPECT_EQ(edge({"history", "--folder", "/nonexistent"}).exit_code, 1);
   EXPECT_EQ(edge({"signature"}).exit_code, 0);
   config_ = "/nonexistent";
   for (const char* command : {"status", "log", "--check", "--self-test"})

@@ -38,6 +38,4 @@ refused "README.md: says 0123456789abcdef, the tree" README.md "signature=012345
 refused "README.md: says 6,950,033,281, the tree" README.md "6,950,033,281 states"
 refused "names long/long.cpp, which is not there" README.md '`long/long.cpp`'
 refused "names lang.cpp, which is not there" README.md '`lang.cpp`'
-refused "README.md: says 3, the tree 2" README.md "all 3
-  in \`tools/test --full\`"
 refused "edge/maps/README.md:1: begins with no heading" edge/maps/README.md "#maps : device"

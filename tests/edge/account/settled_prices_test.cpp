@@ -85,7 +85,7 @@ TEST(MoneySettings, AreReadAndRefusedByFileAndLine) {
       << error;
   EXPECT_EQ(money.capacity_wh, 5'000);
   EXPECT_EQ(money.contract.costs.import_adder_eur_per_mwh, 45.5);
-  EXPECT_EQ(money.settled_file, folder.file("notify/settled.csv"));
+  EXPECT_EQ(money.settled_file, folder.file("state/settled.csv"));
   // At -100 EUR/MWh and 2 %: 45.5 + 2 + 3 a MWh taken, 3 a MWh given.
   EXPECT_NEAR(money.contract.costs_eur(2, -100), 2 * 50.5, 1e-9);
   EXPECT_NEAR(money.contract.costs_eur(-2, -100), 6, 1e-9);

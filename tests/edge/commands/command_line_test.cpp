@@ -104,7 +104,6 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
       {{"log", "--at", "14:32", "--last", "3"}, "--at is one cycle"},
       {{"--config", ""}, "--config needs a file, not an empty text"},
       {{"signature", "--config", "x"}, "unknown option --config"},
-      {{"history", "--folder", ""}, "--folder needs a file, not an empty text"},
   };
   for (const auto& [words, complaint] : incomplete) {
     const Said said = said_to(words);
@@ -115,16 +114,10 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
 
 /// One after another in one process: nothing of a command is left to the next.
 TEST(EdgeWords, CommandsRunInThisProcess) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(said_to({"history", "--folder", folder.file("none")}).exit_code, 1);
   EXPECT_THAT(said_to({"signature"}).text, HasSubstr("signature="));
   EXPECT_EQ(said_to({"log", "--config", "/nonexistent"}).exit_code, 1);
   EXPECT_EQ(
       said_to({"map", "check", "--against", "/nonexistent", "--map", "/nonexistent"}).exit_code, 1);
-  EXPECT_EQ(said_to({"history", "--config", "/none", "--folder", folder.file("none")}).exit_code,
-            1);
-  EXPECT_THAT(said_to({"history", "--json", "--folder", folder.file("none")}).text,
-              HasSubstr("no history here"));
 }
 
 /// Nobody listens: it says what it would write all the same, what cannot be reached, and that it is

@@ -244,7 +244,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   const SettledQuarter published[] = {{(newest_utc_s_ - 3'600) / 900 * 900, 140}};
   prices.put(published);
   std::filesystem::create_directories(folder_.file("notify"));
-  ASSERT_NE(folder_.write("notify/settled.csv", prices.text()), "");
+  ASSERT_NE(folder_.write("state/settled.csv", prices.text()), "");
   const std::string good = text_of_file(config_);
   ASSERT_NE(folder_.write("edge.toml", good + "\n[contract]\nimport_adder_eur_per_mwh = 100\n"),
             "");
@@ -256,7 +256,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
   EXPECT_THAT(ask({"earned", span, "--html"}).out, HasSubstr("</html>"));
   EXPECT_THAT(ask({"earned", "--html", "--csv"}).error, HasSubstr("one of them"));
-  ASSERT_NE(folder_.write("notify/settled.csv", "damaged"), "");
+  ASSERT_NE(folder_.write("state/settled.csv", "damaged"), "");
   const Said damaged = ask({"earned", span});
   EXPECT_EQ(damaged.exit_code, 0);
   EXPECT_THAT(damaged.error, HasSubstr("settled.csv: is damaged"));

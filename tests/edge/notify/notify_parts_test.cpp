@@ -236,6 +236,7 @@ const Message kAlarm{.kind = MessageKind::kAlarm,
 
 class AlarmCommand : public ::testing::Test {
  protected:
+  AlarmCommand() { signal(SIGPIPE, SIG_IGN); }  // as the program does: not all read their input
   std::string run(const std::string& command) {
     settings_.command = command;
     return run_alarm_command(settings_, kAlarm, {});

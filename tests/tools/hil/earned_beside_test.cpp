@@ -92,7 +92,7 @@ class SameDays {
     std::filesystem::create_directories(folder_.file("notify"));
     EXPECT_TRUE(ring.open(folder_.file("state/decisions.ring").c_str(), 35 * 720, error));
     for (const CycleRecord& cycle : evidence_.log) EXPECT_TRUE(ring.append(cycle));
-    EXPECT_NE(folder_.write("notify/settled.csv", terms_of(prices_).settled.text()), "");
+    EXPECT_NE(folder_.write("state/settled.csv", terms_of(prices_).settled.text()), "");
     config_ =
         folder_.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
                                    "/edge/maps/alphaess.toml\"\n"

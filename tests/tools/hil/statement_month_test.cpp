@@ -198,7 +198,7 @@ TEST(StatementOfAMonth, IsWhatTheProgramSays) {
   std::filesystem::create_directories(folder.file("notify"));
   ASSERT_TRUE(ring.open(folder.file("state/decisions.ring").c_str(), 35 * 720, error));
   for (const CycleRecord& cycle : month.outcome.evidence.log) ASSERT_TRUE(ring.append(cycle));
-  ASSERT_NE(folder.write("notify/settled.csv", month.terms.settled.text()), "");
+  ASSERT_NE(folder.write("state/settled.csv", month.terms.settled.text()), "");
   const std::string config =
       folder.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
                                 "/edge/maps/alphaess.toml\"\n"
