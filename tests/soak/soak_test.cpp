@@ -181,7 +181,7 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.complaints, "");
   EXPECT_EQ(result.cycles, cycles);
-  EXPECT_GE(result.connections, cycles * 9 / 10);  // cut in every cycle in which there was one
+  EXPECT_GE(result.connections, cycles * 9 / 10);     // cut in every cycle in which there was one
   EXPECT_GT(result.modes.at("running"), cycles / 3);  // 246 of 300 on a quiet machine
   EXPECT_GE(result.price_statuses.at("not_connected"), 5);  // while the price server was dead
   EXPECT_GE(result.modes.at("safe"), 5);                    // while the battery was
