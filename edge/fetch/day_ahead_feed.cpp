@@ -74,7 +74,7 @@ DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields)
       {.rows = fields.rows.view(), .time = fields.time.view(), .price = fields.price.view()});
   if (!parsed.trouble.empty()) return {.status = Status::kMalformed, .reason = parsed.trouble};
   DayAheadLayout layout = lay_out_day_ahead(std::move(parsed.rows));
-  // Of two prices of one time nobody knows which is meant.
+  // Two prices for one time are ambiguous.
   if (!layout.trouble.empty() || layout.contradiction_utc_s != 0) {
     return {
         .status = Status::kMalformed,

@@ -109,16 +109,16 @@ void check_day_ahead(const EdgeConfig& config) {
       outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const DayAheadAsked asked = ask_day_ahead(outlook, now_utc_s, [] { return false; });
-  DayAheadBook book;
-  const Status status =
-      asked.status == Status::kOk ? book.take(asked.days, now_utc_s) : asked.status;
-  if (status != Status::kOk) {
+  DayAheadInquiry inquiry;
+  inquiry.take(asked, outlook, now_utc_s);
+  if (inquiry.status != Status::kOk) {
     return complain("day-ahead prices from " + source + ": " +
-                    (asked.reason.empty() ? std::string(day_ahead_status_text(status, outlook))
-                                          : asked.reason) +
+                    (asked.reason.empty()
+                         ? std::string(day_ahead_status_text(inquiry.status, outlook))
+                         : asked.reason) +
                     "; planned on what is usual");
   }
-  std::printf("day-ahead  %u quarter-hours from %s\n", book.changes(), source.c_str());
+  std::printf("day-ahead  %u quarter-hours from %s\n", inquiry.book.changes(), source.c_str());
 }
 
 int settle_now(const EdgeConfig& config, const SettledSource& source) {

@@ -4,6 +4,7 @@
 
 #include "edge/control/level_start.h"
 #include "edge/fetch/day_ahead_file.h"
+#include "edge/fetch/pause.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 
@@ -74,7 +75,7 @@ void OutlookFetcher::plan_for_ever() {
     if (next != planned || answers != planned_answers) plan(next);
     planned = next;
     planned_answers = answers;
-    pause(kLookNs);
+    wait(kLookNs);
   }
 }
 
@@ -96,7 +97,7 @@ void OutlookFetcher::plan(const Decision& decision) {
 void OutlookFetcher::fetch_for_ever() {
   constexpr std::int64_t kLookNs = 10 * kNanosecondsPerSecond;
   while (!stop_.stop_requested()) {
-    pause(kLookNs);
+    wait(kLookNs);
     const std::int64_t now = now_utc_s();
     // Only this thread writes the inquiry from here on: it reads it without the lock.
     if (!inquiry_.is_due(config_.outlook, now)) continue;
@@ -124,12 +125,9 @@ void OutlookFetcher::fetch(std::int64_t now_utc_s) {
   if (!is_kept_) say(JournalLevel::kWarning, kept_path_ + " cannot be written");
 }
 
-void OutlookFetcher::pause(std::int64_t simulated_ns) const {
-  constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10, kLeastNs = 1'000'000;
-  std::int64_t left_ns = std::max(config_.clock.wall_ns(simulated_ns), kLeastNs);
-  for (; left_ns > 0 && !stop_.stop_requested(); left_ns -= kSliceNs) {
-    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + std::min(left_ns, kSliceNs));
-  }
+void OutlookFetcher::wait(std::int64_t simulated_ns) const {
+  constexpr std::int64_t kLeastNs = 1'000'000;
+  pause(std::max(config_.clock.wall_ns(simulated_ns), kLeastNs), stop_);
 }
 
 }  // namespace bess

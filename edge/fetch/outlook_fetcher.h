@@ -38,7 +38,7 @@ class OutlookFetcher {
   [[nodiscard]] Decision next_decision() const;
   void fetch(std::int64_t now_utc_s);
   void plan(const Decision& decision);
-  void pause(std::int64_t simulated_ns) const;
+  void wait(std::int64_t simulated_ns) const;
   /// In simulated time not before the instant that it begins at.
   [[nodiscard]] std::int64_t now_utc_s() const {
     return config_.clock.start_utc_ns() / kNanosecondsPerSecond;

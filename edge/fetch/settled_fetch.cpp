@@ -1,13 +1,17 @@
 #include "edge/fetch/settled_fetch.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "edge/account/account_days.h"
 #include "edge/account/money_settings.h"
 #include "edge/control/quarter_hour_energy.h"
+#include "edge/fetch/pause.h"
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
+#include "edge/prices/http_trust.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
 #include "shared/scaled_clock.h"
@@ -57,8 +61,8 @@ bool is_validated(std::string_view quality) {
 
 /// What it gives is public, and plain http would let it be forged.
 bool is_safe_url(const std::string& url) {
-  return url.starts_with("https://") || url.starts_with("http://127.0.0.1") ||
-         url.starts_with("http://localhost");
+  const UrlTransport transport = transport_of(url);
+  return transport == UrlTransport::kSecure || transport == UrlTransport::kLoopback;
 }
 
 void read_settled(TomlTable table, SettledSource& source) {
@@ -67,7 +71,7 @@ void read_settled(TomlTable table, SettledSource& source) {
   table.integer("days", source.days, 1, kSettledDaysMax);
   table.finish();
   if (source.url.empty() || !table.ok()) return;
-  if (!is_safe_url(source.url)) {
+  if (!is_safe_url(settled_url(source, 0, 0))) {
     return table.fail("url", "must start with https://, or lead to this machine: http://127.0.0.1");
   }
   const bool has_from = source.url.find("{from}") != std::string::npos;
@@ -76,7 +80,11 @@ void read_settled(TomlTable table, SettledSource& source) {
   if (has_from != has_until || (has_query && !has_from)) {
     return table.fail("url", "must hold {from} and {until}, or be without any query: Elia's");
   }
-  if (!source.ca_file.empty()) source.ca_file = table.resolved(source.ca_file);
+  if (source.ca_file.empty()) return;
+  source.ca_file = table.resolved(source.ca_file);
+  if (access(source.ca_file.c_str(), R_OK) != 0) {
+    table.fail("ca_file", "= " + source.ca_file + " cannot be read");
+  }
 }
 
 bool parse_row(JsonValue row, SettledQuarter& quarter) {
@@ -195,10 +203,8 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
       }
       trouble_before = result.trouble;
     }
-    constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
-    for (int slice = 0; slice < 600 && !stop.stop_requested(); ++slice) {
-      sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kSliceNs);
-    }
+    constexpr std::int64_t kLookNs = 60 * kNanosecondsPerSecond;
+    pause(kLookNs, stop);
   }
 }
 

@@ -1,5 +1,5 @@
 // Fetches the settled prices of past quarter-hours once a day, and keeps them in the state folder
-// for whoever counts money (settled_prices.h).
+// for `bess-edge earned` (settled_prices.h).
 //
 // Asked for is what is not validated yet, since the oldest day that is kept, up to today's local
 // midnight: the day before, and what has become of the days before that. A day that is not there

@@ -3,7 +3,7 @@
 //   BESS_TITLE     "[bess NAME] ALARM: ...", one line
 //   BESS_TEXT      the same with since when, what to run and whom to call; also its input
 //   BESS_NODE, BESS_KEY, BESS_UTC
-// in its environment. Exit code 0: it is told. Anything else, or a minute: tried again.
+// in its environment. Exit code 0 means delivered; otherwise, or after a minute, it is retried.
 #pragma once
 
 #include <stop_token>

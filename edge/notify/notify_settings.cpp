@@ -18,7 +18,7 @@ std::string readable_file(TomlTable& table, std::string_view key, const std::str
   return path;
 }
 
-/// Alarms that nobody would get any more are no matter for a note in the journal.
+/// An error and not a note in the journal: no alarm would arrive any more.
 void refuse_former_ways(TomlTable& table) {
   for (const char* const key : {"mail_to", "webhook_url"}) {
     if (!table.has(key)) continue;

@@ -9,6 +9,7 @@
 #include <random>
 #include <regex>
 
+#include "tests/support/journal_fields.h"
 #include "tests/support/peer_programs.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
@@ -139,16 +140,11 @@ class Field : public ::testing::TestWithParam<Draw> {
     while (static_cast<int>(all.size()) < count) {
       const std::string line = edge_->read_line();
       if (line.empty()) break;
-      if (line.find(" cycle=") == std::string::npos) {
+      if (!is_cycle_line(line)) {
         notes_.push_back(line);
         continue;
       }
-      std::map<std::string, std::string> value;
-      std::istringstream words(line);
-      for (std::string word; words >> word;) {
-        const std::size_t at = word.find('=');
-        if (at != std::string::npos) value[word.substr(0, at)] = word.substr(at + 1);
-      }
+      std::map<std::string, std::string> value = journal_fields(line);
       Cycle cycle{.mode = value["mode"],
                   .reason = value["reason"],
                   .ordered_w = std::atof(value["ordered_power_w"].c_str()),

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 
+#include "tests/support/journal_fields.h"
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
 
@@ -143,13 +144,8 @@ class PriceSources : public ::testing::TestWithParam<Behaviour> {
   std::vector<Cycle> cycles() {
     std::vector<Cycle> all;
     for (std::string line; !(line = edge_->read_line()).empty();) {
-      if (line.find(" cycle=") == std::string::npos) continue;
-      std::map<std::string, std::string> value;
-      std::istringstream words(line);
-      for (std::string word; words >> word;) {
-        const std::size_t at = word.find('=');
-        if (at != std::string::npos) value[word.substr(0, at)] = word.substr(at + 1);
-      }
+      if (!is_cycle_line(line)) continue;
+      std::map<std::string, std::string> value = journal_fields(line);
       Cycle cycle{.mode = value["mode"],
                   .reason = value["reason"],
                   .prices = value["prices"],

@@ -211,6 +211,13 @@ TEST_F(SettledServer, KeysAreRefusedByFileAndLine) {
   };
   EXPECT_THAT(refused("url = \"http://example.org/{from}{until}\"\n"),
               HasSubstr("bad.toml:2: [settled] url must start with https://"));
+  for (const char* const url : {"http://localhost.evil.example/", "http://127.0.0.1@evil.example/",
+                                "http://127.0.0.1.evil.example/", "ftp://127.0.0.1/"}) {
+    EXPECT_THAT(refused("url = \"" + std::string(url) + "\"\n"),
+                HasSubstr("bad.toml:2: [settled] url"));
+  }
+  EXPECT_THAT(refused("url = \"https://example.org/\"\nca_file = \"none.pem\"\n"),
+              HasSubstr("bad.toml:3: [settled] ca_file"));
   EXPECT_THAT(refused("url = \"https://example.org/{from}\"\n"),
               HasSubstr("must hold {from} and {until}"));
   EXPECT_THAT(refused("url = \"https://example.org/?limit=3\"\n"),
