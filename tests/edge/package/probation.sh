@@ -207,6 +207,9 @@ expect "the first one that hangs" failed 2.0 "no version to go back to"
 machine; upgrade 2.0; head -c 20 "$kept/probation" >x; mv x "$kept/probation"; judge
 [ "$(cat running)" = 2.0 ] || fail "a damaged state: $(cat running)"
 
+machine; echo crash >does_2.0; upgrade 2.0; ln -sfn versions/1.0 "$store/current"; echo 1.0 >running
+probation begin; judge; expect "cut off before the switch, and it crashes" rolled_back 1.0
+
 # Killed at any moment of a delivery, a look and a revert: dpkg or the timer comes again.
 cut=0
 for does in good crash; do
