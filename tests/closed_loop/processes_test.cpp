@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,6 +23,12 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
+
+/// Slow enough that an order outlasts the start of a process. The environment names a program under
+/// test when a sanitizer looks at it, and that takes longer to start.
+std::int32_t outlasting_scale() {
+  return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 10 : 3);
+}
 
 /// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked.
 /// The guard's thresholds are said at every start, and by level how the price level was come by.
@@ -195,8 +202,9 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   const std::string last = run({"log", "--last", "2"}, 0);
   EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 2) << last;
   EXPECT_THAT(last, HasSubstr("mode=stopping"));
-  const std::string since = run({"log", "--since", "2023-03-26T00:20:00Z"}, 0);
-  EXPECT_THAT(since, ::testing::StartsWith("utc=2023-03-26T00:20:00Z "));
+  const std::vector<CsvRow> rows = read_csv(site_.folder.file("edge.csv"));
+  const std::string& middle = rows.at(rows.size() / 2).at("utc");
+  EXPECT_THAT(run({"log", "--since", middle}, 0), ::testing::StartsWith("utc=" + middle + " "));
 }
 
 /// The status of a program whose student is by level, as it lies on the disk.
@@ -568,7 +576,7 @@ TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
 /// As for an upgrade: SIGHUP, and a new process goes on where the old one was. Slower than the
 /// others, so that the order outlasts the start of a process.
 TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
-  SimulatedSite site(kScale / 3);
+  SimulatedSite site(outlasting_scale());
   site.start_battery();
   site.start_market();
   const std::string config = site.commission();
@@ -592,7 +600,7 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
 
 /// A killed controller's order, ended by hand before its watchdog does; as slow as the one above.
 TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
-  SimulatedSite site(kScale / 3);
+  SimulatedSite site(outlasting_scale());
   site.start_battery();
   site.start_market();
   const std::string config = site.commission();
