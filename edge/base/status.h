@@ -77,7 +77,7 @@ constexpr std::string_view status_text(Status status) {
       "the answer is larger than the buffer",
       "no memory",
       "an order was not written, because its time was over (was this process stopped?)",
-      "the price server asks for fewer requests (see [price] requests_per_cycle)",
+      "the price server asks for fewer requests",
       "bess-prices does not run, or publishes nothing (systemctl status bess-prices)",
       "bess-prices is of another version (restart it)",
       "the prices look like another unit (are they in EUR/MWh? see [price] unit)"};

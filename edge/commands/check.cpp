@@ -108,9 +108,7 @@ bool report_sign(const EdgeConfig& config) {
 /// A clock that nobody sets is a stop reason in every cycle: it should show before the first.
 bool report_clock(const EdgeConfig& config, const EdgeClock& clock) {
   if (clock.is_synchronised()) {
-    std::printf("clock      %s\n", !config.clock.is_real_time()        ? "simulated"
-                                   : config.require_synchronised_clock ? "set by NTP"
-                                                                       : "not asked for");
+    std::printf("clock      %s\n", !config.clock.is_real_time() ? "simulated" : "set by NTP");
     return true;
   }
   report(config.control.control ? JournalLevel::kError : JournalLevel::kWarning,

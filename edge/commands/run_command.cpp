@@ -78,12 +78,8 @@ int run_controller(const RunGiven& given, const EdgeConfig& config) {
   if (!session.begin(config)) return 1;
   static ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   static ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  static PriceReader prices(
-      {.path = prices_file(config),
-       .step_flag_centi_eur_per_mwh = config.price.feed.step_flag_centi_eur_per_mwh,
-       .hold_flagged_step = config.price.feed.hold_flagged_step,
-       .model = student_outlook()},
-      config.clock);
+  static PriceReader prices({.path = prices_file(config), .model = student_outlook()},
+                            config.clock);
   FileMessage error;
   if (!lock_state(config, session.locks(), error)) return fail(error);
   static RealWorld world(

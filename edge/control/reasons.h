@@ -58,7 +58,7 @@ namespace bess {
       "until a person has looked and says `bess-edge clear --yes`")                                \
   ROW(kStateLost, 39, "state_lost", kReleases,                                                     \
       "trip: nobody can know whether an earlier run has tripped",                                  \
-      "the disk under `[state] folder`; then `clear`, or `drive_without_state`",                   \
+      "the disk under `[state] folder`; then `clear`",                                             \
       "until a person has looked and says `bess-edge clear --yes`")                                \
   ROW(kOtherMaster, 21, "other_master", kReleases,                                                 \
       "somebody else replaced orders: two running, every other or every third; released, "         \
@@ -122,7 +122,7 @@ namespace bess {
       "another program's limit is in force; or has lapsed, or cannot be understood",               \
       "`bess-edge status`; the file of `[limits]`, who writes it",                                 \
       "until the limit from outside lapses or is taken away")                                      \
-  ROW(kMeterLost, 31, "meter_lost", kGoesOn, "no reading of the meter for `age_s_max`: 0 W",       \
+  ROW(kMeterLost, 31, "meter_lost", kGoesOn, "no reading of the meter for 30 s: 0 W",              \
       "`meter=` of that line; cable, address, unit", "until the meter can be read")                \
   ROW(kMeterMismatch, 38, "meter_mismatch", kGoesOn,                                               \
       "the meter does not step with the battery, so that it is as good as lost: 0 W; after "       \

@@ -54,15 +54,15 @@ class HistoryPages {
   Status status_ = Status::kOk;
 };
 
-/// Fills the history within `wait_s` of the clock. Anything but kOk: it ended before its time, what
-/// came in is there. On the caller's thread.
+/// Fills the history within kHistoryWait_s of the clock. Anything but kOk: it ended before its
+/// time, what came in is there. On the caller's thread.
 ///   Prices  PriceAnswer fetch_page(const char* url, int32 timeout_ms)
 ///   Clock   monotonic_ns(), scaled(), stop_requested()
 template <typename Prices, typename Clock>
 Status fetch_history(Prices& prices, const PriceFeedSettings& price,
                      const HistorySettings& settings, Clock& clock, PriceHistory& history) {
   const std::int64_t deadline_ns =
-      clock.monotonic_ns() + clock.scaled().wall_ns(settings.wait_s * kNanosecondsPerSecond);
+      clock.monotonic_ns() + clock.scaled().wall_ns(kHistoryWait_s * kNanosecondsPerSecond);
   int failures = 0;
   for (const FixedText<511>& url : {price.http.url, settings.url}) {
     if (url.empty()) continue;

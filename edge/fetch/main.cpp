@@ -208,6 +208,7 @@ int run(const Options& options) {
   EdgeConfig config;
   std::string error;
   if (!load_edge_config(options.config_path, config, error)) return complain(error), 1;
+  config.outlook.ask_offset_s = day_ahead_offset_s(config);
   set_market_time_zone();
   SettledSource settled;
   if (!load_settled_source(options.config_path, settled, error)) {

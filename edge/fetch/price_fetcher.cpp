@@ -70,8 +70,7 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
     const std::int64_t tick_utc_s = std::max(
         source_.now_utc_s() / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
     // Begun long after a tick: what it waited for was asked for at the start.
-    const bool is_waited_for =
-        served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + config_.price.feed.wait_s;
+    const bool is_waited_for = served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + kPriceWait_s;
     const bool is_new = tick_utc_s > served_utc_s && is_waited_for;
     if (is_new) serve(tick_utc_s);
     served_utc_s = tick_utc_s;
@@ -82,13 +81,12 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
 
 void PriceFetcher::serve(std::int64_t tick_utc_s) {
   const std::int64_t minute_utc_s = tick_utc_s - 60;
-  const PriceFeedSettings& feed = config_.price.feed;
   bool is_refused = false;
   bool is_found = false;
-  for (int i = 0; i < feed.requests_per_cycle && !is_found; ++i) {
+  for (int i = 0; i < kPriceRequests && !is_found; ++i) {
     const std::int64_t at_utc_s =
         std::max(tick_utc_s + timing_.first_s() + i * timing_.spacing_s(), not_before_utc_s_);
-    if (at_utc_s >= tick_utc_s + std::max(feed.wait_s, 1) && i > 0) break;
+    if (at_utc_s >= tick_utc_s + kPriceWait_s && i > 0) break;
     if (at_utc_s >= tick_utc_s + kSecondsPerStep || !sleep_until(at_utc_s)) break;
     const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
     const PriceSource::Answer answer = publish(source_.ask(unit_), begin_ns);

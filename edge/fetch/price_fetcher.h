@@ -55,11 +55,7 @@ class PriceSource {
 class PriceFetcher {
  public:
   PriceFetcher(const EdgeConfig& config, PricePublisher& publisher, std::stop_token stop)
-      : config_(config),
-        publisher_(publisher),
-        stop_(stop),
-        source_(config, std::move(stop)),
-        timing_(config.price.feed.wait_s, config.price.feed.requests_per_cycle) {}
+      : config_(config), publisher_(publisher), stop_(stop), source_(config, std::move(stop)) {}
 
   /// Until a stop is requested, or `is_over` after a cycle: one request at once, then those of each
   /// cycle.

@@ -67,8 +67,8 @@ bool is_safe_url(const std::string& url) {
 
 void read_settled(TomlTable table, SettledSource& source) {
   table.line("url", source.url);
+  static_cast<void>(table.node("days"));  // of earlier versions
   table.line("ca_file", source.ca_file);
-  table.integer("days", source.days, 1, kSettledDaysMax);
   table.finish();
   if (source.url.empty() || !table.ok()) return;
   if (!is_safe_url(settled_url(source, 0, 0))) {

@@ -34,18 +34,17 @@ std::string held_row(double eur_per_mwh) {
   char text[160];
   std::snprintf(text, sizeof text,
                 "WARN: prices: a row of %.2f EUR/MWh lies further from the one before than "
-                "step_flag_eur_per_mwh; the next one decides whether it counts",
+                "2300 EUR/MWh; the next one decides whether it counts",
                 eur_per_mwh);
   return text;
 }
 
 std::string frozen_price(const HealthInputs& in) {
   char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
-      "stamps, or for hours only among four values: does the source hang? (frozen_price_s)",
-      in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
+  std::snprintf(text, sizeof text,
+                "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
+                "stamps, or for hours only among four values: does the source hang?",
+                in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
   return text;
 }
 

@@ -13,8 +13,7 @@
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery and site measured   t  the row of minute t-1 is requested
-//   row in, or price_wait_s over, and not before
-//   start_offset_ms after the tick               decision, order written and read back
+//   row in, or price_wait_s over                 decision, order written and read back
 // Between cycles the battery's watchdog is fed as often as its register map asks, and an order that
 // the site no longer bears is cut (battery_watch.h). What has a say: cycle_parts.h.
 #pragma once
@@ -78,7 +77,7 @@ class ControlLoop {
     if (!waits_.sleep_until_tick()) return false;
     record.price = waits_.await_price();
     note_price_age(record.utc_s, record);
-    if (!waits_.await_start() || clock_.stop_requested()) return false;
+    if (clock_.stop_requested()) return false;
     decide(record);
     act(record);
     count_deadline_miss(record);

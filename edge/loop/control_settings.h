@@ -28,9 +28,6 @@ struct ControlSettings {
   std::int32_t reversals_per_hour_max = 20;     ///< between charging and discharging; 0 = any
   ReservePlan reserve{};
   std::int32_t full_charge_every_days = 0;  ///< 0 = never; its power is the guard's
-  /// After the tick nothing is ordered before this has passed: many controllers on one grid must
-  /// not switch at one instant.
-  std::int32_t start_offset_ms = 0;
 };
 
 }  // namespace bess

@@ -63,14 +63,6 @@ class TickWaits {
     return price.has_row && price.received_monotonic_ns >= request_ns_;
   }
 
-  /// Before the decision, so that what is decided is ordered at once. What was late already, a
-  /// price or a battery, is not made later.
-  bool await_start() {
-    if (settings_.start_offset_ms == 0) return true;
-    return sleep_until_ns(tick_utc_s_ * kNanosecondsPerSecond +
-                          std::int64_t{settings_.start_offset_ms} * 1'000'000);
-  }
-
  private:
   [[nodiscard]] std::int64_t now_utc_s() const {
     return clock_.now_utc_ns() / kNanosecondsPerSecond;

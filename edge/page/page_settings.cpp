@@ -21,8 +21,9 @@ void read_page(TomlTable table, PageSettings& settings) {
   std::string token_file;
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
-  table.integer("refresh_s", settings.refresh_s, 1, 600);
-  table.line("token_file", token_file);  // of earlier versions
+  // Keys of earlier versions.
+  static_cast<void>(table.node("refresh_s"));
+  table.line("token_file", token_file);
   read_program(table, settings);
   read_hosts(table, settings.hosts);
   if (!is_numeric_address(settings.host)) {

@@ -10,9 +10,6 @@ namespace bess {
 
 class NewestRow {
  public:
-  NewestRow(std::int32_t step_flag_centi_eur_per_mwh, bool hold_flagged_step)
-      : step_hold_(step_flag_centi_eur_per_mwh, hold_flagged_step) {}
-
   /// How a request ended, and its row when that is kOk.
   void publish(Status status, const PriceRow& row, std::int64_t received_monotonic_ns,
                std::int32_t fetch_us) {

@@ -25,10 +25,7 @@ int ms_until(std::int64_t monotonic_ns, int most) {
 }  // namespace
 
 PriceReader::PriceReader(const Settings& settings, const ScaledClock& clock)
-    : settings_(settings),
-      clock_(clock),
-      newest_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step),
-      notices_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+    : settings_(settings), clock_(clock), notices_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
   board_.model = settings.model;
 }
 

@@ -17,8 +17,6 @@ class PriceReader {
  public:
   struct Settings {
     FixedText<639> path;
-    std::int32_t step_flag_centi_eur_per_mwh = 0;
-    bool hold_flagged_step = true;
     const OutlookModel* model = nullptr;  ///< of a student by outlook
   };
   PriceReader(const Settings& settings, const ScaledClock& clock);

@@ -17,19 +17,20 @@ struct HttpSettings {
   std::int32_t timeout_ms = 5'000;  ///< of one request with its redirects, wall time
 };
 
+/// The requests of a cycle, and the time over which they are spread.
+inline constexpr int kPriceRequests = 4;
+inline constexpr std::int32_t kPriceWait_s = 20;
+/// For all pages of the history together; then what has come must do.
+inline constexpr std::int32_t kHistoryWait_s = 20;
+
 struct PriceFeedSettings {
   HttpSettings http;
   PriceFields fields;
-  std::int32_t requests_per_cycle = 4;
-  std::int32_t wait_s = 20;  ///< over which the requests of a cycle are spread
-  std::int32_t step_flag_centi_eur_per_mwh = 230'000;  ///< a larger step is flagged
-  bool hold_flagged_step = true;                       ///< and held until the next row confirms it
 };
 
 struct HistorySettings {
-  std::int32_t hours = 72;   ///< 0 = none
-  std::int32_t wait_s = 20;  ///< for all pages together; then what there is must do
-  FixedText<511> url;        ///< asked for what the price URL no longer has; empty = nothing
+  std::int32_t hours = 72;  ///< 0 = none
+  FixedText<511> url;       ///< asked for what the price URL no longer has; empty = nothing
 };
 
 /// What a status means when it comes from the price server, and what mends it.
@@ -38,7 +39,7 @@ constexpr std::string_view price_status_text(Status status) {
     case Status::kNotConnected:
       return "no connection, or it was cut (are host and port of url right, is the network up?)";
     case Status::kTimeout:
-      return "no complete answer in time (see timeout_ms)";
+      return "no complete answer in time";
     default:
       return status_text(status);
   }

@@ -1,5 +1,5 @@
 // One row alone does not move the battery: a price that lies further from the one before than
-// configured is held until the next row tells whether it was real. Below price_feed; pure integers.
+// 2300 EUR/MWh is held until the next row tells whether it was real. Pure integers.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,12 @@ namespace bess {
 
 class StepHold {
  public:
+  static constexpr std::int32_t kStepCentiEurPerMwh = 230'000;
+
   struct Verdict {
     bool is_taken = false;
-    bool is_large_step = false;  ///< further from the price before than configured
+    bool is_large_step = false;  ///< further from the price before than that
   };
-
-  /// `is_holding` false: large steps are flagged and taken at once.
-  constexpr StepHold(std::int32_t step_centi_eur_per_mwh, bool is_holding)
-      : step_centi_eur_per_mwh_(step_centi_eur_per_mwh), is_holding_(is_holding) {}
 
   /// Of a row that is not older than `before`, the newest one taken so far. What is held is
   /// confirmed by a later row within the step of it, and given up for a row within the step of
@@ -28,7 +26,7 @@ class StepHold {
     if (!is_large(before, row)) return take(false);
     const bool is_confirmed =
         has_held_ && row.minute_utc_s > held_.minute_utc_s && !is_large(held_, row);
-    if (is_confirmed || !is_holding_) return take(true);
+    if (is_confirmed) return take(true);
     held_ = row;
     has_held_ = true;
     return {};
@@ -41,15 +39,13 @@ class StepHold {
  private:
   [[nodiscard]] constexpr bool is_large(const PriceRow& from, const PriceRow& to) const {
     const std::int32_t step = to.price_centi_eur_per_mwh - from.price_centi_eur_per_mwh;
-    return (step < 0 ? -step : step) > step_centi_eur_per_mwh_;
+    return (step < 0 ? -step : step) > kStepCentiEurPerMwh;
   }
   constexpr Verdict take(bool is_large_step) {
     has_held_ = false;
     return {.is_taken = true, .is_large_step = is_large_step};
   }
 
-  std::int32_t step_centi_eur_per_mwh_;
-  bool is_holding_;
   bool has_held_ = false;
   PriceRow held_;
 };

@@ -75,14 +75,14 @@ class Controller {
         loop_(config.control, world.battery(), world.prices(), world.clock(),
               Site(config.site.settings, &world.meter(), &world.limits())) {}
 
-  /// True when the battery is found, or when the configuration allows to start without it.
+  /// True when the battery is found.
   bool reach() {
     world_.needs_time(config_.battery.start_timeout_s + kStartMarginS);
     for (const std::int8_t point : commissioned_points(config_)) world_.battery().require(point);
     const BatterySearch found = find_battery(config_, world_.battery(), world_.clock());
     if (found.status == Status::kOk) return true;
     world_.complain(JournalLevel::kError, "battery at " + found.trouble);
-    return may_start_without(config_, found);
+    return false;
   }
 
   /// False where this run must not drive, or cannot keep what it does.
@@ -135,7 +135,7 @@ class Controller {
 
   void take_over(Status greeting) {
     const bool needs_level = student_context().kind != ContextKind::kMonth;
-    if (needs_level) world_.needs_time(config_.price.history.wait_s + kStartMarginS);
+    if (needs_level) world_.needs_time(kHistoryWait_s + kStartMarginS);
     const Recall recalled = world_.recall();
     const BatteryCounters& counters = recalled.before.counters;
     world_.battery().restore_flash_writes(counters.flash_day, counters.flash_writes_today);

@@ -14,7 +14,7 @@ bool DeviceSession::begin(const EdgeConfig& config) {
     return false;
   }
   prepare_process();
-  clock_.emplace(config.clock, config.require_synchronised_clock);
+  clock_.emplace(config.clock);
   return true;
 }
 

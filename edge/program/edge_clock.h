@@ -16,8 +16,7 @@ namespace bess {
 class EdgeClock {
  public:
   /// Construct before any thread is started: the threads inherit the blocked signals.
-  EdgeClock(const ScaledClock& clock, bool require_synchronised)
-      : clock_(clock), require_synchronised_(require_synchronised) {
+  explicit EdgeClock(const ScaledClock& clock) : clock_(clock) {
     sigemptyset(&stop_signals_);
     sigaddset(&stop_signals_, SIGTERM);
     sigaddset(&stop_signals_, SIGINT);
@@ -75,7 +74,7 @@ class EdgeClock {
   /// Simulated time is always right; real time must be disciplined by NTP, or every order is a
   /// guess.
   [[nodiscard]] bool is_synchronised() const {
-    if (!require_synchronised_ || !clock_.is_real_time()) return true;
+    if (!clock_.is_real_time()) return true;
     timex state{};
     const int clock_state = adjtimex(&state);  // -1: a sandbox forbids to ask, so it is not known
     return clock_state >= 0 && clock_state != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
@@ -92,7 +91,6 @@ class EdgeClock {
   }
 
   ScaledClock clock_;
-  bool require_synchronised_;
   sigset_t stop_signals_{};
   bool stop_requested_ = false;
   bool hand_over_requested_ = false;

@@ -123,16 +123,12 @@ BatterySearch find_battery(const EdgeConfig& config, ModbusBattery& battery, Edg
   const std::int64_t deadline_ns =
       clock.monotonic_ns() + config.battery.start_timeout_s * kNanosecondsPerSecond;
   while (!clock.stop_requested()) {
-    const bool last = clock.monotonic_ns() >= deadline_ns || config.battery.start_without_battery;
+    const bool last = clock.monotonic_ns() >= deadline_ns;
     BatterySearch found = identify_battery(config, battery);
     if (found.status == Status::kOk || found.is_stranger || last) return found;
     sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
   }
   return {};
-}
-
-bool may_start_without(const EdgeConfig& config, const BatterySearch& search) {
-  return !search.is_stranger && config.battery.start_without_battery;
 }
 
 }  // namespace bess

@@ -32,8 +32,4 @@ BatterySearch identify_battery(const EdgeConfig& config, ModbusBattery& battery)
 /// Tries until `start_timeout_s` is over, or a stop is asked for.
 BatterySearch find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
-/// A battery that was not found, or is still starting, may come later, if the configuration says
-/// so; the wrong one remains wrong.
-bool may_start_without(const EdgeConfig& config, const BatterySearch& search);
-
 }  // namespace bess

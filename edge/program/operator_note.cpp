@@ -37,9 +37,6 @@ std::string operator_note(const ControlSettings& control, const Hold& hold,
     add_line(note, "full       every %d days, with %d W", control.full_charge_every_days,
              control.guard.full_charge_power_w);
   }
-  if (control.start_offset_ms > 0) {
-    add_line(note, "spread     orders %.3f s after each tick", control.start_offset_ms / 1e3);
-  }
   return note;
 }
 

@@ -77,8 +77,7 @@ Status RealWorld::greet_prices() {
 }
 
 PublishedHistory RealWorld::find_history() {
-  const std::int64_t wait_ns =
-      config_.clock.wall_ns(config_.price.history.wait_s * kNanosecondsPerSecond);
+  const std::int64_t wait_ns = config_.clock.wall_ns(kHistoryWait_s * kNanosecondsPerSecond);
   return devices_.prices.await_history(wait_ns + kNanosecondsPerSecond);
 }
 

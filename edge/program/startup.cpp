@@ -27,7 +27,7 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
   const BatterySearch found = find_battery(config, battery, clock);
   if (found.status == Status::kOk) return true;
   report(JournalLevel::kError, "battery at %s", found.trouble.c_str());
-  return may_start_without(config, found);
+  return false;
 }
 
 void report_commission_losses(const EdgeConfig& config) {
@@ -47,18 +47,15 @@ Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
   Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
   if (recalled.unknown.empty()) return recalled;
   const char* const what = recalled.unknown.c_str();
-  if (config.state.drive_without_state || recalled.trip.is_set()) {
+  if (recalled.trip.is_set()) {
     report(JournalLevel::kError,
-           "state: %s: trip, cycle budget and price level of earlier runs are not known%s", what,
-           recalled.trip.is_set() ? "" : "; driving all the same: drive_without_state = true");
+           "state: %s: cycle budget and price level of earlier runs are not known", what);
     return recalled;
   }
   report(JournalLevel::kError,
-         "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes "
-         "([state] drive_without_state = true drives it all the same)",
+         "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes",
          what);
-  recalled.trip = trip_without_state(recalled, config.state.drive_without_state,
-                                     config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  recalled.trip = trip_without_state(recalled, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }
 

@@ -14,8 +14,7 @@ namespace bess {
 /// Time zone, signals and timers of the process; before any thread is started.
 void prepare_process();
 
-/// True when it is found, or when the configuration allows to start without it; otherwise one line
-/// on stderr says what to mend.
+/// True when it is found; otherwise one line on stderr says what to mend.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
 /// Of the sign check's copies: each that was lost or damaged is a line of the journal, and written
@@ -23,7 +22,7 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 void report_commission_losses(const EdgeConfig& config);
 
 /// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is
-/// not driven until a person clears it, unless [state] drive_without_state allows it.
+/// not driven until a person clears it.
 /// `published_number`: recall.h.
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number);

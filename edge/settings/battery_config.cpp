@@ -18,7 +18,7 @@ struct CapacityRange {
 /// What a battery of the configured capacity reports.
 CapacityRange capacity_range(const BatteryConfig& battery) {
   const std::int64_t capacity_wh = battery.capacity_wh;
-  const std::int64_t tolerance_wh = capacity_wh * battery.capacity_tolerance_percent / 100;
+  const std::int64_t tolerance_wh = capacity_wh / 4;  // ageing and rounding
   return {.least_wh = capacity_wh - tolerance_wh, .most_wh = capacity_wh + tolerance_wh};
 }
 
@@ -58,11 +58,8 @@ void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& cont
   table.integer("capacity_wh", battery.capacity_wh, 1, 1'000'000'000);
   expect_watts(table, "power_w", control.guard.power_w, "W");
   expect_watts(table, "capacity_wh", battery.capacity_wh, "Wh");
-  table.integer("capacity_tolerance_percent", battery.capacity_tolerance_percent, 0, 100);
   table.integer("start_timeout_s", battery.start_timeout_s, 0, 3'600);
   table.boolean("allow_without_watchdog", battery.allow_without_watchdog);
-  table.boolean("start_without_battery", battery.start_without_battery);
-  table.integer("read_lead_s", control.read_lead_s, 0, 60);
   int on_other_master = 0;
   table.choice("on_other_master", on_other_master, {"yield", "insist"});
   control.supervision.yields_to_other_master = on_other_master == 0;

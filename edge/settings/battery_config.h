@@ -16,11 +16,9 @@ struct BatteryConfig {
   BatteryLinkSettings link;
   RegisterMap map;
   FixedText<511> map_path;
-  std::int32_t capacity_wh = 8'000;  ///< what the battery must report, within the tolerance
-  std::int32_t capacity_tolerance_percent = 25;
+  std::int32_t capacity_wh = 8'000;     ///< what the battery must report, within the tolerance
   bool allow_without_watchdog = false;  ///< drive a battery that keeps its order if we die
   std::int32_t start_timeout_s = 10;    ///< wall time to reach the battery at start
-  bool start_without_battery = false;   ///< true: keep trying in safe mode instead of exiting
 };
 
 /// Its power and what people ask of it go to the control loop.

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 
 #include "edge/log/battery_name.h"
 #include "edge/prices/published_prices.h"
@@ -15,8 +16,46 @@
 namespace bess {
 namespace {
 
-TomlTable section(TomlTable& root, std::string_view name) {
-  return {root.table(name), root.file(), std::string("[").append(name).append("]"), root.error()};
+/// Keys of earlier versions, whose value is fixed by now. A configuration with them still works.
+constexpr struct {
+  std::string_view section;
+  const char* key;
+} kRetiredKeys[] = {
+    {"battery", "capacity_tolerance_percent"},
+    {"battery", "full_charge_power"},
+    {"battery", "read_lead_s"},
+    {"battery", "start_without_battery"},
+    {"price", "frozen_price_s"},
+    {"price", "history_wait_s"},
+    {"price", "hold_flagged_step"},
+    {"price", "requests_per_cycle"},
+    {"price", "resolve_every_s"},
+    {"price", "step_flag_eur_per_mwh"},
+    {"price", "timeout_ms"},
+    {"price", "wait_s"},
+    {"outlook", "ask_spread_s"},
+    {"outlook", "timeout_ms"},
+    {"guard", "hold_s"},
+    {"guard", "order_deadline_s"},
+    {"guard", "require_synchronised_clock"},
+    {"guard", "soc_hysteresis"},
+    {"guard", "start_spread_s"},
+    {"state", "drive_without_state"},
+    {"state", "lock_folder"},
+    {"meter", "age_s_max"},
+    {"meter", "check_every_s"},
+    {"meter", "house_rise_w"},
+};
+static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
+
+TomlTable section(TomlTable& root, std::string_view name, RetiredKeys* retired = nullptr) {
+  TomlTable table(root.table(name), root.file(), std::string("[").append(name).append("]"),
+                  root.error());
+  for (const auto& [of, key] : kRetiredKeys) {
+    if (of != name || table.node(key) == nullptr || retired == nullptr) continue;
+    static_cast<void>(retired->try_push_back(key));
+  }
+  return table;
 }
 
 /// What the meter is held against: this battery's steps.
@@ -55,20 +94,20 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   root.boolean("control", config.control.control);
   root.text("contact", config.contact);
   root.require("price");
-  read_battery(section(root, "battery"), config.battery, config.control);
+  read_battery(section(root, "battery", &config.retired), config.battery, config.control);
   check_battery_against_map(section(root, "battery"), config.battery, config.control);
-  read_price(section(root, "price"), config.price, config.control.frozen_price);
-  read_outlook(section(root, "outlook"), config.outlook);
-  read_guard(section(root, "guard"), config.battery, config.control,
-             config.require_synchronised_clock);
+  read_price(section(root, "price", &config.retired), config.price);
+  read_outlook(section(root, "outlook", &config.retired), config.outlook);
+  read_guard(section(root, "guard", &config.retired), config.battery, config.control);
   read_reserve(root, config.control);
   TomlTable battery = section(root, "battery");
   check_full_charge(battery, config.control);
-  read_state(section(root, "state"), {config.state, config.log});
+  read_state(section(root, "state", &config.retired), {config.state, config.log});
   read_log(section(root, "log"), config.log);
   read_metrics(section(root, "metrics"), config.log);
   read_simulation(section(root, "simulation"), config.clock);
-  read_meter(section(root, "meter"), {config.battery.link, config.battery.map}, config.site);
+  read_meter(section(root, "meter", &config.retired), {config.battery.link, config.battery.map},
+             config.site);
   read_limits(section(root, "limits"), config.site);
   // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
   for (const char* const others : {"notify", "page", "contract", "settled"}) {
@@ -78,7 +117,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   if (config.battery.name.empty()) {
     config.battery.name = std::string_view(default_battery_name(config.state.folder.c_str()));
   }
-  config.control.price_wait_s = config.price.feed.wait_s;
+  config.control.price_wait_s = kPriceWait_s;
   set_supervision(config.battery, config.control);
   set_site(config);
   if (config.battery.map.watchdog.duration_s > 0) {
@@ -120,6 +159,15 @@ FixedText<639> prices_file(const EdgeConfig& config) {
   std::snprintf(path, sizeof path, "/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()),
                 crc.value());
   return {static_cast<const char*>(path)};
+}
+
+std::int32_t day_ahead_offset_s(const EdgeConfig& config) {
+  constexpr std::int32_t kSpread_s = 120;
+  if (!config.clock.is_real_time()) return 0;
+  const std::string id = battery_id(config.state.folder.c_str());
+  Crc32 crc;
+  crc.add_bytes(id.data(), id.size());
+  return static_cast<std::int32_t>(crc.value() % kSpread_s);
 }
 
 BothPlaces both_places(const EdgeConfig& config, std::string_view name) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "edge/base/static_vector.h"
 #include "edge/settings/battery_config.h"
 #include "edge/settings/outlook_config.h"
 #include "edge/settings/price_config.h"
@@ -13,6 +14,9 @@
 #include "shared/scaled_clock.h"
 
 namespace bess {
+
+/// Keys of earlier versions that the file still has; they do nothing.
+using RetiredKeys = StaticVector<const char*, 32>;
 
 struct EdgeConfig {
   ControlSettings control;
@@ -23,7 +27,7 @@ struct EdgeConfig {
   StateSettings state;
   EventLogSettings log;
   ScaledClock clock;
-  bool require_synchronised_clock = true;
+  RetiredKeys retired;
   FixedText<159> contact;  ///< who is called when it does not work; empty = not said
 };
 
@@ -38,6 +42,10 @@ FixedText<639> run_file(const EdgeConfig& config, std::string_view name);
 
 /// The record of bess-prices: in the run folder, or in /dev/shm where there is none.
 FixedText<639> prices_file(const EdgeConfig& config);
+
+/// Of the usual time at which tomorrow's prices are asked for: 0 to 119 s, the same at every start,
+/// so that a thousand machines do not ask at one instant; 0 in simulated time.
+std::int32_t day_ahead_offset_s(const EdgeConfig& config);
 
 /// The same file in both folders, for what must be known though one of two disks has died.
 struct BothPlaces {

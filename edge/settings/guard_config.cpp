@@ -28,33 +28,27 @@ std::int32_t default_cycles_per_day_e4(std::int32_t power_w, std::int32_t capaci
 
 }  // namespace
 
-void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control,
-                bool& require_synchronised_clock) {
+void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control) {
   GuardSettings& guard = control.guard;
   read_threshold(table, "low_price_eur_per_mwh", guard.thresholds.low_eur_per_mwh);
   read_threshold(table, "high_price_eur_per_mwh", guard.thresholds.high_eur_per_mwh);
   table.scaled("soc_min", guard.soc_min_e4, 10'000, 0, 1);
   table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
-  table.scaled("soc_hysteresis", guard.soc_hysteresis_e4, 10'000, 0, 0.2);
   table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
   table.integer("stand_in_s_max", guard.stand_in_s_max, 0, 3'600);
   table.integer("frozen_price_s_max", control.frozen_price.stop_s, 0, 86'400);
   table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
-  table.integer("hold_s", control.hold_s, 0, 3'600);
   table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
   control.cycles_per_day_max_e4 = default_cycles_per_day_e4(guard.power_w, battery.capacity_wh);
   table.scaled("cycles_per_day_max", control.cycles_per_day_max_e4, 10'000, 0, 100);
   table.integer("reversals_per_hour_max", control.reversals_per_hour_max, 0, kStepsPerHour);
-  table.integer("order_deadline_s", control.order_deadline_s, 1, kSecondsPerStep);
-  table.boolean("require_synchronised_clock", require_synchronised_clock);
-  read_start_spread(table, battery_place(battery).view(), control);
   table.finish();
   if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
   }
   if (guard.soc_min_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
-    table.fail("soc_min", "must be below soc_max by more than twice soc_hysteresis");
+    table.fail("soc_min", "must be below soc_max by more than 0.01");
   }
   if (guard.temperature_min_deci_c >= guard.temperature_max_deci_c) {
     table.fail("temperature_min_c", "must be below temperature_max_c");

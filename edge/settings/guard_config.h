@@ -6,7 +6,6 @@
 namespace bess {
 
 /// `battery`, and its power in `control`, must be known: what a day may hold follows from both.
-void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control,
-                bool& require_synchronised_clock);
+void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control);
 
 }  // namespace bess

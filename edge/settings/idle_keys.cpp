@@ -63,6 +63,9 @@ void add_site(const EdgeConfig& config, std::vector<std::string>& keys) {
 
 std::vector<std::string> keys_without_effect(const EdgeConfig& config) {
   std::vector<std::string> keys;
+  for (const char* const key : config.retired) {
+    keys.emplace_back(formatted("%s: no longer a setting, the value is fixed; delete it", key));
+  }
   add_guard(config, keys);
   add_reserves(config, keys);
   add_site(config, keys);

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "edge/control/full_charge.h"
-#include "edge/settings/start_offset.h"
 
 namespace bess {
 namespace {
@@ -54,7 +53,7 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
     table.fail("to", "is the same as from: a whole day is \"00:00\" to \"24:00\"");
   }
   if (soc_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
-    table.fail("soc", "must be below [guard] soc_max by more than twice soc_hysteresis");
+    table.fail("soc", "must be below [guard] soc_max by more than 0.01");
   }
   period.soc_e4 = static_cast<std::int16_t>(soc_e4);
   return period;
@@ -63,11 +62,8 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 }  // namespace
 
 void read_full_charge(TomlTable& battery, ControlSettings& control) {
-  std::int32_t share_e4 = 5'000;
   battery.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);
-  battery.scaled("full_charge_power", share_e4, 10'000, 0.05, 1);
-  control.guard.full_charge_power_w =
-      static_cast<std::int32_t>(std::int64_t{control.guard.power_w} * share_e4 / 10'000);
+  control.guard.full_charge_power_w = control.guard.power_w / 2;
 }
 
 void check_full_charge(TomlTable& battery, const ControlSettings& control) {
@@ -91,16 +87,6 @@ void read_reserve(TomlTable& root, ControlSettings& control) {
     return root.fail("reserve", "has more than " + std::to_string(ReservePlan::capacity()) +
                                     " periods: leave some out");
   }
-}
-
-void read_start_spread(TomlTable& guard, std::string_view place, ControlSettings& control) {
-  std::int32_t spread_s = 0;
-  guard.integer("start_spread_s", spread_s, 0, 20);
-  if (spread_s == 0) return;
-  if (spread_s >= control.order_deadline_s) {
-    guard.fail("start_spread_s", "must be below order_deadline_s, else each order may be late");
-  }
-  control.start_offset_ms = start_offset_ms(spread_s, machine_id().view(), place);
 }
 
 }  // namespace bess

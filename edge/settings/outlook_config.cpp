@@ -4,7 +4,6 @@
 
 #include "edge/prices/http_secrets.h"
 #include "edge/settings/price_transport.h"
-#include "edge/settings/start_offset.h"
 
 namespace bess {
 
@@ -18,11 +17,7 @@ void read_outlook(TomlTable table, OutlookSettings& outlook) {
   table.text("rows_field", outlook.fields.rows);
   table.text("time_field", outlook.fields.time);
   table.text("price_field", outlook.fields.price);
-  table.integer("timeout_ms", outlook.http.timeout_ms, 10, 60'000);
   table.boolean("allow_http", transport.allow_http);
-  std::int32_t ask_spread_s = 120;
-  table.integer("ask_spread_s", ask_spread_s, 0, 300);
-  outlook.ask_offset_s = start_offset_ms(ask_spread_s, machine_id().view(), "day-ahead") / 1'000;
   table.finish();
   if (!table.ok() || table.value() == nullptr) return;
   if (table.has("url") && table.has("file")) {

@@ -21,7 +21,6 @@ bool is_http(std::string_view url) {
 void read_history(TomlTable& table, PriceConfig& price) {
   HistorySettings& history = price.history;
   table.integer("history_hours", history.hours, 0, PriceHistory::kHoursMax);
-  table.integer("history_wait_s", history.wait_s, 1, 3'600);
   table.text("history_url", history.url);
   if (table.has("level_start_eur_per_mwh")) {
     std::int32_t start_centi_eur_per_mwh = 0;
@@ -58,7 +57,7 @@ void check_history_url(TomlTable& table, const PriceConfig& price) {
 
 }  // namespace
 
-void read_price(TomlTable table, PriceConfig& price, FrozenPriceSettings& frozen) {
+void read_price(TomlTable table, PriceConfig& price) {
   FixedText<255> header_file;
   PriceTransportKeys transport;
   table.require("url");
@@ -68,18 +67,9 @@ void read_price(TomlTable table, PriceConfig& price, FrozenPriceSettings& frozen
   table.text("rows_field", price.feed.fields.rows);
   table.text("time_field", price.feed.fields.time);
   table.text("price_field", price.feed.fields.price);
-  table.integer("timeout_ms", price.feed.http.timeout_ms, 10, 60'000);
-  std::int32_t ignored = 0;
-  table.integer("resolve_every_s", ignored, 1, 86'400);  // of earlier versions
   read_unit(table, price.feed.fields);
-  table.integer("requests_per_cycle", price.feed.requests_per_cycle, 1, 4);
-  table.integer("wait_s", price.feed.wait_s, 1, 60);
-  table.scaled("step_flag_eur_per_mwh", price.feed.step_flag_centi_eur_per_mwh, kCentiPerEur, 0,
-               2 * kPlausiblePriceMaxEurPerMwh);
-  table.integer("frozen_price_s", frozen.frozen_s, 0, 86'400);
   read_history(table, price);
   table.boolean("allow_http", transport.allow_http);
-  table.boolean("hold_flagged_step", price.feed.hold_flagged_step);
   table.finish();
   if (!table.ok()) return;
   const std::string_view url = price.feed.http.url.view();

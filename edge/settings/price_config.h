@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "edge/loop/control_settings.h"
 #include "edge/prices/price_settings.h"
 #include "shared/host/toml_reader.h"
 
@@ -16,6 +15,6 @@ struct PriceConfig {
   std::optional<std::int32_t> level_start_centi_eur_per_mwh;
 };
 
-void read_price(TomlTable table, PriceConfig& price, FrozenPriceSettings& frozen);
+void read_price(TomlTable table, PriceConfig& price);
 
 }  // namespace bess

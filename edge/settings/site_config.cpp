@@ -15,7 +15,6 @@ void read_connection(TomlTable& table, ConnectionSettings& connection) {
   table.integer("export_w_max", connection.export_w_max, 0, kConnectionWMax);
   table.integer("peak_w_max", connection.peak_w_max, 1, kConnectionWMax);
   table.integer("margin_w", connection.margin_w, 0, kConnectionWMax);
-  table.integer("house_rise_w", connection.house_rise_w, 0, kConnectionWMax);
   table.boolean("peak_shave", connection.peak_shave);
 }
 
@@ -28,9 +27,7 @@ void check_connection(TomlTable& table, const ConnectionSettings& connection) {
     }
   }
   if (table.has("peak_w_max")) return;
-  for (const char* const key : {"house_rise_w", "peak_shave"}) {
-    if (table.has(key)) table.fail(key, "means nothing without peak_w_max");
-  }
+  if (table.has("peak_shave")) table.fail("peak_shave", "means nothing without peak_w_max");
 }
 
 bool is_same_line(const BatteryLinkSettings& a, const BatteryLinkSettings& b) {
@@ -80,16 +77,11 @@ void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
   }
   read_connection(table, settings.connection);
   table.choice("on_loss", on_loss, {"idle", "ignore"});
-  table.integer("age_s_max", settings.age_s_max, 5, 300);
-  table.integer("check_every_s", settings.check_every_s, 2, 60);
   table.boolean("judged", settings.witness.judges);
   table.integer("pv_w_max", settings.pv_w_max, 0, kConnectionWMax);
   table.finish();
   settings.idle_without_meter = on_loss == 0;
   check_connection(table, settings.connection);
-  if (settings.check_every_s * 2 > settings.age_s_max) {
-    table.fail("check_every_s", "must be at most half of age_s_max: one reading may be lost");
-  }
   if (settings.meter == MeterSource::kMap) {
     load_meter_map(table, battery, map_file.view(), variant.view(), site);
   } else {

@@ -26,8 +26,6 @@ void read_state(TomlTable table, KeptFiles kept) {
   FixedText<255> folder("state");
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
-  table.text("lock_folder", kept.state.lock_folder);
-  table.boolean("drive_without_state", kept.state.drive_without_state);
   const std::string path = table.resolved(folder.view());
   // As the service has it; elsewhere nobody says which folder is in memory.
   FixedText<255> run_folder(kInstalledEdge.run_beside(path));

@@ -9,13 +9,10 @@
 
 namespace bess {
 
-/// Where the controller keeps what outlives it, and where it locks battery and state.
+/// Where the controller keeps what outlives it.
 struct StateSettings {
   FixedText<511> folder;
-  FixedText<511> run_folder;   ///< on a memory file system, beside `folder`; empty = none
-  FixedText<255> lock_folder;  ///< besides the standard one; empty = none
-  /// Drives although nothing can be known of what earlier runs left, a trip for one.
-  bool drive_without_state = false;
+  FixedText<511> run_folder;  ///< on a memory file system, beside `folder`; empty = none
 };
 
 /// The log lies in the [state] folders, unless it is said otherwise.

@@ -19,24 +19,12 @@ std::int64_t slack_ws(std::int64_t cap_w, std::int64_t house_w,
   return cap_w * kQuarterHourS - quarter.import_ws - house_w * quarter.left_s;
 }
 
-std::int64_t charge_w_max(const ConnectionSettings& settings, const ConnectionState& state,
-                          std::int64_t slack, const QuarterHourEnergy::Sums& quarter) {
-  const std::int64_t left_s = quarter.left_s;
-  const std::int64_t stands_s = std::min<std::int64_t>(settings.order_stands_s, left_s);
-  const std::int64_t returnable_ws = state.relief_w_max * (left_s - stands_s);
-  const std::int64_t with_return_w = (returnable_ws - quarter.battery_ws) / stands_s;
-  const std::int64_t uncovered_w =
-      std::max<std::int64_t>(std::int64_t{settings.house_rise_w} - state.relief_w_max, 0);
-  const std::int64_t without_return_w = slack / left_s - uncovered_w;
-  return std::min(slack / left_s, std::max(with_return_w, without_return_w));
-}
-
 void limit_quarter_hour(const ConnectionSettings& settings, std::int64_t cap_w,
                         const ConnectionState& state, SiteRange& range) {
   const std::int64_t house_w = house_w_of(state);
   const QuarterHourEnergy::Sums& now = state.quarter_hour;
   const std::int64_t slack = slack_ws(cap_w, house_w, now);
-  range.limit_charge(charge_w_max(settings, state, slack, now), Reason::kQuarterHourPeak);
+  range.limit_charge(slack / now.left_s, Reason::kQuarterHourPeak);
   // The order of this step goes on into the next quarter-hour, which begins with nothing.
   if (now.left_s < kSecondsPerStep) {
     range.limit_charge(cap_w - house_w, Reason::kQuarterHourPeak);

@@ -9,13 +9,7 @@
 // Quarter-hour peak (the Belgian capacity tariff bills the mean import of the dearest
 // quarter-hour): with E imported so far, B of it taken by the battery, s seconds left and C =
 // peak_w_max - margin,
-//   (1) E + (house + charge) s <= 900 C             the mean stays under the cap if the house stays
-//   (2) B + charge t <= P (s - t)                   what was taken can still be given back by a
-//                                                   battery of P watts, should the house rise: t is
-//                                                   how long an order may stand before it is looked
-//                                                   at again
-//    or E + (house + charge + rise - P) s <= 900 C  needs nothing given back: the house is known to
-//                                                   rise by no more than `house_rise_w`
+//   E + (house + charge) s <= 900 C      the mean stays under the cap if the house stays
 // If the house does rise, so that E + house s > 900 C, the battery gives back what it took in this
 // quarter-hour (relief). Thus a quarter-hour ends above the cap only where the house alone leads
 // there; what the margin must cover is a rise that comes too late to be answered, and what an empty
@@ -35,9 +29,7 @@ struct ConnectionSettings {
   std::int32_t export_w_max = kAnyPowerW;
   std::int32_t peak_w_max = kAnyPowerW;  ///< mean of a quarter-hour
   std::int32_t margin_w = 200;           ///< kept free below each of the three
-  std::int32_t house_rise_w = 0;         ///< above P: what (2) keeps energy back for
   bool peak_shave = false;
-  std::int32_t order_stands_s = 30;  ///< t above
 };
 
 struct ConnectionState {

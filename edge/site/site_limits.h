@@ -32,11 +32,13 @@ enum class MeterSource : std::uint8_t {
 /// How much of the margin an order must leave free.
 enum class Margin : std::uint8_t { kWhole, kHalf };
 
+inline constexpr std::int32_t kMeterAgeMax_s = 30;  ///< an older reading is no reading
+/// Between two ticks the site is read this often; at most half of the above: one may be lost.
+inline constexpr std::int32_t kSiteCheck_s = 10;
+
 struct SiteSettings {
   MeterSource meter = MeterSource::kNone;
   bool idle_without_meter = true;  ///< false: a lost meter limits nothing
-  std::int32_t age_s_max = 30;     ///< an older reading is no reading
-  std::int32_t check_every_s = 10;
   ConnectionSettings connection;
   MeterWitnessSettings witness;
   std::int32_t pv_w_max = 0;  ///< of panels behind the meter; kAnyPowerW: not known
@@ -64,9 +66,7 @@ class SiteLimits {
         outside_(outside),
         witness_(settings.witness),
         energy_(settings.connection.peak_w_max == kAnyPowerW ? 0 : settings.connection.peak_w_max,
-                settings.age_s_max) {
-    settings_.connection.order_stands_s = settings.age_s_max;
-  }
+                kMeterAgeMax_s) {}
 
   /// What an earlier run had counted when it wrote its last record.
   void take_over(std::int64_t utc_s, const SiteReport& before) {
@@ -76,7 +76,7 @@ class SiteLimits {
 
   /// 0: there is nothing to look at between two ticks.
   [[nodiscard]] std::int32_t check_every_s() const {
-    return has_meter() || settings_.has_outside_limits ? settings_.check_every_s : 0;
+    return has_meter() || settings_.has_outside_limits ? kSiteCheck_s : 0;
   }
   /// The house's load cannot be known without the battery's power of the same time.
   [[nodiscard]] bool needs_battery() const { return has_meter(); }
@@ -169,7 +169,7 @@ class SiteLimits {
   /// A clock that was stepped back makes readings of the future: those are no readings either.
   [[nodiscard]] bool is_recent(std::int64_t now_utc_s) const {
     const std::int64_t age_s = now_utc_s - read_utc_s_;
-    return age_s <= settings_.age_s_max && age_s >= -settings_.age_s_max;
+    return age_s <= kMeterAgeMax_s && age_s >= -kMeterAgeMax_s;
   }
 
   Status read_meter(bool is_read, const BatteryMeasurement& battery, std::int32_t& grid_w) {

@@ -104,8 +104,8 @@ bool is_every_place_read_only(const EdgeConfig& config) {
 /// How long ago the youngest of a controller's locks was made, as far as one is left.
 std::optional<std::int64_t> lock_age_ms(const EdgeConfig& config) {
   std::optional<std::int64_t> youngest;
-  for (const FixedText<639>& path : {state_file(config, "lock"), run_file(config, "lock"),
-                                     battery_lock_path(config, standard_lock_folder())}) {
+  for (const FixedText<639>& path :
+       {state_file(config, "lock"), run_file(config, "lock"), battery_lock_path(config)}) {
     struct stat info {};
     if (path.empty() || stat(path.c_str(), &info) != 0) continue;
     const std::int64_t age_ms = (std::time(nullptr) - info.st_mtime) * 1'000;
@@ -131,7 +131,7 @@ int controller_by_files(const EdgeConfig& config, JsonValue status) {
 int find_controller(const EdgeConfig& config, JsonValue status, bool no_lock) {
   int holder = no_lock ? kHolderHidden : controller_holding(config);
   if (holder == 0 && !has_place_for_status(config)) {  // nor could it make its locks there
-    holder = holder_of(battery_lock_path(config, standard_lock_folder()).c_str());
+    holder = holder_of(battery_lock_path(config).c_str());
   }
   if (holder == kHolderHidden) return controller_by_files(config, status);
   // A full disk keeps the lock and not the number in it.

@@ -18,11 +18,9 @@ struct Recall {
 };
 
 /// Of a start that cannot read what earlier runs left: the battery may have tripped, and nobody
-/// knows. A trip that is known stays, and the operator may say otherwise.
-inline Trip trip_without_state(const Recall& recalled, bool drive_without_state,
-                               std::int64_t now_utc_s) {
-  if (recalled.unknown.empty() || drive_without_state || recalled.trip.is_set())
-    return recalled.trip;
+/// knows. A trip that is known stays.
+inline Trip trip_without_state(const Recall& recalled, std::int64_t now_utc_s) {
+  if (recalled.unknown.empty() || recalled.trip.is_set()) return recalled.trip;
   return {.reason = Reason::kStateLost, .utc_s = now_utc_s};
 }
 

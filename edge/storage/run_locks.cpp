@@ -37,16 +37,10 @@ bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& err
   return locks.run.take(run_file(config, "lock").c_str(), what, error);
 }
 
-bool is_same_folder(const char* one, const char* other) {
-  struct stat here {};
-  struct stat there {};
-  return stat(one, &here) == 0 && stat(other, &there) == 0 && here.st_dev == there.st_dev &&
-         here.st_ino == there.st_ino;
-}
-
 }  // namespace
 
-FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder) {
+FixedText<639> battery_lock_path(const EdgeConfig& config) {
+  const std::string_view folder = lock_folder();
   FixedText<159> thing = locked_thing(config);
   char name[160];
   std::size_t size = 0;
@@ -58,14 +52,14 @@ FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view fold
 }
 
 FixedText<639> name_lock_path(const EdgeConfig& config) {
-  const std::string_view folder = standard_lock_folder();
+  const std::string_view folder = lock_folder();
   char path[640];
   std::snprintf(path, sizeof path, "%.*s/bess-name-%s.lock", static_cast<int>(folder.size()),
                 folder.data(), config.battery.name.c_str());
   return {path};
 }
 
-std::string_view standard_lock_folder() {
+std::string_view lock_folder() {
   struct stat info {};
   const bool is_there = stat("/run/lock", &info) == 0 && S_ISDIR(info.st_mode);
   return is_there ? "/run/lock" : "/tmp";
@@ -84,11 +78,7 @@ bool is_controller_running(const EdgeConfig& config) { return controller_holding
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   char what[200];
   std::snprintf(what, sizeof what, "the battery at %s", battery_place(config.battery).c_str());
-  const std::string_view standard = standard_lock_folder();
-  if (!locks.battery.take(battery_lock_path(config, standard).c_str(), what, error)) return false;
-  const FixedText<255>& other = config.state.lock_folder;
-  if (other.empty() || is_same_folder(other.c_str(), standard.data())) return true;
-  return locks.battery_elsewhere.take(battery_lock_path(config, other.view()).c_str(), what, error);
+  return locks.battery.take(battery_lock_path(config).c_str(), what, error);
 }
 
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {

@@ -6,12 +6,12 @@
 
 namespace bess {
 
-/// Lock of the battery in a folder: the same name for every configuration that leads to it.
-FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder);
+/// Lock of the battery: the same name for every configuration that leads to it.
+FixedText<639> battery_lock_path(const EdgeConfig& config);
 /// Of [battery] name: two controllers of one machine must not report under the same.
 FixedText<639> name_lock_path(const EdgeConfig& config);
 /// Where every controller of this machine locks its battery; no configuration leads past it.
-std::string_view standard_lock_folder();
+std::string_view lock_folder();
 /// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state
 /// folder or, where that could not be made there, of its run folder.
 int controller_holding(const EdgeConfig& config);
@@ -19,7 +19,6 @@ bool is_controller_running(const EdgeConfig& config);
 
 struct RunLocks {
   InstanceLock battery;
-  InstanceLock battery_elsewhere;  ///< in [state] lock_folder as well, if it names one
   InstanceLock name;
   InstanceLock state;
   InstanceLock run;  ///< where there is a run folder

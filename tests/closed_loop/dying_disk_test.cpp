@@ -637,9 +637,8 @@ TEST_F(DyingDisk, ANewBatteryStarts) {
   print_row("first start", "driven");
 }
 
-/// It has never run here, and cannot keep anything: not driven, and said so, unless a key allows
-/// it.
-TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
+/// It has never run here, and cannot keep anything: not driven, and said so.
+TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
   for (const Death& death : kDeaths) {
     if (std::string(death.name) == "I/O errors" || death.is_real)
       continue;  // not commissioned, as far as anybody can read
@@ -655,26 +654,12 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
       EXPECT_THAT(said_, HasSubstr("not driven until bess-edge clear --yes"));
       disk_.free_again();
       disk_.come_back();
-      fs::remove(disk_.file("status.json"));
-
-      lose_folder(site_.folder.file("run"));
-      commission(has_run_folder, "drive_without_state = true\n");
-      death.happen(disk_);
-      start();
-      EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
-      ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
-      expect_all_agree(!has_run_folder);
-      end_run();
-      EXPECT_THAT(said_, HasSubstr("driving all the same: drive_without_state = true"));
-      disk_.free_again();
-      disk_.come_back();
       for (const char* name : {"status.json", "decisions.ring", "metrics.prom"}) {
         fs::remove(disk_.file(name));
       }
       said_.clear();
     }
-    print_row((std::string(death.name) + " from the first start").c_str(),
-              "state_lost, told; driven with the key");
+    print_row((std::string(death.name) + " from the first start").c_str(), "state_lost, told");
   }
 }
 

@@ -36,14 +36,6 @@ class HostileHost : public ::testing::Test {
     return text;
   }
 
-  /// The same configuration with `drive_without_state`.
-  std::string allowing_to_drive(const std::string& config) {
-    std::string text = text_of_file(config);
-    const std::string section = "[state]\n";
-    text.insert(text.find(section) + section.size(), "drive_without_state = true\n");
-    return site_.folder.write("allowing.toml", text);
-  }
-
   SimulatedSite site_{kScale};
 };
 
@@ -76,24 +68,6 @@ TEST_F(HostileHost, ASinglePriceFarFromTheOthersIsNotActedOn) {
     if (row.at("step_held") == "1") ++held;
   }
   EXPECT_GT(held, 0);
-}
-
-TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
-  start_simulators();
-  const std::string mine = site_.commission();
-  const std::string other = site_.commission({.state = "other"});
-  fs::create_directory(site_.folder.file("elsewhere"));
-  std::string text = text_of_file(other);
-  const std::string key = "lock_folder = \"";
-  text.insert(text.find(key) + key.size(), site_.folder.file("elsewhere") + "\" #");
-  static_cast<void>(site_.folder.write("other.toml", text));
-  ChildProcess edge({edge_program(), "--config", mine});
-  for (std::string line; line != "started: in control";) {
-    line = edge.read_line();
-    ASSERT_NE(line, "") << "it did not start";
-  }
-  EXPECT_THAT(run({"--config", other, "--cycles", "1"}, 1),
-              HasSubstr("is in use by another bess-edge (process " + std::to_string(edge.pid())));
 }
 
 TEST_F(HostileHost, AStrangersStatusIsNotBelieved) {
@@ -157,9 +131,6 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
       AllOf(HasSubstr("the decision log can be neither read nor made"),
             HasSubstr("not driven until bess-edge clear --yes"), HasSubstr("reason=state_lost"),
             Not(HasSubstr("mode=running")), Not(HasSubstr("is driven on"))));
-  EXPECT_THAT(run({"--config", allowing_to_drive(config), "--cycles", "2"}, 0),
-              AllOf(HasSubstr("driving all the same"), HasSubstr("mode=running"),
-                    HasSubstr("stopped: battery released")));
 }
 
 }  // namespace

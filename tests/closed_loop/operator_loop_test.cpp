@@ -144,44 +144,5 @@ TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
   EXPECT_EQ(record.ordered_power_w, 2'000);
 }
 
-TEST(LoopWithASpread, OrdersThatLongAfterTheTickOnTheTicksPrice) {
-  ControlSettings settings{.control = true, .guard = {}, .read_lead_s = 3};
-  settings.start_offset_ms = 7'500;
-  Site site(0.5, settings);
-  std::int64_t ordered_ns = 0;
-  const CycleRecord record = site.cycle();
-  ordered_ns = site.clock.now_ns;
-  EXPECT_EQ(ordered_ns, record.utc_s * kNanosecondsPerSecond + 7'500'000'000);
-  EXPECT_EQ(record.price.minute_utc_s, record.utc_s - 60);
-  EXPECT_EQ(record.price_age_s, 7);  // at the write
-  EXPECT_EQ(record.deadline_misses, 0);
-  EXPECT_EQ(record.decision_us, 0);  // the wait is no part of it
-  EXPECT_EQ(record.write_us, 0);
-}
-
-TEST(LoopWithASpread, APriceThatIsLateIsNotMadeLater) {
-  ControlSettings settings{.control = true, .guard = {}};
-  settings.start_offset_ms = 7'500;
-  Site site(0.5, settings);
-  site.prices.arrives_after_ns = 12 * kNanosecondsPerSecond;
-  const CycleRecord record = site.cycle();
-  EXPECT_EQ(site.clock.now_ns, (record.utc_s + 12) * kNanosecondsPerSecond);
-}
-
-TEST(LoopWithASpread, AStopDuringTheWaitOrdersNothingMore) {
-  ControlSettings settings{.control = true, .guard = {}};
-  settings.start_offset_ms = 7'500;
-  Site site(0.5, settings);
-  site.cycle();
-  const std::size_t orders = site.battery.orders.size();
-  site.prices.price = [&](std::int64_t) {
-    site.clock.stop = true;  // while the price comes in
-    return 0;
-  };
-  CycleRecord record;
-  EXPECT_FALSE(site.loop.run_cycle(record));
-  EXPECT_EQ(site.battery.orders.size(), orders);
-}
-
 }  // namespace
 }  // namespace bess

@@ -360,8 +360,7 @@ TEST_F(Processes, AFrozenPriceIsToldAndEndsTheTrade) {
   site_.start_battery();
   site_.start_market({"--fault", "frozen", "--fault-every", "1"});
   SimulatedSite::ConfigOptions options;
-  options.price_keys = "frozen_price_s = 600\n";
-  options.guard_keys = "frozen_price_s_max = 1800\n";
+  options.guard_keys = "frozen_price_s_max = 3600\n";
   const std::string config = site_.commission(options);
   ChildProcess edge({edge_program(), "--config", config});
   std::string line = edge.read_line();

@@ -303,8 +303,7 @@ TEST(Site, ALimitIsPassedForNoLongerThanACheckTakes) {
     const bool near_silence = silent_minutes[std::min(at, silent_minutes.size() - 1)] ||
                               silent_minutes[std::min(at + 2, silent_minutes.size() - 1)] ||
                               (at >= 2 && silent_minutes[at - 2]);
-    const double reaction_s =
-        near_silence ? settings.age_s_max + settings.check_every_s : settings.check_every_s;
+    const double reaction_s = near_silence ? kMeterAgeMax_s + kSiteCheck_s : kSiteCheck_s;
     ASSERT_LE(over_w * 60, 4'000 * reaction_s + 1) << utc_text(minute.minute_utc_s).c_str();
   }
   EXPECT_GT(limited, 1'000);

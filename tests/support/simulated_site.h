@@ -81,15 +81,13 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     std::string state_keys = "";  ///< lines of TOML for [state]
   };
 
-  /// All configurations of a site lock in one place.
   [[nodiscard]] std::string write_config(const ConfigOptions& options) const {
     const std::string text = controller_settings(
         {.battery = options.battery_keys + "port = " + std::to_string(battery_port) + "\n",
          .market = options.price_server + ":" + std::to_string(market_port),
          .price = options.price_keys,
          .guard = options.guard_keys,
-         .state = "folder = \"" + options.state + "\"\nlock_folder = \"" + folder.file("") +
-                  "\"\n" + options.state_keys,
+         .state = "folder = \"" + options.state + "\"\n" + options.state_keys,
          .clock = clock});
     return folder.write(options.state + ".toml", text);
   }

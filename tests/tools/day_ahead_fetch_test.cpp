@@ -149,7 +149,7 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
   ChildProcess site({BESS_SIM_PROGRAM, "site", "--folder", path("site"), "--prices",
                      path("minutes.csv"), "--day-ahead", path("da.csv"), "--map",
                      BESS_SOURCE_DIR "/edge/maps/alphaess.toml", "--utc-start",
-                     "2025-03-28T12:05:00Z", "--set", "outlook.timeout_ms=200"});
+                     "2025-03-28T12:05:00Z", "--set", "outlook.allow_http=true"});
   const std::string line = site.read_line();
   const std::string where = "market at 127.0.0.1:";
   ASSERT_THAT(line, HasSubstr(where));
@@ -158,7 +158,7 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(got().eur_per_mwh, two_days().eur_per_mwh);
   EXPECT_THAT(read_file(path("site/edge.toml")),
-              HasSubstr("[outlook]\nask_spread_s = 0\ntimeout_ms = 200\nurl = \"http://127.0.0.1:" +
+              HasSubstr("[outlook]\nallow_http = true\nurl = \"http://127.0.0.1:" +
                         std::to_string(port) + "/price?bzn=BE\"\n"));
   EXPECT_EQ(SitePrograms::stop(site), 0);
 }

@@ -64,15 +64,12 @@ std::string settings_of(const SiteOptions& options, const SitePrograms& programs
                    {"price", {{"history_hours", "0"}}},
                    {"outlook", {}},
                    {"guard", {}},
-                   {"state",
-                    {{"folder", quoted("state")},
-                     {"lock_folder", quoted(fs::absolute(options.folder).string())}}}};
+                   {"state", {{"folder", quoted("state")}}}};
   for (const std::string& text : options.settings) set(tables, text);
   const std::string market = "http://127.0.0.1:" + std::to_string(programs.market_port);
   auto& outlook = tables["outlook"];  // only when a key of it is set
   if (!outlook.empty()) {
     outlook.emplace("url", quoted(market + "/price?bzn=BE"));
-    outlook.emplace("ask_spread_s", "0");  // the same day on every machine
   }
   return controller_settings({.control = !options.is_watching,
                               .battery = lines_of(tables["battery"]),
@@ -151,7 +148,7 @@ void add_site_command(ProgramCommand& app) {
       .with_default();
   command.option("--battery", options->battery, "More options of bess-sim battery, in one word");
   command.option("--market", options->market, "More options of bess-sim market, in one word");
-  command.option("--set", options->settings, "A key of edge.toml: price.timeout_ms=200")
+  command.option("--set", options->settings, "A key of edge.toml: guard.soc_max=0.9")
       .value_name("TABLE.KEY=VALUE");
   command.option("--program", options->program, "bess-sim to start; default: this one");
   command.flag("--no-control", options->is_watching, "The controller only watches");

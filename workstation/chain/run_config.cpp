@@ -171,21 +171,11 @@ void KeyList::list(RunConfig& c) {
   number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
   number("mean_weight", kLearning, c.train.mean_weight, 0, 1000,
          "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
-  choice(
-      "potential", kLearning, c.train.potential, {"none", "sdp"},
-      "shapes rewards without changing what is best: nothing, or the stochastic program's value");
-  boolean("centre_rewards", kLearning, c.train.centre_rewards,
-          "subtract the mean reward (continuing horizon): values lie around zero");
   number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,
          "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
          "by heart");
   number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
          "the same for the context class");
-  integer("replay_capacity", kLearning, c.train.replay_capacity, 1, 100'000'000,
-          "transitions in the ring");
-  number("epsilon_start", kLearning, c.train.epsilon_start, 0, 1,
-         "share of random actions at the start");
-  number("epsilon_end", kLearning, c.train.epsilon_end, 0, 1, "and from half of the steps on");
   number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
          "of the averaged weights that are validated and kept");
   integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");

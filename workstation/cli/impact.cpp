@@ -104,16 +104,6 @@ void add_impact_command(ProgramCommand& app) {
   command.option("--seeds", plan.seeds, "Simulated markets, seeds 1 to this")
       .range(1, 1000)
       .with_default();
-  command
-      .option("--jitter", plan.jitter_min,
-              "Minutes over which the clocks of the fleet that is spread in time are spread")
-      .range(1, 60)
-      .with_default();
-  command
-      .option("--step-share", plan.step_share,
-              "Of the rated power that an order of small steps may differ from the one before")
-      .range(0.01, 1.0)
-      .with_default();
   command.option("--rounds", plan.rounds, "Times that it is learnt anew on prices it made itself")
       .range(0, 20)
       .with_default();

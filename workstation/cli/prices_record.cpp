@@ -25,7 +25,6 @@ struct PricesRecordArguments {
   std::string out;
   std::string base_url = kEliaBaseUrl;
   double poll_s = 20;
-  double deadline_s = 10;
   std::string duration, until;
   bool json = false;
 };
@@ -150,7 +149,6 @@ void run_prices_record(const PricesRecordArguments& options) {
         {.folder = options.out,
          .base_url = checked_base_url(options.base_url, "--url"),
          .poll_s = options.poll_s,
-         .deadline_s = options.deadline_s,
          .until_utc_s = end_utc_s(options),
          .clock = {
              .utc_s = [] { return static_cast<std::int64_t>(std::time(nullptr)); },
@@ -180,9 +178,6 @@ void add_prices_record(ProgramCommand& prices) {
       .with_default();
   command.option("--poll-s", options->poll_s, "Seconds between two looks")
       .range(15.0, 60.0)
-      .with_default();
-  command.option("--deadline-s", options->deadline_s, "Seconds that a request may take")
-      .range(1.0, 60.0)
       .with_default();
   command.option("--for", options->duration, "Stop after this long: 90s, 30m, 12h, 7d");
   command.option("--until", options->until, "Stop at this instant, e.g. 2025-06-15T22:00:00Z")

@@ -24,6 +24,9 @@
 namespace bess {
 namespace {
 
+/// Other SoCs that are looked at in each decision, drawn evenly.
+constexpr int kDrawnPerStep = 4;
+
 struct CheckArguments {
   CommonOptions common;
   RuleFiles rule_files;
@@ -32,7 +35,6 @@ struct CheckArguments {
   std::string policy;
   std::string split = "val+test";
   std::optional<std::string> context;
-  int drawn_per_step = 4;
   bool json = false;
 };
 
@@ -82,7 +84,7 @@ void print_watch(const RuleSet& rules, const RuleWatch& watch, ContextKind kind,
     fmt::print(
         "\n{} breaks, in {} decisions of the {} split and at {} SoCs drawn beside each (seed {}):\n"
         "{:<40}  {:>10}  {:>8}  {:>10}  {:>8}\n",
-        options.policy, watch.decisions(), options.split, options.drawn_per_step,
+        options.policy, watch.decisions(), options.split, kDrawnPerStep,
         options.common.seed.value_or(1), "rule", "visited", "%", "drawn", "%");
   }
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
@@ -96,7 +98,7 @@ void print_watch(const RuleSet& rules, const RuleWatch& watch, ContextKind kind,
     } else {
       fmt::print("{:<40}  {:>10}  {:>8.3f}  {:>10}  {:>8.3f}\n", rules.rules[r].name,
                  c.visited_broken, percent(c.visited_broken, watch.decisions()), c.drawn_broken,
-                 percent(c.drawn_broken, watch.decisions() * options.drawn_per_step));
+                 percent(c.drawn_broken, watch.decisions() * kDrawnPerStep));
     }
   }
 }
@@ -118,8 +120,8 @@ void run_rules_check(const CheckArguments& options) {
   const std::vector<MarketDay> days = market.days_of(parse_split(options.split));
   if (days.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
   const RuleSet all = with_properties(rules, config.distil.correction.thresholds);
-  RuleWatch watch(make_policy(options.policy, market, config.battery), all, classes,
-                  options.drawn_per_step, config.train.seed);
+  RuleWatch watch(make_policy(options.policy, market, config.battery), all, classes, kDrawnPerStep,
+                  config.train.seed);
   evaluate(market, days, watch, {config.battery, config.initial_soc_frac, true});
   print_watch(all, watch, classes.kind, options);
 }
@@ -141,11 +143,6 @@ void add_rules_check(ProgramCommand& rules) {
   options->price_input.add(command);
   command.option("--split", options->split, "Days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
-      .with_default();
-  command
-      .option("--drawn", options->drawn_per_step,
-              "Other SoCs that are looked at in each decision, drawn evenly")
-      .range(0, 1000)
       .with_default();
   command.flag("--json", options->json, "One JSON object a line and rule");
   options->common.add_market(command);

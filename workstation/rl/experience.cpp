@@ -8,10 +8,6 @@
 namespace bess {
 namespace {
 
-float scale_of_eur(const BatteryParameters& battery) {
-  return static_cast<float>(learned_per_eur(battery));
-}
-
 /// Moves a normalised input by `shift` and keeps it in its range.
 void move_input(float& x, double shift) {
   x = std::clamp(x + static_cast<float>(shift), 0.0F, 1.0F);
@@ -22,11 +18,7 @@ void move_input(float& x, double shift) {
 TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                                const BatteryParameters& battery, Horizon horizon,
                                const RewardShaping& shaping, const ContextClasses& context)
-    : battery_(shaping.program ? shaping.program.battery() : battery),
-      potential_grid_(battery, shaping.potential.soc_points),
-      gamma_(static_cast<float>(shaping.gamma)),
-      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
-      price_map_(price_map) {
+    : battery_(shaping.program ? shaping.program.battery() : battery), price_map_(price_map) {
   if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
@@ -52,14 +44,12 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
                 static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)),
                 terminal,
                 steps[i].quarter_hour};
-      const auto add = [&](const MarketStep& of) {
-        return program_ ? program_->add(of) : add_potential(shaping.potential, of);
-      };
-      step.potential = add(steps[i]);
-      step.next_potential = add(follows ? *next : steps[i]);
-      step.begins_anew =
-          program_ && program_->is_outlook() ? program_->begins_plan(step.next_potential) : last;
-      step.follows_last = !steps_.empty() && steps_.back().next_potential == step.potential;
+      if (program_) {
+        step.row = program_->add(steps[i]);
+        step.next_row = program_->add(follows ? *next : steps[i]);
+        step.begins_anew = program_->is_outlook() ? program_->begins_plan(step.next_row) : last;
+        step.follows_last = !steps_.empty() && steps_.back().next_row == step.row;
+      }
       steps_.push_back(step);
     }
     days_.push_back({first, steps_.size() - first});
@@ -67,32 +57,13 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
   if (program_) centre_residuals();
 }
 
-/// A step is mostly the one that the last row was made for: the successor of the step before it.
-std::uint32_t TrainingMarket::add_potential(const Potential& potential, const MarketStep& step) {
-  const auto points = static_cast<std::size_t>(potential.soc_points);
-  if (step.utc_s != potential_utc_s_) {
-    potential_.resize(potential_.size() + points);
-    float* row = potential_.data() + potential_.size() - points;
-    potential.fill(step, row);
-    for (std::size_t i = 0; i < points; ++i) row[i] *= scale_of_eur(battery_);
-    potential_utc_s_ = step.utc_s;
-  }
-  return static_cast<std::uint32_t>(potential_.size() / points - 1);
-}
-
-float TrainingMarket::potential_at(std::uint32_t row, double soc_frac) const {
-  const float* phi =
-      &potential_[std::size_t{row} * static_cast<std::size_t>(potential_grid_.count)];
-  return interpolate(phi, potential_grid_.position(soc_frac));
-}
-
 double TrainingMarket::make_transition(std::size_t index, double soc_frac, Action action,
                                        Transition& out) const {
   const Step& step = steps_[index];
   const double wanted_w = power_sign(action) * battery_.power_w_at(step.quarter_hour);
   const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
-  write_input(seen(step.context, step.potential, soc_frac), soc_frac, out.state);
-  write_input(seen(step.next, step.next_potential, moved.soc_frac), moved.soc_frac, out.next_state);
+  write_input(seen(step.context, step.row, soc_frac), soc_frac, out.state);
+  write_input(seen(step.next, step.next_row, moved.soc_frac), moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
   // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in
   // floats.
@@ -103,8 +74,11 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   out.reward = -paid_eur_per_h * kPaperPowerMw * kRewardScale - reward_centre_;
   out.action = static_cast<std::int32_t>(action);
   out.terminal = step.terminal ? 1 : 0;
-  program_ ? shape_by_program(step, soc_frac, moved.soc_frac, out)
-           : shape_by_potential(step, soc_frac, moved.soc_frac, out);
+  if (program_) {
+    shape_by_program(step, soc_frac, moved.soc_frac, out);
+  } else {
+    std::ranges::fill(out.next_advantage, 0.0F);
+  }
   return moved.soc_frac;
 }
 
@@ -116,18 +90,11 @@ NetworkContext TrainingMarket::seen(NetworkContext context, std::uint32_t row,
   return context;
 }
 
-void TrainingMarket::shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
-                                        Transition& out) const {
-  if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, next_soc_frac);
-  out.reward -= potential_at(step.potential, soc_frac);
-  std::ranges::fill(out.next_advantage, 0.0F);
-}
-
 /// r' and A(s', .) of program_residual.h.
 void TrainingMarket::shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
                                       Transition& out) const {
-  const ProgramRows::Values here = program_->at(step.potential, soc_frac);
-  const ProgramRows::Values next = program_->at(step.next_potential, next_soc_frac);
+  const ProgramRows::Values here = program_->at(step.row, soc_frac);
+  const ProgramRows::Values next = program_->at(step.next_row, next_soc_frac);
   out.reward += static_cast<float>(program_->gamma()) * next.best -
                 here.action[static_cast<std::size_t>(out.action)];
   out.reward -= step.centre;
@@ -140,7 +107,7 @@ void TrainingMarket::trade_by_program(Visit visit) const {
   Transition transition{};
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     if (!steps_[i].follows_last) soc_frac = middle_soc_frac();
-    const Action action = argmax_action(program_->at(steps_[i].potential, soc_frac).action.data());
+    const Action action = argmax_action(program_->at(steps_[i].row, soc_frac).action.data());
     soc_frac = make_transition(i, soc_frac, action, transition);
     visit(steps_[i], transition);
   }

@@ -11,8 +11,6 @@
 #include "shared/battery_model.h"
 #include "workstation/base/random.h"
 #include "workstation/env/market_steps.h"
-#include "workstation/planners/soc_grid.h"
-#include "workstation/rl/potential.h"
 #include "workstation/rl/program_residual.h"
 #include "workstation/rl/transition.h"
 
@@ -23,14 +21,8 @@ enum class Horizon {
   kDay,         ///< terminal at local midnight (the paper's episodes)
 };
 
-/// Changes of the reward that change no decision but make it far quicker to learn.
+/// With a program, rewards are r' of program_residual.h, centred; without one they are money.
 struct RewardShaping {
-  /// Subtracted from every reward. With a continuing horizon all values move by the same constant
-  /// [Naik et al. 2024, reward centring], and the level of ~2e5 need not be climbed first.
-  double reward_centre_eur_per_h = 0;
-  double gamma = 0.999;
-  Potential potential{};
-  /// Instead of all these: rewards are r' of program_residual.h, centred by themselves.
   Foundation program{};
   int threads = 1;  ///< that its plans are made on
 };
@@ -80,19 +72,15 @@ class TrainingMarket {
     NetworkContext next;
     float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
-    std::int8_t quarter_hour;                         ///< local
-    std::uint32_t potential = 0, next_potential = 0;  ///< rows of potential_, or of program_
-    bool begins_anew = false;                         ///< the program's values do, at the successor
-    float centre = 0;                                 ///< of r', where it has one of its own
-    bool follows_last = false;                        ///< the successor of the step before this one
+    std::int8_t quarter_hour;             ///< local
+    std::uint32_t row = 0, next_row = 0;  ///< of program_
+    bool begins_anew = false;             ///< the program's values do, at the successor
+    float centre = 0;                     ///< of r', where it has one of its own
+    bool follows_last = false;            ///< the successor of the step before this one
   };
-  std::uint32_t add_potential(const Potential& potential, const MarketStep& step);
-  [[nodiscard]] float potential_at(std::uint32_t row, double soc_frac) const;
   /// What the network sees of a row, at this SoC.
   [[nodiscard]] NetworkContext seen(NetworkContext context, std::uint32_t row,
                                     double soc_frac) const;
-  void shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
-                          Transition& out) const;
   void shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
                         Transition& out) const;
   /// Calls visit(step, transition) for every step that the program trades, the SoC carried over.
@@ -104,11 +92,7 @@ class TrainingMarket {
   }
 
   BatteryParameters battery_;
-  SocGrid potential_grid_;
-  std::vector<float> potential_;       ///< [row][SoC point], scaled
-  std::int64_t potential_utc_s_ = -1;  ///< step of the last row
-  float gamma_;
-  float reward_centre_;  ///< scaled
+  float reward_centre_ = 0;  ///< of r', scaled
   std::optional<ProgramRows> program_;
   PriceMap price_map_;
   std::vector<Step> steps_;

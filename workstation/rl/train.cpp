@@ -10,7 +10,6 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
 #include "workstation/planners/cycle_limit.h"
-#include "workstation/planners/tabular.h"
 #include "workstation/rl/learner.h"
 #include "workstation/rl/replay.h"
 
@@ -21,6 +20,11 @@ namespace {
 enum Seed : std::uint64_t { kSeedWeights = 1, kSeedExperience = 2, kSeedMinibatch = 3 };
 /// Days that act in lock-step with the same weights; one gradient step follows for each of them.
 constexpr long kLockstepDays = 32;
+/// Of source "replay": transitions in the ring, and the share of random actions at the start and
+/// from half of the steps on [SPEC 4].
+constexpr std::size_t kReplayCapacity = 1'000'000;
+constexpr double kEpsilonStart = 1;
+constexpr double kEpsilonEnd = 0.05;
 
 /// Hands out minibatches from the configured source.
 class Experience {
@@ -28,7 +32,7 @@ class Experience {
   Experience(const TrainingMarket& market, const TrainOptions& options)
       : market_(market),
         options_(options),
-        replay_(market, static_cast<std::size_t>(options.replay_capacity)),
+        replay_(market, kReplayCapacity),
         experience_random_(derive_seed(options.seed, kSeedExperience)),
         minibatch_random_(derive_seed(options.seed, kSeedMinibatch)) {}
 
@@ -63,7 +67,7 @@ class Experience {
   [[nodiscard]] double epsilon(long step) const {
     const double progress =
         std::min(1.0, 2.0 * static_cast<double>(step) / static_cast<double>(options_.steps));
-    return options_.epsilon_start + progress * (options_.epsilon_end - options_.epsilon_start);
+    return kEpsilonStart + progress * (kEpsilonEnd - kEpsilonStart);
   }
 
   const TrainingMarket& market_;
@@ -74,31 +78,6 @@ class Experience {
   std::vector<Transition> drawn_;
   MiniBatch batch_;
 };
-
-/// Mean reward an hour of the tabular baseline on the training days, for the paper's battery size.
-double tabular_reward_eur_per_h(const MarketSteps& market, const std::vector<MarketDay>& training,
-                                const BatteryParameters& battery) {
-  TabularPolicy tabular(market, training, battery);
-  EvaluationOptions options;
-  options.battery = battery;
-  options.carry_soc = true;
-  const Evaluation evaluation = evaluate(market, training, tabular, options);
-  const double capacity_hours = battery.capacity_wh / battery.power_w_max;
-  return evaluation.profit_eur_per_day_per_mwh() * capacity_hours * double{kPaperPowerMw} / 24;
-}
-
-/// Shaped rewards r + gamma Phi(s') - Phi(s) drift by -(1 - gamma) mean Phi: that goes with the
-/// centre, so that values lie around zero.
-RewardShaping fit_shaping(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options) {
-  RewardShaping shaping{0, options.gamma, fit_potential(options.potential, market, battery)};
-  if (!options.centre_rewards || options.horizon != Horizon::kContinuing) return shaping;
-  const double eur_per_h_of_eur = double{kPaperPowerMw} * 1e6 / battery.power_w_max / kHoursPerStep;
-  shaping.reward_centre_eur_per_h =
-      tabular_reward_eur_per_h(market, market.days_of(Split::kTrain), battery) -
-      (1 - options.gamma) * mean_of(shaping.potential, market) * eur_per_h_of_eur;
-  return shaping;
-}
 
 /// The stochastic program of the training days, mindful of a limit on daily cycles.
 std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
@@ -219,9 +198,7 @@ class Training {
         current_(without_network(market, battery, options)),
         program_(options.residual ? current_.foundation() : Foundation{}),
         training_(market, current_.price_map, battery, options.horizon,
-                  program_ ? RewardShaping{.program = program_, .threads = options.threads}
-                           : fit_shaping(market, battery, options),
-                  current_.context),
+                  {.program = program_, .threads = options.threads}, current_.context),
         support_(program_ ? residual_support(training_, options) : given_support(options)),
         learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,

@@ -36,14 +36,9 @@ struct TrainOptions {
   double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
   ContextKind context = ContextKind::kLevel;
-  PotentialKind potential = PotentialKind::kSdp;  ///< of reward shaping
-  bool centre_rewards = true;                     ///< continuing horizon only
-  ContextJitter jitter;                           ///< counterfactual source only
+  ContextJitter jitter;  ///< counterfactual source only
   double value_min_eur_per_h = -1e5;
   double value_max_eur_per_h = 1e5;
-  long replay_capacity = 1'000'000;
-  double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
-  double epsilon_end = 0.05;
   double average_decay = 0.998;  ///< of the averaged weights that are validated and kept; 0 = none
   long validate_every = 250;     ///< gradient steps
   std::uint64_t seed = 1;

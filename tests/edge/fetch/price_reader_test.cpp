@@ -33,7 +33,7 @@ class PriceReaderTest : public ::testing::Test {
   TemporaryFolder folder_;
   std::string path_ = folder_.file("prices");
   PricePublisher publisher_{path_};
-  PriceReader reader_{{.path = FixedText<639>(path_), .step_flag_centi_eur_per_mwh = 230'000}, {}};
+  PriceReader reader_{{.path = FixedText<639>(path_)}, {}};
 };
 
 TEST_F(PriceReaderTest, TakesARowAndIsWokenByIt) {

@@ -222,7 +222,6 @@ TEST_F(SettledServer, KeysAreRefusedByFileAndLine) {
               HasSubstr("must hold {from} and {until}"));
   EXPECT_THAT(refused("url = \"https://example.org/?limit=3\"\n"),
               HasSubstr("must hold {from} and {until}, or be without any query"));
-  EXPECT_THAT(refused("days = 101\n"), HasSubstr("[settled] days must lie between 1 and 100"));
   EXPECT_THAT(refused("day = 3\n"), HasSubstr("day is not a known key"));
   EXPECT_THAT(refused("url = \"https://example.org/{from}/{until}\"\n"),
               HasSubstr("settled    prices of 62 days, fetched once a day"));

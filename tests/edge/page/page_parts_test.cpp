@@ -96,7 +96,6 @@ TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
       {"host = \"localhost\"\n", "must be a numeric address"},
       {"port = 70000\n", "port"},
       {"prot = 80\n", "prot"},
-      {"refresh_s = 0\n", "refresh_s"},
       {"hosts = [\"http://a.example\"]\n", "without scheme and port"},
       {"hosts = [5]\n", "without scheme and port"},
       {"name = \"a\"\n", "name is not a known key"},

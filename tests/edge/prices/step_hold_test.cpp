@@ -6,7 +6,6 @@
 namespace bess {
 namespace {
 
-constexpr std::int32_t kStep = 230'000;  // 2,300 EUR/MWh
 constexpr PriceRow kBefore{.minute_utc_s = 600, .price_centi_eur_per_mwh = 10'000};
 
 constexpr PriceRow row_at(std::int64_t minute, std::int32_t price_centi) {
@@ -14,7 +13,7 @@ constexpr PriceRow row_at(std::int64_t minute, std::int32_t price_centi) {
 }
 
 TEST(StepHold, ASmallStepIsTakenAndTheExactLimitIsSmall) {
-  StepHold hold(kStep, true);
+  StepHold hold;
   for (const std::int32_t price : {10'001, -220'000, 240'000}) {
     const auto verdict = hold.judge(kBefore, row_at(11, price));
     EXPECT_TRUE(verdict.is_taken) << price;
@@ -23,7 +22,7 @@ TEST(StepHold, ASmallStepIsTakenAndTheExactLimitIsSmall) {
 }
 
 TEST(StepHold, ALargeStepIsHeldUntilALaterRowConfirmsIt) {
-  StepHold hold(kStep, true);
+  StepHold hold;
   EXPECT_FALSE(hold.judge(kBefore, row_at(11, 900'000)).is_taken);
   EXPECT_TRUE(hold.has_held());
   EXPECT_EQ(hold.held().price_centi_eur_per_mwh, 900'000);
@@ -36,7 +35,7 @@ TEST(StepHold, ALargeStepIsHeldUntilALaterRowConfirmsIt) {
 }
 
 TEST(StepHold, OneLieIsForgottenWithTheNextHonestRow) {
-  StepHold hold(kStep, true);
+  StepHold hold;
   EXPECT_FALSE(hold.judge(kBefore, row_at(11, -900'000)).is_taken);
   const auto verdict = hold.judge(kBefore, row_at(12, 12'000));
   EXPECT_TRUE(verdict.is_taken);
@@ -45,7 +44,7 @@ TEST(StepHold, OneLieIsForgottenWithTheNextHonestRow) {
 }
 
 TEST(StepHold, LiesThatDisagreeAreNeverTaken) {
-  StepHold hold(kStep, true);
+  StepHold hold;
   for (int minute = 11; minute < 60; ++minute) {
     const std::int32_t price = minute % 2 == 0 ? 900'000 : -900'000;
     EXPECT_FALSE(hold.judge(kBefore, row_at(minute, price)).is_taken);
@@ -54,7 +53,7 @@ TEST(StepHold, LiesThatDisagreeAreNeverTaken) {
 }
 
 TEST(StepHold, ARowOlderThanTheHeldOneChangesNothing) {
-  StepHold hold(kStep, true);
+  StepHold hold;
   EXPECT_FALSE(hold.judge(kBefore, row_at(14, 900'000)).is_taken);
   EXPECT_FALSE(hold.judge(kBefore, row_at(12, 10'000)).is_taken);
   EXPECT_EQ(hold.held().minute_utc_s, 14 * 60);
@@ -62,18 +61,9 @@ TEST(StepHold, ARowOlderThanTheHeldOneChangesNothing) {
 
 TEST(StepHold, FromOneEndOfAllPricesToTheOtherNothingOverflows) {
   constexpr PriceRow kLowest{.minute_utc_s = 600, .price_centi_eur_per_mwh = -10'000'000};
-  EXPECT_TRUE(StepHold(20'000'000, true).judge(kLowest, row_at(11, 10'000'000)).is_taken);
-  StepHold hold(19'999'999, true);
+  StepHold hold;
   EXPECT_FALSE(hold.judge(kLowest, row_at(11, 10'000'000)).is_taken);
   EXPECT_TRUE(hold.judge(kLowest, row_at(12, 10'000'000)).is_taken) << "confirmed";
-}
-
-TEST(StepHold, SwitchedOffItOnlyFlags) {
-  StepHold hold(kStep, false);
-  const auto verdict = hold.judge(kBefore, row_at(11, 900'000));
-  EXPECT_TRUE(verdict.is_taken);
-  EXPECT_TRUE(verdict.is_large_step);
-  EXPECT_FALSE(hold.has_held());
 }
 
 }  // namespace

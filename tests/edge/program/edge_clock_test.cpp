@@ -9,7 +9,7 @@ namespace {
 constexpr ScaledClock kFast{.anchor_monotonic_ns = 1, .anchor_utc_s = 1'679'788'800, .scale = 900};
 
 TEST(EdgeClock, SigtermStops) {
-  EdgeClock clock(kFast, false);
+  EdgeClock clock(kFast);
   EXPECT_FALSE(clock.stop_requested());
   raise(SIGTERM);
   EXPECT_TRUE(clock.stop_requested());
@@ -17,7 +17,7 @@ TEST(EdgeClock, SigtermStops) {
 }
 
 TEST(EdgeClock, SighupHandsOver) {
-  EdgeClock clock(kFast, false);
+  EdgeClock clock(kFast);
   raise(SIGHUP);
   EXPECT_TRUE(clock.stop_requested());
   EXPECT_TRUE(clock.hand_over_requested());
@@ -25,13 +25,13 @@ TEST(EdgeClock, SighupHandsOver) {
 
 TEST(EdgeClock, SigtermWinsWhateverTheOrder) {
   {
-    EdgeClock clock(kFast, false);
+    EdgeClock clock(kFast);
     raise(SIGHUP);
     EXPECT_TRUE(clock.stop_requested());
     raise(SIGTERM);
     EXPECT_FALSE(clock.hand_over_requested());
   }
-  EdgeClock clock(kFast, false);
+  EdgeClock clock(kFast);
   raise(SIGTERM);
   EXPECT_TRUE(clock.stop_requested());
   raise(SIGHUP);
@@ -39,7 +39,7 @@ TEST(EdgeClock, SigtermWinsWhateverTheOrder) {
 }
 
 TEST(EdgeClock, SleepsToTheInstantAndNotPastAStop) {
-  EdgeClock clock(kFast, false);
+  EdgeClock clock(kFast);
   const std::int64_t target_ns = clock.now_utc_ns() + 90 * kNanosecondsPerSecond;  // 0.1 s of wall
   EXPECT_TRUE(clock.sleep_until_utc_ns(target_ns));
   EXPECT_GE(clock.now_utc_ns(), target_ns);

@@ -1,13 +1,14 @@
 // The operator's configuration: the documented example loads, and every mistake is one clear line.
 #include "edge/settings/edge_config.h"
 
+#include "edge/settings/idle_keys.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 
-#include "edge/settings/start_offset.h"
 #include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
 
@@ -133,16 +134,14 @@ TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
   EXPECT_EQ(config.log.metrics, folder.file("state/metrics.prom"));
   EXPECT_TRUE(config.log.csv.empty());
   EXPECT_EQ(config.log.ring_days, 35);
-  EXPECT_TRUE(config.state.lock_folder.empty());
 
   const std::string text = valid_text() +
-                           "[state]\nfolder = \"/var/lib/bess\"\nlock_folder = \"/run\"\n"
+                           "[state]\nfolder = \"/var/lib/bess\"\n"
                            "[log]\ndays = 365\ncsv = \"edge.csv\"\n"
                            "[metrics]\nprometheus = \"/tmp/bess.prom\"\n";
   EdgeConfig other;
   ASSERT_TRUE(load_edge_config(folder.write("other.toml", text), other, error)) << error;
   EXPECT_EQ(other.log.ring, "/var/lib/bess/decisions.ring");
-  EXPECT_EQ(other.state.lock_folder, "/run");  // besides the standard one
   EXPECT_EQ(other.log.csv, folder.file("edge.csv"));
   EXPECT_EQ(other.log.metrics, "/tmp/bess.prom");
   EXPECT_EQ(other.log.ring_days, 365);
@@ -167,15 +166,16 @@ TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
   const TemporaryFolder folder;
   EdgeConfig config;
   config.battery.map.unit = 85;
-  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_85.lock");
+  const std::string folder_of_locks(lock_folder());
+  EXPECT_EQ(battery_lock_path(config), folder_of_locks + "/bess-127.0.0.1_502_unit_85.lock");
   config.battery.link.unit = 1;
-  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_1.lock");
+  EXPECT_EQ(battery_lock_path(config), folder_of_locks + "/bess-127.0.0.1_502_unit_1.lock");
   config.battery.link.rtu = true;
   config.battery.link.device = folder.write("ttyUSB0", "").c_str();
-  const FixedText<639> direct = battery_lock_path(config, "/locks");
+  const FixedText<639> direct = battery_lock_path(config);
   std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
   config.battery.link.device = folder.file("by-id").c_str();
-  EXPECT_EQ(battery_lock_path(config, "/locks"), direct.view());
+  EXPECT_EQ(battery_lock_path(config), direct.view());
 }
 
 struct ConfigMistake {
@@ -207,10 +207,7 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
        "none.pem cannot be read"},
       {"[price]\nurl = \"http:", "[price]\nheader_file = \"none\"\nurl = \"https:", 0,
        "none: cannot open the header file"},
-      {"[price]", "[price]\nresolve_every_s = 0", 6, "must lie between 1 and 86400"},
-      {"[price]", "[price]\nstep_flag_eur_per_mwh = -1", 6, "must lie between"},
       {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours must lie between 0 and 96"},
-      {"[price]", "[price]\nhistory_wait_s = 0", 6, "history_wait_s must lie between 1 and 3600"},
       {"[price]", "[price]\nhistory_url = \"http://127.0.0.1:2/records\"", 6,
        "history_url must start with http:// or https:// and be of the host of url"},
       {"[price]", "[price]\nhistory_url = \"127.0.0.1:1/records\"", 6, "be of the host of url"},
@@ -260,16 +257,14 @@ TEST(EdgeConfig, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
   EXPECT_EQ(config.price.history.hours, 72);
-  EXPECT_EQ(config.price.history.wait_s, 20);
   EXPECT_TRUE(config.price.history.url.empty());
   EXPECT_FALSE(config.price.level_start_centi_eur_per_mwh.has_value());
   std::string text = valid_text();
   text.insert(text.find("[guard]"),
-              "history_hours = 0\nhistory_wait_s = 5\nhistory_url = \"http://127.0.0.1:1/past\"\n"
+              "history_hours = 0\nhistory_url = \"http://127.0.0.1:1/past\"\n"
               "level_start_eur_per_mwh = -12.5\n");
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
   EXPECT_EQ(config.price.history.hours, 0);
-  EXPECT_EQ(config.price.history.wait_s, 5);
   EXPECT_EQ(config.price.history.url, "http://127.0.0.1:1/past");
   EXPECT_EQ(config.price.level_start_centi_eur_per_mwh, -1'250);
 }
@@ -282,15 +277,13 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   text.replace(text.find("http://"), 7, "https://");  // secrets go over nothing else
   text.replace(
       text.find("[price]"), 7,
-      "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"\n"
-      "resolve_every_s = 30\nstep_flag_eur_per_mwh = 1000.5");
+      "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"");
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
   EXPECT_EQ(config.price.feed.http.headers, "X-Api-Key: k");
   EXPECT_EQ(config.price.feed.http.ca_file, headers);  // relative to the configuration
   EXPECT_EQ(config.price.feed.fields.rows, "data.rows");
-  EXPECT_EQ(config.price.feed.step_flag_centi_eur_per_mwh, 100'050);
 }
 
 TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
@@ -306,27 +299,23 @@ TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
   ASSERT_TRUE(
       load("url = \"https://a.example/{today}\"\nheader_file = \"headers\"\n"
            "ca_file = \"headers\"\nrows_field = \"r\"\ntime_field = \"t\"\n"
-           "price_field = \"p\"\ntimeout_ms = 70\nask_spread_s = 0\n",
+           "price_field = \"p\"\n",
            config, error))
       << error;
   EXPECT_EQ(config.outlook.http.url, "https://a.example/{today}");
   EXPECT_EQ(config.outlook.http.headers, "X-Api-Key: k");
   EXPECT_EQ(config.outlook.http.ca_file, headers);
-  EXPECT_EQ(config.outlook.http.timeout_ms, 70);
   EXPECT_EQ(config.outlook.fields.rows, "r");
   EXPECT_EQ(config.outlook.fields.time, "t");
   EXPECT_EQ(config.outlook.fields.price, "p");
-  EXPECT_EQ(config.outlook.ask_offset_s, 0);
+  EXPECT_EQ(day_ahead_offset_s(config), 0);  // in simulated time
   EdgeConfig by_file;
   ASSERT_TRUE(load("file = \"answer.json\"\n", by_file, error)) << error;
   EXPECT_EQ(by_file.outlook.file, folder.file("answer.json"));
-  EXPECT_EQ(by_file.outlook.ask_offset_s,
-            start_offset_ms(120, machine_id().view(), "day-ahead") / 1'000);
   const std::pair<const char*, const char*> mistakes[] = {
       {"file = \"a\"\nurl = \"https://a.example\"\n", "two sources: leave one of them out"},
       {"url = \"http://a.example\"\n", "[outlook] url is plain http to another machine"},
       {"url = \"http://a.example\"\nallow_http = true\nheader_file = \"headers\"\n", "header_file"},
-      {"ask_spread_s = 301\n", "ask_spread_s must lie between 0 and 300"},
       {"minutes = 1\n", "minutes is not a known key"},
   };
   for (const auto& [keys, message] : mistakes) {
@@ -335,6 +324,45 @@ TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
     EXPECT_FALSE(load(keys, refused, error)) << keys;
     EXPECT_THAT(error, HasSubstr(message));
   }
+}
+
+/// Configurations of earlier versions still start; what they say is named as without effect.
+TEST(EdgeConfig, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.insert(text.find("[guard]") + 7, "\nhold_s = 10\norder_deadline_s = 5");
+  text.insert(text.find("[price]") + 7, "\ntimeout_ms = 70\nresolve_every_s = 30");
+  text += "\n[outlook]\nask_spread_s = 0\n[state]\nlock_folder = \"x\"\n";
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.hold_s, 300);
+  EXPECT_EQ(config.price.feed.http.timeout_ms, 5'000);
+  std::vector<std::string> named(config.retired.begin(), config.retired.end());
+  EXPECT_THAT(named,
+              testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
+                                            "resolve_every_s", "ask_spread_s", "lock_folder"));
+  EXPECT_THAT(keys_without_effect(config), testing::Contains(HasSubstr("ask_spread_s")));
+}
+
+/// Of a thousand real machines; a simulated one asks at once.
+TEST(EdgeConfig, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.erase(text.find("[simulation]"));
+  std::set<std::int32_t> seconds;
+  for (int i = 0; i < 100; ++i) {
+    EdgeConfig config;
+    std::string error;
+    const std::string state = "\n[state]\nfolder = \"state" + std::to_string(i) + "\"\n";
+    ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text + state), config, error)) << error;
+    const std::int32_t offset_s = day_ahead_offset_s(config);
+    EXPECT_EQ(offset_s, day_ahead_offset_s(config));
+    EXPECT_GE(offset_s, 0);
+    EXPECT_LT(offset_s, 120);
+    seconds.insert(offset_s);
+  }
+  EXPECT_GT(seconds.size(), 50U);
 }
 
 TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {

@@ -1,5 +1,4 @@
-// Reserve, full charge and spread of starts in the operator's configuration, and every mistake in
-// them.
+// Reserve and full charge in the operator's configuration, and every mistake in them.
 #include "edge/settings/operator_config.h"
 #include "edge/settings/edge_config.h"
 
@@ -7,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "edge/program/operator_note.h"
-#include "edge/settings/start_offset.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,23 +36,19 @@ TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
   ASSERT_TRUE(load_pieces({}, config, error)) << error;
   EXPECT_TRUE(config.control.reserve.empty());
   EXPECT_EQ(config.control.full_charge_every_days, 0);
-  EXPECT_EQ(config.control.start_offset_ms, 0);
 }
 
 TEST(PeopleConfig, ReadsWhatPeopleWant) {
   EdgeConfig config;
   std::string error;
-  ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\nfull_charge_power = 0.25\n",
-                           .guard = "start_spread_s = 20\n",
+  ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\n",
                            .rest = "[[reserve]]\nfrom = \"17:00\"\nto = \"24:00\"\nsoc = 0.3\n"
                                    "[[reserve]]\nfrom = \"22:30\"\nto = \"06:00\"\nsoc = 0.155\n"
                                    "months = [1, 12]\n"},
                           config, error))
       << error;
   EXPECT_EQ(config.control.full_charge_every_days, 14);
-  EXPECT_EQ(config.control.guard.full_charge_power_w, 1'000);
-  EXPECT_GE(config.control.start_offset_ms, 0);
-  EXPECT_LT(config.control.start_offset_ms, 20'000);
+  EXPECT_EQ(config.control.guard.full_charge_power_w, 2'000);
   ASSERT_EQ(config.control.reserve.size(), 2);
   EXPECT_EQ(config.control.reserve[0].from_minute, 1'020);
   EXPECT_EQ(config.control.reserve[0].to_minute, 1'440);
@@ -84,12 +78,8 @@ TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
   for (int i = 0; i < 25; ++i) many += "[[reserve]]\n" + from_to + "soc = 0.3\n";
   const std::pair<Pieces, const char*> mistakes[] = {
       {{.battery = "full_charge_every_days = 366\n"}, "must lie between 0 and 365"},
-      {{.battery = "full_charge_power = 0.01\n"}, "full_charge_power must lie between 0.05 and 1"},
       {{.battery = "full_charge_every_days = 7\n", .guard = "soc_max = 0.9\n"},
        "full_charge_every_days needs [guard] soc_max of at least 0.995"},
-      {{.guard = "start_spread_s = 21\n"}, "must lie between 0 and 20"},
-      {{.guard = "start_spread_s = 10\norder_deadline_s = 10\n"},
-       "start_spread_s must be below order_deadline_s"},
       {{.rest = "[reserve]\nsoc = 0.3\n"}, "reserve must be a list"},
       {{.rest = "[x]\n"}, "x is not a known key"},
       {reserve("soc = 0.3\n"), "from is missing"},
@@ -126,32 +116,11 @@ TEST(WishesNote, SaysWhatIsWantedAndNothingElse) {
   control.reserve.push_back({.from_minute = 0, .to_minute = 180, .soc_e4 = 1'550});
   control.full_charge_every_days = 7;
   control.guard.full_charge_power_w = 2'000;
-  control.start_offset_ms = 7'312;
-  EXPECT_EQ(
-      operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
-      "hold       -500 W until 2023-03-27T00:03:00Z\n"
-      "reserve    SoC 15.5 % at this hour, 1 periods in all\nfull       every 7 days, with 2000 W\n"
-      "spread     orders 7.312 s after each tick\n");
+  EXPECT_EQ(operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
+            "hold       -500 W until 2023-03-27T00:03:00Z\n"
+            "reserve    SoC 15.5 % at this hour, 1 periods in all\nfull       every 7 days, with "
+            "2000 W\n");
   EXPECT_THAT(operator_note({}, {.unreadable = true}, kNow), HasSubstr("not followed"));
-}
-
-TEST(StartOffset, IsTheSameAtEveryStartAndSpreadsOverAllMachines) {
-  constexpr std::string_view kPlace = "192.168.1.20:502 unit 85";
-  EXPECT_EQ(start_offset_ms(20, "a", kPlace), start_offset_ms(20, "a", kPlace));
-  EXPECT_NE(start_offset_ms(20, "a", kPlace), start_offset_ms(20, "a", "192.168.1.21:502 unit 85"));
-  EXPECT_EQ(start_offset_ms(0, "a", kPlace), 0);
-  int machines_in_second[20] = {};
-  for (int machine = 0; machine < 1'000; ++machine) {
-    const std::int32_t offset_ms = start_offset_ms(20, std::to_string(machine), kPlace);
-    ASSERT_GE(offset_ms, 0);
-    ASSERT_LT(offset_ms, 20'000);
-    ++machines_in_second[offset_ms / 1'000];
-  }
-  for (const int machines : machines_in_second) {  // 50 each, if it were even
-    EXPECT_GT(machines, 20);
-    EXPECT_LT(machines, 100);
-  }
-  EXPECT_FALSE(machine_id().empty());
 }
 
 }  // namespace

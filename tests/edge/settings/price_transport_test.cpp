@@ -91,12 +91,5 @@ TEST_F(PriceTransport, AUrlWithoutAHostIsRefusedWithoutItsText) {
   }
 }
 
-TEST_F(PriceTransport, AFlaggedStepIsHeldUnlessToldOtherwise) {
-  ASSERT_TRUE(load("url = \"http://127.0.0.1/\"\n")) << error_;
-  EXPECT_TRUE(config_.price.feed.hold_flagged_step);
-  ASSERT_TRUE(load("url = \"http://127.0.0.1/\"\nhold_flagged_step = false\n")) << error_;
-  EXPECT_FALSE(config_.price.feed.hold_flagged_step);
-}
-
 }  // namespace
 }  // namespace bess

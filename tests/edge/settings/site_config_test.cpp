@@ -43,7 +43,7 @@ TEST(SiteConfig, AMeterHasALinkLikeTheBatterys) {
   const Loaded loaded(
       meter("variant = \"single_phase\"\nhost = \"192.168.1.9\"\nport = 1502\n"
             "unit = 7\nimport_w_max = 9200\nexport_w_max = 0\npeak_w_max = 2500\n"
-            "margin_w = 100\nhouse_rise_w = 3000\non_loss = \"ignore\"\n"));
+            "margin_w = 100\non_loss = \"ignore\"\n"));
   ASSERT_TRUE(loaded.is_good) << loaded.error;
   const SiteConfig& site = loaded.config->site;
   EXPECT_EQ(site.settings.meter, MeterSource::kMap);
@@ -55,7 +55,6 @@ TEST(SiteConfig, AMeterHasALinkLikeTheBatterys) {
   EXPECT_EQ(site.settings.connection.import_w_max, 9'200);
   EXPECT_EQ(site.settings.connection.export_w_max, 0);
   EXPECT_EQ(site.settings.connection.peak_w_max, 2'500);
-  EXPECT_EQ(site.settings.connection.house_rise_w, 3'000);
 }
 
 TEST(SiteConfig, TheBatterysGridPointIsReadWithItsMeasurements) {
@@ -82,7 +81,6 @@ TEST(SiteConfig, EveryMistakeSaysItsMend) {
       {meter("import_w_max = 200\n"), "import_w_max must be above margin_w (200)"},
       {meter("peak_w_max = 100\n"), "peak_w_max must be above margin_w"},
       {meter("peak_shave = true\n"), "peak_shave means nothing without peak_w_max"},
-      {meter("check_every_s = 20\n"), "check_every_s must be at most half of age_s_max"},
       {meter("host = \"meter.local\"\n"), "numeric IPv4"},
       {meter("on_loss = \"charge\"\n"), "\"idle\", \"ignore\""},
       {"[meter]\nsource = \"battery\"\nhost = \"127.0.0.1\"\n", "host is not a known key"},

@@ -142,15 +142,6 @@ TEST(Controller, SaysWhereItLookedForABatteryThatIsNotThere) {
   EXPECT_THAT(hour.world->complaints[0], HasSubstr("battery at 127.0.0.1:1 unit 85: "));
 }
 
-TEST(Controller, StartsWithoutABatteryWhereItMay) {
-  QuietHour hour("start_without_battery = true", false);
-  EXPECT_TRUE(hour.controller->reach());
-  ASSERT_EQ(hour.world->complaints.size(), 1U);
-  EXPECT_TRUE(hour.controller->begin());
-  EXPECT_TRUE(hour.controller->run(2)) << "nothing was ordered: there is nothing to give back";
-  for (const CycleRecord& cycle : hour.state.records()) EXPECT_FALSE(cycle.written);
-}
-
 TEST(Controller, SaysThatNoPriceIsThereAndStartsAllTheSame) {
   QuietHour hour("", true, {.fault = MarketFault::kHttp500, .every = 1, .from_s = -1e6});
   EXPECT_TRUE(hour.controller->reach());

@@ -16,7 +16,7 @@ TEST(ChangedKeys, TheDefaultsChangeNothing) {
 TEST(ChangedKeys, EachIsNamedWithBothValues) {
   const RunConfig config = parse_run_config(
       "[market]\nobservation_delay_min = 2\n[battery]\nwear_eur_per_mwh = 10.5\n"
-      "[train]\nmethod = \"sdp\"\ncentre_rewards = true\n",
+      "[train]\nmethod = \"sdp\"\nresidual = true\n",
       "here");
   EXPECT_EQ(changed_keys_text(config),
             "[market] observation_delay_min = 2 (default 1); [battery] wear_eur_per_mwh = 10.5 "

@@ -29,7 +29,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   config.initial_soc_frac = 0.3;
   config.train.method = Method::kDqn;
   config.train.source = Source::kReplay;
-  config.train.centre_rewards = false;
+  config.train.residual = false;
   config.train.learning_rate = 3.1e-5;
   config.train.steps = 123'456;
   config.train.value_min_eur_per_h = -1e9;
@@ -46,7 +46,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   EXPECT_EQ(again.battery.costs.export_percent, 100);
   EXPECT_EQ(again.train.method, Method::kDqn);
   EXPECT_EQ(again.train.source, Source::kReplay);
-  EXPECT_EQ(again.train.centre_rewards, false);
+  EXPECT_EQ(again.train.residual, false);
   EXPECT_EQ(again.train.steps, 123'456);
   EXPECT_EQ(again.distil.omega, 2.5e-7);
   EXPECT_EQ(again.distil.correction.thresholds, (PriceThresholds{-120, 640}));
@@ -95,7 +95,6 @@ TEST(RunConfig, PaperFileIsValid) {
   EXPECT_EQ(config.train.source, Source::kReplay);
   EXPECT_EQ(config.train.steps, 50'000);
   EXPECT_EQ(config.train.horizon, Horizon::kDay);
-  EXPECT_EQ(config.train.potential, PotentialKind::kNone);
   EXPECT_EQ(config.train.value_min_eur_per_h, -1e5);
   EXPECT_EQ(config.train.value_max_eur_per_h, 1e5);
   EXPECT_FALSE(config.train.residual);
@@ -125,8 +124,8 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train.steps]\na = 1\n", ":1: ", "[train] steps: expected a whole number"},
       {"[train]\ngamma = \"x\"\n", ":2: ", "[train] gamma: expected a number"},
       {"[train]\ngamma = true\n", ":2: ", "[train] gamma: expected a number"},
-      {"[train]\ncentre_rewards = 1\n", ":2: ", "[train] centre_rewards: expected true or false"},
-      {"[train]\ncentre_rewards = \"true\"\n", ":2: ", "expected true or false"},
+      {"[train]\nresidual = 1\n", ":2: ", "[train] residual: expected true or false"},
+      {"[train]\nresidual = \"true\"\n", ":2: ", "expected true or false"},
       {"[train]\nsteps = 0\n", ":2: ", "[train] steps: 0 is out of range: use 1 to 10000000"},
       {"[train]\nsteps = 9223372036854775807\n", ":2: ", "out of range: use 1 to"},
       {"[train]\nsteps = 9223372036854775808\n", ":2:", "not valid TOML"},
@@ -162,7 +161,7 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train]\nvalue_min_eur_per_h = 5e8\n", ": ", "[train] value_min_eur_per_h must be below"},
       {"[train]\nhorizon = \"day\"\n", ": ", "[train] horizon = \"day\" needs residual = false"},
       {"[train]\ninput_calm = true\n", ":2: ", "unknown key \"input_calm\" in [train]"},
-      {"[train]\npotential = \"plan\"\n", ":2: ", "use one of \"none\", \"sdp\""},
+      {"[train]\npotential = \"sdp\"\n", ":2: ", "unknown key \"potential\" in [train]"},
       {"[train]\nbf16 = true\n", ":2: ", "unknown key \"bf16\" in [train]"},
       {"[train]\ncontext = \"outlook\"\nresidual = false\n", ": ",
        "[train] context = \"outlook\" needs residual = true"},

@@ -20,7 +20,6 @@ struct StepCase {
   const char* name;
   Action action;
   double soc;
-  RewardShaping shaping;
   Horizon horizon;
   double soc_after;
   double reward;
@@ -39,8 +38,7 @@ MarketSteps one_day(Horizon horizon) {
 TEST_P(TransitionByHand, RewardAndSoc) {
   const StepCase& c = GetParam();
   const BatteryParameters battery;
-  const TrainingMarket market(one_day(c.horizon), straight_price_map(), battery, c.horizon,
-                              c.shaping);
+  const TrainingMarket market(one_day(c.horizon), straight_price_map(), battery, c.horizon, {});
   ASSERT_EQ(market.step_count(), 1u);
   Transition t{};
   EXPECT_NEAR(market.make_transition(0, c.soc, c.action, t), c.soc_after, kSocTolerance);
@@ -51,63 +49,38 @@ TEST_P(TransitionByHand, RewardAndSoc) {
   EXPECT_NEAR(t.next_state[3], scaled_soc(c.soc_after), 1e-6);
 }
 
-/// Potential: what is stored, at this price. 50 * 8 MWh * 30 / h = 12,000 EUR/h when full.
-Potential stored_at(double price_eur_per_mwh, double capacity_mwh = 8) {
-  const auto full = static_cast<float>(price_eur_per_mwh * capacity_mwh);
-  return {.soc_points = 2, .fill = [full](const MarketStep&, float* phi) {
-            phi[0] = 0.1F * full;
-            phi[1] = full;
-          }};
-}
-
-const RewardShaping kNone{};
-const RewardShaping kCentre{1000, 0.9, {}};
-const RewardShaping kStored{0, 0.9, stored_at(50)};
-const RewardShaping kBoth{1000, 0.9, stored_at(50)};
 constexpr Horizon kOn = Horizon::kContinuing;
 constexpr Horizon kEnd = Horizon::kDay;
 
 INSTANTIATE_TEST_SUITE_P(
     Steps, TransitionByHand,
-    testing::Values(
-        StepCase{"charge", Action::kCharge, 0.5, kNone, kOn, 0.5158113883, -0.04},
-        StepCase{"idle", Action::kIdle, 0.5, kNone, kOn, 0.5, 0},
-        StepCase{"discharge", Action::kDischarge, 0.5, kNone, kOn, 0.4824317908, 0.04},
-        // 0.005 * 8 MWh = 40 kWh still fit: 40 kWh / sqrt(0.9) * 30 / h = 1.2649 MW
-        StepCase{"nearly_full", Action::kCharge, 0.995, kNone, kOn, 1, -0.0126491106},
-        StepCase{"full", Action::kCharge, 1, kNone, kOn, 1, 0},
-        StepCase{"nearly_empty", Action::kDischarge, 0.105, kNone, kOn, 0.1, 0.0113841996},
-        StepCase{"empty", Action::kDischarge, 0.1, kNone, kOn, 0.1, 0},
-        StepCase{"below_the_window", Action::kDischarge, 0.05, kNone, kOn, 0.05, 0},
-        StepCase{"centred", Action::kCharge, 0.5, kCentre, kOn, 0.5158113883, -0.14},
-        StepCase{"centred_idle", Action::kIdle, 0.5, kCentre, kOn, 0.5, -0.1},
-        // 1.2 * (0.9 * 0.5158113883 - 0.5) = -0.0429237006
-        StepCase{"stored", Action::kCharge, 0.5, kStored, kOn, 0.5158113883, -0.0829237006},
-        StepCase{"stored_and_centred", Action::kCharge, 0.5, kBoth, kOn, 0.5158113883,
-                 -0.1829237006},
-        StepCase{"terminal", Action::kCharge, 0.5, kNone, kEnd, 0.5158113883, -0.04},
-        // what is stored at the end is worth nothing: 1.2 * (0 - 0.5)
-        StepCase{"terminal_stored", Action::kCharge, 0.5, kBoth, kEnd, 0.5158113883, -0.74},
-        StepCase{"terminal_idle", Action::kIdle, 0.25, kStored, kEnd, 0.25, -0.3}),
+    testing::Values(StepCase{"charge", Action::kCharge, 0.5, kOn, 0.5158113883, -0.04},
+                    StepCase{"idle", Action::kIdle, 0.5, kOn, 0.5, 0},
+                    StepCase{"discharge", Action::kDischarge, 0.5, kOn, 0.4824317908, 0.04},
+                    // 0.005 * 8 MWh = 40 kWh still fit: 40 kWh / sqrt(0.9) * 30 / h = 1.2649 MW
+                    StepCase{"nearly_full", Action::kCharge, 0.995, kOn, 1, -0.0126491106},
+                    StepCase{"full", Action::kCharge, 1, kOn, 1, 0},
+                    StepCase{"nearly_empty", Action::kDischarge, 0.105, kOn, 0.1, 0.0113841996},
+                    StepCase{"empty", Action::kDischarge, 0.1, kOn, 0.1, 0},
+                    StepCase{"below_the_window", Action::kDischarge, 0.05, kOn, 0.05, 0},
+                    StepCase{"terminal", Action::kCharge, 0.5, kEnd, 0.5158113883, -0.04}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(Transitions, RewardsAreThoseOfThePaperWhateverTheSize) {
   BatteryParameters small;
   small.power_w_max = 25e3;
   small.capacity_wh = 100e3;  // four hours
-  const TrainingMarket market(one_day(kOn), straight_price_map(), small, kOn,
-                              {0, 1, stored_at(50, 0.1)});
+  const TrainingMarket market(one_day(kOn), straight_price_map(), small, kOn, {});
   Transition t{};
   const double soc = market.make_transition(0, 0.5, Action::kCharge, t);
   EXPECT_NEAR(soc, 0.5 + 0.0158113883 / 2, kSocTolerance);
-  EXPECT_NEAR(t.reward, -0.04 + 2 * 1.2 * (soc - 0.5), kRewardTolerance);
+  EXPECT_NEAR(t.reward, -0.04, kRewardTolerance);
 }
 
 TEST(Transitions, AgreeWithTheBatteryOnRandomSteps) {
   const MarketSteps steps = uneven_market();
   const BatteryParameters battery;
-  const RewardShaping shaping{700, 0.999, stored_at(80)};
-  const TrainingMarket market(steps, straight_price_map(), battery, kOn, shaping);
+  const TrainingMarket market(steps, straight_price_map(), battery, kOn, {});
   Random random(71);
   for (int draw = 0; draw < 3000; ++draw) {
     const std::size_t index = random.index(market.step_count());
@@ -121,9 +94,7 @@ TEST(Transitions, AgreeWithTheBatteryOnRandomSteps) {
     EXPECT_DOUBLE_EQ(after, moved.soc_frac);
     const double paid =
         steps.steps[static_cast<std::size_t>(step_of_input(t.state[4]))].paid_eur_per_mwh;
-    const double eur_per_h =
-        -moved.power_w / 1e6 * paid - 700 + 80 * 8 * 30 * (0.999 * moved.soc_frac - soc);
-    ASSERT_NEAR(t.reward, eur_per_h / 1e4, 2e-6);
+    ASSERT_NEAR(t.reward, -moved.power_w / 1e6 * paid / 1e4, 2e-6);
   }
 }
 
@@ -150,54 +121,6 @@ TEST(Transitions, RewardsAreTheMoneyOfTheAccounting) {
         exchange_cost_eur(battery, moved.power_w / 1e6 / 30, step.paid_eur_per_mwh);
     ASSERT_NEAR(t.reward, -cost_eur * 30 / 1e4, 1e-7);  // EUR a step -> 1e4 EUR/h
   }
-}
-
-// ---- Potentials ------------------------------------------------------------------------------
-
-TEST(Potentials, OfTheProgramIsWhatTheProgramExpectsToEarn) {
-  const MarketSteps market = simulated_market({2023, 1, 1}, 24);
-  BatteryParameters battery;
-  battery.costs = {20, 3, 2, 1};
-  const StochasticProgram program(market, market.days_of(Split::kTrain), battery);
-  const Potential potential = fit_potential(PotentialKind::kSdp, market, battery);
-  std::vector<float> phi(static_cast<std::size_t>(potential.soc_points));
-  std::array<float, StochasticProgram::kSocPoints> values{};
-  for (std::size_t at = 0; at < market.steps.size(); at += 997) {
-    potential.fill(market.steps[at], phi.data());
-    program.values(StochasticProgram::situation_of(market.steps[at]), values.data());
-    EXPECT_EQ(phi.front(), values.front());
-    EXPECT_EQ(phi.back(), values.back());
-    EXPECT_TRUE(std::ranges::is_sorted(phi)) << "at these prices energy has a worth";
-  }
-}
-
-/// Whatever the potential, what a round trip earns in the end is the same: it telescopes.
-TEST(Potentials, ShapedRewardsDifferByThePotentialOfTheEndsOnly) {
-  const MarketSteps market = simulated_market({2023, 1, 1}, 24);
-  BatteryParameters battery;
-  battery.costs = {20, 3, 2, 1};
-  const auto rewards_of = [&](PotentialKind kind, std::vector<float>& first_row) {
-    RewardShaping shaping{0, 1, fit_potential(kind, market, battery)};
-    first_row.resize(static_cast<std::size_t>(shaping.potential.soc_points));
-    shaping.potential.fill(market.steps[0], first_row.data());
-    const TrainingMarket training(market, straight_price_map(), battery, kOn, shaping);
-    double sum = 0;
-    double soc = 1;
-    for (std::size_t index = 0; index < 200; ++index) {
-      Transition t{};
-      soc = training.make_transition(index, soc, static_cast<Action>(index % kActionCount), t);
-      sum += double{t.reward};
-    }
-    std::vector<float> last_row(first_row.size());
-    shaping.potential.fill(market.steps[200], last_row.data());
-    const SocGrid grid(battery, shaping.potential.soc_points);
-    const double scale = 30 * 1e-4;  // EUR a step -> 1e4 EUR/h
-    return sum -
-           scale * double{interpolate(last_row.data(), grid.position(soc)) - first_row.back()};
-  };
-  std::vector<float> row;
-  const double plain = rewards_of(PotentialKind::kNone, row);
-  EXPECT_NEAR(rewards_of(PotentialKind::kSdp, row), plain, 1e-3);
 }
 
 // ---- Which transitions there are ------------------------------------------------------------

@@ -88,7 +88,7 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
       scenario.has_limits() ? "[limits]\nfile = \"limit\"\n" + scenario.edge_limits + "\n" : "";
   const std::string outlook =
       scenario.day_ahead ? fmt::format(
-                               "[outlook]\nask_spread_s = 0\n"
+                               "[outlook]\n"
                                "url = \"{}/price?bzn=BE&start={{today}}&end={{tomorrow}}\"\n",
                                market_of(places))
                          : "";

@@ -25,12 +25,7 @@ int number_of(std::string_view url, std::string_view key) {
 
 VirtualPrices::VirtualPrices(const PriceFeedSettings& settings, const MarketView& market,
                              MarketFaultPlan& faults, const Scenario& scenario, VirtualTime& time)
-    : settings_(settings),
-      market_(market),
-      faults_(faults),
-      scenario_(scenario),
-      time_(time),
-      newest_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step) {}
+    : settings_(settings), market_(market), faults_(faults), scenario_(scenario), time_(time) {}
 
 void VirtualPrices::request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
                             std::int64_t deadline_monotonic_ns) {
@@ -66,10 +61,9 @@ bool VirtualPrices::wait(std::int64_t until_monotonic_ns) {
 
 /// Spread over the wait as by bess-prices; false when the cycle's requests are used up.
 bool VirtualPrices::begin_next() {
-  const std::int64_t spacing_ns =
-      settings_.wait_s * kNanosecondsPerSecond / settings_.requests_per_cycle;
+  const std::int64_t spacing_ns = kPriceWait_s * kNanosecondsPerSecond / kPriceRequests;
   const std::int64_t begin_ns = start_ns_ + requests_ * spacing_ns;
-  if (requests_ >= settings_.requests_per_cycle || (requests_ > 0 && begin_ns >= deadline_ns_)) {
+  if (requests_ >= kPriceRequests || (requests_ > 0 && begin_ns >= deadline_ns_)) {
     is_served_ = true;
     return false;
   }

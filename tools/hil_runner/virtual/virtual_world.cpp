@@ -33,8 +33,7 @@ VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices
                            const Surroundings& around)
     : around_(around),
       price_(config.price),
-      drives_without_state_(config.state.drive_without_state),
-      clock_(config.clock, config.require_synchronised_clock),
+      clock_(config.clock),
       battery_(config.battery.link, config.battery.map, config.clock),
       meter_(config.site.link, config.site.map, config.clock),
       prices_(prices) {}
@@ -46,8 +45,7 @@ Recall VirtualWorld::recall() const {
   if (trip.is_set() && !around_.people.is_cleared(trip.utc_s)) recalled.trip = trip;
   if (!around_.state.is_lost()) return recalled;
   recalled.unknown = "the scenario's disk has lost it";
-  recalled.trip = trip_without_state(recalled, drives_without_state_,
-                                     around_.time.edge_utc_ns() / kNanosecondsPerSecond);
+  recalled.trip = trip_without_state(recalled, around_.time.edge_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }
 

@@ -103,7 +103,6 @@ class VirtualWorld {
  private:
   Surroundings around_;
   const PriceConfig& price_;
-  bool drives_without_state_;
   EdgeClock clock_;
   ModbusBattery battery_;
   ModbusMeter meter_;
