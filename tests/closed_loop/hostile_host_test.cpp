@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/support/simulated_site.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/edge_answer.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -29,11 +29,9 @@ class HostileHost : public ::testing::Test {
   }
   /// What a command of bess-edge says, and its exit code.
   std::string run(std::vector<std::string> arguments, int expected_exit_code) {
-    arguments.insert(arguments.begin(), edge_program());
-    ChildProcess child(arguments);
-    std::string text = child.read_all();
-    EXPECT_EQ(child.wait(), expected_exit_code) << text;
-    return text;
+    const Said said = edge(std::move(arguments));
+    EXPECT_EQ(said.exit_code, expected_exit_code) << said.text;
+    return said.text;
   }
 
   /// The same configuration with `drive_without_state`.
@@ -46,13 +44,6 @@ class HostileHost : public ::testing::Test {
 
   SimulatedSite site_{kScale};
 };
-
-TEST_F(HostileHost, CheckSaysOverWhatThePricesCome) {
-  start_simulators();
-  sleep_until_monotonic(site_.anchor_ns());
-  EXPECT_THAT(run({"--check", "--config", site_.commission()}, 0),
-              HasSubstr("\ntransport  plain http inside this machine\n"));
-}
 
 /// One row in ten cycles says 9,000 EUR/MWh: nothing is ordered by it.
 TEST_F(HostileHost, ASinglePriceFarFromTheOthersIsNotActedOn) {
@@ -88,12 +79,9 @@ TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
   text.insert(text.find(key) + key.size(), site_.folder.file("elsewhere") + "\" #");
   static_cast<void>(site_.folder.write("other.toml", text));
   ChildProcess edge({edge_program(), "--config", mine});
-  for (std::string line; line != "started: in control";) {
-    line = edge.read_line();
-    ASSERT_NE(line, "") << "it did not start";
-  }
+  ASSERT_NE(await_line(edge, "utc="), "");
   EXPECT_THAT(run({"--config", other, "--cycles", "1"}, 1),
-              HasSubstr("is in use by another bess-edge (process " + std::to_string(edge.pid())));
+              Names("85 " + std::to_string(edge.pid())));
 }
 
 TEST_F(HostileHost, AStrangersStatusIsNotBelieved) {
@@ -103,9 +91,8 @@ TEST_F(HostileHost, AStrangersStatusIsNotBelieved) {
   const std::string status = site_.folder.file("state/status.json");
   static_cast<void>(site_.folder.write("state/status.json", "{\"health\": \"ok\", \"pid\": 1}"));
   ASSERT_EQ(chown(status.c_str(), 65'534, 65'534), 0);
-  const std::string mend = "state/status.json belongs to user 65534, neither to root nor";
-  EXPECT_THAT(run({"status", "--config", config}, 3), HasSubstr(mend));
-  EXPECT_THAT(run({"--config", config, "--cycles", "1"}, 1), HasSubstr(mend));
+  EXPECT_THAT(run({"status", "--config", config}, 3), Names(status + " 65534"));
+  EXPECT_THAT(run({"--config", config, "--cycles", "1"}, 1), Names(status + " 65534"));
 }
 
 /// A file system of its own in the place of the state folder.
@@ -142,24 +129,18 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
   fs::remove(site_.folder.file("state/status.json"));
   fs::remove(site_.folder.file("state/metrics.prom"));
   disk.fill();
-  const std::string restarted = run({"--config", config, "--cycles", "2"}, 0);
-  EXPECT_THAT(restarted,
-              AllOf(HasSubstr("started: in control"), HasSubstr("is the disk full or read-only?"),
-                    HasSubstr("stopped: battery released")));
+  EXPECT_THAT(run({"--config", config, "--cycles", "2"}, 0), Names("mode=running mode=stopping"));
   const std::string log = run({"log", "--csv", "--config", config}, 0);
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1 + 2 * 3) << "the log goes on in its place";
 
   // The log is gone, and a new one has no room: nobody knows whether it had tripped.
   fs::remove(site_.folder.file("state/decisions.ring"));
   disk.fill();
-  EXPECT_THAT(
-      run({"--config", config, "--cycles", "2"}, 0),
-      AllOf(HasSubstr("the decision log can be neither read nor made"),
-            HasSubstr("not driven until bess-edge clear --yes"), HasSubstr("reason=state_lost"),
-            Not(HasSubstr("mode=running")), Not(HasSubstr("is driven on"))));
+  EXPECT_THAT(run({"--config", config, "--cycles", "2"}, 0),
+              AllOf(Names("bess-edge clear --yes drive_without_state reason=state_lost"),
+                    Not(HasSubstr("mode=running"))));
   EXPECT_THAT(run({"--config", allowing_to_drive(config), "--cycles", "2"}, 0),
-              AllOf(HasSubstr("driving all the same"), HasSubstr("mode=running"),
-                    HasSubstr("stopped: battery released")));
+              Names("drive_without_state mode=running mode=stopping"));
 }
 
 }  // namespace
