@@ -1,5 +1,5 @@
-// The codes of a message: files, lines, keys, options, commands, values. A test names these, so that
-// the sentence around them may be worded freely.
+// Codes in a message: files, lines, keys, options, commands, values. A test names these, and the
+// sentence around them is free.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace bess {
 
 inline bool is_of_a_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Whether `code` stands in the text by itself: power_w is not in power_w_max, nor file:3 in file:31.
+/// Whether `code` stands in the text by itself: power_w is not in power_w_max, nor x:3 in x:31.
 inline bool has_code(std::string_view text, std::string_view code) {
   for (std::size_t at = text.find(code); at != text.npos; at = text.find(code, at + 1)) {
     const std::size_t end = at + code.size();

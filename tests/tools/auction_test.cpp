@@ -8,6 +8,7 @@
 #include "shared/host/json.h"
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "tools/market_sim/auction_view.h"
 
 namespace bess {
@@ -127,7 +128,7 @@ TEST(Auction, TakesDatesAndRefusesOthers) {
   EXPECT_EQ(rows_of(view.answer("1970-01-01", "9999-12-31", now_utc_s)).size(), 192u);
   for (const char* bad : {"tomorrow", "2025-02-30", "2025-03-29T00:00:00Z", "1743116400"}) {
     EXPECT_EQ(view.answer(bad, "", now_utc_s).status, 422) << bad;
-    EXPECT_THAT(view.answer("", bad, now_utc_s).body, HasSubstr("end is no date")) << bad;
+    EXPECT_THAT(view.answer("", bad, now_utc_s).body, Names("end")) << bad;
   }
 }
 
@@ -280,20 +281,18 @@ TEST(AuctionRows, AreReadFromADayAheadFile) {
 
 TEST(AuctionRows, BadOnesAreNamedWithTheirLine) {
   const std::map<std::string, std::string> cases{
-      {"2025-03-28T00:07:00Z,1,60,\n", "f:2: no quarter-hour"},
-      {"2025-03-28T01:00:00Z,1,60,\n2025-03-28T01:00:00Z,1,60,\n",
-       "f:3: no quarter-hour after the row before"},
-      {"2025-03-28T00:00:00Z,1,45,\n", "f:2: no quarter-hour"},
-      {"2025-03-28T00:00:00Z,nan,60,\n", "f:2: day_ahead_eur_mwh \"nan\" is not a number"},
-      {"2025-03-28T00:00:00Z,1,60,noon\n", "f:2: published_utc \"noon\" is not a UTC time"},
-      {"2025-03-28T00:00:00Z,1\n", "f:2: 2 fields"},
-      {"", "f: holds no rows"}};
+      {"2025-03-28T00:07:00Z,1,60,\n", "f:2"},
+      {"2025-03-28T01:00:00Z,1,60,\n2025-03-28T01:00:00Z,1,60,\n", "f:3"},
+      {"2025-03-28T00:00:00Z,1,45,\n", "f:2"},
+      {"2025-03-28T00:00:00Z,nan,60,\n", "f:2 day_ahead_eur_mwh nan"},
+      {"2025-03-28T00:00:00Z,1,60,noon\n", "f:2 published_utc noon"},
+      {"2025-03-28T00:00:00Z,1\n", "f:2 2"},
+      {"", "f"}};
   for (const auto& [rows, says] : cases) {
     EXPECT_THAT(user_error_of([&, text = kHeader + rows] { parse_auction_rows(text, "f"); }),
-                HasSubstr(says));
+                Names(says));
   }
-  EXPECT_THAT(user_error_of([] { parse_auction_rows("minute_utc,x\n", "f"); }),
-              HasSubstr("f:1: the header must be"));
+  EXPECT_THAT(user_error_of([] { parse_auction_rows("minute_utc,x\n", "f"); }), Names("f:1"));
 }
 
 }  // namespace
