@@ -40,25 +40,6 @@ class EdgeCommands : public ::testing::Test {
   std::string config_;
 };
 
-TEST_F(EdgeCommands, OptionsMayStandBeforeTheCommand) {
-  start_site();
-  EXPECT_EQ(edge({"--config", config_, "--cycles", "2"}).exit_code, 0);
-  for (const auto& words : {std::vector<std::string>{"--config", config_, "log", "--last", "1"},
-                            {"--last", "1", "--config", config_, "log"},
-                            {"log", "--config", config_, "--last", "1"},
-                            {"--config", config_, "--last", "1", "log"}}) {
-    const Said said = edge(words);
-    EXPECT_EQ(said.exit_code, 0);
-    EXPECT_THAT(said.text, StartsWith("utc="));
-  }
-  EXPECT_THAT(edge({"--json", "--config", config_, "status"}).text, StartsWith("{"));
-  EXPECT_THAT(edge({"--config", config_, "hold", "-500", "--for", "2h"}).text, Names("-500 W"));
-  EXPECT_THAT(edge({"--config", config_, "--for", "2h", "hold", "-700"}).text, Names("-700 W"));
-  EXPECT_EQ(edge({"--config", config_, "--release", "hold"}).exit_code, 0);
-  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/hold")));
-  EXPECT_THAT(edge({"run", "--config", config_, "--cycles", "1"}).text, HasSubstr("cycle=1 "));
-}
-
 /// The table of exit codes in edge/README.md, row by row; the command line's 2 is above.
 TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   config_ = site_.write_config();  // nobody listens

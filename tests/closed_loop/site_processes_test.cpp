@@ -81,29 +81,6 @@ TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
   }
 }
 
-TEST_F(SiteProcesses, TheBatterysOwnGridPointDoesAsWell) {
-  start({});
-  const std::string config = commission("[meter]\nsource = \"battery\"\nimport_w_max = 3000\n");
-  const std::vector<CsvRow> log = run(config, 4);
-  ASSERT_EQ(log.size(), 5U);
-  EXPECT_NEAR(std::stoi(log[3].at("ordered_power_w")), 1'300, 5);
-  EXPECT_EQ(log[3].at("reason"), "import_limit");
-}
-
-TEST_F(SiteProcesses, ASilentMeterLeavesTheBatteryIdleAndHealthSaysSo) {
-  std::vector<std::string> options = own_meter();
-  options.insert(options.end(), {"--meter-fault", "silence", "--meter-fault-from-s", "360"});
-  start(options);
-  const std::string config = commission(meter_section("import_w_max = 3000\n"));
-  ChildProcess edge({edge_program(), "--config", config});
-  EXPECT_THAT(await_line(edge, " reason=meter_lost "),
-              Names("ordered_power_w=0 meter=timeout mode=running"));
-  const Said status = bess::edge({"status", "--config", config});
-  EXPECT_EQ(status.exit_code, 1);
-  EXPECT_THAT(status.text, Names("WARN meter timeout"));
-  EXPECT_EQ(SimulatedSite::stop(edge), 0);
-}
-
 TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   start({});
   const std::string config = commission("[limits]\nfile = \"limit\"\n");

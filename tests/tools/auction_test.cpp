@@ -134,24 +134,6 @@ TEST(Auction, TakesDatesAndRefusesOthers) {
 
 // Each fault of a day.
 
-TEST(AuctionFaults, LateComesSixHoursLater) {
-  const AuctionView view = with({.fault = AuctionFault::kLate});
-  EXPECT_EQ(tomorrow(view, "2025-03-28T17:56:59Z").status, 404);
-  EXPECT_EQ(tomorrow(view, "2025-03-28T17:56:59Z").fault, AuctionFault::kLate);
-  EXPECT_EQ(rows_of(tomorrow(view, "2025-03-28T17:57:00Z")), rows_of(tomorrow(with({}))));
-}
-
-TEST(AuctionFaults, MissingNeverComes) {
-  const AuctionView view = with({.fault = AuctionFault::kMissing});
-  EXPECT_EQ(tomorrow(view, "2025-04-28T00:00:00Z").status, 404);
-}
-
-TEST(AuctionFaults, HalfIsTheFirstTwelveHours) {
-  const std::vector<Published> rows = rows_of(tomorrow(with({.fault = AuctionFault::kHalf})));
-  ASSERT_EQ(rows.size(), 48u);
-  EXPECT_EQ(rows.back(), (Published{utc("2025-03-29T10:45:00Z"), 143}));
-}
-
 TEST(AuctionFaults, ShiftedByAnHourOrADayMovesTheTimes) {
   const std::vector<Published> right = rows_of(tomorrow(with({})));
   for (const auto& [fault, shift_s] : std::map<AuctionFault, int>{
@@ -164,46 +146,12 @@ TEST(AuctionFaults, ShiftedByAnHourOrADayMovesTheTimes) {
   }
 }
 
-TEST(AuctionFaults, DoubledDisagrees) {
-  const std::vector<Published> rows = rows_of(tomorrow(with({.fault = AuctionFault::kDoubled})));
-  ASSERT_EQ(rows.size(), 192u);
-  EXPECT_EQ(rows[0], (Published{utc("2025-03-28T23:00:00Z"), 96}));
-  EXPECT_EQ(rows[1], (Published{utc("2025-03-28T23:00:00Z"), 146}));
-}
-
-TEST(AuctionFaults, YesterdaysPricesUnderTodaysTimes) {
-  const std::vector<Published> rows = rows_of(tomorrow(with({.fault = AuctionFault::kYesterday})));
-  ASSERT_EQ(rows.size(), 96u);
-  EXPECT_EQ(rows.front(), (Published{utc("2025-03-28T23:00:00Z"), 0}));
-  EXPECT_EQ(rows.back(), (Published{utc("2025-03-29T22:45:00Z"), 95}));
-}
-
-TEST(AuctionFaults, HoursAreRepeatedInQuarterHours) {
-  const AuctionSettings hours{.fault = AuctionFault::kHours};
-  const std::vector<Published> rows = rows_of(tomorrow(with(hours)));
-  ASSERT_EQ(rows.size(), 96u);
-  EXPECT_EQ(rows[7], (Published{utc("2025-03-29T00:45:00Z"), 100}));
-  EXPECT_EQ(rows_of(tomorrow(with(hours, 3'600))), rows);
-}
-
 TEST(AuctionFaults, OutOfRangeIsOnePrice) {
   std::vector<Published> rows = rows_of(tomorrow(with({.fault = AuctionFault::kOutOfRange})));
   ASSERT_EQ(rows.size(), 96u);
   EXPECT_EQ(rows[48], (Published{utc("2025-03-29T11:00:00Z"), 150'000}));
   rows[48].price = 144;
   EXPECT_EQ(rows, rows_of(tomorrow(with({}))));
-}
-
-TEST(AuctionFaults, HtmlAndSlowAreOfAnswersWithTheDay) {
-  const AuctionView html = with({.fault = AuctionFault::kHtml});
-  EXPECT_EQ(tomorrow(html).fault, AuctionFault::kHtml);
-  EXPECT_EQ(tomorrow(html).status, 200);
-  EXPECT_THAT(tomorrow(html).body, HasSubstr("<!DOCTYPE html>"));
-  EXPECT_EQ(rows_of(html.answer("2025-03-28", "2025-03-28", utc(kStart))).size(), 96u);
-  const AuctionView slow = with({.fault = AuctionFault::kSlow});
-  EXPECT_EQ(tomorrow(slow).fault, AuctionFault::kSlow);
-  EXPECT_EQ(rows_of(tomorrow(slow)).size(), 96u);
-  EXPECT_EQ(tomorrow(slow, "2025-03-28T11:56:59Z").fault, AuctionFault::kNone);
 }
 
 TEST(AuctionFaults, EachHasANameAndSpoilsADay) {
