@@ -207,7 +207,7 @@ export http_proxy=http://127.0.0.1:9
 code=0
 flash lacking.img --out none2.img --package "$package" || code=$?
 unset http_proxy
-[ $code -eq 1 ] && grep -q "--debs" said ||
+[ $code -eq 1 ] && grep -q -- "--debs" said ||
   fail "no network, exit code $code: $(cat said)"
 [ ! -e none2.img ] && [ ! -e none2.img.new ] || fail "no network: something is left"
 echo "-----BEGIN OPENSSH PRIVATE KEY-----" >key.pub

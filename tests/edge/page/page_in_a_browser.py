@@ -33,7 +33,7 @@ class PageInABrowser(unittest.TestCase):
                 page.call("Page.navigate", {"url": url})
                 page.wait("document.documentElement?.dataset.ready === 'true'")
                 sentence = page.run("document.getElementById('sentence').textContent")
-                self.assertRegex(sentence, r"[0-9]:[0-9][0-9].* W.*student")
+                self.assertRegex(sentence, r"[0-9]:[0-9][0-9].*\sW.*student")
                 self.assertTrue(page.run(
                     "document.querySelector('#old:not([hidden])')?.textContent"))
                 self.assertEqual(page.run("""[...document.querySelectorAll("canvas")].map((c) =>
