@@ -170,23 +170,6 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   EXPECT_EQ(seen.wanted_ramp_w_max, 0);
 }
 
-/// 500 W are there within 8.3 s, which once was read as a ramp of 48 W/s, and 8 kW as 166 s.
-TEST(Commission, AFirstOrderLagIsNoRamp) {
-  for (const double seconds : {1.0, 3.0, 5.0}) {
-    CommissionSite site;
-    site.battery.physics.set_time_constant(seconds);
-    const CommissionResult result = site.commission();
-    EXPECT_EQ(result.verdict, CommissionVerdict::kPassed) << seconds;
-    for (const DirectionResult* direction : {&result.charge, &result.discharge}) {
-      const AnswerSpeed& speed = direction->speed;
-      EXPECT_NEAR(speed.dynamics.time_constant_s, seconds, 0.3);
-      EXPECT_EQ(ramp_w_per_s(speed), 0);
-      EXPECT_NEAR(speed.largest.best, std::log(8'000 / 600.0) * seconds, 0.5);
-      EXPECT_FALSE(speed.is_doubtful);
-    }
-  }
-}
-
 /// At 11 % nothing larger than 500 W is discharged, and charged only up to what the room leaves.
 TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
   CommissionSite site(0.12);

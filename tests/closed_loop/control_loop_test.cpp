@@ -167,22 +167,6 @@ TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
 }
 
-TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
-  ControlSettings settings = in_control();
-  settings.has_watchdog = true;
-  Plant plant(0.5, settings);
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  CycleRecord record;
-  EXPECT_FALSE(plant.loop.hand_over(record));  // nothing is in force yet
-  plant.cycle();
-  EXPECT_TRUE(plant.loop.hand_over(record));
-  EXPECT_EQ(record.reason, Reason::kHandOver);
-  EXPECT_EQ(record.ordered_power_w, 4'000);
-  EXPECT_EQ(plant.battery.orders.size(), 1U);
-  EXPECT_EQ(plant.battery.releases, 0);
-  EXPECT_TRUE(plant.battery.physics.dispatch_active());
-}
-
 TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutAWatchdog) {
   Plant plant;
   plant.cycle();
@@ -285,20 +269,6 @@ TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
   EXPECT_EQ(plant.cycle().reason, Reason::kCycleBudget);
 }
 
-TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
-  Plant plant;
-  plant.battery.inverted = true;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  std::vector<CycleRecord> records;
-  for (int i = 0; i < 8; ++i) records.push_back(plant.cycle());
-  EXPECT_EQ(records[1].mode, Mode::kRunning);
-  EXPECT_EQ(records[2].reason, Reason::kWrongDirection);  // two answers the wrong way
-  EXPECT_EQ(records[2].ordered_power_w, 0);
-  EXPECT_EQ(records[2].mode, Mode::kSafe);
-  EXPECT_EQ(records.back().mode, Mode::kSafe);
-  EXPECT_EQ(plant.battery.releases, 1);
-}
-
 /// Cycles from one run to the next, killed after each, until one finds what `fault` did to the
 /// battery.
 int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
@@ -323,17 +293,6 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
     }
   }
   return 99;
-}
-
-TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
-  const auto inverted = [](FakeBattery& battery, int) { battery.inverted = true; };
-  const auto every_other = [](FakeBattery& battery, int cycle) {
-    battery.inverted = cycle % 2 == 1;
-  };
-  EXPECT_EQ(runs_until_trip(20, inverted), 3);
-  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order that it finds is as old as the log says
-  EXPECT_EQ(runs_until_trip(2, inverted), 3);
-  EXPECT_LE(runs_until_trip(1, every_other), 6);
 }
 
 TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
@@ -424,18 +383,6 @@ TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
   EXPECT_EQ(plant.cycle().reason, Reason::kNoAnswer);
 }
 
-TEST(ClosedLoop, TheRampBoundsTheChangeOfEveryOrder) {
-  ControlSettings settings = in_control();
-  settings.guard.ramp_w_max = 1'500;
-  Plant plant(0.5, settings);
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  for (const std::int32_t expected_w : {1'500, 3'000, 4'000, 4'000}) {
-    EXPECT_EQ(plant.cycle().ordered_power_w, expected_w);
-  }
-  plant.battery.alarm = true;
-  EXPECT_EQ(plant.cycle().ordered_power_w, 0);  // a stop reason does not wait for the ramp
-}
-
 TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
   Plant plant;
   plant.prices.price = [&](std::int64_t) {
@@ -454,31 +401,6 @@ TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldReading) {
   const CycleRecord record = plant.cycle();
   EXPECT_EQ(record.reason, Reason::kLink);
   EXPECT_TRUE(plant.battery.orders.empty());
-}
-
-TEST(ClosedLoop, OffGridReleasesAtOnceSoThatTheHouseKeepsItsBattery) {
-  Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  plant.cycle();
-  plant.battery.off_grid = true;
-  const CycleRecord record = plant.cycle();
-  EXPECT_EQ(record.reason, Reason::kOffGrid);
-  EXPECT_EQ(record.mode, Mode::kSafe);
-  EXPECT_EQ(plant.battery.releases, 1);
-}
-
-/// NTP finds that the clock was an hour ahead, while the loop waits for its tick.
-TEST(ClosedLoop, AClockSteppedBackCostsNoHour) {
-  Plant plant;
-  plant.battery.refresh_s = 30;
-  plant.cycle();
-  plant.clock.step_back_ns = 3'600 * kNanosecondsPerSecond;
-  const std::int64_t before_ns = plant.clock.now_ns;
-  const CycleRecord record = plant.cycle();
-  EXPECT_LT(plant.clock.now_ns, before_ns);
-  EXPECT_LE(record.utc_s * kNanosecondsPerSecond, plant.clock.now_ns);
-  EXPECT_EQ(record.mode, Mode::kRunning);
-  EXPECT_FALSE(plant.battery.refreshed_ns.empty());
 }
 
 TEST(ClosedLoop, CountsOrdersThatComeTooLateOrNotAtAll) {

@@ -15,8 +15,9 @@
 #include <random>
 
 #include "tests/support/edge_answer.h"
-#include "tests/support/simulated_site.h"
+#include "tests/support/journal_fields.h"
 #include "tests/support/thorough.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -30,19 +31,6 @@ using ::testing::Not;
 
 constexpr std::int32_t kScale = 300;
 constexpr int kCyclesToTrip = 12;  ///< at most, with the change of the battery in between
-
-std::string text_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The word behind "NAME=" of a journal line.
-std::string word_of(const std::string& line, const std::string& name) {
-  const std::size_t at = line.find(name + "=");
-  if (at == std::string::npos) return "";
-  const std::size_t begin = at + name.size() + 1;
-  return line.substr(begin, line.find(' ', begin) - begin);
-}
 
 /// As the metrics have it.
 std::string utc_number(const std::string& utc) {
@@ -186,9 +174,14 @@ class DyingDisk : public ::testing::Test {
       said_ += line + "\n";
       if (!line.starts_with("utc=")) continue;
       ++cycle;
-      if (word_of(line, name) == word) return line;
+      if (journal_fields(line)[name] == word) return line;
     }
     return "";
+  }
+  void await_cycles(int count, const std::string& name, const std::string& word, int cycles_max) {
+    for (int i = 0; i < count; ++i) {
+      ASSERT_NE(await_cycle(name, word, cycles_max), "") << said_;
+    }
   }
   /// Another battery at the same place, whose power goes the other way.
   void swap_battery(bool is_wrong) {
@@ -242,19 +235,18 @@ class DyingDisk : public ::testing::Test {
     const std::string& utc = answers.decided.at("utc");
     const std::string& reason = answers.decided.at("reason");
     const bool is_tripped = answers.decided.at("trip") != "none";
+    const Json json = Json::parse(answers.json);
+    const bool is_unknown = json.value()["unknown"].exists();
+    EXPECT_TRUE(may_be_unknown || !is_unknown) << answers.json;
+    EXPECT_EQ(json.value()["last"].exists(), !is_unknown) << answers.json;
+    EXPECT_STRNE(json.value()["health"].text_or(""), "not running") << utc;
     for (const std::string& text : {answers.status, answers.json}) {
-      EXPECT_THAT(text, Not(HasSubstr("no bess-edge runs"))) << utc;
-      const bool is_unknown = text.find("unknown: ") != std::string::npos;
-      EXPECT_TRUE(may_be_unknown || !is_unknown) << text;
-      if (is_unknown) {
-        EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: unknown: "), Not(HasSubstr("in control"))));
-        continue;
+      if (is_unknown || is_tripped) {
+        EXPECT_THAT(text, Names("CRITICAL degraded"));
       }
+      if (is_unknown) continue;
       EXPECT_THAT(text,
                   AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))), HasSubstr(reason)));
-      if (is_tripped) {
-        EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: tripped"), Not(HasSubstr("health     ok"))));
-      }
     }
     if (may_be_unknown) return;
     EXPECT_THAT(
@@ -321,14 +313,12 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   end_run();
 
   start();  // on the dead disk
-  EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
-  ASSERT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  await_cycles(2, "reason", "wrong_direction", 6);
   expect_all_agree(false);
   const Said cleared = edge({"clear", "--yes", "--config", config_});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
-  EXPECT_THAT(cleared.text, AllOf(HasSubstr("driven again"), HasSubstr("next boot")));
-  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  EXPECT_THAT(cleared.text, HasSubstr(site_.folder.file("run"))) << "where alone it is kept";
+  await_cycles(2, "mode", "running", 8);
   expect_all_agree(false);
   end_run();
 
@@ -339,10 +329,6 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   expect_all_agree(false);
   end_run();
-  if (!GetParam().log_lives && !GetParam().is_real) {
-    EXPECT_THAT(said_, AllOf(HasSubstr("is the disk full or read-only?"),
-                             HasSubstr("the decision log goes on: ")));
-  }
   print_row((std::string(GetParam().name) + " amid a run, run folder").c_str(),
             "all agree, trip kept, cleared, kept cleared");
 }
@@ -365,6 +351,9 @@ INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), name_o
 
 #ifdef BESS_NOTIFY_PROGRAM
 
+constexpr const char* kTripAlarm = "Subject: ALARM: CRITICAL: wrong_direction";
+constexpr const char* kTripIsOver = "Subject: over: CRITICAL: wrong_direction";
+
 /// The notifier on the same disk: it tells what is, and what it cannot keep itself.
 class DyingDiskNotify : public DyingDiskRun {
  protected:
@@ -380,19 +369,20 @@ class DyingDiskNotify : public DyingDiskRun {
     notifier_ = std::make_unique<ChildProcess>(
         std::vector<std::string>{BESS_NOTIFY_PROGRAM, "--config", config_});
   }
-  [[nodiscard]] std::size_t mails_with(const std::string& piece) const {
-    const std::string mails = text_of_file(site_.folder.file("mails"));
+  /// Lines that name all of these codes.
+  [[nodiscard]] std::size_t mails_with(const std::string& codes) const {
+    std::ifstream mails(site_.folder.file("mails"));
     std::size_t count = 0;
-    for (std::size_t at = mails.find(piece); at != mails.npos; at = mails.find(piece, at + 1)) {
-      ++count;
+    for (std::string line; std::getline(mails, line);) {
+      count += ::testing::Value(line, Names(codes)) ? 1 : 0;
     }
     return count;
   }
   /// False after half a minute. The controller's lines are read meanwhile, so that it never waits
   /// for a reader.
-  bool is_mailed(const std::string& piece) {
-    for (int cycle = 0; cycle < 90 && mails_with(piece) == 0; ++cycle) await_cycle("mode", "-", 1);
-    return mails_with(piece) > 0;
+  bool is_mailed(const std::string& codes) {
+    for (int cycle = 0; cycle < 90 && mails_with(codes) == 0; ++cycle) await_cycle("mode", "-", 1);
+    return mails_with(codes) > 0;
   }
 
   std::unique_ptr<ChildProcess> notifier_;
@@ -407,21 +397,21 @@ TEST_P(DyingDiskNotify, TellsEachAlarmOnceAndWhatItCannotKeep) {
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   start_notifier();
   GetParam().happen(disk_);
-  EXPECT_TRUE(is_mailed("ALARM: WARN: the ")) << "the disk";
-  EXPECT_TRUE(is_mailed(disk_.file("notify/told.json") + ": cannot be written: "));
-  EXPECT_GT(mails_with("what is told is kept in " + site_.folder.file("run/notify/told.json")), 0U);
+  EXPECT_TRUE(is_mailed("ALARM: WARN: ")) << "the disk";
+  EXPECT_TRUE(is_mailed(disk_.file("notify/told.json")));
+  EXPECT_GT(mails_with(site_.folder.file("run/notify/told.json")), 0U) << "where it is kept";
   trip();
-  EXPECT_TRUE(is_mailed("ALARM: CRITICAL: tripped")) << said_;
+  EXPECT_TRUE(is_mailed(kTripAlarm)) << said_;
   for (int cycle = 0; cycle < 5; ++cycle) await_cycle("mode", "-", 1);  // until that is kept
   notifier_->signal(SIGKILL);
   notifier_->wait();
   start_notifier();
   for (int cycle = 0; cycle < 10; ++cycle) await_cycle("mode", "-", 1);
-  EXPECT_EQ(mails_with("ALARM: CRITICAL: tripped"), 1U) << "memory knows that it was told";
-  EXPECT_EQ(mails_with("over: CRITICAL: tripped"), 0U) << "it is not over";
+  EXPECT_EQ(mails_with(kTripAlarm), 1U) << "memory knows that it was told";
+  EXPECT_EQ(mails_with(kTripIsOver), 0U) << "it is not over";
   swap_battery(false);
   ASSERT_EQ(edge({"clear", "--yes", "--config", config_}).exit_code, 0);
-  EXPECT_TRUE(is_mailed("over: CRITICAL: tripped"));
+  EXPECT_TRUE(is_mailed(kTripIsOver));
   EXPECT_EQ(SimulatedSite::stop(*notifier_), 0);
   end_run();
   print_row((std::string(GetParam().name) + ", the notifier on it as well").c_str(),
@@ -439,43 +429,31 @@ struct Accident {
   void (*happen)(const StateDisk& disk);
   bool boots;            ///< the run folder is empty again
   const char* expected;  ///< the reason of the next run's cycles
-  const char* line;      ///< of its journal
 };
 
 std::uintmax_t place_of_record(std::uintmax_t number) { return 4'096 + 512 * number; }
 
 constexpr Accident kAccidents[] = {
     {"ReadOnly", "read-only at the start, run folder",
-     [](const StateDisk& disk) { disk.go_read_only(); }, false, "wrong_direction", ""},
-    {"ReadOnlyAfterABoot", "read-only at the start, after a boot",
-     [](const StateDisk& disk) { disk.go_read_only(); }, true, "wrong_direction", ""},
-    {"Remounted", "remounted read-only by mount(8), run folder",
-     [](const StateDisk& disk) { disk.remount_read_only(); }, false, "wrong_direction", ""},
+     [](const StateDisk& disk) { disk.go_read_only(); }, false, "wrong_direction"},
     {"RemountedAfterABoot", "remounted read-only by mount(8), after a boot",
-     [](const StateDisk& disk) { disk.remount_read_only(); }, true, "wrong_direction", ""},
-    {"Full", "full at the start, run folder", [](const StateDisk& disk) { disk.fill(); }, false,
-     "wrong_direction", ""},
+     [](const StateDisk& disk) { disk.remount_read_only(); }, true, "wrong_direction"},
     {"FullAfterABoot", "full at the start, after a boot",
-     [](const StateDisk& disk) { disk.fill(); }, true, "wrong_direction", ""},
+     [](const StateDisk& disk) { disk.fill(); }, true, "wrong_direction"},
     {"HeaderGone", "both headers of the log gone, after a boot",
-     [](const StateDisk& disk) { disk.flip("decisions.ring", 0, 4'096); }, true, "wrong_direction",
-     "header and copy were broken, and are made anew"},
+     [](const StateDisk& disk) { disk.flip("decisions.ring", 0, 4'096); }, true, "wrong_direction"},
     {"LogGone", "the log removed, run folder", [](const StateDisk& disk) { disk.go_away(); }, false,
-     "wrong_direction", ""},
+     "wrong_direction"},
     {"LogGoneAfterABoot", "the log removed, after a boot",
-     [](const StateDisk& disk) { disk.go_away(); }, true, "state_lost",
-     "the decision log is gone, although a controller has run here"},
+     [](const StateDisk& disk) { disk.go_away(); }, true, "state_lost"},
     {"LogGarbageAfterABoot", "the log overwritten, after a boot",
      [](const StateDisk& disk) { disk.flip("decisions.ring", 0, 4'096 + 512 * 64); }, true,
-     "state_lost", "nothing in the decision log can be understood"},
+     "state_lost"},
     {"LogCutAfterABoot", "the log cut short, after a boot",
      [](const StateDisk& disk) {
        fs::resize_file(disk.file("decisions.ring"), place_of_record(3));
      },
-     true, "state_lost", "its end is cut off"},
-    {"LogEmptyAfterABoot", "the log without a byte, after a boot",
-     [](const StateDisk& disk) { fs::resize_file(disk.file("decisions.ring"), 0); }, true,
-     "state_lost", "nothing in the decision log can be understood"},
+     true, "state_lost"},
 };
 
 class DyingDiskStart : public DyingDisk, public ::testing::WithParamInterface<Accident> {};
@@ -494,7 +472,7 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
 
   start();
   EXPECT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
-  EXPECT_THAT(said_, AllOf(HasSubstr(GetParam().line), Not(HasSubstr("mode=running"))));
+  EXPECT_THAT(said_, Not(HasSubstr("mode=running")));
   ASSERT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
   expect_all_agree(false);
   const Said cleared = edge({"clear", "--yes", "--config", config_});
@@ -531,9 +509,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderAHoldThatCannotBeWrittenLeavesTheOneBefo
       if (is_full && arguments.size() == 1) continue;  // what goes needs no room
       const Said said = hold(arguments);
       EXPECT_EQ(said.exit_code, 1) << said.text;
-      EXPECT_THAT(said.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
-                                   AnyOf(HasSubstr("nothing has changed"),
-                                         HasSubstr("it is still in force"))));
+      EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
       EXPECT_EQ(text_of_file(disk_.file("hold")), before);
     }
     mend_disk(is_full);
@@ -559,12 +535,9 @@ TEST_F(DyingDiskWords, ALimitThatCannotBeWrittenLeavesTheOneBefore) {
     break_disk(is_full);
     const Said other = limit({"--charge", "1000", "--for", "15m"});
     EXPECT_EQ(other.exit_code, 1) << other.text;
-    EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
-                                  HasSubstr("nothing has changed")));
+    EXPECT_THAT(other.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
     if (!is_full) {
-      const Said cleared = limit({"--clear"});
-      EXPECT_EQ(cleared.exit_code, 1) << cleared.text;
-      EXPECT_THAT(cleared.text, HasSubstr("it stays in force until its end"));
+      EXPECT_EQ(limit({"--clear"}).exit_code, 1);
     }
     EXPECT_EQ(text_of_file(disk_.file("limit")), before);
     mend_disk(is_full);
@@ -587,13 +560,11 @@ TEST_F(DyingDiskWords, MetricsThatCannotBeWrittenAreToldAndTheStateIsNot) {
     const Said status = edge({"status", "--config", config_});
     EXPECT_EQ(status.exit_code, is_full ? 0 : 1)
         << "what is there can be replaced: " << status.text;
-    EXPECT_THAT(status.text, HasSubstr("state      running at"));
-    EXPECT_EQ(status.text.find("full or read-only?") == std::string::npos, is_full) << status.text;
+    EXPECT_THAT(status.text, Names("running"));
     end_run();
     mend_disk(is_full);
   }
-  EXPECT_THAT(said_, AllOf(HasSubstr("[metrics] cannot be written"),
-                           HasSubstr("The battery is driven on"), Not(HasSubstr("state: "))));
+  EXPECT_THAT(said_, AllOf(Names("[metrics]"), Not(HasSubstr("reason=state_lost"))));
 }
 
 TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheBoot) {
@@ -608,15 +579,14 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheB
     const Said other = hold({"-2000", "--for", "6h"});
     EXPECT_EQ(other.exit_code, 0) << other.text;
     EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
-                                  HasSubstr("which the next boot of this machine forgets")));
+                                  HasSubstr(site_.folder.file("run/hold"))));
     EXPECT_NE(await_cycle("ordered_power_w", "-2000", 8), "") << said_;
     const Said released = hold({"--release"});
     EXPECT_EQ(released.exit_code, 0) << released.text;
-    EXPECT_EQ(released.text.find("which the next boot") == std::string::npos, is_full)
+    EXPECT_EQ(released.text.find(site_.folder.file("run/hold")) == std::string::npos, is_full)
         << "what goes needs no room: " << released.text;
     EXPECT_NE(await_cycle("ordered_power_w", "-4000", 8), "") << said_;
     end_run();
-    EXPECT_THAT(said_, HasSubstr("hold: released; the prices decide again"));
     mend_disk(is_full);
     ASSERT_EQ(hold({"--release"}).exit_code, 0);
     for (const char* path : {"state/hold", "run/hold"}) {
@@ -626,15 +596,6 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheB
   }
   print_row("hold, release on a full or read-only disk, run folder",
             "followed; kept until the boot, said");
-}
-
-TEST_F(DyingDisk, ANewBatteryStarts) {
-  commission(true);
-  start();
-  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
-  end_run();
-  EXPECT_THAT(said_, Not(HasSubstr("state: ")));
-  print_row("first start", "driven");
 }
 
 /// It has never run here, and cannot keep anything: not driven, and said so.
@@ -647,11 +608,10 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
       commission(has_run_folder);
       death.happen(disk_);
       start();
-      EXPECT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
-      ASSERT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
+      await_cycles(2, "reason", "state_lost", 6);
       expect_all_agree(!has_run_folder);
       end_run();
-      EXPECT_THAT(said_, HasSubstr("not driven until bess-edge clear --yes"));
+      EXPECT_THAT(said_, Names("bess-edge clear --yes"));
       disk_.free_again();
       disk_.come_back();
       for (const char* name : {"status.json", "decisions.ring", "metrics.prom"}) {
@@ -669,28 +629,24 @@ TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
   start();
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   disk_.unmount();
-  for (int cycle = 0; cycle < 2; ++cycle) {
-    ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
-  }
+  await_cycles(2, "mode", "running", 8);
   expect_all_agree(false);
   trip();
   await_cycle("reason", "wrong_direction", 6);
   expect_all_agree(false);
   end_run();
-  EXPECT_THAT(said_, HasSubstr("the decision log is gone from its place, was its disk unmounted?"));
   swap_battery(false);
   said_.clear();
   start();  // with the sign check that memory has
   EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
   end_run();
-  EXPECT_THAT(said_,
-              AllOf(HasSubstr("commissioned.toml is gone; "), Not(HasSubstr("mode=running"))));
+  EXPECT_THAT(said_, AllOf(Names("commissioned.toml"), Not(HasSubstr("mode=running"))));
   lose_folder(site_.folder.file("run"));  // and after a boot
   fs::remove(disk_.file("commissioned.toml"));
   fs::remove(disk_.file("commissioned.copy"));
   const Said refused = edge({"--config", config_});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.text, HasSubstr("or the disk of [state] folder is not mounted"));
+  EXPECT_THAT(refused.text, Names("commissioned.toml [state] folder"));
   print_row("unmounted amid a run", "goes on below, trip kept");
 }
 
@@ -713,8 +669,7 @@ TEST_F(DyingDisk, MountedLateItsTripCounts) {
   disk_.mount_late(site_.folder.file("card"));
   said_ += controller_->read_all();  // it ends by itself
   EXPECT_EQ(controller_->wait(), 0);
-  EXPECT_THAT(said_, AllOf(HasSubstr("the state folder now holds another log"),
-                           HasSubstr("stopped: battery released")));
+  EXPECT_THAT(said_, HasSubstr("mode=stopping"));
   said_.clear();
   start();
   EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
@@ -728,14 +683,10 @@ TEST_F(DyingDisk, OnADiskOfAFewKilobytesItIsNotDrivenAndThatIsSaid) {
   ASSERT_TRUE(disk_.become_tiny());
   commission(true);
   start();
-  for (int cycle = 0; cycle < 2; ++cycle) {
-    ASSERT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
-  }
+  await_cycles(2, "reason", "state_lost", 6);
   expect_all_agree(false);
   end_run();
-  EXPECT_THAT(said_, AllOf(HasSubstr("the decision log can be neither read nor made"),
-                           HasSubstr("What follows says whether the battery is driven"),
-                           Not(HasSubstr("is driven on"))));
+  EXPECT_THAT(said_, AllOf(Names("clear --yes"), Not(HasSubstr("mode=running"))));
   print_row("a disk of 64 kB", "state_lost, told");
 }
 

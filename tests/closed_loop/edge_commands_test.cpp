@@ -7,13 +7,11 @@
 #include <filesystem>
 
 #include "tests/support/edge_answer.h"
-#include "tests/support/simulated_site.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -37,34 +35,10 @@ class EdgeCommands : public ::testing::Test {
     return said;
   }
   int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
-  /// The next line of output with this piece; empty when the program ended before.
-  static std::string await_line(ChildProcess& child, const std::string& piece) {
-    std::string line = child.read_line();
-    while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
-    return line;
-  }
 
   SimulatedSite site_{kScale};
   std::string config_;
 };
-
-TEST_F(EdgeCommands, OptionsMayStandBeforeTheCommand) {
-  start_site();
-  EXPECT_EQ(edge({"--config", config_, "--cycles", "2"}).exit_code, 0);
-  for (const auto& words : {std::vector<std::string>{"--config", config_, "log", "--last", "1"},
-                            {"--last", "1", "--config", config_, "log"},
-                            {"log", "--config", config_, "--last", "1"},
-                            {"--config", config_, "--last", "1", "log"}}) {
-    const Said said = edge(words);
-    EXPECT_EQ(said.exit_code, 0);
-    EXPECT_THAT(said.text, StartsWith("utc="));
-  }
-  EXPECT_THAT(edge({"--json", "--config", config_, "status"}).text, StartsWith("{"));
-  EXPECT_THAT(edge({"--config", config_, "hold", "-500", "--for", "2h"}).text, HasSubstr("-500 W"));
-  EXPECT_THAT(edge({"--config", config_, "--for", "2h", "hold", "-700"}).text, HasSubstr("-700 W"));
-  EXPECT_THAT(edge({"--config", config_, "--release", "hold"}).text, HasSubstr("hold       none"));
-  EXPECT_THAT(edge({"run", "--config", config_, "--cycles", "1"}).text, HasSubstr("cycle=1 "));
-}
 
 /// The table of exit codes in edge/README.md, row by row; the command line's 2 is above.
 TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
@@ -128,34 +102,30 @@ TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
 
 TEST_F(EdgeCommands, TheStatusOfAnEndedControllerSaysWhatItWasAndWhenItEnded) {
   start_site();
-  const auto status = [&] { return edge({"status", "--config", config_}).text; };
-  {
-    ChildProcess controller({edge_program(), "--config", config_});
-    ASSERT_NE(await_line(controller, "mode=running"), "");
-    EXPECT_THAT(status(), AllOf(ContainsRegex("\ncontroller in control, process [0-9]+ since 2023"),
-                                HasSubstr("\ndriving    127.0.0.1:"), HasSubstr("\nstate      ")));
-    EXPECT_EQ(SimulatedSite::stop(controller), 0);
-  }
-  EXPECT_THAT(
-      status(),
-      AllOf(Not(HasSubstr("controller in control")), Not(HasSubstr("driving")),
-            ContainsRegex("\ncontroller none; the last one was in control, process [0-9]+ "
-                          "from 2023-03-2[0-9 :-]+, stopped at 2023-03-2[0-9 :-]+, version"),
-            HasSubstr("\nbattery at 127.0.0.1:"), HasSubstr("\nwas        stopping at ")));
-  {
-    ChildProcess controller({edge_program(), "--config", config_, "--dry-run"});
-    ASSERT_NE(await_line(controller, "mode="), "");
-    ASSERT_NE(await_line(controller, "mode="), "");
-    EXPECT_THAT(status(), AllOf(ContainsRegex("\ncontroller read-only, process"),
-                                HasSubstr("\nreading    127.0.0.1:")));
-    controller.signal(SIGKILL);
+  const auto expect_status = [&](int pid, bool controls, bool is_running) {
+    const Json json = status_of(config_);
+    EXPECT_EQ(json.value()["pid"].number(), pid);
+    EXPECT_EQ(json.value()["control"].boolean(), controls);
+    EXPECT_EQ(std::string(json.value()["health"].text_or("")) != "not running", is_running);
+    const Said text = edge({"status", "--config", config_});
+    EXPECT_EQ(text.exit_code == 3, !is_running);
+    EXPECT_THAT(text.text,
+                Names(std::to_string(pid) + " 127.0.0.1:" + std::to_string(site_.battery_port)));
+    return std::string(json.value()["last"]["mode"].text_or(""));
+  };
+  for (const bool controls : {true, false}) {
+    std::vector<std::string> words = {edge_program(), "--config", config_};
+    if (!controls) words.emplace_back("--dry-run");
+    ChildProcess controller(words);
+    ASSERT_NE(await_line(controller, "utc="), "");
+    ASSERT_NE(await_line(controller, "utc="), "");
+    const int pid = controller.pid();
+    expect_status(pid, controls, true);
+    controller.signal(controls ? SIGTERM : SIGKILL);
+    controller.read_all();
     controller.wait();
+    EXPECT_EQ(expect_status(pid, controls, false) == "stopping", controls);
   }
-  EXPECT_THAT(status(),
-              AllOf(ContainsRegex("\ncontroller none; the last one was read-only, process "
-                                  "[0-9]+ from 2023-03-2[0-9 :-]+, ended without a stop "
-                                  "after the cycle of 2023-03-2[0-9 :-]+, version"),
-                    ContainsRegex("\nwas        [a-z]+ at ")));
 }
 
 /// A hold cannot make a battery be driven that the supervision has given back: that is said where
@@ -168,12 +138,10 @@ TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
   ChildProcess controller({edge_program(), "--config", config_});
   ASSERT_NE(await_line(controller, "reason=uncontrolled_power"), "");
   const auto hold = [&] { return edge({"hold", "-500", "--for", "6h", "--config", config_}).text; };
-  EXPECT_THAT(hold(),
-              ContainsRegex("NOT FOLLOWED yet: tripped, uncontrolled_power at 2023-03-2[0-9T:-]+Z; "
-                            "the battery stays released until bess-edge clear --yes"));
+  EXPECT_THAT(hold(), Names("uncontrolled_power bess-edge clear --yes"));
   EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));
   EXPECT_EQ(edge({"clear", "--yes", "--config", config_}).exit_code, 0);
-  EXPECT_THAT(hold(), Not(HasSubstr("NOT FOLLOWED")));
+  EXPECT_THAT(hold(), Not(Names("uncontrolled_power")));
   EXPECT_EQ(SimulatedSite::stop(controller), 0);
 }
 

@@ -195,9 +195,6 @@ class Witnessed {
   Damage run(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       const CycleRecord record = trial_.cycle();
-      if (getenv("MW_DEBUG"))
-        std::printf("%ld order %d %s grid %d\n", record.utc_s % 86400, record.ordered_power_w,
-                    reason_name(record.reason).data(), record.site.grid_power_w);
       if (step_s_ == 0) continue;
       const bool is_found = record.site.trust.is_mismatch;
       if (damage_.cycles_to_find < 0 && is_found) {

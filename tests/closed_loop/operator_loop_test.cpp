@@ -34,36 +34,6 @@ struct Site {
   Loop loop;
 };
 
-TEST(LoopWithAHold, FollowsItFromTheNextCycleUntilItsEnd) {
-  Site site;
-  site.prices.price = [](std::int64_t) { return -20'000; };
-  EXPECT_EQ(site.cycle().ordered_power_w, 4'000);
-  site.hold(-1'000, 660);
-  for (int i = 0; i < 5; ++i) {
-    const CycleRecord record = site.cycle();
-    EXPECT_EQ(record.ordered_power_w, -1'000);
-    EXPECT_EQ(record.reason, Reason::kHeld);
-    EXPECT_EQ(record.mode, Mode::kRunning);
-    EXPECT_TRUE(record.hold.held);
-  }
-  const CycleRecord record = site.cycle();
-  EXPECT_EQ(record.ordered_power_w, 4'000);
-  EXPECT_FALSE(record.hold.held);
-}
-
-TEST(LoopWithAHold, NeedsNoPriceAndItsEndWithoutOneIsTheSafeState) {
-  Site site;
-  site.prices.outage = true;
-  EXPECT_EQ(site.cycle().mode, Mode::kStart);
-  site.hold(2'000, 300);
-  EXPECT_EQ(site.cycle().mode, Mode::kRunning);
-  EXPECT_EQ(site.cycle().ordered_power_w, 2'000);
-  const CycleRecord after = site.cycle();
-  EXPECT_EQ(after.mode, Mode::kHolding);
-  EXPECT_EQ(after.reason, Reason::kNoPrice);
-  EXPECT_EQ(after.ordered_power_w, 0);
-}
-
 TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
   Site site;
   site.prices.price = [](std::int64_t) { return -20'000; };

@@ -82,13 +82,6 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
   EXPECT_EQ(most_reversals_in_an_hour(records), 6);
 }
 
-TEST(PriceLies, WithoutACapEveryReversalIsFollowed) {
-  Liar liar;
-  Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 0}, liar.battery, liar.prices,
-            liar.clock);
-  EXPECT_GT(most_reversals_in_an_hour(liar.run(loop, 2 * kStepsPerHour)), 25);
-}
-
 /// The loop before a source that hangs: the same price under new stamps.
 struct Hung {
   Hung() : battery(clock, 0.5), prices(clock) {
@@ -130,29 +123,6 @@ struct Logged {
   std::deque<CycleRecord> newest_first;
 };
 
-/// A source that hangs, and shows now one and now the other of its last rows.
-TEST(PriceLies, APriceThatGoesToAndFroIsToldAndIsNoneAfterSevenAndAHalfHoursAlsoAmongKills) {
-  Hung hung;
-  Logged log;
-  for (int run = 0; run < 80; ++run) {
-    Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
-    if (run > 0) {
-      recall_cycles(log, hung.clock.now_utc_ns() / kNanosecondsPerSecond, loop);
-      loop.take_over(
-          take_over_of(log.newest_first.front(), Trip{}, log.newest_first.front().price_level));
-    }
-    for (int cycle = 0; cycle < 3; ++cycle) {
-      CycleRecord record;
-      hung.centi = 9'000 + cycle % 2;
-      ASSERT_TRUE(loop.run_cycle(record));
-      const int rows = 3 * run + cycle;
-      EXPECT_EQ(record.price_frozen, rows >= 60) << rows;
-      EXPECT_EQ(record.reason == Reason::kFrozenPrice, rows >= 225) << rows;
-      log.newest_first.push_front(record);
-    }
-  }
-}
-
 /// 20 runs of ten minutes: each takes over what the one before logged.
 TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
   Hung hung;
@@ -164,16 +134,6 @@ TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
     EXPECT_EQ(record.reason == Reason::kFrozenPrice, run >= 18) << run;
     if (run % 2 == 0) loop.stop(record);  // else killed
   }
-}
-
-TEST(PriceLies, SwitchedOffAFrozenPriceIsTradedOn) {
-  Hung hung;
-  Loop loop({.control = true, .guard = {}, .frozen_price = {.frozen_s = 0, .stop_s = 0}},
-            hung.battery, hung.prices, hung.clock);
-  CycleRecord record;
-  for (int cycle = 0; cycle < 120; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
-  EXPECT_FALSE(record.price_frozen);
-  EXPECT_EQ(record.mode, Mode::kRunning);
 }
 
 }  // namespace

@@ -89,7 +89,6 @@ TEST_F(PriceProcesses, WhateverHappensToTheFetcherTheLoopGoesOn) {
   }
   const std::string said = edge.read_all();
   EXPECT_EQ(edge.wait(), 0) << said;
-  EXPECT_THAT(said, HasSubstr("ran sealed"));
   EXPECT_THAT(said, Not(HasSubstr("CHECK")));
   int running = 0;
   for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
@@ -114,7 +113,7 @@ TEST_F(PriceProcesses, ASecondOneIsRefused) {
   start_prices();
   wait_cycles(5);
   ChildProcess second({BESS_PRICES_PROGRAM, "--config", config_});
-  EXPECT_THAT(second.read_all(), HasSubstr("bess-prices"));
+  EXPECT_THAT(second.read_all(), HasSubstr(std::to_string(prices_->pid())));
   EXPECT_EQ(second.wait(), 1);
 }
 

@@ -117,55 +117,12 @@ TEST(Site, AHouseThatAsksForMoreIsGivenItBeforeTheNextTick) {
   EXPECT_EQ(house.battery.orders.back().power_w, 4'000);
 }
 
-TEST(Site, ExportIsHeldAtItsLimit) {
-  House house(metered({.export_w_max = 1'000, .margin_w = 0}), HouseLoad::constant(700));
-  house.let_it(kDischarge);
-  EXPECT_EQ(house.cycle().ordered_power_w, -1'700);
-  house.use(-2'000);  // the sun comes out
-  const CycleRecord record = house.cycle();
-  EXPECT_EQ(record.ordered_power_w, 0);
-  EXPECT_EQ(record.reason, Reason::kExportLimit);
-}
-
-TEST(Site, AMeterThatFallsSilentLeavesTheBatteryIdleUntilItSpeaks) {
-  House house(metered({.import_w_max = 9'000}), HouseLoad::constant(500));
-  house.let_it(kCharge);
-  EXPECT_EQ(house.cycle().ordered_power_w, 4'000);
-  house.meter.is_silent = true;
-  const CycleRecord silent = house.cycle();
-  EXPECT_EQ(silent.ordered_power_w, 0);
-  EXPECT_EQ(silent.reason, Reason::kMeterLost);
-  EXPECT_EQ(silent.site.meter_status, Status::kTimeout);
-  EXPECT_EQ(silent.mode, Mode::kRunning);
-  EXPECT_EQ(silent.site.order_cuts, 1);  // not only at the tick: after age_s_max
-  house.meter.is_silent = false;
-  EXPECT_EQ(house.cycle().ordered_power_w, 4'000);
-}
-
 TEST(Site, AMeterThatMayBeLostIsIgnored) {
   SiteSettings settings = metered({.import_w_max = 1'000});
   settings.idle_without_meter = false;
   House house(settings, HouseLoad::constant(500));
   house.let_it(kCharge);
   house.meter.is_silent = true;
-  EXPECT_EQ(house.cycle().ordered_power_w, 4'000);
-}
-
-TEST(Site, ALimitFromOutsideIsStrongerThanThePriceAndEnds) {
-  SiteSettings settings;
-  settings.has_outside_limits = true;
-  House house(settings, HouseLoad::constant(0));
-  house.let_it(kCharge);
-  EXPECT_EQ(house.cycle().ordered_power_w, 4'000);
-  house.limits.is_set = true;
-  house.limits.limit = {.charge_w_max = 600,
-                        .discharge_w_max = kAnyPowerW,
-                        .until_utc_s = house.clock.now_ns / kNanosecondsPerSecond + 200};
-  const CycleRecord limited = house.cycle();
-  EXPECT_EQ(limited.ordered_power_w, 600);
-  EXPECT_EQ(limited.reason, Reason::kOutsideLimit);
-  EXPECT_EQ(limited.site.order_cuts, 1);
-  house.cycle();
   EXPECT_EQ(house.cycle().ordered_power_w, 4'000);
 }
 
@@ -307,118 +264,6 @@ TEST(Site, ALimitIsPassedForNoLongerThanACheckTakes) {
     ASSERT_LE(over_w * 60, 4'000 * reaction_s + 1) << utc_text(minute.minute_utc_s).c_str();
   }
   EXPECT_GT(limited, 1'000);
-}
-
-// --- a year ------------------------------------------------------------------------------------
-
-constexpr std::int64_t kYearStartS = 1'672'527'600;  // 2023-01-01T00:00 in Brussels
-constexpr int kYearMinutes = 365 * 1'440;
-
-/// Real prices of early 2023, over and over.
-const MinuteSeries& real_prices() {
-  static const MinuteSeries prices =
-      read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
-  return prices;
-}
-
-double price_at(const std::vector<double>& prices, std::int64_t utc_s) {
-  const auto minute = static_cast<std::size_t>((utc_s - kYearStartS) / 60) % prices.size();
-  return std::isnan(prices[minute]) ? 100 : prices[minute];
-}
-
-constexpr double kNoticeableW = 1;
-constexpr double kSocDigit = 0.001;  ///< in which the battery shows its state of charge
-
-struct Year {
-  double money_eur = 0;
-  double charged_kwh = 0;
-  /// Mean of a quarter-hour above cap or house alone, whichever is more, and above what an empty
-  /// battery cannot give back of what it took in it: its losses, and less than a digit of its SoC
-  /// (connection_guard.h).
-  double over_w_max = 0;
-  int quarters_over = 0;             ///< such quarter-hours, by more than kNoticeableW
-  std::array<double, 12> peak_kw{};  ///< by month of 365 / 12 days
-  std::int32_t order_cuts = 0;
-
-  /// EUR of the capacity tariff at 60 EUR a kW and year, at least 2.5 kW a month.
-  [[nodiscard]] double capacity_eur() const {
-    double sum = 0;
-    for (const double kw : peak_kw) sum += 60.0 / 12 * std::max(kw, 2.5);
-    return sum;
-  }
-};
-
-/// The year's account, from the battery's own record and the house's load; not from what was
-/// measured.
-Year account(const std::vector<MinuteRecord>& battery, const HouseLoad& house, double cap_w) {
-  Year year;
-  for (std::size_t q = 0; q + 15 <= battery.size(); q += 15) {
-    double import_wh = 0, house_import_wh = 0, charged_wh = 0;
-    for (std::size_t m = q; m < q + 15; ++m) {
-      const double house_wh = house.power_w(battery[m].minute_utc_s) / 60;
-      import_wh += std::max(house_wh + battery[m].energy_wh, 0.0);
-      house_import_wh += std::max(house_wh, 0.0);
-      year.money_eur -=
-          battery[m].energy_wh * 1e-6 * price_at(real_prices().settled, battery[m].minute_utc_s);
-      charged_wh += std::max(battery[m].energy_wh, 0.0);
-    }
-    year.charged_kwh += charged_wh / 1e3;
-    const double lost_wh =
-        charged_wh * (1 - kHouse.charge_efficiency * kHouse.discharge_efficiency);
-    const double kept_wh = std::min(charged_wh, lost_wh + kSocDigit * kHouse.capacity_wh);
-    const double bound_wh = std::max(cap_w / 4, house_import_wh + kept_wh);
-    const double over_w = (import_wh - bound_wh) * 4;
-    if (over_w > kNoticeableW) ++year.quarters_over;
-    year.over_w_max = std::max(year.over_w_max, over_w);
-    double& peak_kw = year.peak_kw[std::min<std::size_t>(q * 12 / kYearMinutes, 11)];
-    peak_kw = std::max(peak_kw, import_wh * 4 / 1e3);
-  }
-  return year;
-}
-
-Year run_year(const ConnectionSettings& connection, double cap_w) {
-  SiteSettings settings = metered(connection);
-  House house(settings, HouseLoad::daily(2023));
-  house.clock.now_ns = kYearStartS * kNanosecondsPerSecond;
-  house.battery.physics = SimulatedBattery(kHouse, 0.5, house.clock.now_ns);
-  house.prices.price = [](std::int64_t utc_s) {
-    return static_cast<std::int32_t>(std::lround(100 * price_at(real_prices().indicative, utc_s)));
-  };
-  CycleRecord record;
-  for (int i = 0; i < kYearMinutes / kMinutesPerStep; ++i) {
-    record = house.cycle();
-    house.battery.orders.clear();
-  }
-  house.battery.physics.advance((kYearStartS + kYearMinutes * 60) * kNanosecondsPerSecond);
-  Year year = account(house.battery.physics.record(), house.meter.house, cap_w);
-  year.order_cuts = record.site.order_cuts;
-  return year;
-}
-
-void print(const char* name, const Year& year) {
-  double peak_kw = 0;
-  for (const double kw : year.peak_kw) peak_kw += kw / 12;
-  std::printf("%-34s %9.2f %10.2f %10.2f %9.0f %9.2f %9d %8.1f %8d\n", name, year.money_eur,
-              year.capacity_eur(), year.money_eur - year.capacity_eur(), year.charged_kwh, peak_kw,
-              year.quarters_over, year.over_w_max, year.order_cuts);
-}
-
-TEST(Site, AYearOfQuarterHoursIsNeverOverTheCapThroughTheBattery) {
-  constexpr double kCapW = 4'000;
-  set_market_time_zone();
-  const HouseLoad house = HouseLoad::daily(2023);
-  std::vector<MinuteRecord> nothing(kYearMinutes);
-  for (int m = 0; m < kYearMinutes; ++m) nothing[m] = {kYearStartS + 60 * m, 0, 0, 0};
-  std::printf("%-34s %9s %10s %10s %9s %9s %9s %8s %8s\n", "year, EUR", "trading", "capacity",
-              "sum", "kWh in", "peak kW", "over cap", "by W", "cuts");
-  print("house alone", account(nothing, house, kCapW));
-  const Year free = run_year({}, kCapW);
-  print("no cap", free);
-  const Year capped = run_year({.peak_w_max = 4'000}, kCapW);
-  print("peak_w_max = 4000", capped);
-  EXPECT_GT(free.quarters_over, 1'000);
-  EXPECT_EQ(capped.quarters_over, 0) << capped.over_w_max;
-  EXPECT_GT(capped.money_eur - capped.capacity_eur(), free.money_eur - free.capacity_eur());
 }
 
 }  // namespace

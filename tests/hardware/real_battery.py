@@ -109,6 +109,6 @@ def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
             time.sleep(0.1)
         said = place.read(log)
         place.attempt(f"rm -f {own}")
-        assert "stopped: battery released" in said or "stopped: no order was in force" in said, said
+        assert re.search(r" mode=stopping .* battery=ok ", said), said
     assert why in ("", "aborted"), why
     return said

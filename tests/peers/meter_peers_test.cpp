@@ -6,6 +6,7 @@
 
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -34,7 +35,7 @@ TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
                        std::string(GetParam()) + ".toml\"\nhost = \"127.0.0.1\"\nport = " +
                        ready.substr(ready.find_last_of(':') + 1) + "\n"});
     ChildProcess check({edge_program(), "--config", config, "--check", "--dry-run"});
-    EXPECT_THAT(check.read_all(), HasSubstr("meter      grid " + std::to_string(watts) + " W"));
+    EXPECT_THAT(check.read_all(), Names("meter grid " + std::to_string(watts) + " W"));
     check.wait();
     meter.signal(SIGKILL);
     meter.wait();

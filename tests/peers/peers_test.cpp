@@ -13,6 +13,7 @@
 #include "edge/control/control_types.h"
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -307,7 +308,7 @@ TEST_P(PeersTold, IsToldByStatusAndDrivenOn) {
   ChildProcess edge({edge_program(), "--config", config_});
   EXPECT_GT(cycle_with(edge, " cycle=14 ", 15), 0);
   const std::string status = command({"status"});
-  EXPECT_THAT(status, HasSubstr("the SoC shows about"));
+  EXPECT_THAT(status, Names("WARN % capacity_wh"));
   EXPECT_THAT(status, ::testing::Not(HasSubstr("CRITICAL")));
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
 }
@@ -327,10 +328,10 @@ TEST_P(PeersTrip, StaysOverRestartsUntilAPersonClearsIt) {
   }
   ChildProcess edge({edge_program(), "--config", config_});
   EXPECT_EQ(cycle_with(edge, reason, 3), 1);
-  EXPECT_THAT(command({"status"}), HasSubstr("CRITICAL: tripped"));
-  EXPECT_THAT(command({"clear"}), HasSubstr("add --yes"));
+  EXPECT_THAT(command({"status"}), Names(std::string("CRITICAL ") + GetParam().reason));
+  EXPECT_THAT(command({"clear"}), Names("--yes"));
   EXPECT_EQ(cycle_with(edge, "mode=running", 3), 0);
-  EXPECT_THAT(command({"clear", "--yes"}), HasSubstr("cleared"));
+  command({"clear", "--yes"});
   EXPECT_GT(cycle_with(edge, "mode=running", 8), 0);
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
 }

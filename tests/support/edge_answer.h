@@ -1,10 +1,11 @@
-// What bess-edge answers to one command line, once it has ended.
+// What programs answer to one command line, once they have ended, and what they say as they run.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "shared/local_text.h"
 #include "shared/utc_text.h"
 #include "tests/support/programs_under_test.h"
@@ -17,12 +18,29 @@ struct Said {
   std::string text;
 };
 
-/// Waits for its end. `arguments`: without the program.
-inline Said edge(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), edge_program());
+/// Waits for its end. `arguments`: the program first.
+inline Said answer_of(std::vector<std::string> arguments) {
   ChildProcess child(std::move(arguments));
   std::string text = child.read_all();
   return {child.wait(), std::move(text)};
+}
+
+/// bess-edge's. `arguments`: without the program.
+inline Said edge(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), edge_program());
+  return answer_of(std::move(arguments));
+}
+
+/// `status --json`; does not exist where that is no JSON.
+inline Json status_of(const std::string& config) {
+  return Json::parse(edge({"status", "--json", "--config", config}).text);
+}
+
+/// The next line of output with this piece; empty when the program ended before.
+inline std::string await_line(ChildProcess& child, const std::string& piece) {
+  std::string line = child.read_line();
+  while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
+  return line;
 }
 
 /// A moment as `status` and `why` show it to a person.

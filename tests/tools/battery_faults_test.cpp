@@ -29,50 +29,6 @@ TEST(BatteryFaults, EveryFaultHasItsPlaceInTheTable) {
   EXPECT_EQ(value, static_cast<int>(BatteryFault::kGridOtherPhase));
 }
 
-TEST(BatteryFaults, WrongSignShowsChargingAsDischarging) {
-  LoopbackBattery loopback("block", always(BatteryFault::kWrongSign));
-  ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
-  BatteryMeasurement m;
-  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
-  ASSERT_EQ(battery.read(m), Status::kOk);
-  EXPECT_EQ(m.power_w, -4'000);
-  EXPECT_EQ(loopback.stop().power_w(), 4'000);
-}
-
-TEST(BatteryFaults, SocJumpShowsHalfTheScaleMore) {
-  LoopbackBattery loopback("block", always(BatteryFault::kSocJump));
-  ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
-  BatteryMeasurement m;
-  ASSERT_EQ(battery.read(m), Status::kOk);
-  EXPECT_EQ(m.soc_e4, 0);  // 50 % + 50 %
-}
-
-TEST(BatteryFaults, FrozenShowsWhatOnceWas) {
-  BatteryServerSettings settings = always(BatteryFault::kFrozen);
-  settings.faults.from_s = 200;
-  LoopbackBattery loopback("block", settings);
-  ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
-  BatteryMeasurement before, after;
-  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
-  ASSERT_EQ(battery.read(before), Status::kOk);
-  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond);  // 1000 s
-  ASSERT_EQ(battery.read(after), Status::kOk);
-  EXPECT_NEAR(after.soc_e4, before.soc_e4, 100);  // the last good answer was a little later
-  EXPECT_GT(loopback.stop().soc_frac(), 0.6);
-}
-
-TEST(BatteryFaults, EarlyExpiryEndsTheOrderAndIsSeen) {
-  BatteryServerSettings settings = always(BatteryFault::kEarlyExpiry);
-  settings.faults.every = 4;  // the read-back of the order is not struck
-  LoopbackBattery loopback("block", settings);
-  ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
-  BatteryMeasurement m;
-  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
-  ASSERT_EQ(battery.read(m), Status::kOk);
-  EXPECT_FALSE(m.dispatch_active);
-  EXPECT_FALSE(loopback.stop().dispatch_active());
-}
-
 TEST(BatteryFaults, ThrottleLetsAQuarterFlowNearTheLimit) {
   SimulatedBattery battery({.power_w_max = 4'000,
                             .capacity_wh = 8'000,

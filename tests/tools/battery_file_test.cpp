@@ -7,11 +7,10 @@
 #include "shared/battery_keys.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(BatteryFile, EveryKeyIsTakenAndWhatIsNotThereStays) {
   const TemporaryFolder folder;
@@ -40,12 +39,12 @@ TEST(BatteryFile, MistakesAreOneLineThatNamesThePlace) {
   const struct {
     const char* text;
     const char* complaint;
-  } table[] = {{"steps = 7\n", "has no [battery]"},
+  } table[] = {{"steps = 7\n", "battery.toml [battery]"},
                {"[battery]\npower_kw = 4\n", "battery.toml:2"},
                {"[battery]\n\nstandby_w = -1\n", "battery.toml:3"},
                {"[battery]\ndelay_s = \"two\"\n", "battery.toml:2"},
-               {"[battery]\nsoc_min = 0.9\nsoc_max = 0.5\n", "soc_min must be below soc_max"},
-               {"[battery]\ncold_power_share = 0.6\n", "set cold_from_hour and cold_to_hour"},
+               {"[battery]\nsoc_min = 0.9\nsoc_max = 0.5\n", "battery.toml soc_min soc_max"},
+               {"[battery]\ncold_power_share = 0.6\n", "cold_from_hour cold_to_hour"},
                {"[battery\n", "battery.toml:1"}};
   for (const auto& row : table) {
     BatteryParameters battery;
@@ -53,7 +52,7 @@ TEST(BatteryFile, MistakesAreOneLineThatNamesThePlace) {
       read_battery_file(folder.write("battery.toml", row.text), battery);
       ADD_FAILURE() << "taken: " << row.text;
     } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(row.complaint));
+      EXPECT_THAT(error.what(), Names(row.complaint));
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
   }

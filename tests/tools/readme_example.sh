@@ -14,7 +14,7 @@ ln -s "$build/bess-sim" "$build/bess-edge" "$build/bess-prices" "$folder/build-e
 grep -q bess-edge "$folder/example.sh" || fail "README.md shows no example"
 cd "$folder" || exit 1
 sh example.sh >said 2>&1 || fail "the example fails"
-grep -q "stopped: battery released" build-edge/closed-loop/edge.log ||
+tail -n 1 build-edge/closed-loop/edge.csv | grep -q ",stopping," ||
   fail "the battery was not driven to the end"
 rows=$(grep -c ",running," build-edge/closed-loop/edge.csv)
 [ "$rows" -ge 25 ] || fail "only $rows of 50 cycles were in control"

@@ -1,17 +1,13 @@
-// The simulated battery: exact integration, limits, expiry, and the AlphaESS registers around it.
+// The simulated battery: exact integration, limits, expiry; for its registers see map_day_test.
 #include "tools/battery_sim/simulated_battery.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <random>
 
-#include "edge/registers/codec.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
-#include "tests/support/shipped_maps.h"
-#include "tools/battery_sim/register_image.h"
 
 namespace bess {
 namespace {
@@ -191,93 +187,6 @@ TEST(SimulatedBattery, RecordHasOneRowAMinuteAndAllTheEnergy) {
   EXPECT_NEAR(rows[1].energy_wh, 20, 1e-9);
   EXPECT_NEAR(rows[2].energy_wh, 10, 1e-9);  // under way
   EXPECT_EQ(rows[1].commanded_power_w, 1'200);
-}
-
-/// Registers of a battery, written as the edge writes them.
-class RegisterImageTest : public ::testing::TestWithParam<const char*> {
- protected:
-  RegisterImageTest() { image_.emplace(map_, battery_, registers_, registers_); }
-
-  void write(Command command, const PowerOrder& order) {
-    for (const BlockWrite& write : map_.sequence(command).writes) {
-      RegisterBlock block;
-      ASSERT_EQ(encode_block(map_, write, order, block), Status::kOk);
-      image_->refresh(now_ns_);
-      for (int i = 0; i < block.size(); ++i) registers_[write.address + i] = block[i];
-      image_->apply_write(write.address, block.size());
-    }
-  }
-  std::int64_t read(const char* point) {
-    image_->refresh(now_ns_);
-    const RegisterPoint& p = map_.points[find_point(map_, point)];
-    std::int64_t value = 0;
-    EXPECT_TRUE(decode(p, &registers_[p.address], value)) << point;
-    return value;
-  }
-
-  RegisterMap map_ = load_shipped_map({"alphaess", GetParam()});
-  SimulatedBattery battery_{kHouse, 0.5, kStartNs};
-  std::array<std::uint16_t, RegisterImage::kRegisterCount> registers_{};
-  std::optional<RegisterImage> image_;
-  std::int64_t now_ns_ = kStartNs;
-};
-
-TEST_P(RegisterImageTest, ObeysEveryCommandInThisVariant) {
-  PowerOrder order{.power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
-  write(Command::kCharge, order);
-  EXPECT_EQ(read("battery_power"), 4'000);
-  EXPECT_EQ(read("dispatch_start"), 1);
-  now_ns_ = after_s(120);
-  order.power_w = -3'000;
-  write(Command::kDischarge, order);
-  EXPECT_EQ(read("battery_power"), -3'000);
-  EXPECT_EQ(read("soc"), 5'160);  // 51.58 %, the register counts 0.1 %
-  order.power_w = 0;
-  write(Command::kIdle, order);
-  EXPECT_EQ(read("battery_power"), 0);
-  EXPECT_EQ(read("dispatch_start"), 1);
-  now_ns_ = after_s(419);
-  EXPECT_EQ(read("dispatch_start"), 1);
-  now_ns_ = after_s(420);
-  EXPECT_EQ(read("dispatch_start"), 0);  // expiry is visible in the start register
-  order.power_w = 4'000;
-  write(Command::kCharge, order);
-  write(Command::kRelease, {});
-  EXPECT_EQ(read("battery_power"), 0);
-  EXPECT_EQ(read("dispatch_start"), 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Variants, RegisterImageTest,
-                         ::testing::Values("block", "five_writes", "ten_and_one"));
-
-TEST(RegisterImage, ShowsWhatEveryIdentityCheckAsksFor) {
-  for (const MapVariant& shipped : kShippedMapVariants) {
-    RegisterMap map = load_shipped_map(shipped);
-    SCOPED_TRACE(map.name.view());
-    SimulatedBattery battery(kHouse, 0.5, kStartNs);
-    std::vector<std::uint16_t> holding(RegisterImage::kRegisterCount);
-    std::vector<std::uint16_t> input(RegisterImage::kRegisterCount);
-    // The scale factors stay: without them nothing can be told.
-    decltype(map.simulator.initial) factors;
-    for (const auto& assignment : map.simulator.initial) {
-      if (map.points[assignment.point].name.view().ends_with("_sf")) factors.push_back(assignment);
-    }
-    map.simulator.initial = factors;
-    RegisterImage image(map, battery, holding, input);
-    image.refresh(kStartNs);
-    LivePoints live;
-    for (int i = 0; i < map.points.size(); ++i) {
-      const bool is_input = map.points[i].read_function == 4;
-      live.keep(map, i, &(is_input ? input : holding)[image.address_of(i)]);
-    }
-    for (const IdentityCheck& check : map.identity) {
-      if (map.points[check.point].type == RegisterType::kText) continue;
-      std::int64_t value = 0;
-      EXPECT_TRUE(live_value(map, live, check.point, value)) << check.hint.view();
-      EXPECT_GE(value, check.value_min) << check.hint.view();
-      EXPECT_LE(value, check.value_max) << check.hint.view();
-    }
-  }
 }
 
 }  // namespace

@@ -221,7 +221,6 @@ void TrialBattery::account() {
   if (derated_w() < nature_.rated_w) ++oddities_.derated_s;
   const double hours = 1 / kSecondsPerHour;
   energy_.moved_wh += std::abs(flow_w_) * hours;
-  if (is_dispatched_) energy_.against_order_wh += std::abs(flow_w_ - ordered_w_) * hours;
   const double beyond_w = std::abs(flow_w_) - std::max(std::abs(honest_w_), std::abs(ordered_w_));
   energy_.wrong_wh +=
       (flow_w_ * honest_w_ < 0 ? std::abs(flow_w_) : std::max(beyond_w, 0.0)) * hours;

@@ -17,8 +17,7 @@ namespace bess::trial {
 
 /// Since the start, as the cells know it.
 struct EnergyAccount {
-  double moved_wh = 0;          ///< in and out, at the grid side
-  double against_order_wh = 0;  ///< what flowed otherwise than ordered while an order was in force
+  double moved_wh = 0;  ///< in and out, at the grid side
   double wrong_wh =
       0;  ///< against what an honest battery would have let flow, or beyond order and it
 };

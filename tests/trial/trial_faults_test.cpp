@@ -1,6 +1,7 @@
 // How soon each fault of the trial is found, by how often it strikes and what is ordered meanwhile.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -48,75 +49,56 @@ std::string say(const FaultResult& r) {
   return std::string(reason_name(r.reason)) + " after " + std::to_string(r.cycles) + " cycles";
 }
 
+/// How often it strikes, what is done to the controller meanwhile, and within how many cycles it is
+/// found with orders of one kind.
+struct Way {
+  const char* name;
+  int cycles_max;
+  int every = 1;
+  bool is_killed = false;  ///< after each cycle: each run sees one reading or two
+  int step_every = 0;      ///< of its clock
+};
+constexpr Way kWays[] = {{"constant", 3},
+                         {"every second tick", 6, 2},
+                         {"every third tick", 9, 3},
+                         {"killed", 6, 1, true},
+                         {"clock stepped", 6, 1, false, 1},
+                         {"killed, clock stepped", 9, 1, true, 1}};
+
 class ShownFaultOfTheTrial : public ::testing::TestWithParam<ShownFault> {
  protected:
-  static FaultResult result_of(int every, Orders orders) {
-    return try_fault(
-        {.fault = &trial_fault(GetParam().name), .times = {.every = every}, .orders = orders});
-  }
   /// Stopped for a reason of the battery's, and not driven on.
-  static void expect_found(int every, Orders orders, int cycles_max) {
-    const FaultResult r = result_of(every, orders);
-    SCOPED_TRACE(std::string(orders_name(orders)) + ", every " + std::to_string(every) + ": " +
-                 say(r));
+  static void expect_found(const Way& way, Orders orders, int cycles_max) {
+    const FaultResult r = try_fault({.fault = &trial_fault(GetParam().name),
+                                     .times = {.every = way.every},
+                                     .orders = orders,
+                                     .is_killed = way.is_killed,
+                                     .step_every = way.step_every});
+    SCOPED_TRACE(std::string(orders_name(orders)) + ", " + way.name + ": " + say(r));
     EXPECT_NE(r.reason, Reason::kStudent);
     EXPECT_LE(r.cycles, cycles_max);
+    if (way.is_killed || way.step_every > 0) return;
     if (r.is_trip) {
       EXPECT_EQ(r.driven_after, 0);
     } else {
       EXPECT_LE(r.driven_after, kCyclesAfter * 3 / 4);  // tried again, less and less often
     }
   }
-  static void expect_found_with_constant_orders(int every, int cycles_max) {
-    for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero}) {
-      if ((GetParam().at & at(orders)) != 0) expect_found(every, orders, cycles_max);
-    }
-  }
 };
 
-TEST_P(ShownFaultOfTheTrial, IsFoundInThreeCyclesWhereItIsConstant) {
-  expect_found_with_constant_orders(1, 3);
-}
-
-TEST_P(ShownFaultOfTheTrial, IsFoundInSixCyclesAtEverySecondTick) {
-  expect_found_with_constant_orders(2, 6);
-}
-
-TEST_P(ShownFaultOfTheTrial, IsFoundInNineCyclesAtEveryThirdTick) {
-  expect_found_with_constant_orders(3, 9);
+TEST_P(ShownFaultOfTheTrial, IsFoundInEveryWay) {
+  for (const Way& way : kWays) {
+    for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero}) {
+      if ((GetParam().at & at(orders)) != 0) expect_found(way, orders, way.cycles_max);
+    }
+  }
 }
 
 TEST_P(ShownFaultOfTheTrial, IsFoundWithOrdersOfEitherSign) {
   if ((GetParam().at & kAtBoth) == 0) GTEST_SKIP() << "needs 0 W";
   const bool at_both = (GetParam().at & kAtBoth) == kAtBoth;
-  expect_found(1, Orders::kAlternating, at_both ? 3 : 6);
-  expect_found(1, Orders::kPairs, at_both ? 3 : 8);
-}
-
-/// Each run of the controller sees one reading or two before it is killed.
-TEST_P(ShownFaultOfTheTrial, IsFoundThoughTheControllerIsKilledAfterEachCycle) {
-  for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero}) {
-    if ((GetParam().at & at(orders)) == 0) continue;
-    const FaultResult r =
-        try_fault({.fault = &trial_fault(GetParam().name), .orders = orders, .is_killed = true});
-    EXPECT_NE(r.reason, Reason::kStudent) << orders_name(orders);
-    EXPECT_LE(r.cycles, 6) << orders_name(orders);
-  }
-}
-
-TEST_P(ShownFaultOfTheTrial, IsFoundUnderAClockThatIsSteppedInEachCycle) {
-  for (const bool is_killed : {false, true}) {
-    for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero}) {
-      if ((GetParam().at & at(orders)) == 0) continue;
-      const FaultResult r = try_fault({.fault = &trial_fault(GetParam().name),
-                                       .orders = orders,
-                                       .is_killed = is_killed,
-                                       .step_every = 1});
-      EXPECT_NE(r.reason, Reason::kStudent) << orders_name(orders);
-      EXPECT_LE(r.cycles, is_killed ? 9 : 6)
-          << orders_name(orders) << (is_killed ? ", killed" : "");
-    }
-  }
+  expect_found(kWays[0], Orders::kAlternating, at_both ? 3 : 6);
+  expect_found(kWays[0], Orders::kPairs, at_both ? 3 : 8);
 }
 
 std::string fault_name(const ::testing::TestParamInfo<ShownFault>& info) { return info.param.name; }
@@ -183,7 +165,28 @@ TEST(TrialFaults, WhatLeavesOrComesBesidesOrdersOfEitherSignIsTold) {
   }
 }
 
-TEST(TrialFaults, AreAtLeastThirtyFive) { EXPECT_GE(trial_faults().size(), 35U); }
+/// What nothing shows in two hours: why stands in edge/supervision/README.md. The table is printed.
+constexpr std::string_view kUnseen[] = {"soc_at_least_9_percent", "limit_0_w_shown"};
+
+TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrTold) {
+  for (const TrialFault& fault : trial_faults()) {
+    std::string row = fault.name;
+    bool is_seen = false;
+    for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero,
+                                Orders::kAlternating, Orders::kPairs}) {
+      const FaultResult r = try_fault({.fault = &fault, .orders = orders});
+      const bool is_found = r.reason != Reason::kStudent;
+      const bool is_told = r.told_cycles > 0 || r.weak_answers >= 2;
+      is_seen = is_seen || is_found || is_told;
+      row += " | " + std::string(orders_name(orders)) + ": " +
+             (is_found  ? say(r)
+              : is_told ? "told"
+                        : "-");
+    }
+    std::printf("%s\n", row.c_str());
+    EXPECT_EQ(is_seen, std::ranges::find(kUnseen, fault.name) == std::end(kUnseen)) << fault.name;
+  }
+}
 
 }  // namespace
 }  // namespace bess::trial

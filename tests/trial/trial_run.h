@@ -25,9 +25,7 @@ enum class Orders : std::uint8_t {
   kRealDay,
   kHours
 };
-/// In the tables of every fault; kHours, 40 minutes each way, is for faults that take days.
-inline constexpr Orders kAllOrders[] = {Orders::kCharge,      Orders::kDischarge, Orders::kZero,
-                                        Orders::kAlternating, Orders::kPairs,     Orders::kRealDay};
+/// kHours, 40 minutes each way, is for faults that take days.
 std::string_view orders_name(Orders orders);
 
 struct TrialPrices {
@@ -101,8 +99,6 @@ struct FaultCase {
   FaultTimes times{};
   Orders orders = Orders::kCharge;
   double soc_frac = 0.45;
-  BatteryNature nature{};
-  std::uint64_t seed = 1;
   bool is_killed = false;  ///< the controller, after each cycle
   int step_every = 0;      ///< the clock is stepped after so many cycles; 0 = never
   int cycles_max = 0;      ///< 0 = fault_cycles_max
@@ -113,16 +109,12 @@ struct FaultResult {
   int cycles = 0;                    ///< begun since the fault, that which finds it included
   Reason reason = Reason::kStudent;  ///< kStudent: not found
   bool is_trip = false;
-  double against_order_wh = 0;  ///< until it was found
-  double moved_wh = 0;
   double wrong_wh = 0;
   double wrong_until_told_wh = 0;  ///< until the sum of it was worth a line of `status`; 0 = never
-  int driven_after = 0;       ///< of the next thirty cycles, those with an order that is not 0 W
-  double moved_after_wh = 0;  ///< in the next thirty cycles
-  int weak_answers = 0;       ///< the most that were told
-  int told_cycles = 0;        ///< until energy was told that does not arrive, or is lost; 0 = never
-  ResponseFindings told{};    ///< the last of it
-  double soc_frac = 0;        ///< of the cells when it was found, or in the end
+  int driven_after = 0;     ///< of the next thirty cycles, those with an order that is not 0 W
+  int weak_answers = 0;     ///< the most that were told
+  int told_cycles = 0;      ///< until energy was told that does not arrive, or is lost; 0 = never
+  ResponseFindings told{};  ///< the last of it
 };
 
 /// Two hours; of real prices a day.
@@ -138,9 +130,6 @@ struct HonestDays {
   Reason first_trip = Reason::kStudent;
   int first_trip_cycle = 0;
   int lost[kReasonCount] = {};  ///< cycles that were stopped, by reason
-  int told_cycles = 0;          ///< that told of energy that does not arrive, or is lost
-  ResponseFindings told{};      ///< the last of it
-  int weak_cycles = 0;          ///< that told of two weak answers or more
   std::int32_t wrong_energy_e6_max = 0;
   Oddities oddities{};
   double moved_wh = 0;

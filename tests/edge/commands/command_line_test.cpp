@@ -6,6 +6,7 @@
 #include "edge/commands/command_line.h"
 #include "edge/commands/command_list.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -52,63 +53,59 @@ TEST(EdgeWords, HelpAndVersionAreWordsToo) {
 
 TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
   const std::pair<std::vector<std::string>, const char*> slips[] = {
-      {{"stat"}, "unknown command stat; did you mean status? (see bess-edge --help)"},
-      {{"stauts"}, "unknown command stauts; did you mean status?"},
-      {{"relase", "--yes"}, "unknown command relase; did you mean release?"},
-      {{"hlep"}, "unknown command hlep; did you mean help?"},
-      {{"check"}, "unknown command check; did you mean --check?"},
-      {{"selftest"}, "unknown command selftest; did you mean --self-test?"},
-      {{"help", "stauts"}, "unknown command stauts; did you mean status?"},
-      {{"plutonium"}, "unknown command plutonium (see bess-edge --help)"},
-      {{"--confg", "x"}, "unknown option --confg; did you mean --config? (see bess-edge --help)"},
-      {{"--config=x", "--check"}, "unknown option --config=x; did you mean --config?"},
-      {{"status", "--jsno"},
-       "unknown option --jsno; did you mean --json? (see bess-edge status --help)"},
-      {{"status", "--follw"}, "did you mean --follow?"},
-      {{"log", "--lst", "3"}, "did you mean --last?"},
-      {{"hold", "100", "--fro", "2h"}, "did you mean --for? (see bess-edge hold --help)"},
-      {{"status", "--cycles", "3"}, "unknown option --cycles (see bess-edge status --help)"},
-      {{"--json", "--cycles", "3", "status"},
-       "unknown option --cycles (see bess-edge status --help)"},
-      {{"map", "chek"},
-       "map needs what is to be done: map check --against FILE (see bess-edge map check"},
-      {{"log", "--last"}, "a value is missing after --last (see bess-edge log --help)"},
-      {{"--config"}, "a value is missing after --config (see bess-edge --help)"},
+      {{"stat"}, "stat status --help bess-edge"},
+      {{"stauts"}, "stauts status"},
+      {{"relase", "--yes"}, "relase release"},
+      {{"hlep"}, "hlep help"},
+      {{"check"}, "check --check"},
+      {{"selftest"}, "selftest --self-test"},
+      {{"help", "stauts"}, "stauts status"},
+      {{"plutonium"}, "plutonium --help bess-edge"},
+      {{"--confg", "x"}, "--confg --config --help bess-edge"},
+      {{"--config=x", "--check"}, "--config=x --config"},
+      {{"status", "--jsno"}, "--jsno --json --help bess-edge status"},
+      {{"status", "--follw"}, "--follow"},
+      {{"log", "--lst", "3"}, "--last"},
+      {{"hold", "100", "--fro", "2h"}, "--for --help bess-edge hold"},
+      {{"status", "--cycles", "3"}, "--cycles --help bess-edge status"},
+      {{"--json", "--cycles", "3", "status"}, "--cycles --help bess-edge status"},
+      {{"map", "chek"}, "--against bess-edge map check"},
+      {{"log", "--last"}, "--last --help bess-edge log"},
+      {{"--config"}, "--config --help bess-edge"},
   };
   for (const auto& [words, complaint] : slips) {
     const Said said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), HasSubstr(complaint)));
+    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), Names(complaint)));
     EXPECT_EQ(said.text.find('\n'), said.text.size() - 1) << said.text;
   }
 }
 
 TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
   const std::pair<std::vector<std::string>, const char*> incomplete[] = {
-      {{"status", "--json", "--prometheus"}, "--json and --prometheus exclude each other"},
-      {{"hold", "100"}, "hold needs a power in W and --for DURATION, or --release alone"},
-      {{"hold", "--release", "--for", "2h"}, "or --release alone (see bess-edge hold --help)"},
-      {{"hold", "100", "200", "--for", "2h"}, "unknown option 200"},
-      {{"hold", "-100", "--for", "1m"}, "--for needs 2m to 7d, such as 2h or 1h30m, not 1m"},
-      {{"limit"}, "limit needs either --for DURATION or --clear"},
-      {{"limit", "--clear", "--for", "1s"}, "limit needs either --for DURATION or --clear"},
-      {{"record"}, "record needs --for DURATION (see bess-edge record --help)"},
-      {{"record", "--for", "0s"}, "--for needs 1s to 7d"},
-      {{"map", "check"}, "map check needs --against FILE (see bess-edge map check --help)"},
-      {{"map", "check", "--against", "a", "--map", "m", "--config", "c"},
-       "--map and --config exclude each other"},
-      {{"map", "check", "--against", "a", "--variant", "v"}, "--variant needs --map"},
-      {{"map", "check", "--against", "a", "--map", "m", "--steps", "--json"}, "leave --json out"},
-      {{"log", "--last", "0"}, "--last needs a whole number above 0, not 0"},
-      {{"log", "--since", "now"}, "--since needs a moment such as 14:32, "},
-      {{"log", "--at", "14:32", "--last", "3"}, "--at is one cycle"},
-      {{"--config", ""}, "--config needs a file, not an empty text"},
-      {{"signature", "--config", "x"}, "unknown option --config"},
+      {{"status", "--json", "--prometheus"}, "--json --prometheus"},
+      {{"hold", "100"}, "--for --release"},
+      {{"hold", "--release", "--for", "2h"}, "--release --help bess-edge hold"},
+      {{"hold", "100", "200", "--for", "2h"}, "200"},
+      {{"hold", "-100", "--for", "1m"}, "--for 2m 7d 2h 1h30m 1m"},
+      {{"limit"}, "--for --clear"},
+      {{"limit", "--clear", "--for", "1s"}, "--for --clear"},
+      {{"record"}, "--for --help bess-edge record"},
+      {{"record", "--for", "0s"}, "--for 1s 7d"},
+      {{"map", "check"}, "--against --help bess-edge map check"},
+      {{"map", "check", "--against", "a", "--map", "m", "--config", "c"}, "--map --config"},
+      {{"map", "check", "--against", "a", "--variant", "v"}, "--variant --map"},
+      {{"map", "check", "--against", "a", "--map", "m", "--steps", "--json"}, "--json"},
+      {{"log", "--last", "0"}, "--last 0"},
+      {{"log", "--since", "now"}, "--since 14:32"},
+      {{"log", "--at", "14:32", "--last", "3"}, "--at"},
+      {{"--config", ""}, "--config"},
+      {{"signature", "--config", "x"}, "--config"},
   };
   for (const auto& [words, complaint] : incomplete) {
     const Said said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), HasSubstr(complaint)));
+    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), Names(complaint)));
   }
 }
 
@@ -135,9 +132,8 @@ timeout_ms = 100
   for (int i = 0; i < 2; ++i) {
     const Said said = said_to({"--check", "--config", config});
     EXPECT_EQ(said.exit_code, 1);
-    EXPECT_THAT(said.text, AllOf(HasSubstr("student    "), HasSubstr("map        simulator"),
-                                 HasSubstr("\ncharge     0x"), HasSubstr("\nrelease    0x"),
-                                 HasSubstr("battery at 127.0.0.1:1"), HasSubstr("price from ")));
+    EXPECT_THAT(said.text, AllOf(Names("student simulator 127.0.0.1:1 http://127.0.0.1:1/prices"),
+                                 HasSubstr(" 0x0")));
   }
 }
 

@@ -17,6 +17,7 @@
 #include "shared/local_text.h"
 #include "shared/training_period.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -103,8 +104,7 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
   const Said newest = ask({"why"});
   EXPECT_EQ(newest.exit_code, 0) << newest.error;
   EXPECT_THAT(newest.out, StartsWith(local_text(newest_utc_s_).c_str()));
-  EXPECT_THAT(newest.out, HasSubstr("by the student, since "));
-  EXPECT_THAT(newest.out, HasSubstr("(30 cycles)"));
+  EXPECT_THAT(newest.out, Names("student 30"));
   const std::int64_t before_s = newest_utc_s_ - 20 * kSecondsPerStep;
   for (const std::string& at :
        {std::string(local_clock_text(before_s + 90).view()),
@@ -119,16 +119,16 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
 
 TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
   EXPECT_EQ(ask({"why"}).exit_code, 1);
-  EXPECT_THAT(ask({"why"}).error, HasSubstr("nothing was decided yet: the log is empty"));
   log_until_now(5);
   const Said early = ask({"why", "--at", "2020-01-01 12:00"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.error,
-              HasSubstr("nothing was decided at 2020-01-01 12:00 local; the log begins at "));
+              Names("2020-01-01 12:00 " +
+                    std::string(local_text(newest_utc_s_ - 4 * kSecondsPerStep).view())));
   for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", ""}) {
     const Said said = ask({"why", "--at", at});
     EXPECT_EQ(said.exit_code, 2) << at;
-    EXPECT_THAT(said.error, HasSubstr("--at needs a moment such as 14:32"));
+    EXPECT_THAT(said.error, Names("--at 14:32"));
   }
 }
 
@@ -166,7 +166,7 @@ TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
 }
 
 TEST_F(Questions, StatusSaysWhomToCall) {
-  EXPECT_THAT(ask({"status"}).out, HasSubstr("\ncall       Ann, +32 2 000 00 00\n"));
+  EXPECT_THAT(ask({"status"}).out, Names("Ann +32 2 000 00 00"));
   const Json status = Json::parse(ask({"status", "--json"}).out);
   EXPECT_STREQ(status.value()["contact"].text(), "Ann, +32 2 000 00 00");
 }
@@ -185,19 +185,18 @@ TEST_F(Questions, StatusTellsTheTrainingDays) {
   const std::string today{local_date_text(std::time(nullptr)).view()};
   published("2023-01-01", today.c_str());
   const Said fresh = ask({"status"});
-  EXPECT_THAT(fresh.out, HasSubstr("\ntrained    2023-01-01 to " + today + "\n"));
+  EXPECT_THAT(fresh.out, Names("2023-01-01 " + today));
   EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
   published("2023-01-01", "2023-05-22");
   const Said old = ask({"status"});
-  EXPECT_THAT(old.out, HasSubstr("2023-05-22\n           WARN: trained until "));
+  EXPECT_THAT(old.out, Names("2023-05-22 WARN"));
   EXPECT_EQ(old.exit_code, fresh.exit_code);
   const Json json = Json::parse(ask({"status", "--json"}).out);
   EXPECT_STREQ(json.value()["trained_from"].text(), "2023-01-01");
   EXPECT_STREQ(json.value()["trained_until"].text(), "2023-05-22");
-  EXPECT_THAT(json.value()["retrain"].text(), HasSubstr("before the price regime from "));
+  EXPECT_STRNE(json.value()["retrain"].text(), "");
   published("", "");
-  EXPECT_THAT(ask({"status"}).out, AllOf(HasSubstr("\ntrained    on unknown days\n"),
-                                         ::testing::Not(HasSubstr("retrain"))));
+  EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
 }
 
 TEST_F(Questions, EarnedAddsTheDaysUp) {
@@ -210,16 +209,15 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   const Json json = Json::parse(said.out);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value(), 3.0 * 2, 1e-9);
   EXPECT_NEAR(json.value()["earned_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
-  EXPECT_THAT(ask({"earned", span}).out, HasSubstr("-0.24 EUR is an estimate\n"));
+  EXPECT_THAT(ask({"earned", span}).out, Names("-0.24 EUR"));
   EXPECT_THAT(ask({"earned", span, "--csv"}).out, StartsWith("date,earned_eur,"));
   EXPECT_NEAR(json.value()["estimated_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 0);
   EXPECT_EQ(json.value()["stops"]["driven_share"].number(), 1);
-  EXPECT_THAT(ask({"earned", span, "--beside"}).out, HasSubstr(", undisturbed "));
   const Json beside = Json::parse(ask({"earned", span, "--beside", "--json"}).out);
   EXPECT_DOUBLE_EQ(beside.value()["beside"]["this_battery_eur"].number().value(),
                    beside.value()["earned_at_equal_soc_eur"].number().value());
-  EXPECT_THAT(ask({"earned", span, "--beside", "--csv"}).error, HasSubstr("not with --csv"));
+  EXPECT_THAT(ask({"earned", span, "--beside", "--csv"}).error, Names("--beside --csv"));
 }
 
 /// What only counts money is named by its file and line, and keeps nobody from driving.
@@ -230,7 +228,7 @@ TEST_F(Questions, ASlipInTheContractIsNamed) {
   EXPECT_EQ(bad, config_);
   for (const Said& said : {ask({"earned"}), ask({"--check"})}) {
     EXPECT_EQ(said.exit_code, 1);
-    EXPECT_THAT(said.error, HasSubstr("[contract] import_percent must lie between 0 and 100"));
+    EXPECT_THAT(said.error, Names("edge.toml:9 [contract] import_percent 0 100"));
   }
   EXPECT_EQ(ask({"why"}).exit_code, 0);
 }
@@ -255,11 +253,11 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   EXPECT_NEAR(json.value()["contract_eur"].number().value_or(0), 0.6, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
   EXPECT_THAT(ask({"earned", span, "--html"}).out, HasSubstr("</html>"));
-  EXPECT_THAT(ask({"earned", "--html", "--csv"}).error, HasSubstr("one of them"));
+  EXPECT_THAT(ask({"earned", "--html", "--csv"}).error, Names("--html --csv"));
   ASSERT_NE(folder_.write("state/settled.csv", "damaged"), "");
   const Said damaged = ask({"earned", span});
   EXPECT_EQ(damaged.exit_code, 0);
-  EXPECT_THAT(damaged.error, HasSubstr("settled.csv: is damaged"));
+  EXPECT_THAT(damaged.error, Names("settled.csv"));
 }
 
 TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
@@ -267,12 +265,11 @@ TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
   const std::string today = std::string(local_text(newest_utc_s_).view()).substr(0, 10);
   const Said early = ask({"earned", "2020-01-01..2020-01-31"});
   EXPECT_EQ(early.exit_code, 1);
-  EXPECT_THAT(early.error, HasSubstr("the log holds no cycle of 2020-01-01 to 2020-01-31; it has " +
-                                     today + " to " + today + "\n"));
+  EXPECT_THAT(early.error, Names("2020-01-01 2020-01-31 " + today));
   EXPECT_EQ(ask({"earned", "tomorrow"}).exit_code, 2);
-  EXPECT_THAT(ask({"earned", "tomorrow"}).error, HasSubstr("the period must be today, yesterday"));
+  EXPECT_THAT(ask({"earned", "tomorrow"}).error, Names("today yesterday"));
   EXPECT_EQ(ask({"earned", "week", "month"}).exit_code, 2);
-  EXPECT_THAT(ask({"earned", "--csv", "--json"}).error, HasSubstr("--csv or --json, not both"));
+  EXPECT_THAT(ask({"earned", "--csv", "--json"}).error, Names("--csv --json"));
 }
 
 Action of_this_student(const CycleRecord& r) {
@@ -290,7 +287,7 @@ TEST_F(Questions, ReplayOfTheSameStudentDiffersNowhere) {
   log_until_now(60, of_this_student);
   const Said said = ask({"replay", last_two_days(newest_utc_s_), "--limit", "1"});
   EXPECT_EQ(said.exit_code, 0) << said.error;
-  EXPECT_THAT(said.out, HasSubstr("would decide otherwise in 0 of 60 cycles (0.00 %), "));
+  EXPECT_THAT(said.out, Names("0 60 0.00"));
 }
 
 TEST_F(Questions, ReplayCountsWhatDiffersAndWhatItIsWorth) {
@@ -311,7 +308,7 @@ TEST_F(Questions, ReplayCountsWhatDiffersAndWhatItIsWorth) {
   EXPECT_EQ(ask({"replay", days, "--limit", "17"}).exit_code, 0);
   const Said over = ask({"replay", days, "--limit", "16"});
   EXPECT_EQ(over.exit_code, 3);
-  EXPECT_THAT(over.error, HasSubstr("16.67 % of the decisions would be others"));
+  EXPECT_THAT(over.error, Names("16.67 %"));
 }
 
 TEST_F(Questions, ReplayRefusesWhatItCannotAnswer) {

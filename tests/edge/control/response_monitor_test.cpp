@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 
 namespace bess {
 namespace {
@@ -67,59 +66,6 @@ TEST(ResponseMonitor, ThreeRightAnswersForgetAWrongOne) {
     site.step(ordered_w, -ordered_w);
     for (int good = 0; good < 3; ++good) site.step(ordered_w, ordered_w);
     EXPECT_EQ(site.monitor.trip(), Reason::kStudent) << i;
-  }
-}
-
-/// A fault at every `every`th reading, the others honest, orders by `ordered_w(i)`.
-struct Intermittent {
-  const char* name;
-  int every;
-  int readings_max;
-  std::function<std::int32_t(int)> ordered_w;
-};
-
-int readings_until_trip(const Intermittent& c, const std::function<double(std::int32_t)>& fault) {
-  MonitoredSite site;
-  for (int i = 0; i < 60; ++i) {
-    const std::int32_t ordered_w = c.ordered_w(i);
-    const double flowing_w = i % c.every == 0 ? fault(ordered_w) : ordered_w;
-    // The charge is kept in the middle: what is meant is found by power.
-    site.soc_frac = 0.5;
-    site.shown.soc_e4 = 5'000;
-    site.monitor.observe({.steady_s = site.utc_s += kStepS,
-                          .is_driven = true,
-                          .ordered_power_w = ordered_w,
-                          .order_age_s = kStepS,
-                          .measurement = {.soc_e4 = 5'000 + i % 2,
-                                          .power_w = static_cast<std::int32_t>(flowing_w),
-                                          .capacity_wh = 8'000}});
-    if (site.monitor.trip() != Reason::kStudent) return i + 1;
-  }
-  return 99;
-}
-
-TEST(ResponseMonitor, WhatComesAndGoesIsFoundWhateverTheOrders) {
-  const auto charge = [](int) { return 4'000; };
-  const auto discharge = [](int) { return -4'000; };
-  const auto alternating = [](int i) { return i % 2 == 0 ? 4'000 : -4'000; };
-  const auto blocks = [](int i) { return i / 3 % 2 == 0 ? -4'000 : 4'000; };
-  for (const auto& [orders, name] :
-       std::initializer_list<std::pair<std::function<std::int32_t(int)>, const char*>>{
-           {charge, "charge"},
-           {discharge, "discharge"},
-           {alternating, "alternating"},
-           {blocks, "blocks"}}) {
-    for (const auto& [every, readings_max] : {std::pair{1, 3}, {2, 6}, {3, 9}}) {
-      const Intermittent c{name, every, readings_max, orders};
-      EXPECT_LE(readings_until_trip(c, [](std::int32_t w) { return -w; }), readings_max)
-          << "inverted, " << name << ", every " << every;
-      EXPECT_LE(readings_until_trip(c, [](std::int32_t w) { return 2 * w; }), readings_max)
-          << "twice, " << name << ", every " << every;
-    }
-  }
-  for (const auto& [every, readings_max] : {std::pair{1, 3}, {2, 6}, {3, 9}}) {
-    const Intermittent rest{"rest", every, readings_max, [](int) { return 0; }};
-    EXPECT_LE(readings_until_trip(rest, [](std::int32_t) { return 3'000; }), readings_max) << every;
   }
 }
 
@@ -287,30 +233,6 @@ TEST(ResponseMonitor, ABatteryThatLooksAfterItselfIsNoFault) {
   }
 }
 
-TEST(ResponseMonitor, ASocThatStandsStillWhilePowerFlowsIsFound) {
-  MonitoredSite site;
-  site.step(4'000, 4'000);
-  const std::int32_t frozen_e4 = site.shown.soc_e4;
-  const auto freeze = [&](BatteryMeasurement& m) { m.soc_e4 = frozen_e4; };
-  site.step(4'000, 4'000, freeze);
-  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
-  site.step(4'000, 4'000, freeze);
-  EXPECT_EQ(site.monitor.trip(), Reason::kSocMismatch);
-}
-
-TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
-  MonitoredSite site;
-  site.step(4'000, 4'000);
-  const std::int32_t start_e4 = site.shown.soc_e4;
-  int readings = 0;
-  while (site.monitor.trip() == Reason::kStudent && readings < 10) {
-    ++readings;
-    site.step(4'000, 4'000, [&](BatteryMeasurement& m) { m.soc_e4 = 2 * start_e4 - m.soc_e4; });
-  }
-  EXPECT_EQ(site.monitor.trip(), Reason::kSocMismatch);
-  EXPECT_LE(readings, 5);
-}
-
 /// Full power for the first half of every step, none for the second: what a meter's limit makes of
 /// it.
 TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
@@ -474,34 +396,6 @@ TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
     const bool is_near_full = soc_e4 == 9'700;
     EXPECT_EQ(cycles.monitor.trip(), is_near_full ? Reason::kStudent : Reason::kUncontrolledPower)
         << soc_e4;
-  }
-}
-
-/// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85
-/// % up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
-TEST(ResponseMonitor, ThirtyDaysOfAnHonestBatteryRaiseNothing) {
-  for (const double capacity_scale : {0.85, 1.0, 1.15}) {
-    MonitoredSite site;
-    std::mt19937_64 random(1);
-    std::normal_distribution<> noise(0, 0.02);
-    std::uniform_int_distribution<int> wish(-1, 1);
-    double charge = 0.5;
-    for (int i = 0; i < 30 * 720; ++i) {
-      const std::int32_t ordered_w = 4'000 * wish(random);
-      double flowing_w = ordered_w * (1 + noise(random));
-      if (ordered_w > 0) flowing_w *= std::clamp((1 - charge) / 0.15, 0.0, 1.0);
-      if (ordered_w < 0) flowing_w *= std::clamp((charge - 0.10) / 0.15, 0.0, 1.0);
-      flowing_w += -40 + 30 * noise(random);
-      const double stored_w = flowing_w > 0 ? 0.95 * flowing_w : flowing_w / 0.95;
-      charge = std::clamp(charge + stored_w * kStepS / 3'600 / (8'000 * capacity_scale), 0.0, 1.0);
-      site.step(ordered_w, flowing_w, [&](BatteryMeasurement& m) {
-        m.soc_e4 = static_cast<std::int32_t>(std::lround(charge * 1e3)) * 10;
-      });
-      ASSERT_EQ(site.monitor.trip(), Reason::kStudent) << "reading " << i;
-      ASSERT_FALSE(site.monitor.gives_no_answer()) << "reading " << i;
-      ASSERT_FALSE(site.monitor.has_jumped()) << "reading " << i;
-      ASSERT_LT(site.monitor.weak_answers(), 2) << "reading " << i;
-    }
   }
 }
 

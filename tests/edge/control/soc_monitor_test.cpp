@@ -76,31 +76,6 @@ bool has_told_share(const ResponseMonitor& monitor) {
 }
 bool has_told_loss(const ResponseMonitor& monitor) { return monitor.findings().rest_loss_w != 0; }
 
-TEST(SocMonitor, AFrozenSocIsFoundInThreeReadingsAnywhere) {
-  for (const double soc : {0.09, 0.11, 0.3, 0.5, 0.8, 0.93, 0.95, 0.97, 1.0}) {
-    for (const OrdersByCycle& orders : {OrdersByCycle{charge}, OrdersByCycle{discharge}}) {
-      const bool charges = orders(0) > 0;
-      // Charging at the upper end and discharging at the lower are excused; for how long: below.
-      if ((soc >= 0.95 && charges) || (soc <= 0.10 && !charges)) continue;
-      CountedBattery battery(0.5);
-      battery.count = [soc](double) { return soc; };
-      battery.step(0);
-      EXPECT_LE(battery.readings_until(has_tripped, orders), 3) << soc << ' ' << orders(0);
-    }
-  }
-}
-
-TEST(SocMonitor, ASocThatMovesTheWrongWayIsFoundInThreeReadingsAnywhere) {
-  for (const double soc : {0.09, 0.3, 0.5, 0.8, 0.97}) {
-    for (const OrdersByCycle& orders : {OrdersByCycle{charge}, OrdersByCycle{discharge}}) {
-      CountedBattery battery(0.5);
-      battery.count = [soc](double stored) { return soc - (stored - 0.5); };
-      battery.step(0);
-      EXPECT_LE(battery.readings_until(has_tripped, orders), 3) << soc << ' ' << orders(0);
-    }
-  }
-}
-
 TEST(SocMonitor, AnEndExcusesNoMoreThanACountCanBeWrongBy) {
   CountedBattery full(0.5);
   full.count = [](double) { return 0.97; };
@@ -136,53 +111,6 @@ TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
   }
 }
 
-TEST(SocMonitor, ABatteryThatEchoesItsOrdersIsFound) {
-  for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
-    for (const OrdersByCycle& orders :
-         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
-      CountedBattery battery(0.5, step_e4);
-      battery.flow = [](double) { return 0.0; };
-      battery.meter = [](double ordered_w, double) { return ordered_w; };
-      battery.step(0);
-      const bool alternates = orders(0) != orders(1);
-      EXPECT_LE(battery.readings_until(has_tripped, orders), alternates ? 20 : 3)
-          << step_e4 << ' ' << orders(0);
-    }
-  }
-}
-
-TEST(SocMonitor, HalfOfTheEnergyIsToldWithAnEstimate) {
-  for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
-    for (const OrdersByCycle& orders :
-         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
-      // To and fro by 0.8 % under a display of 1 % shows whatever the rounding makes of it.
-      if (step_e4 > 10 && orders(0) != orders(1)) continue;
-      CountedBattery battery(0.5, step_e4);
-      battery.flow = [](double ordered_w) { return 0.5 * ordered_w; };
-      battery.meter = [](double ordered_w, double) { return ordered_w; };
-      battery.step(0);
-      EXPECT_LE(battery.readings_until(has_told_share, orders), 20) << step_e4 << ' ' << orders(0);
-      EXPECT_NEAR(battery.monitor.findings().energy_share_percent, 50, 12) << step_e4;
-      EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
-    }
-  }
-}
-
-TEST(SocMonitor, AnotherCapacityIsFoundBothWays) {
-  for (const double factor : {0.2, 5.0}) {
-    for (const OrdersByCycle& orders :
-         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
-      CountedBattery battery(0.5);
-      battery.count = [factor](double stored) { return 0.5 + (stored - 0.5) * factor; };
-      battery.step(0);
-      const auto is_found = [](const ResponseMonitor& m) {
-        return has_tripped(m) || has_told_share(m) || m.has_jumped();
-      };
-      EXPECT_LE(battery.readings_until(is_found, orders), 10) << factor << ' ' << orders(0);
-    }
-  }
-}
-
 TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
   CountedBattery hidden(0.6);
   hidden.flow = [](double) { return -1'000.0; };
@@ -203,27 +131,6 @@ TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
   standby.flow = [](double) { return -90.0; };
   standby.meter = [](double, double) { return 0.0; };
   EXPECT_EQ(standby.readings_until(has_told_loss, rest), 1'000);
-}
-
-TEST(SocMonitor, ADrainBesidesOrdersOfEitherSignIsToldWithAnEstimate) {
-  const OrdersByCycle pairs = [](int i) { return i / 2 % 2 == 0 ? 4'000 : -4'000; };
-  for (const OrdersByCycle& orders : {OrdersByCycle{alternating}, pairs}) {
-    for (const std::int32_t step_e4 : {10, 100}) {
-      CountedBattery drained(0.8, step_e4);
-      drained.flow = [](double ordered_w) { return ordered_w - 1'200; };
-      drained.meter = [](double ordered_w, double) { return ordered_w; };
-      EXPECT_LE(drained.readings_until(has_told_loss, orders), step_e4 == 10 ? 30 : 50);
-      EXPECT_NEAR(drained.monitor.findings().rest_loss_w, 1'000, 250);
-      EXPECT_EQ(drained.monitor.trip(), Reason::kStudent);
-
-      CountedBattery creeping(0.2, step_e4);
-      double wrong = 0;
-      creeping.count = [&](double stored) { return stored + (wrong += 0.01); };
-      EXPECT_LE(creeping.readings_until(has_told_loss, orders), 15);
-      EXPECT_LE(creeping.monitor.findings().rest_loss_w, -1'500);
-      EXPECT_LE(creeping.readings_until(has_tripped, orders), 50);
-    }
-  }
 }
 
 /// One cause, one line: 60 % too much of what is charged is no gain besides.

@@ -13,9 +13,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <sstream>
 
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -33,6 +36,16 @@ CycleRecord record_of(std::int64_t cycle) {
   record.counters.flash_writes_today = static_cast<std::int32_t>(cycle);
   return record;
 }
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// A journal line that is no cycle's.
+bool is_about_a_file(const std::string& line) { return line.find("utc=") == line.npos; }
 
 class Log : public ::testing::Test {
  protected:
@@ -113,8 +126,7 @@ TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   const bool opened = log->open(s, RunIdentity{}, error_);
   const std::string journal = ::testing::internal::GetCapturedStdout();
   ASSERT_TRUE(opened) << error_.c_str();
-  EXPECT_THAT(journal, HasSubstr("cannot be written, is the disk full or read-only? What follows "
-                                 "says whether the battery is driven\n"));
+  EXPECT_THAT(journal, Names("[log]"));
   EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
 }
 
@@ -205,9 +217,7 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   const bool drained = log->drain(kDrainNs);
   const std::string journal = ::testing::internal::GetCapturedStdout();
   ASSERT_TRUE(drained);
-  const std::size_t told = journal.find("cannot be written, is the disk full or read-only?");
-  ASSERT_NE(told, std::string::npos) << journal;  // once, not every cycle
-  EXPECT_EQ(journal.find("cannot be written", told + 1), std::string::npos) << journal;
+  EXPECT_EQ(std::ranges::count_if(lines_of(journal), is_about_a_file), 1) << journal;
   const std::string status = text_of_file(folder_.file("status.json"));
   EXPECT_THAT(status, HasSubstr("\"cycles\": 2"));
   EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
@@ -218,24 +228,24 @@ TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
   struct Case {
     bool control;
     void (*change)(CycleRecord& record);
-    const char* said;
+    const char* codes;
   };
-  const Case cases[] = {
-      {true, [](CycleRecord& record) { record.mode = Mode::kRunning; }, "The battery is driven on"},
-      {false, [](CycleRecord& record) { record.mode = Mode::kRunning; }, "The battery is read on"},
-      {true,
-       [](CycleRecord& record) {
-         record.mode = Mode::kSafe;
-         record.reason = Reason::kNoPrice;
-       },
-       "The battery is not driven now: no_price"},
-      {true,
-       [](CycleRecord& record) {
-         record.mode = Mode::kSafe;
-         record.is_tripped = true;
-         record.trip = {.reason = Reason::kStateLost, .utc_s = 1};
-       },
-       "The battery stays released: tripped, state_lost"}};
+  const Case cases[] = {{true, [](CycleRecord& record) { record.mode = Mode::kRunning; }, ""},
+                        {false, [](CycleRecord& record) { record.mode = Mode::kRunning; }, ""},
+                        {true,
+                         [](CycleRecord& record) {
+                           record.mode = Mode::kSafe;
+                           record.reason = Reason::kNoPrice;
+                         },
+                         "no_price"},
+                        {true,
+                         [](CycleRecord& record) {
+                           record.mode = Mode::kSafe;
+                           record.is_tripped = true;
+                           record.trip = {.reason = Reason::kStateLost, .utc_s = 1};
+                         },
+                         "state_lost"}};
+  std::set<std::string> told;
   for (const Case& one : cases) {
     EventLogSettings s = settings();
     s.metrics = folder_.file("metrics").c_str();
@@ -252,7 +262,11 @@ TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
     const bool drained = log->drain(kDrainNs);
     const std::string journal = ::testing::internal::GetCapturedStdout();
     ASSERT_TRUE(drained);
-    EXPECT_THAT(journal, HasSubstr(std::string("full or read-only? ") + one.said + "\n"));
+    const std::vector<std::string> lines = lines_of(journal);
+    const auto line = std::ranges::find_if(lines, is_about_a_file);
+    ASSERT_NE(line, lines.end()) << journal;
+    EXPECT_THAT(*line, Names(one.codes));
+    EXPECT_TRUE(told.insert(*line).second) << *line;
     std::filesystem::remove(folder_.file("metrics"));
   }
 }
@@ -262,7 +276,7 @@ TEST_F(Log, WhatCannotBeOpenedStopsTheStartWithOneLine) {
   s.metrics = "/nonexistent/bess.prom";
   const auto log = std::make_unique<EventLog>();
   EXPECT_FALSE(log->open(s, RunIdentity{}, error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("/nonexistent/bess.prom: cannot write the metrics here"));
+  EXPECT_THAT(error_.c_str(), Names("/nonexistent/bess.prom"));
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
 // What the journal says of a hold: each of its turns once.
 #include "edge/log/hold_lines.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::Not;
 
 constexpr std::int64_t kTickUtcS = 1'679'875'320;  // 2023-03-27T00:02:00Z
 constexpr HoldReport kHeld{.held = true, .power_w = -2'000, .until_utc_s = kTickUtcS + 240};
@@ -31,9 +37,9 @@ struct Journal {
 TEST(HoldLines, ABeginningAndAnEnd) {
   Journal journal;
   EXPECT_EQ(journal.after(-1, {}), "");
-  EXPECT_EQ(journal.after(0, kHeld), "hold: -2000 W until 2023-03-27T00:06:00Z");
+  EXPECT_THAT(journal.after(0, kHeld), Names("hold -2000 W 2023-03-27T00:06:00Z"));
   EXPECT_EQ(journal.after(1, kHeld), "");
-  EXPECT_EQ(journal.after(2, {}), "hold: over; the prices decide again");
+  EXPECT_THAT(journal.after(2, {}), AllOf(Names("hold"), Not(Names("W"))));
   EXPECT_EQ(journal.after(3, {}), "");
 }
 
@@ -42,16 +48,16 @@ TEST(HoldLines, AChangeAndARelease) {
   EXPECT_NE(journal.after(0, kHeld), "");
   HoldReport other = kHeld;
   other.power_w = 0;
-  EXPECT_EQ(journal.after(1, other, false),
-            "hold: 0 W until 2023-03-27T00:06:00Z (read-only: nothing is written)");
-  EXPECT_EQ(journal.after(1, {}), "hold: released; the prices decide again");
+  const std::string unwritten = journal.after(1, other, false);
+  EXPECT_THAT(unwritten, Names("hold 0 W 2023-03-27T00:06:00Z"));
+  EXPECT_THAT(journal.after(1, {}), AllOf(Names("hold"), Not(Names("W"))));
 }
 
 TEST(HoldLines, AnUnreadableFileOnce) {
   Journal journal;
   EXPECT_NE(journal.after(0, kUnreadable), "");
   EXPECT_EQ(journal.after(1, kUnreadable), "");
-  EXPECT_EQ(journal.after(2, {}), "hold: none; the prices decide again");
+  EXPECT_THAT(journal.after(2, {}), Names("hold"));
 }
 
 TEST(HoldLines, TheEndOfTheProcessIsNotTheEndOfTheHold) {

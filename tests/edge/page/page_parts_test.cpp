@@ -9,11 +9,10 @@
 #include "edge/page/page_settings.h"
 #include "edge/page/request_guard.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(RequestGuard, AnswersToItsOwnNamesAlone) {
   PageSettings settings;
@@ -93,16 +92,15 @@ TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
   EXPECT_EQ(error_of("port = 80\nhosts = [\"a.example\"]\n"), "");
   EXPECT_EQ(error_of(""), "");
   const std::pair<const char*, const char*> bad[] = {
-      {"host = \"localhost\"\n", "must be a numeric address"},
+      {"host = \"localhost\"\n", "host"},
       {"port = 70000\n", "port"},
       {"prot = 80\n", "prot"},
-      {"hosts = [\"http://a.example\"]\n", "without scheme and port"},
-      {"hosts = [5]\n", "without scheme and port"},
-      {"name = \"a\"\n", "name is not a known key"},
+      {"hosts = [\"http://a.example\"]\n", "hosts"},
+      {"hosts = [5]\n", "hosts"},
+      {"name = \"a\"\n", "name"},
   };
-  for (const auto& [page, mend] : bad) {
-    EXPECT_THAT(error_of(page), HasSubstr(mend)) << page;
-    EXPECT_THAT(error_of(page), HasSubstr("edge.toml:")) << page;
+  for (const auto& [page, key] : bad) {
+    EXPECT_THAT(error_of(page), Names(std::string("edge.toml:2 ") + key)) << page;
   }
 }
 
@@ -110,7 +108,7 @@ TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
 /// starting.
 TEST_F(PageSettingsTest, AKeyOfEarlierVersionsHasNoEffectAndIsTold) {
   EXPECT_EQ(error_of("host = \"0.0.0.0\"\ntoken_file = \"not there\"\n"), "");
-  EXPECT_THAT(settings_.note, HasSubstr("token_file"));
+  EXPECT_THAT(settings_.note, Names("token_file"));
   EXPECT_EQ(error_of(""), "");
   EXPECT_EQ(settings_.note, "");
 }

@@ -6,10 +6,12 @@
 #include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -51,7 +53,7 @@ TEST(LoggableUrl, HidesUsersAndSecretQueryValues) {
 struct HeaderFile {
   const char* text;
   mode_t mode;
-  const char* message;
+  const char* codes;
 };
 
 TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
@@ -70,7 +72,7 @@ TEST(HeaderFile, AFolderIsNoFile) {
   FixedText<2047> headers;
   std::string error;
   EXPECT_FALSE(load_http_headers(folder.file(".").c_str(), headers, error));
-  EXPECT_THAT(error, HasSubstr("cannot be read: is it a file?"));
+  EXPECT_THAT(error, HasSubstr(folder.file(".")));
 }
 
 TEST(HeaderFile, TheLastLineNeedsNoEnd) {
@@ -104,12 +106,9 @@ TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
   const TemporaryFolder folder;
   const std::string long_text = "X: " + std::string(3'000, 's') + "\n";
   const HeaderFile table[] = {
-      {"X-Api-Key: s3cret\n", 0644, "others may read this file of secrets: chmod o-rwx it"},
-      {"s3cret\n", 0600, ":1: is no header"},
-      {"A: b\n: s3cret\n", 0600, ":2: is no header"},
-      {"A b: s3cret\n", 0600, ":1: is no header"},
-      {"A: s3cret\x01\n", 0600, ":1: is no header"},
-      {long_text.c_str(), 0600, "is too long"},
+      {"X-Api-Key: s3cret\n", 0644, "chmod o-rwx"}, {"s3cret\n", 0600, "headers:1"},
+      {"A: b\n: s3cret\n", 0600, "headers:2"},      {"A b: s3cret\n", 0600, "headers:1"},
+      {"A: s3cret\x01\n", 0600, "headers:1"},       {long_text.c_str(), 0600, "headers"},
   };
   for (const HeaderFile& row : table) {
     const std::string path = folder.write("headers", row.text);
@@ -117,14 +116,14 @@ TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
     FixedText<2047> headers;
     std::string error;
     EXPECT_FALSE(load_http_headers(path.c_str(), headers, error));
-    EXPECT_THAT(error, HasSubstr(row.message));
+    EXPECT_THAT(error, AllOf(HasSubstr(path), Names(row.codes)));
     EXPECT_THAT(error, Not(HasSubstr("s3cret")));
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
   FixedText<2047> headers;
   std::string error;
   EXPECT_FALSE(load_http_headers(folder.file("none").c_str(), headers, error));
-  EXPECT_THAT(error, HasSubstr("cannot open the header file: No such file"));
+  EXPECT_THAT(error, Names(folder.file("none")));
   EXPECT_FALSE(load_http_headers("/proc", headers, error));
 }
 

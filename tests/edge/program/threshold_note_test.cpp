@@ -1,75 +1,50 @@
 // The guard's thresholds beside the proved ones: who answers for a price between the two.
 #include "edge/program/threshold_note.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
 struct ThresholdCase {
-  const char* name;
   PriceThresholds guard, proved;
-  bool agree;
-  const char* text;
+  const char* codes;  ///< besides "[guard]" where they differ
 };
 
+/// Whether the guard alone, the student alone or nobody answers between them is another text.
 TEST(ThresholdNote, NamesBothAndWhoAnswersBetweenThem) {
   const ThresholdCase cases[] = {
-      {"equal",
-       {-120, 640},
-       {-120, 640},
-       true,
-       "charge at or below -120, discharge at or above 640 EUR/MWh, as the student is proved for"},
-      {"equal, outside the lattice",
-       {-501, 1501},
-       {-501, 1501},
-       true,
-       "charge at or below -501 (the guard's alone), discharge at or above 1501 (the guard's "
-       "alone) "
-       "EUR/MWh, as the student is proved for"},
-      {"guard reaches further, low",
-       {-300, 1500},
+      {{-120, 640}, {-120, 640}, "-120 640"},
+      {{-501, 1501}, {-501, 1501}, "-501 1501"},  // outside the lattice
+      {{-300, 1500}, {-500, 1500}, "low_price_eur_per_mwh -300 -500"},
+      {{-500, 900}, {-500, 1500}, "high_price_eur_per_mwh 900 1500"},
+      {{-800, 2000},
        {-500, 1500},
-       false,
-       "[guard] low_price_eur_per_mwh = -300, the student is proved for -500: between them the "
-       "guard "
-       "alone makes it charge"},
-      {"guard reaches further, high",
-       {-500, 900},
-       {-500, 1500},
-       false,
-       "[guard] high_price_eur_per_mwh = 900, the student is proved for 1500: between them the "
-       "guard "
-       "alone makes it discharge"},
-      {"guard reaches less far, both",
-       {-800, 2000},
-       {-500, 1500},
-       false,
-       "[guard] low_price_eur_per_mwh = -800, the student is proved for -500: between them the "
-       "student's proof alone makes it charge; [guard] high_price_eur_per_mwh = 2000, the student "
-       "is "
-       "proved for 1500: between them the student's proof alone makes it discharge"},
-      {"neither answers: the student's lattice ends before both",
-       {-800, 2000},
+       "low_price_eur_per_mwh -800 -500 high_price_eur_per_mwh 2000 1500"},
+      {{-800, 2000},
        {-600, 1600},
-       false,
-       "[guard] low_price_eur_per_mwh = -800, the student is proved for -600: between them nothing "
-       "makes it charge; [guard] high_price_eur_per_mwh = 2000, the student is proved for 1600: "
-       "between them nothing makes it discharge"},
-      {"guard reaches further, proof outside the lattice",
-       {-500, 1500},
-       {-600, 1500},
-       false,
-       "[guard] low_price_eur_per_mwh = -500, the student is proved for -600: between them the "
-       "guard "
-       "alone makes it charge"},
+       "low_price_eur_per_mwh -800 -600 high_price_eur_per_mwh 2000 1600"},
+      {{-500, 1500}, {-600, 1500}, "low_price_eur_per_mwh -500 -600"},
   };
+  std::set<std::string> texts;
   for (const ThresholdCase& c : cases) {
-    SCOPED_TRACE(c.name);
+    SCOPED_TRACE(c.codes);
     const ThresholdNote note = compare_thresholds(c.guard, c.proved);
-    EXPECT_EQ(note.agree, c.agree);
-    EXPECT_EQ(note.text, c.text);
+    const std::string text(note.text);
+    EXPECT_EQ(note.agree, c.guard == c.proved);
+    EXPECT_THAT(text, Names(c.codes));
+    EXPECT_EQ(has_code(text, "[guard]"), !note.agree);
+    std::string words;
+    for (const char at : text)
+      words += std::string("0123456789").find(at) == std::string::npos ? std::string(1, at) : "";
+    texts.insert(words);
   }
+  EXPECT_EQ(texts.size(), 6U) << "the low threshold of the third and the last case read alike";
 }
 
 }  // namespace

@@ -8,10 +8,12 @@
 #include "edge/registers/map_file.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// A battery of 8 kWh: SoC at 0 in 0.1 %, power at 1 (+ charge), capacity at 2 in two registers
@@ -138,6 +140,14 @@ class MapCheckTest : public ::testing::Test {
     }
     return "there is no point " + name;
   }
+  /// Of the points with a finding.
+  std::string named() const {
+    std::string names;
+    for (const PointVerdict& point : check_->verdicts()) {
+      if (!point.finding.empty()) names += (names.empty() ? "" : " ") + std::string(point.name);
+    }
+    return names;
+  }
   /// Every finding, "NAME: what".
   std::string findings() const {
     std::string text;
@@ -168,57 +178,50 @@ TEST_F(MapCheckTest, ARightMapHasNoFindings) {
 TEST_F(MapCheckTest, AWrongSignShowsInTheStateOfCharge) {
   load();
   drive(1, -1);
-  EXPECT_EQ(findings(),
-            "battery_power: the state of charge falls while it charges, and rises while it "
-            "discharges: sign\n");
+  EXPECT_EQ(named(), "battery_power");
+  EXPECT_THAT(findings(), Names("sign"));
 }
 
 TEST_F(MapCheckTest, AnOrderOfTheWrongSignIsAnotherFinding) {
   load("type = \"s16\"\nmin = -30000\nmax = 30000\n\n[[point]]\nname = \"seconds\"",
        "type = \"s16\"\nsign = -1\nmin = -30000\nmax = 30000\n\n[[point]]\nname = \"seconds\"");
   drive();
-  EXPECT_THAT(findings(), HasSubstr("order: power flows against this order"));
+  EXPECT_THAT(findings(), HasSubstr("order: "));
   EXPECT_EQ(finding("battery_power"), "");
 }
 
 TEST_F(MapCheckTest, AScaleOfThePowerWithinItsRangeShows) {
   load("type = \"s16\"\nmin = -30000", "type = \"s16\"\nscale_divisor = 10\nmin = -30000");
   drive();
-  EXPECT_EQ(findings(),
-            "battery_power: the state of charge moves 10 times as far as this power explains: "
-            "scale of this, of soc or of capacity\n");
+  EXPECT_EQ(named(), "battery_power");
+  EXPECT_THAT(findings(), Names("10 scale soc capacity"));
 }
 
 TEST_F(MapCheckTest, AScaleOfTheStateOfChargeWithinItsRangeShows) {
   load("scale = 10\n", "scale = 1\n");
   drive();
-  EXPECT_EQ(findings(),
-            "soc: moves a 10th as far as the measured power explains, which is as ordered: "
-            "scale of this or of capacity\n");
+  EXPECT_EQ(named(), "soc");
+  EXPECT_THAT(findings(), Names("10th scale capacity"));
 }
 
 TEST_F(MapCheckTest, AStateOfChargeThatStandsStillShows) {
   load();
   drive(0);
-  EXPECT_THAT(findings(), HasSubstr("soc: stands still, although 5978 Wh have flowed"));
+  EXPECT_EQ(named(), "soc");
+  EXPECT_THAT(findings(), Names("5978 Wh"));
 }
 
 TEST_F(MapCheckTest, ValuesOutsideTheirRangeAreNamedWithWhatWouldFit) {
   load("scale = 10\n", "scale = 100\n");
   add(3, 0, {435, 0, 0, 8'000});
-  EXPECT_EQ(
-      finding("soc"),
-      "reads 43500 [435], not 0 to 10000, in 1 of 1 answers; would fit: a scale 10 times smaller");
+  EXPECT_THAT(finding("soc"), Names("43500 [435] 0 10000 1 scale 10"));
   load("type = \"u32\"\n", "type = \"u32\"\nword_order = \"low_first\"\n");
   add(3, 0, {435, 0, 0, 8'000});
-  EXPECT_EQ(finding("capacity"),
-            "reads 524288000 [0 8000], not 1000 to 2000000, in 1 of 1 answers; would fit: "
-            "word_order = \"high_first\"");
+  EXPECT_THAT(finding("capacity"),
+              Names("524288000 [0 8000] 1000 2000000 1 word_order = \"high_first\""));
   load("type = \"s16\"\nmin = -30000", "type = \"u16\"\nmin = -30000");
   add(3, 0, {435, 0xF060, 0, 8'000});
-  EXPECT_EQ(finding("battery_power"),
-            "reads 61536 [61536], not -30000 to 30000, in 1 of 1 answers; would fit: "
-            "type = \"s16\"");
+  EXPECT_THAT(finding("battery_power"), Names("61536 [61536] -30000 30000 1 type = \"s16\""));
 }
 
 TEST_F(MapCheckTest, WhatWasNeverAnsweredIsNamed) {
@@ -226,17 +229,18 @@ TEST_F(MapCheckTest, WhatWasNeverAnsweredIsNamed) {
   add(3, 0, {435});
   add(3, 1, {0}, BusOutcome::kException, 2);
   EXPECT_EQ(finding("soc"), "");
-  EXPECT_EQ(finding("battery_power"), "never answered: exception 2, no such register");
-  EXPECT_EQ(finding("capacity"), "never asked for: no reading of this recording holds it");
+  EXPECT_EQ(named(), "battery_power capacity start order");
+  EXPECT_THAT(finding("battery_power"), Names("exception 2"));
+  const std::string never_asked = finding("capacity");
   EXPECT_EQ(finding("seconds"), "") << "it is only written";
   add(3, 2, {0, 0}, BusOutcome::kTimeout);
-  EXPECT_EQ(finding("capacity"), "never answered, in 1 readings");
+  EXPECT_THAT(finding("capacity"), AllOf(Names("1"), testing::Ne(never_asked)));
 }
 
 TEST_F(MapCheckTest, AnIdentityCheckThatFailsIsToldWithItsHint) {
   load("min = 0\nmax = 10000\nhint", "min = 5000\nmax = 10000\nhint");
   add(3, 0, {435, 0, 0, 8'000});
-  EXPECT_EQ(finding("soc"), "reads 4350: is this the battery?");
+  EXPECT_THAT(finding("soc"), Names("4350"));
 }
 
 TEST_F(MapCheckTest, WhatCannotBeJudgedIsSaid) {
@@ -246,7 +250,7 @@ TEST_F(MapCheckTest, WhatCannotBeJudgedIsSaid) {
     add(3, 10, {0, 0, 0});
   }
   EXPECT_EQ(findings(), "");
-  EXPECT_THAT(check_->unjudged(), HasSubstr("the state of charge moved too little"));
+  EXPECT_NE(check_->unjudged(), "");
 }
 
 TEST_F(MapCheckTest, AGapOfTheRecordingIsNoEnergy) {

@@ -11,6 +11,7 @@
 #include "edge/registers/map_file.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -175,8 +176,7 @@ TEST_F(Recording, AFolderThatIsNotThereIsOneLine) {
   ExchangeRecorder recorder;
   const std::string path = folder_.file("none/device.jsonl");
   EXPECT_FALSE(recorder.start(path.c_str(), head_, map_, clock_, error_));
-  EXPECT_THAT(std::string(error_.view()),
-              HasSubstr("device.jsonl.part: cannot be recorded to: No such file"));
+  EXPECT_THAT(std::string(error_.view()), Names(path + ".part"));
 }
 
 TEST_F(Recording, ANameThatIsTakenLeavesThePartAndSaysSo) {
@@ -185,7 +185,7 @@ TEST_F(Recording, ANameThatIsTakenLeavesThePartAndSaysSo) {
   ExchangeRecorder recorder;
   ASSERT_TRUE(recorder.start(path.c_str(), head_, map_, clock_, error_));
   EXPECT_FALSE(recorder.finish(error_));
-  EXPECT_THAT(std::string(error_.view()), HasSubstr("cannot be given its name"));
+  EXPECT_THAT(std::string(error_.view()), Names(path));
   EXPECT_TRUE(std::filesystem::exists(path + ".part"));
 }
 

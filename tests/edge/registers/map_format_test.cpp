@@ -9,12 +9,12 @@
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr const char* kHead = R"([map]
@@ -155,7 +155,7 @@ TEST_F(MapFormat, AnOptionalPointIsNoScaleOfAnother) {
   RegisterMap map;
   std::string error;
   EXPECT_TRUE(load_register_map(folder_.write("map.toml", head), "", map, error)) << error;
-  EXPECT_THAT(error_of(head + "clamp_to = \"rare\"\n"), HasSubstr("\"rare\", which is optional"));
+  EXPECT_THAT(error_of(head + "clamp_to = \"rare\"\n"), Names("\"power\" \"rare\""));
 }
 
 TEST_F(MapFormat, TextsAreComparedWithoutTheirPadding) {
@@ -290,13 +290,13 @@ TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   std::string error;
   EXPECT_FALSE(load_register_map(path, "", map, error));
   EXPECT_THAT(error, StartsWith(base_path + ":37: "));
-  EXPECT_THAT(error_of("include = \"../secret.toml\"\n"), HasSubstr("a file beside this one"));
+  EXPECT_THAT(error_of("include = \"../secret.toml\"\n"), Names("include"));
   static_cast<void>(folder_.write("loop.toml", "include = \"map.toml\"\n"));
-  EXPECT_THAT(error_of("include = \"loop.toml\"\n"), HasSubstr("one level only"));
+  EXPECT_THAT(error_of("include = \"loop.toml\"\n"), Names("include"));
 }
 
 struct MapMistake {
-  std::string before, after, message;
+  std::string before, after, codes;
 };
 
 TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
@@ -311,11 +311,8 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
         "[[point]]\nname = \"time\"\naddress = 9\nmin = 0\nmax = " + max + "\n[command]");
     return text;
   };
-  EXPECT_THAT(
-      error_of(map_with("duration", "600")),
-      HasSubstr("watchdog duration_s = 601 is 601 s, which the point \"time\" cannot express"));
-  EXPECT_THAT(error_of(map_with("duration_minutes", "10")),
-              HasSubstr("watchdog duration_s = 601 is 11 min, which the point \"time\""));
+  EXPECT_THAT(error_of(map_with("duration", "600")), Names("duration_s 601 s \"time\""));
+  EXPECT_THAT(error_of(map_with("duration_minutes", "10")), Names("duration_s 601 11 \"time\""));
   RegisterMap map;
   std::string error;
   EXPECT_TRUE(load_register_map(folder_.write("map.toml", map_with("duration_minutes", "11")), "",
@@ -326,60 +323,55 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
 TEST_F(MapFormat, EveryMistakeHasItsMend) {
   const std::string good = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
   const MapMistake mistakes[] = {
-      {"kind = \"none\"", "kind = \"none\"\nduration = 3", "duration is not a known key"},
-      {"kind = \"none\"", "kind = \"rewrite\"\nduration_s = 60\nrefresh_s = 31", "at most half"},
-      {"kind = \"none\"", "kind = \"duration\"\nduration_s = 60\nrefresh_s = 30", "is not fed"},
-      {"kind = \"none\"", "kind = \"rewrite\"", "duration_s is missing"},
-      {"active = [\"enable = 1\"]", "active = [\"enable = maybe\"]", "neither a number nor a name"},
-      {"active = [\"enable = 1\"]", "active = [\"unable = 1\"]", "no [[point]] is named"},
+      {"kind = \"none\"", "kind = \"none\"\nduration = 3", "[watchdog] duration"},
+      {"kind = \"none\"", "kind = \"rewrite\"\nduration_s = 60\nrefresh_s = 31", "refresh_s"},
+      {"kind = \"none\"", "kind = \"duration\"\nduration_s = 60\nrefresh_s = 30", "\"heartbeat\""},
+      {"kind = \"none\"", "kind = \"rewrite\"", "duration_s"},
+      {"active = [\"enable = 1\"]", "active = [\"enable = maybe\"]", "enable"},
+      {"active = [\"enable = 1\"]", "active = [\"unable = 1\"]", "unable"},
       {"active = [\"enable = 1\"]", "alarms = [\"soc has 16384\"]",
-       "\"soc has 16384\" can never hold: \"soc\", 0 to 10000, has no such bit"},
-      {"active = [\"enable = 1\"]", "alarms = [\"enable has 65536\"]", "has no such bit"},
-      {"active = [\"enable = 1\"]", "warnings = [\"enable has 0\"]", "is asked for no bit"},
-      {"active = [\"enable = 1\"]", "off_grid = \"soc = 10001\"",
-       "can never hold: \"soc\" reads as 0 to 10000"},
-      {"measure = [\"soc\", ", "measure = [", "must hold a point \"soc\""},
-      {"measure = [\"soc\", ", "measure = [\"soc\", \"soc\", ", "holds \"soc\" twice"},
-      {"name = \"battery_power\"", "name = \"battery power\"", "must be one word"},
-      {"\"enable = on\", \"power", "\"enable\", \"power", "a step must say"},
-      {"\"enable = on\", \"power", "{ function = 6 }, \"power", "write is missing"},
+       "\"soc 16384\" \"soc\" 0 10000"},
+      {"active = [\"enable = 1\"]", "alarms = [\"enable has 65536\"]", "65536 \"enable\" 0 65535"},
+      {"active = [\"enable = 1\"]", "warnings = [\"enable has 0\"]", "\"enable has 0\""},
+      {"active = [\"enable = 1\"]", "off_grid = \"soc = 10001\"", "\"soc\" 0 10000"},
+      {"measure = [\"soc\", ", "measure = [", "\"soc\""},
+      {"measure = [\"soc\", ", "measure = [\"soc\", \"soc\", ", "\"soc\""},
+      {"name = \"battery_power\"", "name = \"battery power\"", "name"},
+      {"\"enable = on\", \"power", "\"enable\", \"power", "map.toml:32"},
+      {"\"enable = on\", \"power", "{ function = 6 }, \"power", "write"},
       {"\"enable = on\", \"power",
-       "{ write = \"enable = on\", read_back = \"tolerance\" }, \"power", "tolerance is missing"},
+       "{ write = \"enable = on\", read_back = \"tolerance\" }, \"power", "tolerance"},
       {"\"enable = on\", \"power", "{ write = \"enable = on\", function = 7 }, \"power",
-       "must be 6 or 16"},
-      {"release = [\"enable = off\"]", "", "release is missing"},
-      {"release = [\"enable = off\"]", "release = [\"enable = saved\"]", "not in its list save"},
-      {"release = [\"enable = off\"]", "release = [\"enable = rating\"]",
-       "needs a point with percent_of"},
-      {"type = \"s32\"", "type = \"s32\"\nmodel = 124", "not in the list [sunspec] models"},
-      {"type = \"s32\"", "type = \"s32\"\nunit_group = \"x\"", "not a name in [unit_groups]"},
-      {"type = \"s32\"", "type = \"s32\"\nmask = 3", "needs type"},
-      {"type = \"s32\"", "type = \"s32\"\nsign = 0", "must be 1 or -1"},
-      {"type = \"s32\"", "type = \"s32\"\nscale_from = \"later\"", "no [[point]] is named"},
-      {"type = \"s32\"", "type = \"s32\"\nstorage = \"eeprom\"",
-       "eeprom_writes_per_day is missing"},
-      {"type = \"s32\"\nmin = -1000", "type = \"s32\"\nmin = -999", "cannot express"},
-      {"type = \"s32\"", "type = \"u32\"", "cannot express"},
-      {"type = \"s32\"", "type = \"s32\"\noptional = true", "\"power\" is optional"},
-      {"name = \"soc\"", "name = \"soc\"\noptional = true", "\"soc\" is optional: name it in"},
+       "function 6 16"},
+      {"release = [\"enable = off\"]", "", "release"},
+      {"release = [\"enable = off\"]", "release = [\"enable = saved\"]", "save"},
+      {"release = [\"enable = off\"]", "release = [\"enable = rating\"]", "percent_of"},
+      {"type = \"s32\"", "type = \"s32\"\nmodel = 124", "model [sunspec] models"},
+      {"type = \"s32\"", "type = \"s32\"\nunit_group = \"x\"", "unit_group [unit_groups]"},
+      {"type = \"s32\"", "type = \"s32\"\nmask = 3", "mask type"},
+      {"type = \"s32\"", "type = \"s32\"\nsign = 0", "sign 1 -1"},
+      {"type = \"s32\"", "type = \"s32\"\nscale_from = \"later\"", "later"},
+      {"type = \"s32\"", "type = \"s32\"\nstorage = \"eeprom\"", "eeprom_writes_per_day"},
+      {"type = \"s32\"\nmin = -1000", "type = \"s32\"\nmin = -999", "power -1000"},
+      {"type = \"s32\"", "type = \"u32\"", "power -1000"},
+      {"type = \"s32\"", "type = \"s32\"\noptional = true", "\"power\""},
+      {"name = \"soc\"", "name = \"soc\"\noptional = true", "\"soc\""},
       {"[command]", "[simulator]\ninitial = [\"soc has capacity\"]\n[command]",
-       "must be \"point = number, name, power_max or capacity\""},
-      {"address = 4\n", "address = 0\n", "must lie between 1 and 65535"},
-      {"[command]", "[[identity]]\npoint = \"soc\"\nhint = \"x\"\ntext = \"y\"\n[command]",
-       "min is missing"},
-      {"max = 10000\n", "", "max is missing"},
-      {"active = [\"enable = 1\"]", "active = [\"enable = -5000000001\"]",
-       "neither a number nor a name"},
-      {"[command]", "[exceptions]\nretry = [256]\n[command]", "exception codes, 1 to 255"},
+       "\"point power_max capacity\""},
+      {"address = 4\n", "address = 0\n", "address 1 65535"},
+      {"[command]", "[[identity]]\npoint = \"soc\"\nhint = \"x\"\ntext = \"y\"\n[command]", "min"},
+      {"max = 10000\n", "", "max"},
+      {"active = [\"enable = 1\"]", "active = [\"enable = -5000000001\"]", "enable"},
+      {"[command]", "[exceptions]\nretry = [256]\n[command]", "retry 1 255"},
       {"[command]", "[commissioning]\nduration_s = 60\nsettle_s = 60\n[command]",
-       "settle_s must be below duration_s"},
+       "settle_s duration_s"},
   };
   for (const MapMistake& mistake : mistakes) {
     std::string text = good;
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;
     text.replace(at, mistake.before.size(), mistake.after);
-    EXPECT_THAT(error_of(text), HasSubstr(mistake.message)) << mistake.after;
+    EXPECT_THAT(error_of(text), Names(mistake.codes)) << mistake.after;
   }
 }
 

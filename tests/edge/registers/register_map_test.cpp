@@ -9,12 +9,12 @@
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 const std::string kMapPath = std::string(BESS_SOURCE_DIR) + "/edge/maps/alphaess.toml";
@@ -159,9 +159,9 @@ TEST(Codec, LowFirstSwapsTheWords) {
   EXPECT_THAT(std::vector<int>(block.begin(), block.end()), ElementsAre(2, 1));
 }
 
-/// The shipped map with one text replaced must be refused with this message.
+/// The shipped map with one text replaced must be refused, and these codes named.
 struct MapError {
-  std::string before, after, message;
+  std::string before, after, codes;
 };
 
 TEST(MapFile, EveryMistakeIsOneClearLine) {
@@ -169,17 +169,16 @@ TEST(MapFile, EveryMistakeIsOneClearLine) {
   std::stringstream shipped;
   shipped << std::ifstream(kMapPath).rdbuf();
   const MapError mistakes[] = {
-      {"minimum_gap_ms = 400", "minimum_gap = 400", "minimum_gap is not a known key"},
-      {"unit = 85", "unit = \"85\"", "unit must be a whole number"},
-      {"unit = 85", "unit = 300", "unit must lie between 0 and 255"},
-      {"type = \"s16\"", "type = \"s15\"", "type must be one of"},
-      {"dispatch_power = power", "dispatch_power = watts", "\"watts\" is no number"},
-      {"\"dispatch_mode = soc_control\", \"dispatch_soc", "\"dispatch_soc",
-       "does not follow the point before it"},
-      {"measure = [\"soc\"", "measure = [\"sco\"", "no [[point]] is named \"sco\""},
-      {"charge_w_max = 32000", "charge_w_max = 40000", "cannot express"},
-      {"name = \"temperature_min\"", "name = \"soc\"", "is used twice"},
-      {"[map]", "[map", "not valid TOML"},
+      {"minimum_gap_ms = 400", "minimum_gap = 400", "minimum_gap"},
+      {"unit = 85", "unit = \"85\"", "unit"},
+      {"unit = 85", "unit = 300", "unit 0 255"},
+      {"type = \"s16\"", "type = \"s15\"", "type"},
+      {"dispatch_power = power", "dispatch_power = watts", "\"watts\""},
+      {"\"dispatch_mode = soc_control\", \"dispatch_soc", "\"dispatch_soc", "\"dispatch_soc\""},
+      {"measure = [\"soc\"", "measure = [\"sco\"", "[[point]] \"sco\""},
+      {"charge_w_max = 32000", "charge_w_max = 40000", "power 40000"},
+      {"name = \"temperature_min\"", "name = \"soc\"", "name"},
+      {"[map]", "[map", "TOML"},
   };
   for (const MapError& mistake : mistakes) {
     std::string text = shipped.str();
@@ -191,7 +190,7 @@ TEST(MapFile, EveryMistakeIsOneClearLine) {
     std::string error;
     EXPECT_FALSE(load_register_map(path, "", map, error)) << mistake.after;
     EXPECT_THAT(error, StartsWith(path + ":")) << mistake.after;
-    EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.after;
+    EXPECT_THAT(error, Names(mistake.codes)) << mistake.after;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -200,14 +199,14 @@ TEST(MapFile, UnknownVariantNamesTheKnownOnes) {
   RegisterMap map;
   std::string error;
   EXPECT_FALSE(load_register_map(kMapPath, "blok", map, error));
-  EXPECT_THAT(error, HasSubstr("block, five_writes, ten_and_one"));
+  EXPECT_THAT(error, Names("blok block five_writes ten_and_one"));
 }
 
 TEST(MapFile, MissingFile) {
   RegisterMap map;
   std::string error;
   EXPECT_FALSE(load_register_map("/nonexistent/map.toml", "", map, error));
-  EXPECT_THAT(error, HasSubstr("cannot open"));
+  EXPECT_THAT(error, Names("/nonexistent/map.toml"));
 }
 
 }  // namespace

@@ -11,11 +11,11 @@
 
 #include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// A valid configuration; a test adds or replaces a piece of it.
@@ -104,7 +104,7 @@ TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   EXPECT_EQ(config.battery.link.port, 502);
   text.replace(text.find("vebus"), 5, "vecan");
   EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
-  EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: battery, vebus)"));
+  EXPECT_THAT(error, Names("vecan battery vebus"));
 }
 
 TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
@@ -181,58 +181,54 @@ TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
 struct ConfigMistake {
   std::string before, after;
   int line;
-  std::string message;
+  std::string codes;
 };
 
 TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
   const TemporaryFolder folder;
   const ConfigMistake mistakes[] = {
-      {"control = true", "controll = true", 1, "controll is not a known key"},
-      {"control = true", "control = 1", 1, "control must be true or false"},
-      {"power_w = 4000", "power = 4000", 4, "power is not a known key"},
-      {"power_w = 4000", "power_w = 4000.5", 4, "must be a whole number"},
-      {"power_w = 4000", "power_w = 40000", 4, "more than the map alphaess can express"},
-      {"power_w = 4000", "power_w = -1", 4, "must lie between"},
-      {"power_w = 4000", "port = 70000", 4, "port must lie between 1 and 65535"},
-      {"power_w = 4000", "host = \"battery.local\"", 4, "numeric IPv4"},
-      {"power_w = 4000", "transport = \"udp\"", 4, "\"tcp\", \"rtu\""},
-      {"power_w = 4000", "baud = 14400", 4, "must be a speed of serial lines such as 9600"},
-      {"power_w = 4000", "baud = 1201", 4, "must be a speed of serial lines such as 9600"},
-      {"power_w = 4000", "parity = \"mark\"", 4, "\"none\", \"even\", \"odd\""},
-      {"power_w = 4000", "stop_bits = 3", 4, "must lie between 1 and 2"},
-      {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
-      {"http://", "ftp://", 6, "must start with http:// or https://"},
-      {"url =", "uri =", 5, "url is missing"},
-      {"[price]\nurl = \"http:", "[price]\nca_file = \"none.pem\"\nurl = \"https:", 6,
-       "none.pem cannot be read"},
-      {"[price]\nurl = \"http:", "[price]\nheader_file = \"none\"\nurl = \"https:", 0,
-       "none: cannot open the header file"},
-      {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours must lie between 0 and 96"},
-      {"[price]", "[price]\nhistory_url = \"http://127.0.0.1:2/records\"", 6,
-       "history_url must start with http:// or https:// and be of the host of url"},
-      {"[price]", "[price]\nhistory_url = \"127.0.0.1:1/records\"", 6, "be of the host of url"},
-      {"[price]", "[price]\nlevel_start_eur_per_mwh = 1501", 6, "must lie between -500 and 1500"},
-      {"soc_min = 0.2", "soc_min = 20", 8, "must lie between 0 and 1"},
-      {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
-      {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
-      {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
-      {"soc_min = 0.2", "frozen_price_s_max = -1", 8, "must lie between 0 and 86400"},
-      {"soc_min = 0.2", "frozen_price_s_max = 86401", 8, "must lie between 0 and 86400"},
-      {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "must lie between -15000 and 15000"},
-      {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8,
-       "must be whole EUR/MWh, as the student is proved for"},
-      {"soc_min = 0.2", "reversals_per_hour_max = 31", 8,
-       "reversals_per_hour_max must lie between 0 and 30"},
-      {"soc_min = 0.2", "stand_in_s_max = 3601", 8, "stand_in_s_max must lie between 0 and 3600"},
-      {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
-      {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
-      {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},
-      {"[guard]", "[state]\nfoldr = \"x\"\n[guard]", 8, "foldr is not a known key"},
-      {"[guard]", "[state]\nfolder = \"\"\n[guard]", 8, "folder must not be empty"},
-      {"power_w = 4000", "units = { vebus = 1 }", 4, "vebus is not a known key here (known: none)"},
-      {"maps/alphaess", "maps/alfaess", 3, "alfaess.toml cannot be read: No such file"},
-      {"[guard]", "[gard]", 7, "gard is not a known key"},
-      {"[guard]", "[guard", 7, "not valid TOML"},
+      {"control = true", "controll = true", 1, "controll"},
+      {"control = true", "control = 1", 1, "control true false"},
+      {"power_w = 4000", "power = 4000", 4, "power"},
+      {"power_w = 4000", "power_w = 4000.5", 4, "power_w"},
+      {"power_w = 4000", "power_w = 40000", 4, "power_w alphaess"},
+      {"power_w = 4000", "power_w = -1", 4, "power_w"},
+      {"power_w = 4000", "port = 70000", 4, "port 1 65535"},
+      {"power_w = 4000", "host = \"battery.local\"", 4, "host IPv4"},
+      {"power_w = 4000", "transport = \"udp\"", 4, "transport \"tcp\" \"rtu\""},
+      {"power_w = 4000", "baud = 14400", 4, "baud 9600"},
+      {"power_w = 4000", "baud = 1201", 4, "baud 9600"},
+      {"power_w = 4000", "parity = \"mark\"", 4, "parity \"none\" \"even\" \"odd\""},
+      {"power_w = 4000", "stop_bits = 3", 4, "stop_bits 1 2"},
+      {"power_w = 4000", "variant = \"blok\"", 0, "blok block"},
+      {"http://", "ftp://", 6, "url http:// https://"},
+      {"url =", "uri =", 5, "url"},
+      {"[price]\nurl = \"http:", "[price]\nca_file = \"none.pem\"\nurl = \"https:", 6, "none.pem"},
+      {"[price]\nurl = \"http:", "[price]\nheader_file = \"none\"\nurl = \"https:", 0, "none"},
+      {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours 0 96"},
+      {"[price]", "[price]\nhistory_url = \"http://127.0.0.1:2/records\"", 6, "history_url url"},
+      {"[price]", "[price]\nhistory_url = \"127.0.0.1:1/records\"", 6, "history_url url"},
+      {"[price]", "[price]\nlevel_start_eur_per_mwh = 1501", 6, "level_start_eur_per_mwh 1500"},
+      {"soc_min = 0.2", "soc_min = 20", 8, "soc_min 0 1"},
+      {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "soc_min"},
+      {"soc_min = 0.2", "soc_min = 1.0", 8, "soc_min soc_max"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8,
+       "low_price_eur_per_mwh high_price_eur_per_mwh"},
+      {"soc_min = 0.2", "frozen_price_s_max = -1", 8, "frozen_price_s_max 0 86400"},
+      {"soc_min = 0.2", "frozen_price_s_max = 86401", 8, "frozen_price_s_max 0 86400"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "low_price_eur_per_mwh -15000 15000"},
+      {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8, "high_price_eur_per_mwh"},
+      {"soc_min = 0.2", "reversals_per_hour_max = 31", 8, "reversals_per_hour_max 0 30"},
+      {"soc_min = 0.2", "stand_in_s_max = 3601", 8, "stand_in_s_max 0 3600"},
+      {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start UTC"},
+      {"time_scale = 900", "time_scale = 0", 10, "time_scale"},
+      {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days 1 3660"},
+      {"[guard]", "[state]\nfoldr = \"x\"\n[guard]", 8, "foldr"},
+      {"[guard]", "[state]\nfolder = \"\"\n[guard]", 8, "folder"},
+      {"power_w = 4000", "units = { vebus = 1 }", 4, "vebus"},
+      {"maps/alphaess", "maps/alfaess", 3, "alfaess.toml"},
+      {"[guard]", "[gard]", 7, "gard"},
+      {"[guard]", "[guard", 7, "TOML"},
   };
   for (const ConfigMistake& mistake : mistakes) {
     std::string text = valid_text();
@@ -243,7 +239,7 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
     EdgeConfig config;
     std::string error;
     EXPECT_FALSE(load_edge_config(path, config, error)) << mistake.after;
-    EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.after;
+    EXPECT_THAT(error, Names(mistake.codes)) << mistake.after;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     if (mistake.line > 0) {
       EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
@@ -313,16 +309,16 @@ TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
   ASSERT_TRUE(load("file = \"answer.json\"\n", by_file, error)) << error;
   EXPECT_EQ(by_file.outlook.file, folder.file("answer.json"));
   const std::pair<const char*, const char*> mistakes[] = {
-      {"file = \"a\"\nurl = \"https://a.example\"\n", "two sources: leave one of them out"},
-      {"url = \"http://a.example\"\n", "[outlook] url is plain http to another machine"},
+      {"file = \"a\"\nurl = \"https://a.example\"\n", "[outlook] file url"},
+      {"url = \"http://a.example\"\n", "[outlook] url allow_http"},
       {"url = \"http://a.example\"\nallow_http = true\nheader_file = \"headers\"\n", "header_file"},
-      {"minutes = 1\n", "minutes is not a known key"},
+      {"minutes = 1\n", "minutes"},
   };
   for (const auto& [keys, message] : mistakes) {
     EdgeConfig refused;
     error.clear();
     EXPECT_FALSE(load(keys, refused, error)) << keys;
-    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_THAT(error, Names(message));
   }
 }
 
@@ -378,10 +374,10 @@ TEST(EdgeConfig, MissingFileAndFolder) {
   EdgeConfig config;
   std::string error;
   EXPECT_FALSE(load_edge_config("/nonexistent.toml", config, error));
-  EXPECT_THAT(error, HasSubstr("cannot open"));
+  EXPECT_THAT(error, Names("/nonexistent.toml"));
   error.clear();
   EXPECT_FALSE(load_edge_config("/tmp", config, error));
-  EXPECT_THAT(error, HasSubstr("cannot read"));
+  EXPECT_THAT(error, Names("/tmp"));
 }
 
 }  // namespace

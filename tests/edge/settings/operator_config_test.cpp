@@ -8,11 +8,10 @@
 #include "edge/program/operator_note.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr const char* kMapLine = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
 
@@ -77,32 +76,30 @@ TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
   std::string many;
   for (int i = 0; i < 25; ++i) many += "[[reserve]]\n" + from_to + "soc = 0.3\n";
   const std::pair<Pieces, const char*> mistakes[] = {
-      {{.battery = "full_charge_every_days = 366\n"}, "must lie between 0 and 365"},
+      {{.battery = "full_charge_every_days = 366\n"}, "full_charge_every_days 0 365"},
       {{.battery = "full_charge_every_days = 7\n", .guard = "soc_max = 0.9\n"},
-       "full_charge_every_days needs [guard] soc_max of at least 0.995"},
-      {{.rest = "[reserve]\nsoc = 0.3\n"}, "reserve must be a list"},
-      {{.rest = "[x]\n"}, "x is not a known key"},
-      {reserve("soc = 0.3\n"), "from is missing"},
-      {reserve("from = \"17:00\"\nsoc = 0.3\n"), "to is missing"},
-      {reserve(from_to), "soc is missing"},
-      {reserve(from_to + "soc = 1.0\n"), "soc must be below [guard] soc_max"},
-      {reserve(from_to + "soc = 30\n"), "soc must lie between 0 and 1"},
-      {reserve(from_to + "soc = 0.3\nhours = 1\n"), "hours is not a known key"},
-      {reserve(from_to + "soc = 0.3\nmonths = [13]\n"), "must hold months, 1 to 12"},
-      {reserve(from_to + "soc = 0.3\nmonths = []\n"), "leave it out for every month"},
-      {reserve("from = \"17:00\"\nto = \"17:00\"\nsoc = 0.3\n"), "the same as from"},
-      {reserve("from = \"24:01\"\nto = \"20:00\"\nsoc = 0.3\n"),
-       "from must be a local time of day"},
-      {reserve("from = \"7:00\"\nto = \"20:00\"\nsoc = 0.3\n"), "from must be a local time of day"},
-      {reserve("from = \"17.00\"\nto = \"20:00\"\nsoc = 0.3\n"),
-       "from must be a local time of day"},
-      {{.rest = many}, "has more than 24 periods"},
+       "full_charge_every_days [guard] soc_max 0.995"},
+      {{.rest = "[reserve]\nsoc = 0.3\n"}, "reserve"},
+      {{.rest = "[x]\n"}, "x"},
+      {reserve("soc = 0.3\n"), "from"},
+      {reserve("from = \"17:00\"\nsoc = 0.3\n"), "to"},
+      {reserve(from_to), "soc"},
+      {reserve(from_to + "soc = 1.0\n"), "soc [guard] soc_max"},
+      {reserve(from_to + "soc = 30\n"), "soc 0 1"},
+      {reserve(from_to + "soc = 0.3\nhours = 1\n"), "hours"},
+      {reserve(from_to + "soc = 0.3\nmonths = [13]\n"), "months 1 12"},
+      {reserve(from_to + "soc = 0.3\nmonths = []\n"), "months"},
+      {reserve("from = \"17:00\"\nto = \"17:00\"\nsoc = 0.3\n"), "to from"},
+      {reserve("from = \"24:01\"\nto = \"20:00\"\nsoc = 0.3\n"), "from"},
+      {reserve("from = \"7:00\"\nto = \"20:00\"\nsoc = 0.3\n"), "from"},
+      {reserve("from = \"17.00\"\nto = \"20:00\"\nsoc = 0.3\n"), "from"},
+      {{.rest = many}, "reserve 24"},
   };
   for (const auto& [pieces, message] : mistakes) {
     EdgeConfig config;
     std::string error;
     EXPECT_FALSE(load_pieces(pieces, config, error)) << message;
-    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_THAT(error, Names(message));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -116,11 +113,9 @@ TEST(WishesNote, SaysWhatIsWantedAndNothingElse) {
   control.reserve.push_back({.from_minute = 0, .to_minute = 180, .soc_e4 = 1'550});
   control.full_charge_every_days = 7;
   control.guard.full_charge_power_w = 2'000;
-  EXPECT_EQ(operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
-            "hold       -500 W until 2023-03-27T00:03:00Z\n"
-            "reserve    SoC 15.5 % at this hour, 1 periods in all\nfull       every 7 days, with "
-            "2000 W\n");
-  EXPECT_THAT(operator_note({}, {.unreadable = true}, kNow), HasSubstr("not followed"));
+  EXPECT_THAT(operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
+              Names("-500 W 2023-03-27T00:03:00Z 15.5 % 7 2000"));
+  EXPECT_THAT(operator_note({}, {.unreadable = true}, kNow), Names("hold"));
 }
 
 }  // namespace

@@ -7,12 +7,14 @@
 #include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
+using ::testing::Not;
 
 class PriceTransport : public ::testing::Test {
  protected:
@@ -35,20 +37,18 @@ class PriceTransport : public ::testing::Test {
 
 TEST_F(PriceTransport, PlainHttpToAnotherMachineNeedsTheKeyAndIsSaid) {
   EXPECT_FALSE(load("url = \"http://192.168.1.9/records\"\n"));
-  EXPECT_THAT(error_, StartsWith(path_ + ":4: [price] url is plain http to another machine"));
-  EXPECT_THAT(error_, HasSubstr("add allow_http = true"));
+  EXPECT_THAT(error_, Names(path_ + ":4 [price] url allow_http = true"));
   EXPECT_FALSE(load("url = \"http://localhost/records\"\n"));
   ASSERT_TRUE(load("url = \"http://192.168.1.9/records\"\nallow_http = true\n")) << error_;
   const TransportNote note = transport_note({config_.price.feed, config_.price.history});
   EXPECT_TRUE(note.is_open);
-  EXPECT_THAT(note.text, HasSubstr("prices come over plain http"));
+  EXPECT_THAT(note.text, Names("http"));
 }
 
 TEST_F(PriceTransport, InsideThisMachineAndOverTlsNoKeyIsNeeded) {
   ASSERT_TRUE(load("url = \"http://127.0.0.1:8080/records\"\n")) << error_;
   EXPECT_FALSE(transport_note({config_.price.feed, config_.price.history}).is_open);
-  EXPECT_EQ(transport_note({config_.price.feed, config_.price.history}).text,
-            "plain http inside this machine");
+  EXPECT_THAT(transport_note({config_.price.feed, config_.price.history}).text, Names("http"));
   ASSERT_TRUE(load("ca_file = \"headers\"\nurl = \"https://a.example/records\"\n")) << error_;
   EXPECT_EQ(transport_note({config_.price.feed, config_.price.history}).text, "https");
 }
@@ -59,11 +59,11 @@ TEST_F(PriceTransport, TheHistorysUrlIsHeldToTheSame) {
       "history_url = \"http://a.example:443/past\"\nca_file = \"headers\"\n"
       "url = \"https://a.example/records\"\n";
   EXPECT_FALSE(load(urls));
-  EXPECT_THAT(error_, StartsWith(path_ + ":4: [price] history_url is plain http to another"));
+  EXPECT_THAT(error_, Names(path_ + ":4 [price] history_url allow_http"));
   ASSERT_TRUE(load(urls + "allow_http = true\n")) << error_;
   EXPECT_TRUE(transport_note({config_.price.feed, config_.price.history}).is_open);
   EXPECT_FALSE(load(urls + "allow_http = true\nheader_file = \"headers\"\n"));
-  EXPECT_THAT(error_, HasSubstr("header_file holds secrets, which are never sent over plain http"));
+  EXPECT_THAT(error_, AllOf(Names("header_file"), Not(Names("allow_http"))));
 }
 
 TEST_F(PriceTransport, SecretsNeverGoOverPlainHttp) {
@@ -71,9 +71,9 @@ TEST_F(PriceTransport, SecretsNeverGoOverPlainHttp) {
     const std::string allowed = "allow_http = true\n";
     EXPECT_FALSE(
         load("header_file = \"headers\"\nurl = \"http://" + std::string(host) + "/\"\n" + allowed));
-    EXPECT_THAT(error_, HasSubstr(":4: [price] header_file holds secrets, which are never sent"));
+    EXPECT_THAT(error_, Names(path_ + ":4 [price] header_file"));
     EXPECT_FALSE(load("url = \"http://me:s3cret@" + std::string(host) + "/\"\n" + allowed));
-    EXPECT_THAT(error_, HasSubstr(":4: [price] url holds a user or a password"));
+    EXPECT_THAT(error_, AllOf(Names(path_ + ":4 [price] url"), Not(HasSubstr("header_file"))));
     EXPECT_THAT(error_, testing::Not(HasSubstr("s3cret")));
   }
   EXPECT_TRUE(
@@ -86,8 +86,7 @@ TEST_F(PriceTransport, AUrlWithoutAHostIsRefusedWithoutItsText) {
   for (const char* url : {"ftp://127.0.0.1/", "https://me:s3/cret@a.example/", "127.0.0.1"}) {
     EXPECT_FALSE(load("ca_file = \"headers\"\nurl = \"" + std::string(url) + "\"\n"));
     EXPECT_THAT(error_,
-                HasSubstr(":5: [price] url must start with http:// or https:// and name a host"));
-    EXPECT_THAT(error_, testing::Not(HasSubstr("s3")));
+                AllOf(Names(path_ + ":5 [price] url http:// https://"), Not(HasSubstr("s3"))));
   }
 }
 

@@ -7,10 +7,12 @@
 #include "edge/settings/edge_config.h"
 #include "edge/why/duration_text.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 struct Loaded {
@@ -75,28 +77,28 @@ TEST(SiteConfig, TheLimitsFileLiesBesideTheConfiguration) {
 
 TEST(SiteConfig, EveryMistakeSaysItsMend) {
   const std::pair<std::string, const char*> mistakes[] = {
-      {"[meter]\nimport_w_max = 1000\n", "map is missing"},
-      {"[meter]\nmap = \"none.toml\"\n", "of meters in share/bess/meters"},
-      {"[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n", "is a battery's map"},
-      {meter("import_w_max = 200\n"), "import_w_max must be above margin_w (200)"},
-      {meter("peak_w_max = 100\n"), "peak_w_max must be above margin_w"},
-      {meter("peak_shave = true\n"), "peak_shave means nothing without peak_w_max"},
-      {meter("host = \"meter.local\"\n"), "numeric IPv4"},
-      {meter("on_loss = \"charge\"\n"), "\"idle\", \"ignore\""},
-      {"[meter]\nsource = \"battery\"\nhost = \"127.0.0.1\"\n", "host is not a known key"},
-      {"[limits]\n", "file is missing"},
-      {"[limits]\nfile = \"x\"\non_timeout = \"charge\"\n", "\"release_limits\", \"idle\""}};
+      {"[meter]\nimport_w_max = 1000\n", "[meter] map"},
+      {"[meter]\nmap = \"none.toml\"\n", "none.toml share/bess/meters"},
+      {"[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n", "[meter] map \"meter\""},
+      {meter("import_w_max = 200\n"), "import_w_max margin_w 200"},
+      {meter("peak_w_max = 100\n"), "peak_w_max margin_w"},
+      {meter("peak_shave = true\n"), "peak_shave peak_w_max"},
+      {meter("host = \"meter.local\"\n"), "host IPv4"},
+      {meter("on_loss = \"charge\"\n"), "on_loss \"idle\" \"ignore\""},
+      {"[meter]\nsource = \"battery\"\nhost = \"127.0.0.1\"\n", "host"},
+      {"[limits]\n", "[limits] file"},
+      {"[limits]\nfile = \"x\"\non_timeout = \"charge\"\n",
+       "on_timeout \"release_limits\" \"idle\""}};
   for (const auto& [sections, message] : mistakes) {
     const Loaded loaded(sections);
     EXPECT_FALSE(loaded.is_good) << sections;
-    EXPECT_THAT(loaded.error, HasSubstr(message));
-    EXPECT_THAT(loaded.error, HasSubstr("edge.toml:"));
+    EXPECT_THAT(loaded.error, AllOf(Names(message), HasSubstr("edge.toml:")));
   }
   const Loaded no_grid("[meter]\nsource = \"battery\"\n", "huawei_luna2000");
-  EXPECT_THAT(no_grid.error, HasSubstr("huawei_luna2000 has no grid point"));
+  EXPECT_THAT(no_grid.error, Names("huawei_luna2000 grid"));
   const std::string line = "transport = \"rtu\"\ndevice = \"/dev/ttyUSB0\"\n";
   const Loaded same(meter(line), "alphaess", line);
-  EXPECT_THAT(same.error, HasSubstr("device is the battery's serial line"));
+  EXPECT_THAT(same.error, Names("[meter] device"));
 }
 
 TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
@@ -115,7 +117,7 @@ TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
 TEST(SiteConfig, AMetersMapDrivesNoBattery) {
   const Loaded loaded("", "../meters/sunspec");
   EXPECT_FALSE(loaded.is_good);
-  EXPECT_THAT(loaded.error, HasSubstr("is a meter's: it belongs into [meter]"));
+  EXPECT_THAT(loaded.error, Names("[meter]"));
 }
 
 TEST(DurationText, IsAWholeNumberWithItsUnit) {

@@ -9,6 +9,7 @@
 
 #include "tests/support/as_nobody.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -45,21 +46,21 @@ TEST_F(CommissionFile, FitsTheConfigurationThatItWasMadeWith) {
 
 TEST_F(CommissionFile, AnotherAddressIsAnotherBattery) {
   config_.battery.link.host = "192.168.1.20";
-  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml:6: battery is \"127.0.0.1:502 unit 1\""));
-  EXPECT_THAT(error_, HasSubstr("bess-edge commission --config FILE --yes"));
+  EXPECT_THAT(complaint(), Names("commissioned.toml:6 battery \"127.0.0.1:502 unit 1\""));
+  EXPECT_THAT(error_, Names("bess-edge commission --config --yes"));
 }
 
 TEST_F(CommissionFile, AnotherVariantOrMapMustBeCheckedAgain) {
   config_.battery.map.variant = "five_writes";
-  EXPECT_THAT(complaint(), HasSubstr("variant"));
+  EXPECT_THAT(complaint(), Names("variant five_writes"));
   config_.battery.map.variant = "block";
   config_.battery.map.name = "other";
-  EXPECT_THAT(complaint(), HasSubstr("map is \"simulator\""));
+  EXPECT_THAT(complaint(), Names("map \"simulator\""));
 }
 
 TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
   static_cast<void>(folder_.write("map.toml", "# version 2\n"));
-  EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
+  EXPECT_THAT(complaint(), Names("map_crc32"));
 }
 
 TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
@@ -67,7 +68,7 @@ TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
   ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
   config_.battery.map.unit_groups[0].unit = 246;
-  EXPECT_THAT(complaint(), HasSubstr("battery is \"127.0.0.1:502 unit 1, vebus 228\""));
+  EXPECT_THAT(complaint(), Names("battery vebus 228"));
 }
 
 TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
@@ -76,7 +77,7 @@ TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
   ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
   static_cast<void>(folder_.write("base.toml", "# version 2\n"));
-  EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
+  EXPECT_THAT(complaint(), Names("map_crc32"));
 }
 
 TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
@@ -131,13 +132,10 @@ TEST_F(CommissionCopies, AnyFlippedByteOfAnyPlaceIsToldAndMended) {
       static_cast<void>(folder_.write(place, flipped));
       ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
       ASSERT_THAT(commission_file_losses(config_),
-                  ::testing::ElementsAre(::testing::AllOf(HasSubstr(folder_.file(place)),
-                                                          HasSubstr("a start in control"))))
+                  ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
       ASSERT_EQ(text_of_file(folder_.file(place)), flipped) << "looking writes nothing";
-      ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(::testing::AllOf(
-                                                     HasSubstr(folder_.file(place)),
-                                                     HasSubstr("counts, and it is written again"))))
+      ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
       ASSERT_EQ(text_of_file(folder_.file(place)), text_) << i;
     }
@@ -164,8 +162,7 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
     fs::remove(path);
     fs::create_directory(path);
     ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
-    EXPECT_THAT(mend_commission_file(config_),
-                ::testing::ElementsAre(HasSubstr("it cannot be written: Is a directory")));
+    EXPECT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(path)));
     fs::remove(path);
     static_cast<void>(folder_.write(place, text_));
   }
@@ -173,9 +170,7 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
 
 TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
   for (const char* place : kPlaces) static_cast<void>(folder_.write(place, "\0\0\0"));
-  EXPECT_THAT(complaint(), ::testing::AllOf(HasSubstr("commissioned.toml is damaged"),
-                                            HasSubstr("no copy counts"),
-                                            HasSubstr("bess-edge commission --config FILE --yes")));
+  EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
   EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
 }
 
@@ -185,8 +180,7 @@ TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
   }
   const AsNobody reader;
   EXPECT_THAT(complaint(),
-              ::testing::AllOf(HasSubstr("is not for this user to read"), HasSubstr("or with sudo"),
-                               ::testing::Not(HasSubstr("disk"))));
+              ::testing::AllOf(Names("commissioned.toml sudo"), ::testing::Not(Names("[state]"))));
 }
 
 /// A program before this one kept it once, and without a checksum: no loss.
@@ -208,25 +202,25 @@ TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
   std::filesystem::remove(folder_.file(kPlaces[0]));
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
   config_.battery.link.host = "127.0.0.1";
-  EXPECT_THAT(complaint(), HasSubstr("battery is \"192.168.1.20"));
+  EXPECT_THAT(complaint(), Names("battery \"192.168.1.20"));
 }
 
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
   config_.state.folder.assign(folder_.file("elsewhere"));
-  EXPECT_THAT(complaint(), HasSubstr("bess-edge commission --config FILE --yes"));
+  EXPECT_THAT(complaint(), Names("bess-edge commission --config --yes"));
 }
 
 TEST_F(CommissionFile, ATornFileIsNoProof) {
   std::filesystem::remove(folder_.file("state/commissioned.copy"));
   static_cast<void>(
       folder_.write("state/commissioned.toml", "map = \"simulator\"\nvariant = \"bl"));
-  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml"));
+  EXPECT_THAT(complaint(), Names("state/commissioned.toml"));
 }
 
 TEST_F(CommissionFile, AFolderThatCannotBeWrittenIsNamed) {
   config_.state.folder.assign("/proc/bess");
   EXPECT_FALSE(write_commission_file(config_, {}, 0, error_));
-  EXPECT_THAT(error_, HasSubstr("/proc/bess/commissioned.toml: cannot write here"));
+  EXPECT_THAT(error_, Names("/proc/bess/commissioned.toml"));
 }
 
 }  // namespace

