@@ -93,7 +93,7 @@ TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
     ASSERT_NE(line, "") << "it did not start";
   }
   EXPECT_THAT(run({"--config", other, "--cycles", "1"}, 1),
-              HasSubstr("is in use by another bess-edge (process " + std::to_string(edge.pid())));
+              HasSubstr("is in use by another program (process " + std::to_string(edge.pid())));
 }
 
 TEST_F(HostileHost, AStrangersStatusIsNotBelieved) {

@@ -122,7 +122,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   const std::string other = site_.commission({.state = "other"});
   ChildProcess edge({edge_program(), "--config", mine});
   EXPECT_EQ(line_after_notes(edge), "started: in control");
-  const std::string in_use = "unit 85 is in use by another bess-edge (process ";
+  const std::string in_use = "unit 85 is in use by another program (process ";
   ChildProcess ways[] = {
       ChildProcess({edge_program(), "--config", other}),
       ChildProcess({edge_program(), "--config", other, "--check"}),
@@ -152,7 +152,7 @@ TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
   const auto first_battery = std::move(site_.battery);
   site_.start_battery();
   ChildProcess second({edge_program(), "--config", site_.write_config()});
-  EXPECT_THAT(second.read_all(), HasSubstr("/state is in use by another bess-edge (process " +
+  EXPECT_THAT(second.read_all(), HasSubstr("/state is in use by another program (process " +
                                            std::to_string(edge.pid())));
   EXPECT_EQ(second.wait(), 1);
 }

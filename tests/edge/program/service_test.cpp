@@ -32,7 +32,7 @@ TEST(InstanceLock, TheSecondIsRefusedWithTheFirstOnesProcess) {
   ASSERT_TRUE(first.take(path.c_str(), "the battery", error)) << error.c_str();
   InstanceLock second;
   EXPECT_FALSE(second.take(path.c_str(), "the battery", error));
-  EXPECT_THAT(error.c_str(), HasSubstr("the battery is in use by another bess-edge (process " +
+  EXPECT_THAT(error.c_str(), HasSubstr("the battery is in use by another program (process " +
                                        std::to_string(getpid()) + ", lock " + path));
   EXPECT_EQ(holder_of(path.c_str()), getpid());
 }
