@@ -409,7 +409,8 @@ TEST_P(DyingDiskNotify, TellsEachAlarmOnceAndWhatItCannotKeep) {
   GetParam().happen(disk_);
   EXPECT_TRUE(is_mailed("ALARM: WARN: the ")) << "the disk";
   EXPECT_TRUE(is_mailed(disk_.file("notify/told.json") + ": cannot be written: "));
-  EXPECT_GT(mails_with("what is told is kept in " + site_.folder.file("run/notify/told.json")), 0U);
+  EXPECT_GT(mails_with("what is reported is kept in " + site_.folder.file("run/notify/told.json")),
+            0U);
   trip();
   EXPECT_TRUE(is_mailed("ALARM: CRITICAL: tripped")) << said_;
   for (int cycle = 0; cycle < 5; ++cycle) await_cycle("mode", "-", 1);  // until that is kept

@@ -7,8 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "shared/host/json.h"
 #include "tests/support/simulated_site.h"
 #include "tests/support/temporary_folder.h"
+#ifdef BESS_NOTIFY_PROGRAM
+#include "tests/support/mqtt_broker.h"
+#endif
 
 namespace bess {
 namespace {
@@ -209,6 +213,30 @@ TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
   EXPECT_TRUE(is_mailed("over: CRITICAL: no bess-edge runs with this configuration"));
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
   EXPECT_EQ(SimulatedSite::stop(controller), 0);
+}
+
+/// The members of `bess-edge status` and `earned` that the topics are made of are there.
+TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
+  if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
+  start_site(3'000);
+  use_mail();
+  Broker broker(site_.folder, Broker::free_port());
+  std::ofstream(config_, std::ios::app)
+      << "mqtt_host = \"127.0.0.1\"\nmqtt_port = " << broker.port() << "\n";
+  Listener all(broker.port(), "bess/#");
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
+  ChildProcess controller({edge_program(), "--config", config_});
+  ASSERT_NE(await_line(controller, "mode=running"), "");
+  const Json state = Json::parse(all.await("/state", "\"charged_kwh\""));
+  for (const char* number :
+       {"soc_percent", "power_w", "setpoint_w", "price_eur_per_mwh", "charged_kwh",
+        "discharged_kwh", "earned_today_eur", "contract_today_eur", "full_cycles_today"}) {
+    EXPECT_TRUE(state.value()[number].number().has_value()) << number;
+  }
+  EXPECT_STREQ(state.value()["mode"].text(), "running");
+  EXPECT_THAT(state.value()["today_since_utc"].text_or(""), HasSubstr(":00:00Z"));
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(notify), 0);
 }
 
 #endif

@@ -43,7 +43,6 @@ constexpr StateFile kFiles[] = {
     {"state/metrics.prom", true},
     {"run/metrics.prom", true, false},
     {"notify/told.json", false},
-    {"notify/told.copy", false},
     {"notify_run/told.json", false},
 };
 
@@ -151,7 +150,7 @@ class StateFiles : public ::testing::Test {
         << metrics.text;
     said_ += json.text + text.text + metrics.text;
   }
-  /// What was told is not told again, and the energy is as it was.
+  /// What was told is not told again.
   void expect_notifier_remembers() {
     const std::size_t before = mails();
     said_ += notify();
@@ -232,11 +231,12 @@ TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
               AllOf(HasSubstr("commissioned.toml is damaged"), HasSubstr("no copy counts"),
                     HasSubstr("bess-edge commission --config FILE --yes"), Not(HasSubstr("utc="))));
   const std::size_t before = mails();
-  for (const char* path : {"notify/told.json", "notify/told.copy", "notify_run/told.json"}) {
+  for (const char* path : {"notify/told.json", "notify_run/told.json"}) {
     std::ofstream(site_.folder.file(path)) << "{\"version\": 1, \"al";
   }
-  EXPECT_THAT(notify(), AllOf(HasSubstr("told.json is damaged"), HasSubstr("told.copy is damaged"),
-                              HasSubstr("what was told is not known: alarms are told again")));
+  EXPECT_THAT(notify(), AllOf(HasSubstr("notify/told.json is damaged"),
+                              HasSubstr("notify_run/told.json is damaged"),
+                              HasSubstr("what was reported is not known: alarms are")));
   EXPECT_EQ(mails(), before + 1) << "told again rather than never";
 }
 
