@@ -105,7 +105,7 @@ std::string SettledPrices::read(const std::string& path) {
   if (size < 0) return errno == ENOENT ? "" : path + ": cannot be read: " + std::strerror(errno);
   text.resize(static_cast<std::size_t>(size));
   if (parse(text)) return "";
-  return path + ": is damaged: bess-notify --settle fetches its prices again";
+  return path + ": is damaged: bess-prices --settle fetches its prices again";
 }
 
 }  // namespace bess

@@ -6,6 +6,7 @@
 #include "edge/account/drive.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -189,11 +190,14 @@ Json Statement::json() const {
     };
     Json of_day =
         Json::object({{"date", day.date()},
+                      {"start_utc", utc_text(day.start_utc_s()).view()},
+                      {"line", day.line()},
                       {"earned_eur", Decimals{day.earned_eur(), 4}},
                       {"charged_kwh", Decimals{day.charged_kwh(), 3}},
                       {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
                       {"full_cycles", Decimals{day.full_cycles(), 4}},
                       {"cycles", day.cycles()},
+                      {"interventions", day.interventions()},
                       {"driven_cycles", day.driven_cycles()},
                       {"valued_cycles", day.valued_cycles()},
                       {"mean_price_eur_per_mwh", Decimals{day.money().mean_price_eur_per_mwh(), 2}},

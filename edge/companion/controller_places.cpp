@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "edge/log/battery_name.h"
-#include "edge/log/installed_folders.h"
 
 namespace bess {
 namespace {
@@ -21,21 +20,17 @@ ControllerPlaces controller_places(TomlTable& root) {
   TomlTable table(root.table("state"), root.file(), "[state]", root.error());
   table.line("folder", state);
   state = root.resolved(state);
-  std::string run_folder(kInstalledEdge.run_beside(state));
-  table.line("run_folder", run_folder);
   TomlTable battery(root.table("battery"), root.file(), "[battery]", root.error());
   std::string name = default_battery_name(state);
   battery.line("name", name);
   if (root.ok() && !is_battery_name(name)) {
     battery.fail("name", "must be 1 to 63 letters, digits, - and _");
   }
-  const std::string run_ring = root.resolved(run_folder) + "/decisions.ring";
   return {.name = name,
           .id = battery_id(state),
           .config_path = root.file(),
           .program = controller_beside(),
-          .ring = state + "/decisions.ring",
-          .run_ring = run_folder.empty() ? "" : run_ring};
+          .state_folder = state};
 }
 
 void read_program(TomlTable& table, ControllerPlaces& places) {

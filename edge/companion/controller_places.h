@@ -1,6 +1,6 @@
 // What a companion program knows of the controller by its configuration: which program answers, and
-// where its decision log lies. Read apart from the controller's own reader: a configuration that
-// keeps the controller from starting must still be seen, and told.
+// where its state lies. Read apart from the controller's own reader: a configuration that keeps the
+// controller from starting must still be seen, and reported.
 #pragma once
 
 #include <string>
@@ -13,9 +13,8 @@ struct ControllerPlaces {
   std::string name;  ///< [battery] name
   std::string id;    ///< battery_id
   std::string config_path;
-  std::string program;   ///< bess-edge, which answers
-  std::string ring;      ///< the decision log
-  std::string run_ring;  ///< what of it is in memory; empty = none
+  std::string program;       ///< bess-edge, which answers
+  std::string state_folder;  ///< [state] folder
 };
 
 /// Of the whole configuration. `program` is bess-edge beside this program, as both are installed.

@@ -1,8 +1,7 @@
-// Which troubles have been told, so that each is told once, and its end once: pure, over UTC
-// seconds.
-//   a trouble that lasts `after_s`            is told
-//   one that comes back within `after_s`      is still the same
-//   a told one that stays away `after_s`      is over, and that is told
+// Which troubles have been reported: each once, and its end once. Pure, over UTC seconds.
+//   a trouble that lasts `after_s`                is reported
+//   one that comes back within `after_s`          is still the same
+//   a reported one that stays away for `after_s`  is over, and that is reported
 // Between two looks it is a list that the caller keeps in a file: a restart repeats nothing.
 #pragma once
 
@@ -32,21 +31,9 @@ struct AlarmEvent {
   Alarm alarm{};
 };
 
-class AlarmBook {
- public:
-  AlarmBook(std::int64_t after_s, std::vector<Alarm> before)
-      : after_s_(after_s), alarms_(std::move(before)) {}
-
-  /// What is to be told now that these troubles, and no others, are there.
-  std::vector<AlarmEvent> observe(const std::vector<Trouble>& troubles, std::int64_t now_utc_s);
-  /// Told and untold ones, oldest first.
-  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
-
- private:
-  Alarm& alarm_of(const Trouble& trouble, std::int64_t now_utc_s);
-
-  std::int64_t after_s_;
-  std::vector<Alarm> alarms_;
-};
+/// Takes into `alarms`, oldest first, that these troubles and no others are there now. Returns what
+/// is to be reported.
+std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
+                                std::int64_t after_s, std::int64_t now_utc_s);
 
 }  // namespace bess

@@ -22,13 +22,20 @@ std::string text_of(const NotifySettings& settings, const Message& message) {
 
 }  // namespace
 
+std::string headline(const Message& message) {
+  const std::string before = message.severity == "alarm" ? "ALARM: "
+                             : message.severity == "day" ? "day "
+                                                         : message.severity + ": ";
+  return before + one_line(message.text, 400);
+}
+
 std::string run_alarm_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop) {
   const std::string text = text_of(settings, message);
   // By env and as words, so that nothing in a text is read by the shell.
   const std::vector<std::string> words = {
       "/usr/bin/env",
-      std::string("BESS_SEVERITY=") + kind_name(message.kind),
+      "BESS_SEVERITY=" + message.severity,
       "BESS_TITLE=[bess " + settings.name + "] " + one_line(headline(message), 200),
       "BESS_TEXT=" + text,
       "BESS_NODE=" + settings.name,

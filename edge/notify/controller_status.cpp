@@ -2,13 +2,16 @@
 
 #include <string_view>
 
+#include "edge/account/settled_prices.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
 
-constexpr int kAnswerMsMax = 10'000;
+constexpr int kStatusMsMax = 10'000;
+constexpr std::int64_t kEarnedSMax = 30;
 
 /// The same sentence with other numbers is the same trouble, and so is a WARN that became CRITICAL.
 std::string key_of_line(std::string_view line) {
@@ -38,20 +41,27 @@ std::string key_of(std::string_view line, std::string_view reason) {
 
 }  // namespace
 
-ControllerStatus ask_controller(const std::string& program, const std::string& config_path) {
+ControllerStatus ask_controller(const ControllerPlaces& controller) {
   ControllerStatus status;
   ProgramResult result = run_program(
-      {program, "status", "--json", "--no-lock", "--config", config_path}, "", kAnswerMsMax);
+      {controller.program, "status", "--json", "--no-lock", "--config", controller.config_path}, "",
+      kStatusMsMax);
   status.trouble = std::move(result.trouble);
   if (!status.trouble.empty()) return status;
   Json json = Json::parse(result.output);
   if (json.value()["health"].text() == nullptr) {
-    status.trouble = program + " status gives no status (exit code " +
+    status.trouble = controller.program + " status gives no status (exit code " +
                      std::to_string(result.exit_code) + "): try it by hand";
     return status;
   }
   status.json = std::move(json);
   return status;
+}
+
+Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words) {
+  words.insert(words.begin(), {controller.program, "earned"});
+  words.insert(words.end(), {"--json", "--config", controller.config_path});
+  return Json::parse(run_and_hear(words, kEarnedSMax).output);
 }
 
 std::vector<Trouble> troubles_of(const ControllerStatus& status) {
@@ -63,6 +73,18 @@ std::vector<Trouble> troubles_of(const ControllerStatus& status) {
     troubles.push_back({.key = key_of(line, json["last"]["reason"].text_or("")), .text = line});
   }
   return troubles;
+}
+
+std::string settled_trouble(const std::string& file, std::int64_t now_utc_s) {
+  constexpr std::int64_t kLateS = 4 * 86'400;  // a day is published on the next
+  constexpr const char* kMend = ": bess-prices --settle says why";
+  SettledPrices prices;
+  const std::string loss = prices.read(file);
+  if (!loss.empty()) return loss;
+  if (prices.quarters().empty()) return std::string("no settled price has come yet") + kMend;
+  const std::int64_t newest_utc_s = prices.quarters().back().start_utc_s;
+  if (now_utc_s - newest_utc_s <= kLateS) return "";
+  return "no settled price is newer than " + std::string(utc_text(newest_utc_s).view()) + kMend;
 }
 
 }  // namespace bess

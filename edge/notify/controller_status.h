@@ -1,10 +1,12 @@
-// How the controller is, as anybody may ask: what `bess-edge status --json` says, and the troubles
-// in it. It is asked without locks, so that nobody who asks can be in a controller's way.
+// How the controller is, as anybody may ask bess-edge, and the troubles in it. It is asked without
+// locks, so that nobody who asks can be in a controller's way.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "edge/companion/controller_places.h"
 #include "edge/notify/alarm_book.h"
 #include "shared/host/json.h"
 
@@ -15,10 +17,17 @@ struct ControllerStatus {
   Json json = Json::object();
 };
 
-/// Runs `program`; waits ten seconds at most.
-ControllerStatus ask_controller(const std::string& program, const std::string& config_path);
+/// `bess-edge status --json`; waits ten seconds at most.
+ControllerStatus ask_controller(const ControllerPlaces& controller);
 
-/// Each reason that health names, as it is named: rules of a later controller are told as well.
+/// `bess-edge earned --json` of one day; waits half a minute at most. Does not exist where the log
+/// has nothing of that day, or there is no answer.
+Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words);
+
+/// Each reason that health names, as it is named: rules of a later controller are reported as well.
 std::vector<Trouble> troubles_of(const ControllerStatus& status);
+
+/// Why the settled prices in `file`, which should be there days ago, are not; empty: they are.
+std::string settled_trouble(const std::string& file, std::int64_t now_utc_s);
 
 }  // namespace bess

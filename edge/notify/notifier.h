@@ -1,81 +1,88 @@
-// One round of the notifier: ask, compare with what was told, hand the rest to every way's outbox.
-//   bess-edge status, decision log -> AlarmBook, DayAccount -> messages
-//   messages -> outboxes: command, MQTT
-// It reads files and asks a program; nothing here holds what the controller needs. A round waits
-// for no way: what a way does not take is tried again every round, for three days, from its own
-// outbox.
+// One round of the notifier: ask bess-edge, compare with what was reported, report the rest.
+//   bess-edge status -> troubles -> alarms -> messages -> queue -> command
+//   bess-edge earned -> yesterday          -> messages -> MQTT event
+//   both                                   -> MQTT state, alarms, day
+// It reads and asks; nothing here holds what the controller needs. The command runs beside the
+// rounds, one message at a time; what it does not take is kept, and tried again every round.
 #pragma once
 
-#include <map>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 
-#include "edge/account/day_account.h"
-#include "edge/log/log_reader.h"
-#include "edge/notify/alarm_book.h"
-#include "edge/notify/bell.h"
 #include "edge/notify/controller_status.h"
-#include "edge/notify/energy_totals.h"
-#include "edge/notify/message.h"
 #include "edge/notify/mqtt_client.h"
-#include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notifier_state.h"
 #include "edge/notify/notify_settings.h"
-#include "edge/notify/outbox.h"
 
 namespace bess {
 
 class Notifier {
  public:
-  /// Opens the ways that the settings name.
-  Notifier(const NotifySettings& settings, MqttPresence presence = MqttPresence::kStays);
+  static constexpr std::size_t kPendingMax = 200;
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// Once `stop` is requested nothing here waits for long any more.
+  explicit Notifier(const NotifySettings& settings, std::stop_token stop = {});
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
-  /// Lets the ways end what they are at, for two seconds; what is cut then is told after the next
-  /// start.
+  /// Lets the command end what it is at, for two seconds; what is cut then is reported after the
+  /// next start.
   ~Notifier();
 
   void run_round(std::int64_t now_utc_s);
-  /// Carries out what the broker has ordered since, and publishes what came of it.
-  void follow_orders();
-  /// Readable when a way has taken something, or an order has come: `follow_orders` and `keep` are
-  /// due.
-  [[nodiscard]] int bell() const { return taken_.fd(); }
-  /// Writes down what was told and what is owed, where that has changed.
-  void keep();
-  /// Until every way has taken what is owed, or has failed, and a broker that is there has the
-  /// newest values; then keeps it. False when the patience ends before.
-  bool wait_for_channels(std::chrono::milliseconds patience);
-  /// A message by every way, once. False when one did not take it.
-  bool send_test(std::int64_t now_utc_s);
+  /// Until that time or the stop, follows what the broker orders and hears of the command.
+  void serve_until(TimePoint until) { serve(until, stop_, false); }
+  /// Until the command has taken what is pending, or has failed, and a broker that is there has the
+  /// newest values. False when the command is still at it after that time.
+  bool finish(std::chrono::milliseconds patience);
 
  private:
-  void open_mqtt(MqttPresence presence);
-  void open_outbox(const char* name, Channel way);
+  struct Order {
+    std::string topic;
+    std::string payload;
+  };
+
+  void serve(TimePoint until, const std::stop_token& stop, bool is_for_command);
   void tell(const Message& message);
-  void tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s);
-  void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
-  void tell_days(const LogReader& log, std::int64_t newest_utc_s, std::int64_t now_utc_s);
+  void tell_alarms(const ControllerStatus& status, std::int64_t now_utc_s);
+  void tell_day(const ControllerStatus& status, std::int64_t now_utc_s);
+  void note_connection();
   void publish(const ControllerStatus& status);
-  /// Once an hour: the file is long.
-  void look_at_settled(std::int64_t now_utc_s);
+  void follow(const Order& order);
+  void keep();
+  void run_command();
+  void hear_of_command(const std::string& trouble);
 
   const NotifySettings settings_;
-  NotifierState told_;  ///< as it was kept last
-  EnergyTotals energy_;
-  DayAccount today_{0};                ///< of the newest record
-  std::int64_t read_up_to_utc_s_ = 0;  ///< the cycle behind which the log was read last
-  AlarmBook book_;
-  Bell taken_;
-  MqttOrderBox orders_{taken_};
-  HoldDesk desk_;
-  bool is_held_ = false;  ///< by the newest status
-  std::unique_ptr<MqttClient> mqtt_;
-  std::map<std::string, Outbox> outboxes_;  ///< after what their threads use
-  std::string kept_;                        ///< the text that was written last
-  std::string settled_trouble_;  ///< why nobody knows what is billed; empty = it is known
-  std::int64_t settled_due_utc_s_ = 0;
-  std::string memory_trouble_;  ///< why what is told cannot be kept; empty = it is
+  const std::stop_token stop_;
+  NotifierState state_;
+  std::string kept_;               ///< the text of it that was written last
+  std::string memory_trouble_;     ///< why what is reported cannot be kept; empty = it is
+  Json today_ = Json::object();    ///< as bess-edge earned has it
+  std::string newest_utc_;         ///< of the cycle behind which it was asked
+  bool is_held_ = false;           ///< by the newest status
+  std::int32_t hold_power_w_ = 0;  ///< of the next hold that is ordered
+  int rounds_apart_ = 0;           ///< in a row, without a connection to the broker
+  bool is_command_running_ = false;
+  std::string command_trouble_;  ///< logged once, not every round
+
+  std::mutex mutex_;  ///< of what other threads leave for `serve`
+  std::condition_variable_any changed_;
+  std::deque<Order> orders_;
+  std::optional<std::string> outcome_;  ///< of the command
+
+  std::unique_ptr<MqttClient> mqtt_;  ///< null: no broker is configured
+  std::jthread command_;
 };
+
+/// A message to each channel, past the queue. False when one did not take it.
+bool send_test(const NotifySettings& settings, std::int64_t now_utc_s);
 
 }  // namespace bess

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "edge/account/money_settings.h"
 #include "edge/companion/controller_places.h"
 
 namespace bess {
@@ -23,19 +22,17 @@ struct MqttSettings {
 };
 
 struct NotifySettings : ControllerPlaces {
-  std::int32_t power_w = 4'000;            ///< [battery] power_w: the most that may be held
-  std::string memory;                      ///< file of what was told
-  std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
-  std::string lock;                        ///< file that the one notifier of this memory holds
-  std::string contact;                     ///< stands in each message; empty: not said
+  std::int32_t power_w = 4'000;       ///< [battery] power_w: the most that may be held
+  std::vector<std::string> memories;  ///< files of what was reported, for a disk that dies
+  std::string lock;                   ///< file that the one notifier of this folder holds
+  std::string contact;                ///< stands in each message; empty: not said
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;
   bool daily = true;
   std::string command;  ///< alarm_command.h; empty: none
   std::int32_t command_ms_max = 60'000;
   MqttSettings mqtt;
-  MoneySettings money;
-  bool awaits_settled = false;  ///< bess-prices fetches what quarter-hours are billed at
+  std::string settled_file;  ///< that bess-prices writes; empty: it is not asked to
 
   [[nodiscard]] bool has_channel() const { return !command.empty() || !mqtt.host.empty(); }
 };

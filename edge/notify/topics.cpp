@@ -1,8 +1,7 @@
 #include "edge/notify/topics.h"
 
-#include <optional>
+#include <algorithm>
 
-#include "shared/price_level.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -10,134 +9,13 @@ namespace {
 
 constexpr const char* kNotRunning = "not running";  ///< as `bess-edge status` says it
 
-/// Absent, not 0, where it was not measured.
-void set_scaled(Json& json, const char* key, JsonValue last, const char* name, double divisor,
-                int decimals) {
-  const std::optional<double> number = last[name].number();
-  if (number.has_value()) json.set(key, Decimals{*number / divisor, decimals});
-}
-
 bool is_true(JsonValue value) { return value.boolean().value_or(false); }
 
-/// One entity of Home Assistant; empty texts are left out.
-struct Entity {
-  const char* platform;
-  const char* key;
-  const char* name;
-  const char* value;  ///< template over the state
-  const char* device_class = "";
-  const char* unit = "";
-  const char* state_class = "";
-  const char* last_reset = "";  ///< template, of what begins again at 0
-};
-
-constexpr Entity kEntities[] = {
-    {"sensor", "soc", "State of charge", "{{ value_json.soc_percent | default('None') }}",
-     "battery", "%", "measurement"},
-    {"sensor", "power", "Battery power", "{{ value_json.power_w | default('None') }}", "power", "W",
-     "measurement"},
-    {"sensor", "setpoint", "Ordered power", "{{ value_json.setpoint_w | default('None') }}",
-     "power", "W", "measurement"},
-    {"sensor", "price", "Imbalance price", "{{ value_json.price_eur_per_mwh | default('None') }}",
-     "", "EUR/MWh", "measurement"},
-    {"sensor", "break_even", "Break-even price",
-     "{{ value_json.break_even_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
-    {"sensor", "charge_up_to", "Charges up to",
-     "{{ value_json.charge_up_to_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
-    {"sensor", "discharge_from", "Discharges from",
-     "{{ value_json.discharge_from_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
-    {"sensor", "why", "Why", "{{ value_json.why }}"},
-    {"sensor", "reserve", "Reserve", "{{ value_json.reserve_percent | default('None') }}", "", "%",
-     "measurement"},
-    {"sensor", "full_cycles", "Full cycles today",
-     "{{ value_json.full_cycles_today | default('None') }}", "", "", "measurement"},
-    {"sensor", "days_since_full", "Days since full",
-     "{{ value_json.days_since_full | default('None') }}", "duration", "d", "measurement"},
-    {"sensor", "mode", "Mode", "{{ value_json.mode }}"},
-    {"sensor", "reason", "Reason", "{{ value_json.reason }}"},
-    {"sensor", "hold_until", "Held until", "{{ value_json.hold_until_utc | default('None') }}",
-     "timestamp"},
-    {"binary_sensor", "held", "Held", "{{ 'ON' if value_json.held else 'OFF' }}"},
-    {"binary_sensor", "problem", "Problem", "{{ 'OFF' if value_json.health == 'ok' else 'ON' }}",
-     "problem"},
-    {"sensor", "energy_charged", "Energy charged", "{{ value_json.charged_kwh | default('None') }}",
-     "energy", "kWh", "total_increasing"},
-    {"sensor", "energy_discharged", "Energy discharged",
-     "{{ value_json.discharged_kwh | default('None') }}", "energy", "kWh", "total_increasing"},
-    {"sensor", "earned_today", "Earned today (estimate)",
-     "{{ value_json.earned_today_eur | default('None') }}", "monetary", "EUR", "total",
-     "{{ value_json.today_since_utc }}"},
-};
-
-Json entity_json(const NotifySettings& settings, const std::string& id, const Entity& entity) {
-  Json json = Json::object({{"platform", entity.platform},
-                            {"unique_id", id + "_" + entity.key},
-                            {"name", entity.name},
-                            {"state_topic", topic(settings.name, "state")},
-                            {"value_template", entity.value},
-                            {"availability_topic", topic(settings.name, "status")},
-                            {"expire_after", settings.every_s * 10}});
-  const std::pair<const char*, const char*> others[] = {
-      {"device_class", entity.device_class},
-      {"unit_of_measurement", entity.unit},
-      {"state_class", entity.state_class},
-      {"last_reset_value_template", entity.last_reset}};
-  for (const auto& [key, value] : others) {
-    if (*value != '\0') json.set(key, value);
-  }
-  return json;
-}
-
-/// The power of a hold and the hold itself, where both may be ordered.
-void add_controls(const NotifySettings& settings, const std::string& id, Json& components) {
-  const auto control = [&](const char* platform, const char* key, const char* name,
-                           const char* command, const char* value) {
-    return Json::object({{"platform", platform},
-                         {"unique_id", id + "_" + key},
-                         {"name", name},
-                         {"command_topic", topic(settings.name, command)},
-                         {"state_topic", topic(settings.name, "state")},
-                         {"value_template", value},
-                         {"availability_topic", topic(settings.name, "status")}});
-  };
-  Json power = control("number", "hold_power", "Power to hold", kHoldPowerTopic,
-                       "{{ value_json.hold_power_w | default(0) }}");
-  power.set("command_template", "{{ value | int }}");
-  power.set("min", -settings.power_w);
-  power.set("max", settings.power_w);
-  power.set("step", 1);
-  power.set("mode", "box");
-  power.set("unit_of_measurement", "W");
-  power.set("device_class", "power");
-  components.set((id + "_hold_power").c_str(), std::move(power));
-  components.set((id + "_hold").c_str(), control("switch", "hold", "Hold", kHoldTopic,
-                                                 "{{ 'ON' if value_json.held else 'OFF' }}"));
-}
-
-/// Of yesterday: a key, a name, and a member of its message.
-constexpr const char* kMoneyOfYesterday[][3] = {
-    {"earned_yesterday", "Earned yesterday (estimate)", "earned_eur"},
-    {"net_yesterday", "Earned yesterday less the contract", "net_eur"},
-    {"battery_yesterday", "Yesterday with the same charge at both ends", "this_battery_eur"},
-    {"rule_yesterday", "Yesterday by a rule", "rule_eur"},
-    {"student_yesterday", "Yesterday by the student undisturbed", "student_undisturbed_eur"},
-    {"foresight_yesterday", "Yesterday with foresight", "foresight_eur"},
-};
-
-void add_yesterday(const NotifySettings& settings, const std::string& id, Json& components) {
-  for (const auto& [key, name, member] : kMoneyOfYesterday) {
-    const std::string unique = id + "_" + key;
-    components.set(unique.c_str(),
-                   Json::object({{"platform", "sensor"},
-                                 {"unique_id", unique},
-                                 {"name", name},
-                                 {"state_topic", topic(settings.name, "day")},
-                                 {"value_template",
-                                  std::string("{{ value_json.") + member + " | default('None') }}"},
-                                 {"availability_topic", topic(settings.name, "status")},
-                                 {"device_class", "monetary"},
-                                 {"unit_of_measurement", "EUR"}}));
-  }
+/// Absent, not 0, where it is unknown.
+void set_number(Json& json, const char* member, JsonValue value, double divisor = 1,
+                int decimals = 0) {
+  const std::optional<double> number = value.number();
+  if (number.has_value()) json.set(member, Decimals{*number / divisor, decimals});
 }
 
 /// Who decides, and what ends it: "student", or "price_age, until a newer price comes".
@@ -148,45 +26,34 @@ std::string why_text(JsonValue next) {
   return ends.empty() ? reason : reason + ", " + ends;
 }
 
-/// What the last cycle saw and did: of a controller that has ended, nothing is known any more.
+/// What the last cycle saw and did.
 void set_newest(Json& json, JsonValue all) {
   const JsonValue last = all["last"];
   if (is_true(last["has_measurement"])) {
-    set_scaled(json, "soc_percent", last, "soc_e4", 100, 1);
-    set_scaled(json, "power_w", last, "battery_power_w", 1, 0);
+    set_number(json, "soc_percent", last["soc_e4"], 100, 1);
+    set_number(json, "power_w", last["battery_power_w"]);
   }
-  set_scaled(json, "setpoint_w", last, "ordered_power_w", 1, 0);
+  set_number(json, "setpoint_w", last["ordered_power_w"]);
   if (is_true(last["has_price"])) {
-    set_scaled(json, "price_eur_per_mwh", last, "price_centi_eur_per_mwh", 100, 2);
+    set_number(json, "price_eur_per_mwh", last["price_centi_eur_per_mwh"], 100, 2);
   }
-  set_scaled(json, "break_even_eur_per_mwh", last, "break_even_centi", 100, 2);
+  set_number(json, "break_even_eur_per_mwh", last["break_even_centi"], 100, 2);
   for (const char* margin : {"charge_up_to_eur_per_mwh", "discharge_from_eur_per_mwh"}) {
-    set_scaled(json, margin, all["next"]["margins"], margin, 1, 2);
+    set_number(json, margin, all["next"]["margins"][margin], 1, 2);
   }
-  set_scaled(json, "reserve_percent", last, "reserve_soc_e4", 100, 1);
-  set_scaled(json, "days_since_full", last, "days_since_full", 1, 0);
-  set_scaled(json, "full_cycles_today", all["totals"], "soc_moved_e4_today", 20'000, 3);
-  const bool held = is_true(last["held"]);
-  json.set("held", held);
-  if (held) {
-    set_scaled(json, "hold_w", last, "hold_power_w", 1, 0);
-    json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
-  }
+  set_number(json, "reserve_percent", last["reserve_soc_e4"], 100, 1);
+  set_number(json, "days_since_full", last["days_since_full"]);
+  set_number(json, "full_cycles_today", all["totals"]["soc_moved_e4_today"], 20'000, 3);
+  if (!is_true(last["held"])) return;
+  set_number(json, "hold_w", last["hold_power_w"]);
+  json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
 }
 
-void set_ledger(Json& json, const Ledger& ledger) {
-  if (ledger.energy.has_begun()) {
-    json.set("charged_kwh", Decimals{ledger.energy.charged_kwh(), 3});
-    json.set("discharged_kwh", Decimals{ledger.energy.discharged_kwh(), 3});
-  }
-  if (!ledger.today.is_empty()) {
-    json.set("earned_today_eur", Decimals{ledger.today.earned_eur(), 2});
-    json.set("contract_today_eur", Decimals{ledger.today.money().contract_eur, 2});
-    json.set("today_since_utc", utc_text(ledger.today.start_utc_s()).view());
+void replace(std::string& text, std::string_view what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
   }
 }
-
-std::string id_of(const NotifySettings& settings) { return "bess_" + settings.id; }
 
 }  // namespace
 
@@ -194,84 +61,85 @@ std::string topic(const std::string& node, const char* name) {
   return "bess/v1/" + node + "/" + name;
 }
 
-std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
-                       const Ledger& ledger) {
+std::string state_json(const ControllerStatus& status, const std::vector<Alarm>& alarms,
+                       JsonValue today, std::optional<std::int32_t> hold_power_w) {
   const JsonValue all = status.json.value();
   const std::string_view health =
       status.trouble.empty() ? all["health"].text_or("unknown") : "unknown";
   const bool is_running = health != kNotRunning;
   Json json =
       Json::object({{"health", health},
-                    {"alarms", open_alarms},
+                    {"alarms", std::ranges::count(alarms, true, &Alarm::is_told)},
                     {"mode", is_running ? all["last"]["mode"].text_or("none") : kNotRunning},
                     {"reason", all["last"]["reason"].text_or("none")},
                     {"in_control", is_running && is_true(all["control"])},
-                    {"utc", all["last"]["utc"].text_or("")}});
-  json.set("why", is_running ? why_text(all["next"]) : kNotRunning);
-  if (is_running) {
-    set_newest(json, all);
-  } else {
-    json.set("held", false);
-  }
-  set_ledger(json, ledger);
-  if (ledger.desk != nullptr) json.set("hold_power_w", ledger.desk->power_w());
+                    {"utc", all["last"]["utc"].text_or("")},
+                    {"why", is_running ? why_text(all["next"]) : kNotRunning},
+                    {"held", is_running && is_true(all["last"]["held"])}});
+  if (is_running) set_newest(json, all);  // of one that has ended nothing is known any more
+  const JsonValue day = *today["days"].begin();
+  set_number(json, "charged_kwh", day["charged_kwh"], 1, 3);
+  set_number(json, "discharged_kwh", day["discharged_kwh"], 1, 3);
+  set_number(json, "earned_today_eur", day["earned_eur"], 1, 2);
+  set_number(json, "contract_today_eur", day["contract_eur"], 1, 2);
+  if (day.exists()) json.set("today_since_utc", day["start_utc"].text_or(""));
+  if (hold_power_w.has_value()) json.set("hold_power_w", *hold_power_w);
   return json.line();
+}
+
+Json alarm_json(const Alarm& alarm) {
+  return Json::object({{"key", alarm.key},
+                       {"text", alarm.text},
+                       {"since_utc", utc_text(alarm.since_utc_s).view()}});
 }
 
 std::string alarms_json(const std::vector<Alarm>& alarms) {
   Json list = Json::list();
   for (const Alarm& alarm : alarms) {
-    if (!alarm.is_told) continue;
-    list.add(Json::object({{"key", alarm.key},
-                           {"text", alarm.text},
-                           {"since_utc", utc_text(alarm.since_utc_s).view()}}));
+    if (alarm.is_told) list.add(alarm_json(alarm));
   }
   return list.line();
 }
 
-std::string day_json(const DayAccount& day, JsonValue beside) {
-  const QuarterHourMoney& money = day.money();
-  Json json = Json::object({{"date", day.date()},
-                            {"earned_eur", Decimals{day.earned_eur(), 2}},
-                            {"charged_kwh", Decimals{day.charged_kwh(), 3}},
-                            {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
-                            {"full_cycles", Decimals{day.full_cycles(), 3}},
-                            {"cycles", day.cycles()},
-                            {"interventions", day.interventions()},
-                            {"estimated_eur", Decimals{money.estimated_eur, 2}},
-                            {"contract_eur", Decimals{money.contract_eur, 2}},
-                            {"net_eur", Decimals{money.net_eur(), 2}}});
-  for (const char* rival :
-       {"this_battery_eur", "rule_eur", "student_undisturbed_eur", "foresight_eur"}) {
-    set_scaled(json, rival, beside, rival, 1, 2);
+std::string day_json(JsonValue earned) {
+  const JsonValue day = *earned["days"].begin();
+  Json json = Json::object({{"date", day["date"].text_or("")}});
+  for (const JsonValue part : {day, earned["beside"]}) {
+    for (const JsonValue member : part) {
+      const std::optional<double> number = member.number();
+      if (number.has_value()) json.set(std::string(member.key()).c_str(), *number);
+    }
   }
   return json.line();
 }
 
+Json event_json(const std::string& node, const Message& message) {
+  Json json = Json::object({{"node", node},
+                            {"kind", message.severity},
+                            {"key", message.key},
+                            {"text", message.text},
+                            {"utc", utc_text(message.utc_s).view()}});
+  if (message.since_utc_s != 0) json.set("since_utc", utc_text(message.since_utc_s).view());
+  return json;
+}
+
 std::string discovery_topic(const NotifySettings& settings) {
-  return settings.mqtt.discovery_prefix + "/device/" + id_of(settings) + "/config";
+  return settings.mqtt.discovery_prefix + "/device/bess_" + settings.id + "/config";
 }
 
 std::string discovery_json(const NotifySettings& settings, const std::string& version) {
-  const std::string id = id_of(settings);
-  Json components = Json::object();
-  for (const Entity& entity : kEntities) {
-    components.set((id + "_" + entity.key).c_str(), entity_json(settings, id, entity));
-  }
-  add_yesterday(settings, id, components);
-  if (settings.mqtt.orders) add_controls(settings, id, components);
-  Json ids = Json::list();
-  ids.add(id);
-  Json device = Json::object({{"identifiers", std::move(ids)},
-                              {"name", "bess " + settings.name},
-                              {"manufacturer", "bess"},
-                              {"model", "battery controller"},
-                              {"sw_version", version}});
-  Json origin = Json::object({{"name", "bess-notify"}, {"sw_version", version}});
-  return Json::object({{"device", std::move(device)},
-                       {"origin", std::move(origin)},
-                       {"components", std::move(components)}})
-      .line();
+  std::string text(page_file("discovery.json"));
+  std::string controls(page_file("controls.json"));  // an object: its members go among the others
+  controls = controls.substr(1, controls.rfind('}') - 1) + ",";
+  replace(text, "\"$CONTROLS\": {},", settings.mqtt.orders ? controls : "");
+  replace(text, "$ID", "bess_" + settings.id);
+  replace(text, "$NODE", topic(settings.name, ""));
+  replace(text, "$NAME", settings.name);
+  replace(text, "$VERSION", version);
+  replace(text, "\"$EXPIRE_S\"", std::to_string(settings.every_s * 10));
+  replace(text, "\"-$POWER_W\"", std::to_string(-settings.power_w));
+  replace(text, "\"$POWER_W\"", std::to_string(settings.power_w));
+  return Json::parse(text).line();
 }
 
 }  // namespace bess

@@ -2,40 +2,43 @@
 // built upon.
 //   bess/v1/NAME/status   online | offline (the last will), retained
 //   bess/v1/NAME/state    the newest values, one JSON object, retained
-//   bess/v1/NAME/alarms   the alarms that are told and not over, JSON list, retained
+//   bess/v1/NAME/alarms   the alarms that are reported and not over, JSON list, retained
 //   bess/v1/NAME/day      yesterday, JSON, retained
-//   bess/v1/NAME/event    each alarm and its end as it is told, JSON, not retained
-//   bess/v1/NAME/hold/set, hold_power/set   orders, where they are allowed (mqtt_orders.h)
+//   bess/v1/NAME/event    each alarm, its end and each day as it is reported, JSON, not retained
+//   bess/v1/NAME/hold/set, hold_power/set   orders, where [notify] mqtt_orders allows them
 // A member may be added to an object; none is renamed or removed within v1.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "edge/account/day_account.h"
 #include "edge/notify/alarm_book.h"
+#include "edge/notify/alarm_command.h"
 #include "edge/notify/controller_status.h"
-#include "edge/notify/energy_totals.h"
-#include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notify_settings.h"
 
 namespace bess {
 
+inline constexpr const char* kHoldTopic = "hold/set";             ///< ON or OFF
+inline constexpr const char* kHoldPowerTopic = "hold_power/set";  ///< whole W, positive charges
+
 /// "bess/v1/NAME/TOPIC".
 std::string topic(const std::string& node, const char* name);
 
-/// What the decision log adds up to.
-struct Ledger {
-  const EnergyTotals& energy;
-  const DayAccount& today;         ///< empty: no cycle has ended yet
-  const HoldDesk* desk = nullptr;  ///< null: nothing may be ordered
-};
-
-std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
-                       const Ledger& ledger);
+/// `today` is what ask_earned gave; `hold_power_w` is of the next hold, where one may be ordered.
+std::string state_json(const ControllerStatus& status, const std::vector<Alarm>& alarms,
+                       JsonValue today, std::optional<std::int32_t> hold_power_w);
+Json alarm_json(const Alarm& alarm);
+/// Of those that are reported.
 std::string alarms_json(const std::vector<Alarm>& alarms);
-/// `companion`: what others would have earned (rivals.h); left out where nothing is known of them.
-std::string day_json(const DayAccount& day, JsonValue beside);
+/// `earned` is what ask_earned gave of that day, with --beside: all of its numbers.
+std::string day_json(JsonValue earned);
+Json event_json(const std::string& node, const Message& message);
+
+/// discovery.json or controls.json, embedded when it is built: what Home Assistant is told, with
+/// $NAMES of what is ours.
+std::string_view page_file(std::string_view name);
 
 /// Home Assistant's discovery: one message for the device and all its entities (since 2024.11).
 std::string discovery_topic(const NotifySettings& settings);

@@ -71,11 +71,10 @@ bool InstanceLock::take(const char* path, const char* what, FileMessage& error) 
   FileMessage stranger;
   const bool is_strangers = !refuse_stranger(path, stranger);
   char line[1'700];  // of two messages; what is too long for one is cut
-  std::snprintf(
-      line, sizeof line,
-      "%s is in use by another bess-edge (process %d, lock %s): two must not share it, not "
-      "even to read; stop that one, or ask bess-edge status%s%s",
-      what, holder_of(path), path, is_strangers ? "; " : "", stranger.c_str());
+  std::snprintf(line, sizeof line,
+                "%s is in use by another program (process %d, lock %s): two must not share it, not "
+                "even to read; stop that one, or ask bess-edge status%s%s",
+                what, holder_of(path), path, is_strangers ? "; " : "", stranger.c_str());
   static_cast<void>(error.assign(line));
   return false;
 }

@@ -117,6 +117,11 @@ TEST(Statements, SayTheSameInEachForm) {
   EXPECT_DOUBLE_EQ(json.value()["earned_eur"].number().value(), 0.15);
   EXPECT_DOUBLE_EQ(json.value()["earned_at_equal_soc_eur"].number().value(), 0.2923);
   EXPECT_EQ(json.value()["days"].size(), 2u);
+  const JsonValue first = *json.value()["days"].begin();
+  EXPECT_STREQ(first["date"].text(), "2026-11-22");
+  EXPECT_STREQ(first["start_utc"].text(), "2026-11-21T23:00:00Z");
+  EXPECT_EQ(first["interventions"].number(), 0);
+  EXPECT_EQ(std::string(first["line"].text_or("")).find("2026-11-22: "), 0u);
   for (const JsonValue day : json.value()["days"]) {
     EXPECT_THAT(both.csv(), HasSubstr(std::string(day["date"].text()) + ","));
   }

@@ -9,8 +9,22 @@ namespace {
 const Trouble kLink{.key = "not running: link", .text = "WARN: mode is holding, reason link"};
 const Trouble kPrices{.key = "prices: timeout", .text = "WARN: prices: timeout"};
 
-TEST(AlarmBook, ATroubleIsToldOnceAndItsEndOnce) {
-  AlarmBook book(300, {});
+class AlarmBook {
+ public:
+  explicit AlarmBook(std::int64_t after_s, std::vector<Alarm> before = {})
+      : after_s_(after_s), alarms_(std::move(before)) {}
+  std::vector<AlarmEvent> observe(const std::vector<Trouble>& troubles, std::int64_t now_utc_s) {
+    return bess::observe(alarms_, troubles, after_s_, now_utc_s);
+  }
+  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+
+ private:
+  std::int64_t after_s_;
+  std::vector<Alarm> alarms_;
+};
+
+TEST(Alarms, ATroubleIsToldOnceAndItsEndOnce) {
+  AlarmBook book(300);
   int told = 0;
   for (int s = 0; s < 3'600; s += 30) {
     for (const AlarmEvent& event : book.observe({kLink}, 1'000 + s)) {
@@ -36,16 +50,16 @@ TEST(AlarmBook, ATroubleIsToldOnceAndItsEndOnce) {
   EXPECT_TRUE(book.alarms().empty());
 }
 
-TEST(AlarmBook, WhatPassesSoonIsNotTold) {
-  AlarmBook book(300, {});
+TEST(Alarms, WhatPassesSoonIsNotTold) {
+  AlarmBook book(300);
   for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(book.observe({kLink}, s).empty());
   for (int s = 300; s <= 1'200; s += 30) EXPECT_TRUE(book.observe({}, s).empty());
   EXPECT_TRUE(book.alarms().empty());
   EXPECT_TRUE(book.observe({kLink}, 1'230).empty());  // another one: it counts from here
 }
 
-TEST(AlarmBook, WhatComesAndGoesIsOneTrouble) {
-  AlarmBook book(300, {});
+TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
+  AlarmBook book(300);
   int told = 0;
   for (int s = 0; s < 3'600; s += 30) {
     const bool is_there = s / 120 % 2 == 0;
@@ -55,8 +69,8 @@ TEST(AlarmBook, WhatComesAndGoesIsOneTrouble) {
   EXPECT_EQ(told, 1);
 }
 
-TEST(AlarmBook, ARestartRepeatsNothingAndTellsTheEnd) {
-  AlarmBook before(300, {});
+TEST(Alarms, ARestartRepeatsNothingAndTellsTheEnd) {
+  AlarmBook before(300);
   before.observe({kLink, kPrices}, 0);
   EXPECT_EQ(before.observe({kLink, kPrices}, 300).size(), 2U);
   AlarmBook after(300, before.alarms());
@@ -67,8 +81,8 @@ TEST(AlarmBook, ARestartRepeatsNothingAndTellsTheEnd) {
   EXPECT_EQ(events[0].alarm.key, kPrices.key);
 }
 
-TEST(AlarmBook, AClockThatWasInTheFutureSilencesNothing) {
-  AlarmBook book(300, {});
+TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
+  AlarmBook book(300);
   book.observe({kLink}, 1'000'000);
   EXPECT_TRUE(book.observe({kLink}, 1'000).empty());
   EXPECT_EQ(book.observe({kLink}, 1'300).size(), 1U);
@@ -76,15 +90,15 @@ TEST(AlarmBook, AClockThatWasInTheFutureSilencesNothing) {
   EXPECT_EQ(book.observe({}, 800).size(), 1U);
 }
 
-TEST(AlarmBook, WithoutPatienceEverythingIsToldAtOnce) {
-  AlarmBook book(0, {});
+TEST(Alarms, WithoutPatienceEverythingIsToldAtOnce) {
+  AlarmBook book(0);
   EXPECT_EQ(book.observe({kLink}, 10).size(), 1U);
   EXPECT_TRUE(book.observe({kLink}, 10).empty());
   EXPECT_EQ(book.observe({}, 11).size(), 1U);
 }
 
-TEST(AlarmBook, TheTextIsTheNewest) {
-  AlarmBook book(60, {});
+TEST(Alarms, TheTextIsTheNewest) {
+  AlarmBook book(60);
   book.observe({{"age", "260 s ago"}}, 0);
   const std::vector<AlarmEvent> events = book.observe({{"age", "320 s ago"}}, 60);
   ASSERT_EQ(events.size(), 1U);

@@ -15,7 +15,6 @@
 #include "edge/notify/notify_settings.h"
 #include "edge/notify/topics.h"
 #include "shared/host/run_program.h"
-#include "shared/local_time.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_server.h"
@@ -41,8 +40,9 @@ TEST(NotifySettings, WithoutASectionThereIsNoWay) {
   ASSERT_TRUE(load_notify_settings(folder.write("edge.toml", "control = true\n"), settings, error))
       << error;
   EXPECT_FALSE(settings.has_channel());
-  EXPECT_EQ(settings.ring, folder.file("state/decisions.ring"));
-  EXPECT_EQ(settings.memory, folder.file("notify/told.json"));
+  EXPECT_EQ(settings.state_folder, folder.file("state"));
+  EXPECT_THAT(settings.memories, ElementsAre(folder.file("notify/told.json")));
+  EXPECT_EQ(settings.settled_file, "");
   EXPECT_FALSE(settings.name.empty());
   EXPECT_EQ(std::filesystem::path(settings.program).filename(), "bess-edge");
 }
@@ -54,9 +54,8 @@ TEST(NotifySettings, TheInstalledFolderHasItsPlaceInMemory) {
   ASSERT_TRUE(load_notify_settings(
       folder.write("edge.toml", "[notify]\nfolder = \"/var/lib/bess-notify\"\n"), settings, error))
       << error;
-  EXPECT_THAT(settings.memory_copies, ::testing::ElementsAre("/var/lib/bess-notify/told.copy",
-                                                             "/run/bess-notify/told.json"));
-  EXPECT_EQ(settings.run_ring, "") << "none: [state] folder is not the installed one";
+  EXPECT_THAT(settings.memories,
+              ElementsAre("/var/lib/bess-notify/told.json", "/run/bess-notify/told.json"));
 }
 
 TEST(NotifySettings, TheDocumentedExampleIsValid) {
@@ -73,7 +72,8 @@ TEST(NotifySettings, ReadsEveryKey) {
   std::string error;
   ASSERT_TRUE(load_notify_settings(
       folder.write("edge.toml",
-                   "[state]\nfolder = \"/var/lib/bess\"\n[battery]\nname = \"garage-1\"\n[notify]\n"
+                   "[state]\nfolder = \"/var/lib/bess\"\n[battery]\nname = \"garage-1\"\n"
+                   "[settled]\nurl = \"https://example.org/\"\n[notify]\n"
                    "every_s = 10\nafter_s = 60\ndaily = false\nfolder = \"memory\"\n"
                    "run_folder = \"run\"\n"
                    "program = \"/opt/bess-edge\"\ncommand = 'apprise -b \"$BESS_TEXT\" x://'\n"
@@ -82,11 +82,9 @@ TEST(NotifySettings, ReadsEveryKey) {
       settings, error))
       << error;
   EXPECT_TRUE(settings.has_channel());
-  EXPECT_EQ(settings.ring, "/var/lib/bess/decisions.ring");
-  EXPECT_EQ(settings.run_ring, "/run/bess/decisions.ring") << "as the controller has it";
-  EXPECT_EQ(settings.memory, folder.file("memory/told.json"));
-  EXPECT_THAT(settings.memory_copies, ::testing::ElementsAre(folder.file("memory/told.copy"),
-                                                             folder.file("run/told.json")));
+  EXPECT_EQ(settings.settled_file, "/var/lib/bess/settled.csv");
+  EXPECT_THAT(settings.memories,
+              ElementsAre(folder.file("memory/told.json"), folder.file("run/told.json")));
   EXPECT_EQ(settings.name, "garage-1");
   EXPECT_EQ(settings.every_s, 10);
   EXPECT_EQ(settings.after_s, 60);
@@ -95,6 +93,29 @@ TEST(NotifySettings, ReadsEveryKey) {
   EXPECT_EQ(settings.mqtt.port, 1'884);
   EXPECT_EQ(settings.mqtt.password, "open sesame");
   EXPECT_EQ(settings.mqtt.discovery_prefix, "ha");
+}
+
+TEST(NotifySettings, APasswordIsTheFirstLineOfItsFile) {
+  const TemporaryFolder folder;
+  const std::string keys =
+      "[notify]\nmqtt_host = \"localhost\"\nmqtt_user = \"u\"\n"
+      "mqtt_password_file = \"password\"\n";
+  const std::string longest(255, 'p');
+  const std::pair<std::string, std::string> files[] = {
+      {"secret", "secret"},      {"secret\r\nmore\n", "secret"},
+      {longest + "\n", longest}, {longest + "p\n", ""},
+      {"\nsecret\n", ""},        {"", ""}};
+  for (const auto& [text, password] : files) {
+    write_secret(folder, "password", text.c_str());
+    NotifySettings settings;
+    std::string error;
+    EXPECT_EQ(load_notify_settings(folder.write("edge.toml", keys), settings, error),
+              !password.empty())
+        << text.size() << error;
+    if (error.empty()) {
+      EXPECT_EQ(settings.mqtt.password, password);
+    }
+  }
 }
 
 TEST(NotifySettings, EveryMistakeIsOneClearLine) {
@@ -106,8 +127,7 @@ TEST(NotifySettings, EveryMistakeIsOneClearLine) {
       {"node = \"a\"", "node is not a known key"},
       {"every_s = 0", "every_s must lie between 1 and 3600"},
       {"after_s = -1", "after_s must lie between 0 and 86400"},
-      {"mail_to = \"a@b\"\nsendmail = \"/bin/true\"", "mail_to is of earlier versions"},
-      {"webhook_url = \"https://example.org/\"", "webhook_url is of earlier versions"},
+      {"webhook_url = \"https://example.org/\"", "webhook_url is not a known key"},
       {"mqtt_host = \"a\"\nmqtt_port = 0", "mqtt_port must lie between 1 and 65535"},
       {"mqtt_host = \"a\"\nmqtt_ca_file = \"none.pem\"", "none.pem cannot be read"},
       {"mqtt_host = \"a\"\nmqtt_password_file = \"password\"", "needs mqtt_user"},
@@ -116,7 +136,7 @@ TEST(NotifySettings, EveryMistakeIsOneClearLine) {
       {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"open\"",
        "is readable for others: chmod o-rwx"},
       {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"none\"",
-       "none cannot be opened"},
+       "none must be a file that can be read"},
   };
   for (const auto& [keys, message] : mistakes) {
     const std::string path = folder.write("edge.toml", std::string("[notify]\n") + keys + "\n");
@@ -170,6 +190,12 @@ std::string write_program(const TemporaryFolder& folder, const std::string& body
   return path;
 }
 
+ControllerStatus ask(const std::string& program) {
+  ControllerPlaces controller;
+  controller.program = program;
+  return ask_controller(controller);
+}
+
 std::vector<std::string> keys_of(const ControllerStatus& status) {
   std::vector<std::string> keys;
   for (const Trouble& trouble : troubles_of(status)) keys.push_back(trouble.key);
@@ -183,7 +209,7 @@ TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
       R"(echo '{"health": "degraded", "last": {"reason": "alarm"}, "health_reasons": [)"
       R"("WARN: mode is holding, reason alarm", "CRITICAL: the last cycle ended 601 s ago", )"
       R"("WARN: a rule of next year"]}'; exit 1)");
-  const ControllerStatus status = ask_controller(program, "edge.toml");
+  const ControllerStatus status = ask(program);
   EXPECT_EQ(status.trouble, "");
   EXPECT_THAT(keys_of(status), ElementsAre("not running: alarm", "the last cycle ended # s ago",
                                            "a rule of next year"));
@@ -217,9 +243,9 @@ TEST(ControllerStatus, AnOutageIsOneTrouble) {
 
 TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
   const TemporaryFolder folder;
-  EXPECT_THAT(keys_of(ask_controller("/no/such", "x")), ElementsAre("no status"));
+  EXPECT_THAT(keys_of(ask("/no/such")), ElementsAre("no status"));
   for (const char* body : {"exit 1", "echo nonsense", "echo '{}'", "echo '[1]'"}) {
-    const ControllerStatus status = ask_controller(write_program(folder, body), "x");
+    const ControllerStatus status = ask(write_program(folder, body));
     EXPECT_THAT(status.trouble, HasSubstr("gives no status")) << body;
     EXPECT_THAT(keys_of(status), ElementsAre("no status"));
   }
@@ -228,7 +254,7 @@ TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
   EXPECT_TRUE(troubles_of(well).empty());
 }
 
-const Message kAlarm{.kind = MessageKind::kAlarm,
+const Message kAlarm{.severity = "alarm",
                      .key = "not running: link",
                      .text = "WARN: mode is safe, reason link\nBcc: evil@example.org",
                      .utc_s = 1'679'875'320,
@@ -239,7 +265,7 @@ class AlarmCommand : public ::testing::Test {
   AlarmCommand() { signal(SIGPIPE, SIG_IGN); }  // as the program does: not all read their input
   std::string run(const std::string& command) {
     settings_.command = command;
-    return run_alarm_command(settings_, kAlarm, {});
+    return run_alarm_command(settings_, kAlarm);
   }
   [[nodiscard]] std::string said() const { return text_of_file(folder_.file("said")); }
   const TemporaryFolder folder_;
@@ -267,7 +293,7 @@ TEST_F(AlarmCommand, NothingInATextIsReadByTheShell) {
   Message evil = kAlarm;
   evil.text = "'; touch " + folder_.file("owned") + "; $(touch " + folder_.file("owned") + ") `id`";
   settings_.command = "echo \"$BESS_TEXT\" >" + folder_.file("said");
-  EXPECT_EQ(run_alarm_command(settings_, evil, {}), "");
+  EXPECT_EQ(run_alarm_command(settings_, evil), "");
   EXPECT_THAT(said(), HasSubstr("$(touch "));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("owned")));
 }
@@ -309,161 +335,149 @@ ControllerStatus sample_status(const std::string& health = "degraded") {
   return status;
 }
 
+/// As `bess-edge earned 2023-11-26 --beside --json` has it, in part.
+constexpr const char* kEarned = R"({"days": [{"date": "2023-11-26",
+    "start_utc": "2023-11-25T23:00:00Z", "line": "2023-11-26: ...", "earned_eur": 1.2345,
+    "charged_kwh": 12.345, "discharged_kwh": 10.5, "full_cycles": 1.25, "cycles": 720,
+    "interventions": 3, "contract_eur": 0.25, "net_eur": 0.9845}],
+    "beside": {"this_battery_eur": 5.1, "rule_eur": 4.25}})";
+
 /// What stands in the broker is an interface: a difference moves what users have built upon.
 TEST(Topics, AreTheseToTheLetter) {
-  set_market_time_zone();
   NotifySettings settings;
   settings.name = "garage";
+  settings.id = "0a1b2c3d";
   settings.mqtt.discovery_prefix = "homeassistant";
   settings.mqtt.orders = true;
-  HoldDesk desk(60, 4'000);
-  DayAccount day(20'231'126);
-  day.add(CycleRecord{});
-  EnergyTotals energy;
-  energy.charged_ws = 44'442'000;
-  energy.discharged_ws = 36'000'000'000;
-  energy.counted_utc_s = kAlarm.utc_s;
+  const Json earned = Json::parse(kEarned);
+  const std::vector<Alarm> alarms = {{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
+                                     {.key = "not reported yet"}};
   std::string text =
       "# generator notify_test, no seed, command: BESS_UPDATE_GOLDEN=1 notify_test "
       "--gtest_filter=Topics.*\n";
-  text +=
-      topic("garage", "state") + " " + state_json(sample_status(), 2, {energy, day, &desk}) + "\n";
-  text +=
-      topic("garage", "state") + " " + state_json({.trouble = "x"}, 0, {{}, DayAccount(0)}) + "\n";
-  text += topic("garage", "state") + " " +
-          state_json(sample_status("not running"), 1, {energy, day}) + "\n";
-  text += topic("garage", "alarms") + " " +
-          alarms_json({{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
-                       {.key = "not told yet"}}) +
-          "\n";
-  const Json beside = Json::parse(
-      R"({"this_battery_eur":5.1,"rule_eur":4.25,"student_undisturbed_eur":5.5,"foresight_eur":9})");
-  text += topic("garage", "day") + " " + day_json(day, beside.value()) + "\n";
-  text += topic("garage", "day") + " " + day_json(day, JsonValue()) + "\n";
-  text += topic("garage", "event") + " " + message_json("garage", kAlarm) + "\n";
-  text += discovery_topic(settings) + " " + discovery_json(settings, "1.2.3") + "\n";
+  const auto add = [&](const std::string& name, const std::string& payload) {
+    text.append(name).append(" ").append(payload).append("\n");
+  };
+  const std::string state = topic("garage", "state");
+  add(state, state_json(sample_status(), alarms, earned.value(), -1'500));
+  add(state, state_json({.trouble = "x"}, {}, JsonValue(), std::nullopt));
+  add(state, state_json(sample_status("not running"), alarms, earned.value(), std::nullopt));
+  add(topic("garage", "alarms"), alarms_json(alarms));
+  add(topic("garage", "day"), day_json(earned.value()));
+  add(topic("garage", "event"), event_json("garage", kAlarm).line());
+  add(discovery_topic(settings), discovery_json(settings, "1.2.3"));
   expect_golden(BESS_SOURCE_DIR "/tests/golden/mqtt_topics.txt", text);
 }
 
-TEST(NotifierStateFile, OutlastsARestart) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("new/told.json");
-  NotifierState told;
-  told.local_day = 20'231'126;
-  told.alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true}};
-  told.owed["command"].messages = {kAlarm};
-  told.owed["mqtt"].dropped = {.count = 3, .first_utc_s = 60, .last_utc_s = 180};
-  told.energy.charged_ws = 9'000'000'000'000;
-  told.energy.discharged_ws = 7;
-  told.energy.counted_number = 25'200;
-  told.energy.counted_utc_s = 1'679'875'320;
-  ASSERT_EQ(write_notifier_state({path}, notifier_state_text(told)), "");
-  const NotifierState read = read_newest_notifier_state({path}).told;
-  EXPECT_EQ(read.local_day, 20'231'126);
-  ASSERT_EQ(read.alarms.size(), 1U);
-  EXPECT_EQ(read.alarms[0].key, "k");
-  EXPECT_EQ(read.alarms[0].since_utc_s, 60);
-  EXPECT_EQ(read.alarms[0].seen_utc_s, 120);
-  EXPECT_TRUE(read.alarms[0].is_told);
-  ASSERT_EQ(read.owed.at("command").messages.size(), 1U);
-  const Message& message = read.owed.at("command").messages.front();
-  EXPECT_EQ(message.kind, MessageKind::kAlarm);
-  EXPECT_EQ(message.text, kAlarm.text);
-  EXPECT_EQ(message.utc_s, kAlarm.utc_s);
-  EXPECT_EQ(read.owed.at("mqtt").dropped.count, 3);
-  EXPECT_EQ(read.owed.at("mqtt").dropped.last_utc_s, 180);
-  EXPECT_EQ(notifier_state_text(read), notifier_state_text(told));
-}
-
-TEST(NotifierStateFile, ADamagedFileIsAsIfNothingWasTold) {
-  const TemporaryFolder folder;
-  for (const char* text : {"", "x", "{}", "[1]", R"({"version": 2, "local_day": 7})",
-                           R"({"version": 1, "alarms": 5, "pending": [1]})"}) {
-    const NotifierState told = read_newest_notifier_state({folder.write("told.json", text)}).told;
-    EXPECT_EQ(told.local_day, 0);
-    EXPECT_TRUE(told.alarms.empty());
+TEST(Topics, NothingCanBeOrderedWithoutTheKey) {
+  NotifySettings settings;
+  const Json discovery = Json::parse(discovery_json(settings, "1"));
+  std::size_t entities = 0;
+  for (const JsonValue entity : discovery.value()["components"]) {
+    ++entities;
+    EXPECT_FALSE(entity["command_topic"].exists()) << entity.key();
   }
+  EXPECT_EQ(entities, 25U);
 }
 
-/// In the folder twice, and in memory.
-class ToldCopies : public ::testing::Test {
+class NotifierStateFile : public ::testing::Test {
  protected:
+  NotifierState read() {
+    losses_.clear();
+    return read_notifier_state(paths_, losses_);
+  }
   void keep(std::uint64_t number) {
-    NotifierState told;
-    told.number = number;
-    told.local_day = static_cast<std::int32_t>(number);
-    text_ = notifier_state_text(told);
+    text_ = notifier_state_text({.number = number, .day = std::to_string(number)});
     ASSERT_EQ(write_notifier_state(paths_, text_), "");
   }
-  void expect_known(std::uint64_t number, const std::vector<std::string>& losses) const {
-    const NotifierStateReading reading = read_newest_notifier_state(paths_);
-    EXPECT_EQ(reading.told.local_day, static_cast<std::int32_t>(number));
-    EXPECT_EQ(reading.losses, losses);
+  void keep_fails(const std::vector<std::string>& paths, const std::string& consequence) const {
+    const std::string trouble = write_notifier_state(paths, text_);
+    EXPECT_THAT(trouble, ::testing::StartsWith(paths[0] + ": cannot be written"));
+    EXPECT_THAT(trouble, HasSubstr(consequence));
+  }
+  void expect_known(const std::string& day, std::size_t losses) {
+    EXPECT_EQ(read().day, day);
+    EXPECT_EQ(losses_.size(), losses);
   }
 
   const TemporaryFolder folder_;
   const std::vector<std::string> paths_ = {folder_.file("disk/told.json"),
-                                           folder_.file("disk/told.copy"),
                                            folder_.file("memory/told.json")};
   std::string text_;
+  std::vector<std::string> losses_;
 };
 
-TEST_F(ToldCopies, TheNewestCounts) {
-  expect_known(0, {});
+TEST_F(NotifierStateFile, OutlastsARestart) {
+  const NotifierState state{
+      .number = 7,
+      .day = "2023-11-26",
+      .alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true},
+                 {.key = "new"}},
+      .pending = {kAlarm, {.severity = "day", .key = "2023-11-25", .text = "d", .utc_s = 9}}};
+  ASSERT_EQ(write_notifier_state(paths_, notifier_state_text(state)), "");
+  const NotifierState after = read();
+  ASSERT_EQ(after.alarms.size(), 2U);
+  EXPECT_EQ(after.alarms[0].since_utc_s, 60);
+  EXPECT_EQ(after.alarms[0].seen_utc_s, 120);
+  EXPECT_TRUE(after.alarms[0].is_told);
+  ASSERT_EQ(after.pending.size(), 2U);
+  EXPECT_EQ(after.pending[0].severity, "alarm");
+  EXPECT_EQ(after.pending[0].text, kAlarm.text);
+  EXPECT_EQ(after.pending[0].utc_s, kAlarm.utc_s);
+  EXPECT_EQ(after.pending[1].since_utc_s, 0);
+  EXPECT_EQ(notifier_state_text(after), notifier_state_text(state));
+}
+
+TEST_F(NotifierStateFile, TheNewestCounts) {
+  expect_known("", 0);
   keep(7);
-  expect_known(7, {});
+  expect_known("7", 0);
   for (const std::string& path : paths_) {
-    NotifierState later;
-    later.number = later.local_day = 8;
-    ASSERT_EQ(write_notifier_state({path}, notifier_state_text(later)), "");
-    expect_known(8, {});
+    ASSERT_EQ(write_notifier_state({path}, notifier_state_text({.number = 8, .day = "8"})), "");
+    expect_known("8", 0);
     keep(7);
   }
   std::filesystem::remove_all(folder_.file("memory"));
-  expect_known(7, {});  // a boot
+  expect_known("7", 0);  // a boot
 }
 
-TEST_F(ToldCopies, AnyFlippedByteIsSeenAndCostsNothing) {
+TEST_F(NotifierStateFile, AnyFlippedByteIsSeenAndCostsNothing) {
   keep(7);
   for (const std::string& path : paths_) {
-    for (std::size_t i = 0; i < text_.size(); i += 5) {
+    for (std::size_t i = 0; i < text_.size(); i += 3) {
       std::string flipped = text_;
       flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
       std::ofstream(path, std::ios::binary) << flipped;
-      const NotifierStateReading reading = read_newest_notifier_state(paths_);
-      ASSERT_EQ(reading.told.local_day, 7) << i;
+      ASSERT_EQ(read().day, "7") << i;
       // In the words around the checksum a flip makes it one without: what it says is as it was.
-      EXPECT_TRUE(!reading.losses.empty() || i >= text_.rfind(",\n")) << i;
+      EXPECT_TRUE(!losses_.empty() || i >= text_.rfind(",\n")) << i;
     }
     std::ofstream(path) << text_;
   }
 }
 
-TEST_F(ToldCopies, WhatIsLostIsNamedAndAllLostIsSaid) {
+TEST_F(NotifierStateFile, WhatIsLostIsNamedAndAllLostIsSaid) {
   keep(7);
-  std::filesystem::remove(paths_[1]);
-  expect_known(7, {paths_[1] + " is gone; another copy counts"});
   std::filesystem::remove(paths_[0]);
   std::filesystem::create_directory(paths_[0]);
-  std::ofstream(paths_[2]) << text_.substr(0, text_.size() / 2);
-  expect_known(0, {paths_[0] + " cannot be read: Is a directory",
-                   paths_[2] + " is damaged, or of another version: not believed",
-                   "what was told is not known: alarms are told again, days and energy are counted "
-                   "anew"});
+  expect_known("7", 1);
+  EXPECT_THAT(losses_[0], HasSubstr(paths_[0]));
+  for (const std::string& text :
+       {text_.substr(0, text_.size() / 2), std::string(), std::string("x"), std::string("{}"),
+        std::string(R"({"version": 2, "day": "8"})")}) {
+    std::ofstream(paths_[1]) << text;
+    expect_known("", 3);
+    EXPECT_THAT(losses_[1], HasSubstr(paths_[1]));
+    EXPECT_THAT(losses_[2], HasSubstr("alarms are reported again"));
+  }
 }
 
-TEST_F(ToldCopies, WhereOnePlaceRefusesTheOthersKeepItAndThatIsSaid) {
+TEST_F(NotifierStateFile, WhereOnePlaceRefusesTheOtherKeepsItAndThatIsSaid) {
   keep(7);
   std::filesystem::remove(paths_[0]);
   std::filesystem::create_directory(paths_[0]);
-  EXPECT_EQ(write_notifier_state(paths_, text_), paths_[0] +
-                                                     ": cannot be written: Is a directory; what is "
-                                                     "told is kept in " +
-                                                     paths_[2] + " alone");
-  EXPECT_EQ(
-      write_notifier_state({"/proc/nowhere/told.json"}, text_),
-      "/proc/nowhere/told.json: cannot be written: No such file or directory; what is told is "
-      "kept nowhere: a restart tells it again");
+  keep_fails(paths_, "is kept in " + paths_[1] + " alone");
+  keep_fails({"/proc/nowhere/told.json"}, "is kept nowhere");
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "edge/notify/notifier.h"
-#include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "tests/support/mqtt_broker.h"
 #include "tests/support/temporary_folder.h"
@@ -30,11 +29,9 @@ class Rounds : public ::testing::Test {
  protected:
   Rounds() {
     signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read what it is given
-    set_market_time_zone();
     settings_.config_path = "edge.toml";
     settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
-    settings_.ring = folder_.file("decisions.ring");
-    settings_.memory = folder_.file("notify/told.json");
+    settings_.memories = {folder_.file("notify/told.json")};
     settings_.name = "garage";
     settings_.id = "garage";
     settings_.after_s = 300;
@@ -58,9 +55,10 @@ class Rounds : public ::testing::Test {
                           R"( "totals": {"cycles": 9}})");
     std::filesystem::rename(beside, folder_.file("status.json"));  // a round may look at any time
   }
-  /// As it was kept.
-  [[nodiscard]] Owed owed(const char* way) const {
-    return read_newest_notifier_state({settings_.memory}).told.owed[way];
+  /// What the command has not taken, as it was kept.
+  [[nodiscard]] std::deque<Message> pending() const {
+    std::vector<std::string> losses;
+    return read_notifier_state(settings_.memories, losses).pending;
   }
   [[nodiscard]] std::string told() const { return text_of_file(folder_.file("told")); }
 
@@ -70,10 +68,10 @@ class Rounds : public ::testing::Test {
 
 inline constexpr const char* kReason = R"("WARN: mode is safe, reason no_price")";
 
-/// A round, and what the ways make of it.
+/// A round, and what the channels make of it.
 inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {
   notifier.run_round(now_utc_s);
-  EXPECT_TRUE(notifier.wait_for_channels(std::chrono::minutes(2)));
+  EXPECT_TRUE(notifier.finish(std::chrono::minutes(2)));
 }
 
 /// The same by a notifier that has just started, and ends.

@@ -53,8 +53,8 @@ layer edge/fetch                    edge/fetch edge/account edge/companion edge/
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/companion                edge/companion edge/log edge/control edge/base shared
-layer edge/notify                   edge/notify edge/companion edge/account edge/log edge/control \
-  edge/prices/http_secrets.h edge/prices/http_trust.h edge/base shared
+layer edge/notify                   edge/notify edge/companion edge/account/settled_prices.h \
+  edge/log edge/storage/instance_lock.h shared
 layer edge/page                     edge/page edge/companion edge/why edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
@@ -116,7 +116,7 @@ layer $w/main.cpp                   $w shared
 # begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
-only curl/   'edge/fetch/fetch.cpp:|edge/notify/connection_trouble.cpp:|shared/host/(http_client|transfer_trouble).cpp:'
+only curl/   'edge/fetch/fetch.cpp:|edge/notify/mqtt_client.cpp:|shared/host/(http_client|transfer_trouble).cpp:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
