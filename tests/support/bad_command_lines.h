@@ -1,5 +1,5 @@
-// Command lines that a program refuses: each with its exit code and words of the one line that says
-// why.
+// Command lines that a program refuses: each with its exit code and what the one line that says why
+// names (tokens.h).
 #pragma once
 
 #include <gmock/gmock.h>
@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "shared/host/child_process.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 
 struct BadCommandLine {
   const char* words;  ///< after the program's name, split at spaces; '' is an empty word
   int exit_code;
-  const char* complaint;
+  const char* complaint;  ///< as of Names
 };
 
 /// The words, with what stands for a file replaced by its path.
@@ -53,7 +54,7 @@ inline void expect_refused(const std::string& program, const BadCommandLine& lin
   ChildProcess child(arguments);
   const std::string text = child.read_all();
   EXPECT_EQ(child.wait(), line.exit_code) << text;
-  EXPECT_THAT(text, testing::HasSubstr(line.complaint));
+  EXPECT_THAT(text, Names(line.complaint));
   const std::size_t last = text.rfind('\n', text.size() - 2);
   const std::string complaint = last == text.npos ? text : text.substr(last + 1);
   EXPECT_THAT(complaint, testing::StartsWith(program.substr(program.rfind('/') + 1) + ": "));

@@ -56,8 +56,8 @@ inline std::vector<TomlMistake> toml_mistakes() {
           {"b = 1\n" + std::string(20'000, '\n'), 10'001},
           {std::string(300 * 1024, '#'), 1, "256 KiB"},
           {"a = 1\na = 2\n", 2},
-          {"[a]\rb = 1\r", 1, "CR, LF"},
-          {"a = 1\r\nb = 2\r", 2, "CR, LF"},
+          {"[a]\rb = 1\r", 1, "CR LF"},
+          {"a = 1\r\nb = 2\r", 2, "CR LF"},
           {"a = \n", 1}};
 }
 

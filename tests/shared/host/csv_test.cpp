@@ -48,11 +48,11 @@ TEST(Csv, TableIsReadByColumn) {
 }
 
 TEST(Csv, EveryMistakeNamesItsPlace) {
-  EXPECT_THAT(csv_complaint("utc,price\n"), NamesAll("f.csv"));
-  EXPECT_THAT(csv_complaint("utc,price\n1\n"), NamesAll("f.csv:2, 1, 2"));
-  EXPECT_THAT(csv_complaint("utc,cost\n1,2\n"), NamesAll("f.csv, \"price\""));
-  EXPECT_THAT(csv_complaint("utc,price\n# gap\nx,y\n"), NamesAll("f.csv:3, price, \"y\""));
-  EXPECT_THAT(csv_complaint("utc,price\nx,1\n"), NamesAll("f.csv:2, utc, \"x\""));
+  EXPECT_THAT(csv_complaint("utc,price\n"), Names("f.csv"));
+  EXPECT_THAT(csv_complaint("utc,price\n1\n"), Names("f.csv:2 1 2"));
+  EXPECT_THAT(csv_complaint("utc,cost\n1,2\n"), Names("f.csv \"price\""));
+  EXPECT_THAT(csv_complaint("utc,price\n# gap\nx,y\n"), Names("f.csv:3 price \"y\""));
+  EXPECT_THAT(csv_complaint("utc,price\nx,1\n"), Names("f.csv:2 utc \"x\""));
 }
 
 }  // namespace

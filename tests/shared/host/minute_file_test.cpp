@@ -28,7 +28,7 @@ TEST(MinuteFile, AByteOrderMarkIsPassedOver) {
   EXPECT_EQ(parse_minute_csv(text, "f").settled.at(0), 2);
   EXPECT_THAT(
       user_error_of([] { (void)parse_minute_csv(std::string_view("\xFF\xFEm\0i\0", 6), "f"); }),
-      NamesAll("f, UTF-16"));
+      Names("f UTF-16"));
 }
 
 TEST(MinuteFile, EmptyPricesCommentsAndGapsAreMissing) {
@@ -55,19 +55,19 @@ TEST(MinuteFile, EveryMistakeNamesItsLine) {
       {"", "f"},
       {header, "f"},
       {header + "2023-01-01T00:00:00Z,,\n", "f"},
-      {"time,price\n", "f:1, minute_utc"},
-      {header + "yesterday,1,2\n", "f:2, \"yesterday,1,2\""},
+      {"time,price\n", "f:1 minute_utc"},
+      {header + "yesterday,1,2\n", "f:2 \"yesterday,1,2\""},
       {header + "2023-01-01T00:00:30Z,1,2\n", "f:2"},
-      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2, indicative"},
-      {header + "2023-01-01T00:00:00Z,1,inf\n", "f:2, settled"},
+      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2 indicative"},
+      {header + "2023-01-01T00:00:00Z,1,inf\n", "f:2 settled"},
       {header + "2023-01-01T00:00:00Z,1,2,3\n", "f:2"},
       {header + "#\n2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:4"},
       {header + "2023-01-01T00:00:00Z,1,2\n2073-01-01T00:00:00Z,1,2\n",
-       "f:3, 2073-01-01T00:00:00Z, 40"},
+       "f:3 2073-01-01T00:00:00Z 40"},
   };
   for (const auto& mistake : mistakes) {
     EXPECT_THAT(user_error_of([&] { static_cast<void>(parse_minute_csv(mistake.first, "f")); }),
-                NamesAll(mistake.second));
+                Names(mistake.second));
   }
 }
 

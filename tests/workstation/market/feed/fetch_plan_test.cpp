@@ -58,11 +58,11 @@ TEST(FetchPlan, RefusesEmptySpans) {
   EXPECT_THAT(user_error_of([] {
                 (void)plan_fetch({{2023, 2, 1}, {2023, 1, 1}}, kFetchTime_s);
               }),
-              NamesAll("--from 2023-02-01, --to 2023-01-01"));
+              Names("--from 2023-02-01 --to 2023-01-01"));
   EXPECT_THAT(user_error_of([] {
                 (void)plan_fetch({{2026, 2, 1}, {2026, 3, 1}}, kFetchTime_s);
               }),
-              NamesAll("2026-02-01"));
+              Names("2026-02-01"));
 }
 
 TEST(WaitSeconds, EveryFormServersUse) {

@@ -140,7 +140,7 @@ Quirk row_price(const char* price) {
     if (answer.rows.size() > 700) answer.rows[700].price = price;
   });
 }
-constexpr const char* kTen = "ods046, 60, 2820, 2023-03-25T10:00:00Z, --allow-gaps";
+constexpr const char* kTen = "ods046 60 2820 2023-03-25T10:00:00Z --allow-gaps";
 
 std::vector<QuirkCase> order_and_number() {
   std::vector<QuirkCase> cases{
@@ -166,37 +166,37 @@ std::vector<QuirkCase> order_and_number() {
       {"rows of other days alone", on_minutes([](const Ask& ask, Answer& answer) {
          answer.rows = quirky_rows(ask, ask.from_utc_s - 86'400, ask.from_utc_s);
        }),
-       "1440, ods046, 2023-03-25, 2023-03-26, 127.0.0.1", 1},
+       "1440 ods046 2023-03-25 2023-03-26 127.0.0.1", 1},
       {"the same days for every question", on_minutes([](const Ask& ask, Answer& answer) {
          answer.rows =
              quirky_rows(ask, utc_of("2023-03-24T23:00:00Z"), utc_of("2023-03-25T23:00:00Z"));
        }),
-       "1380, 2820, ods046, 2023-03-25T23:00:00Z, 1440"},
+       "1380 2820 ods046 2023-03-25T23:00:00Z 1440"},
       {"an hour is missing, and its count", without("2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"),
        kTen, 1},
-      {"an hour is missing, but counted", on_minutes(without_ten), std::string(kTen) + ", 2760", 2},
+      {"an hour is missing, but counted", on_minutes(without_ten), std::string(kTen) + " 2760", 2},
       {"an hour is missing once", once(without_ten), kWhole, 2},
       {"the hour of the clock change is missing",
-       without("2023-03-26T01:00:00Z", "2023-03-26T02:00:00Z"), "60, 2820, 2023-03-26T01:00:00Z"},
+       without("2023-03-26T01:00:00Z", "2023-03-26T02:00:00Z"), "60 2820 2023-03-26T01:00:00Z"},
       {"the first row is missing", without("2023-03-24T23:00:00Z", "2023-03-24T23:01:00Z"),
-       "1, 2820, 2023-03-24T23:00:00Z"},
+       "1 2820 2023-03-24T23:00:00Z"},
       {"the last row is missing", without("2023-03-26T21:59:00Z", "2023-03-26T22:00:00Z"),
-       "1, 2820, 2023-03-26T21:59:00Z"},
+       "1 2820 2023-03-26T21:59:00Z"},
       {"a quarter-hour is missing",
        [](const Ask& ask, Answer& answer) {
          if (ask.minutes()) return;
          leave_out(answer.rows, "2023-03-26T12:00:00Z", "2023-03-26T12:15:00Z");
        },
-       "1, 188, ods047, 2023-03-26T12:00:00Z"},
+       "1 188 ods047 2023-03-26T12:00:00Z"},
       {"nothing but the names of columns", on_rows([](auto& rows) { rows.clear(); }),
-       "2820, ods046, 2023-03-24T23:00:00Z, 2023-03-26T22:00:00Z", 1},
+       "2820 ods046 2023-03-24T23:00:00Z 2023-03-26T22:00:00Z", 1},
       {"quarter-hours instead of minutes", formatted([](const Ask&, const auto& rows) {
          std::vector<QuirkyRow> some;
          for (const QuirkyRow& r : rows)
            if (r.utc_s % 900 == 0) some.push_back(r);
          return replaced(quirky_csv({.dataset = "ods046"}, some), "PT1M", "PT15M");
        }),
-       "2820, ods046, 0"},
+       "2820 ods046 0"},
   };
   for (const char* total : {"\"many\"", "-1", "1e300", "99999999", "null"}) {
     cases.push_back({fmt::format("100 rows at a time, total {}", total),
@@ -219,11 +219,11 @@ std::vector<QuirkCase> forms() {
          return replaced(quirky_csv(ask, shifted), "+00:00", "+01:00");
        }),
        kWhole, 1},
-      {"times without offset", with_instead("+00:00", ""), "ods046:2, \"2023-03-24T23:00:00\"", 2},
+      {"times without offset", with_instead("+00:00", ""), "ods046:2 \"2023-03-24T23:00:00\"", 2},
       {"an hour off, and saying so", with_instead("+00:00", "+01:00"),
-       "60, 2820, 2023-03-26T21:00:00Z"},
+       "60 2820 2023-03-26T21:00:00Z"},
       {"an offset of no zone", with_instead("+00:00", "+99:00"),
-       "ods046:2, \"2023-03-24T23:00:00+99:00\""},
+       "ods046:2 \"2023-03-24T23:00:00+99:00\""},
       {"JSON", formatted([](const Ask& ask, const auto& rows) { return as_json(ask, rows); }),
        kWhole, 1},
       {"JSON with strings for numbers",
@@ -232,47 +232,47 @@ std::vector<QuirkCase> forms() {
       {"JSON without its end", formatted([](const Ask& ask, const auto& rows) {
          return as_json(ask, rows).substr(0, 5'000);
        }),
-       "ods046, 6", 6},
+       "ods046 6", 6},
       {"JSON of an error with 200",
        answered("200 OK", "Content-Type: application/json\r\n", "{\"error_code\": \"ODSQLError\"}"),
-       "ods046, \"results\"", 2},
+       "ods046 \"results\"", 2},
       {"JSON within JSON",
        answered("200 OK", "Content-Type: application/json\r\n", std::string(200'000, '[')),
-       "ods046, 6", 6},
+       "ods046 6", 6},
       {"a member twice", formatted([](const Ask& ask, const auto& rows) {
          return replaced(as_json(ask, rows), "\"resolutioncode\"", "\"datetime\"");
        }),
-       "ods046, 1, \"datetime\"", 2},
+       "ods046 1 \"datetime\"", 2},
       {"no last line end", with([](std::string text) { return text.substr(0, text.size() - 1); }),
        kWhole, 1},
       {"another dataset", with_instead("imbalanceprice", "windpower"),
-       "ods046, datetime;resolutioncode;windpower, --price-column", 1},
+       "ods046 datetime;resolutioncode;windpower --price-column", 1},
       {"a column twice", with_instead("resolutioncode", "imbalanceprice"),
-       "ods046, \"imbalanceprice\", --price-column", 2},
+       "ods046 \"imbalanceprice\" --price-column", 2},
       {"a column more", with_instead("\n", ";x\n"), kWhole, 1},
-      {"rows of an hour", with_instead("PT1M", "PT60M"), "ods046:2, \"PT60M\"", 2},
-      {"a price that is text", row_price("high"), "ods046:702, \"high\"", 2},
-      {"an infinite price", row_price("inf"), "ods046:702, \"inf\"", 2},
-      {"a price of 1e300", row_price("1e300"), "2023-03-25T10:40:00Z, 1e+300, price-range"},
+      {"rows of an hour", with_instead("PT1M", "PT60M"), "ods046:2 \"PT60M\"", 2},
+      {"a price that is text", row_price("high"), "ods046:702 \"high\"", 2},
+      {"an infinite price", row_price("inf"), "ods046:702 \"inf\"", 2},
+      {"a price of 1e300", row_price("1e300"), "2023-03-25T10:40:00Z 1e+300 price-range"},
       {"a row too short",
        with([](std::string text) { return text + "2023-03-25T10:00:00+00:00;PT1M\n"; }),
-       "ods046:2822, 2, 3", 2},
+       "ods046:2822 2 3", 2},
       {"the header once more at the end",
        with([](std::string text) { return text + text.substr(0, text.find('\n') + 1); }),
-       "ods046:2822, \"datetime\"", 2},
+       "ods046:2822 \"datetime\"", 2},
       {"a row twice, with another price", with_row("2023-03-25T00:00:00+00:00;PT1M;4711"), kWhole,
        1},
       {"a row of another century", with_row("1923-03-25T10:00:00+00:00;PT1M;5"),
-       "ods046:2, \"1923-03-25T10:00:00+00:00\"", 2},
+       "ods046:2 \"1923-03-25T10:00:00+00:00\"", 2},
       {"a web page", answered("200 OK", "Content-Type: text/html\r\n", "<html>log in</html>"),
-       "ods046, 127.0.0.1, 2", 2},
+       "ods046 127.0.0.1 2", 2},
       {"a web page once", once(answered("200 OK", "", "<html>log in</html>")), kWhole, 2},
       {"rows called a web page", formatted(csv_of, "Content-Type: text/html\r\n"), kWhole, 1},
-      {"UTF-16", with([](const std::string& text) { return "\xFF\xFE" + text; }), "UTF-16, UTF-8"},
-      {"lines of old Macs", with_instead("\n", "\r"), "ods046, CR, LF"},
-      {"gzip that does not say so", formatted(packed_csv), "ods046, gunzip", 2},
+      {"UTF-16", with([](const std::string& text) { return "\xFF\xFE" + text; }), "UTF-16 UTF-8"},
+      {"lines of old Macs", with_instead("\n", "\r"), "ods046 CR LF"},
+      {"gzip that does not say so", formatted(packed_csv), "ods046 gunzip", 2},
       {"gzip, announced", formatted(packed_csv, "Content-Encoding: gzip\r\n"), kWhole, 1},
-      {"gzip announced, not sent", formatted(csv_of, "Content-Encoding: gzip\r\n"), "ods046, 6", 6},
+      {"gzip announced not sent", formatted(csv_of, "Content-Encoding: gzip\r\n"), "ods046 6", 6},
       {"gzip that breaks in the middle",
        formatted(
            [](const Ask& ask, const auto& rows) {
@@ -281,9 +281,9 @@ std::vector<QuirkCase> forms() {
              return packed;
            },
            "Content-Encoding: gzip\r\n"),
-       "ods046, 6", 6},
+       "ods046 6", 6},
       {"an encoding that was not asked for", answered("200 OK", "Content-Encoding: br\r\n", "abc"),
-       "ods046, 6", 12},
+       "ods046 6", 12},
   };
 }
 
@@ -315,7 +315,7 @@ std::vector<QuirkCase> transport() {
     });
   };
   std::vector<QuirkCase> cases{
-      {"cut short", on_minutes([](const Ask&, Answer& a) { a.sent_max = 3'000; }), "ods046, 6", 6},
+      {"cut short", on_minutes([](const Ask&, Answer& a) { a.sent_max = 3'000; }), "ods046 6", 6},
       {"cut short once", once([](const Ask&, Answer& a) { a.sent_max = 3'000; }), kWhole, 2},
       {"no length", on_minutes([=](const Ask&, Answer& a) { without_length(a, a.body.npos); }),
        kWhole, 1},
@@ -327,41 +327,41 @@ std::vector<QuirkCase> transport() {
        }),
        kWhole, 3},
       {"no length, nothing", on_minutes([=](const Ask&, Answer& a) { without_length(a, 0); }),
-       "ods046, 6", 6},
+       "ods046 6", 6},
       {"chunks", in_chunks(std::string::npos), kWhole, 1},
-      {"chunks without their end", in_chunks(20'000), "ods046, 6", 6},
+      {"chunks without their end", in_chunks(20'000), "ods046 6", 6},
       {"chunks of no size",
        answered("200 OK", "Transfer-Encoding: chunked\r\n", "zz\r\nabc\r\n0\r\n\r\n", false),
-       "ods046, 6", 6},
+       "ods046 6", 6},
       {"a length that is too long, once",
        once(answered("200 OK", "Content-Length: 9999999\r\n", "datetime;", false)), kWhole, 2},
       {"a length that is no number", answered("200 OK", "Content-Length: many\r\n", "x", false),
        "Content-Length", 1},
       {"headers without end", answered("200 OK", "X: " + std::string(400'000, 'x') + "\r\n", "x"),
-       "100000, 1", 1},
+       "100000 1", 1},
       {"headers without end, in lines", on_minutes([](const Ask&, Answer& answer) {
          for (int i = 0; i < 20'000; ++i) answer.headers += "X: " + std::to_string(i) + "\r\n";
        }),
-       "100000, 1", 1},
+       "100000 1", 1},
       {"moved", once(moved()), kWhole, 2},
-      {"moved round and round", moved(), "5, 1", 6},
+      {"moved round and round", moved(), "5 1", 6},
       {"moved to a file", answered("302 Found", "Location: file:///etc/passwd\r\n", "x"),
-       "\"file\", 1", 1},
+       "\"file\" 1", 1},
       {"moved to nowhere", answered("302 Found", "", "x"), "302"},
       {"quota, to wait for words", once(answered("429 Many", "Retry-After: soon\r\n")), kWhole, 2},
       {"quota, to wait for ever", answered("429 Many", "Retry-After: 99999999999999999999\r\n"),
-       "429, ods046", 1},
+       "429 ods046", 1},
       {"busy, until a far reset",
-       answered("503 Busy", "X-RateLimit-Reset: 9999-12-31 00:00:00+00:00\r\n"), "503, ods046", 1},
+       answered("503 Busy", "X-RateLimit-Reset: 9999-12-31 00:00:00+00:00\r\n"), "503 ods046", 1},
       {"busy, to wait 3 s", once(answered("503 Busy", "Retry-After: 3\r\n")), kWhole, 2},
   };
   for (const char* refused :
        {"203 Other", "204 No Content", "206 Part", "304 Not Modified", "400 Bad", "401 No",
         "404 Not Found", "451 Law", "501 Not Implemented"}) {
-    cases.push_back({refused, answered(refused), std::string(refused).substr(0, 3) + ", 1", 1});
+    cases.push_back({refused, answered(refused), std::string(refused).substr(0, 3) + " 1", 1});
   }
   for (const char* busy : {"408 Timeout", "429 Many", "500 Error", "504 Gateway", "799 What"}) {
-    cases.push_back({busy, answered(busy), std::string(busy).substr(0, 3) + ", 6", 6});
+    cases.push_back({busy, answered(busy), std::string(busy).substr(0, 3) + " 6", 6});
   }
   cases.push_back({"502 once", once(answered("502 Gateway")), kWhole, 2});
   return cases;
@@ -407,7 +407,7 @@ class FetchQuirks : public testing::Test {
         EXPECT_TRUE(rows_of(wanted.out) == reference) << "another file";
       } else {
         const std::string error = user_error_of([&] { fetch(wanted); });
-        EXPECT_THAT(error, NamesAll(c.names));
+        EXPECT_THAT(error, Names(c.names));
         EXPECT_EQ(error.find("where="), error.npos) << "the address is kept short";
         EXPECT_EQ(error.find('\n'), error.npos);
         EXPECT_FALSE(std::filesystem::exists(wanted.out));
@@ -445,11 +445,11 @@ TEST_F(FetchQuirks, ASettledHoleIsOneWhateverItIsMadeOf) {
     const std::string error = user_error_of([&] { fetch(wanted); });
     EXPECT_FALSE(std::filesystem::exists(wanted.out));
     if (price == std::string("-")) {
-      EXPECT_THAT(error, NamesAll("ods047:46, \"-\""));
+      EXPECT_THAT(error, Names("ods047:46 \"-\""));
       continue;
     }
-    EXPECT_THAT(error, NamesAll("4, 188, ods047, 2023-03-25T10:00:00Z, 2023-03-25T11:00:00Z, "
-                                "--allow-gaps"));
+    EXPECT_THAT(error, Names("4 188 ods047 2023-03-25T10:00:00Z 2023-03-25T11:00:00Z "
+                             "--allow-gaps"));
     wanted.allow_gaps = true;
     fetch(wanted);
     EXPECT_THAT(rows_of(wanted.out), HasSubstr("\n2023-03-25T10:00:00Z,"));
@@ -467,7 +467,7 @@ TEST_F(FetchQuirks, AKeptWindowWithASettledHoleIsAskedForAgain) {
     answer.rows[40].price.clear();
   });
   const FetchRequest wanted = request(elia);
-  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), NamesAll("1, 188, ods047"));
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), Names("1 188 ods047"));
   is_mended = true;
   fetch(wanted);
   EXPECT_TRUE(rows_of(wanted.out) == whole());
@@ -479,14 +479,14 @@ TEST_F(FetchQuirks, AnAnswerThatDripsEnds) {
     int drip_ms;
     HttpLimits limits;
     const char* names;
-  } cases[] = {{20, {.deadline_s = 60, .bytes_per_s_min = 1'000, .slow_s = 1}, "1000, 1 s, 2"},
-               {5, {.deadline_s = 1.5, .bytes_per_s_min = 10, .slow_s = 1}, "1.5 s, 2"}};
+  } cases[] = {{20, {.deadline_s = 60, .bytes_per_s_min = 1'000, .slow_s = 1}, "1000 1 s 2"},
+               {5, {.deadline_s = 1.5, .bytes_per_s_min = 10, .slow_s = 1}, "1.5 s 2"}};
   for (const auto& c : cases) {
     const QuirkyElia elia(
         on_minutes([&c](const Ask&, Answer& answer) { answer.drip_ms = c.drip_ms; }));
     FetchRequest wanted = request(elia);
     wanted.retry.limits = c.limits;
-    EXPECT_THAT(user_error_of([&] { fetch(wanted); }), NamesAll(c.names));
+    EXPECT_THAT(user_error_of([&] { fetch(wanted); }), Names(c.names));
     EXPECT_EQ(elia.minute_requests(), 2);
   }
 }
@@ -500,24 +500,8 @@ TEST_F(FetchQuirks, AnAnswerTooLargeSaysSo) {
     }));
     FetchRequest wanted = request(elia);
     wanted.retry.limits.bytes_max = 1'000'000;
-    EXPECT_THAT(user_error_of([&] { fetch(wanted); }), NamesAll("1000000, ods046"));
+    EXPECT_THAT(user_error_of([&] { fetch(wanted); }), Names("1000000 ods046"));
     EXPECT_EQ(elia.minute_requests(), 1) << "another try would bring the same";
-  }
-}
-
-/// What Belgium settled at, what another country did, and where bids end: in the file to the digit.
-TEST_F(FetchQuirks, ExtremePricesAreFetchedAsTheyAre) {
-  for (const char* price : {"-999", "25907.54", "-25907.54", "99999", "-99999"}) {
-    const QuirkyElia elia([price](const Ask& ask, Answer& answer) {
-      if (ask.minutes() || ask.wants_total) return;
-      for (QuirkyRow& row : answer.rows) {
-        if (row.utc_s == utc_of("2023-03-25T10:00:00Z")) row.price = price;
-      }
-    });
-    const FetchRequest wanted = request(elia);
-    fetch(wanted);
-    EXPECT_EQ(std::ranges::count(read_minute_file(wanted.out).settled, std::stod(price)), 15);
-    std::filesystem::remove(wanted.out);
   }
 }
 
@@ -528,7 +512,7 @@ TEST_F(FetchQuirks, AllowedGapsAreWrittenAndSaid) {
   fetch(wanted);
   const std::string text = read_file(wanted.out);
   const std::size_t head = text.find("minute_utc");
-  EXPECT_THAT(text.substr(0, head), NamesAll("60, 2820, ods046, 2023-03-25T10:00:00Z"));
+  EXPECT_THAT(text.substr(0, head), Names("60 2820 ods046 2023-03-25T10:00:00Z"));
   EXPECT_THAT(text.substr(head), HasSubstr("2023-03-25T10:00:00Z,,"));
 }
 
@@ -538,7 +522,7 @@ TEST_F(FetchQuirks, AWindowWithAGapIsAskedForAgain) {
     if (ask.minutes() && broken) without_ten(ask, answer);
   });
   const FetchRequest wanted = request(elia);
-  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), NamesAll(kTen));
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), Names(kTen));
   broken = false;
   fetch(wanted);
   EXPECT_EQ(std::ranges::count(rows_of(wanted.out), '\n'), static_cast<long>(kMinutes) + 1);

@@ -54,19 +54,19 @@ TEST(MarketJoin, MinutesAloneSettleAtMinute14) {
 }
 
 TEST(MarketJoin, StrayDatesAndEmptinessAreRefused) {
-  EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), NamesAll("f.csv"));
+  EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), Names("f.csv"));
   const MarketRows rows{{{0, 1}, {4'000'000'020, 1}}, {}};
   EXPECT_THAT(user_error_of([&] { (void)join_market(rows, "f.csv"); }),
-              NamesAll("f.csv, 1970-01-01T00:00:00Z, 2096-10-02T07:08:00Z"));
+              Names("f.csv 1970-01-01T00:00:00Z 2096-10-02T07:08:00Z"));
   const MarketRows unpriced{{{0, kNotPublished}}, {settled(0, kNotPublished)}};
-  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }), NamesAll("f.csv"));
+  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }), Names("f.csv"));
 }
 
 TEST(MarketJoin, GapsAreReported) {
   const MarketRows rows{{{0, 1}, {180, 1}}, {settled(0, 40), settled(2700, 40)}};
   const std::string text = describe_join(join_market(rows, "test"));
-  EXPECT_THAT(text, NamesAll("1, 1970-01-01T00:15:00Z, 1970-01-01T00:45:00Z, 30"));
-  EXPECT_THAT(text, NamesAll("2, 1970-01-01T00:01:00Z, 1970-01-01T00:03:00Z, 58"));
+  EXPECT_THAT(text, Names("1 1970-01-01T00:15:00Z 1970-01-01T00:45:00Z 30"));
+  EXPECT_THAT(text, Names("2 1970-01-01T00:01:00Z 1970-01-01T00:03:00Z 58"));
 }
 
 constexpr const char* kImported =
@@ -93,7 +93,7 @@ TEST(MarketJoin, AMinuteFileIsReadBack) {
                     "2023-01-01T00:00:00Z,,1\n2023-01-01T00:14:00Z,,2\n",
                     "edited.csv");
               }),
-              NamesAll("edited.csv, 2023-01-01T00:00:00Z, 1, 2"));
+              Names("edited.csv 2023-01-01T00:00:00Z 1 2"));
 }
 
 TEST(MarketJoin, AMinuteFileNamesWhatIsNotReal) {

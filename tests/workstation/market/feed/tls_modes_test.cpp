@@ -93,7 +93,7 @@ class TlsModes : public testing::Test {
 TEST_F(TlsModes, ACertificateThatHoldsIsBelieved) {
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   trust(certificate);
-  EXPECT_THAT(error_of(certificate), NamesAll("404, 1, ods046"));
+  EXPECT_THAT(error_of(certificate), Names("404 1 ods046"));
 }
 
 /// Each is told in its own words.
@@ -101,7 +101,7 @@ TEST_F(TlsModes, CertificatesThatDoNotHold) {
   std::set<std::string> told;
   const auto refused = [&](const DatedCertificate& certificate, const char* names) {
     const std::string error = error_of(certificate);
-    EXPECT_THAT(error, NamesAll("1, ods046", names));
+    EXPECT_THAT(error, Names("1 ods046 " + std::string(names)));
     told.insert(error.substr(0, error.find("ods046")));
   };
   const DatedCertificate other("DNS:elsewhere.example", -kDay_s, kDay_s);
@@ -123,18 +123,18 @@ TEST_F(TlsModes, CertificatesThatDoNotHold) {
 
 TEST_F(TlsModes, NoTlsOnOneSide) {
   const ClosingServer plain("HTTP/1.1 400 Bad Request\r\n\r\n");
-  EXPECT_THAT(error_of(url("https", plain.port())), NamesAll("TLS, 1, ods046"));
+  EXPECT_THAT(error_of(url("https", plain.port())), Names("TLS 1 ods046"));
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   const TestServer tls(say_404, with(certificate));
-  EXPECT_THAT(error_of(url("http", tls.port())), NamesAll("http://, https://, ods046"));
+  EXPECT_THAT(error_of(url("http", tls.port())), Names("http:// https:// ods046"));
 }
 
 TEST_F(TlsModes, TheHandshakeFails) {
   const ClosingServer closing("");
-  EXPECT_THAT(error_of(url("https", closing.port())), NamesAll("TLS, 3, ods046"));
+  EXPECT_THAT(error_of(url("https", closing.port())), Names("TLS 3 ods046"));
   EXPECT_EQ(closing.connections(), 3);
   const TestServer refusing(say_404, {.certificate = "none", .key = "none"});
-  EXPECT_THAT(error_of(url("https", refusing.port())), NamesAll("TLS, 1, ods046"));
+  EXPECT_THAT(error_of(url("https", refusing.port())), Names("TLS 1 ods046"));
 }
 
 /// As a user runs it: the program's exit code, one line, and no file.
@@ -153,7 +153,7 @@ TEST_F(TlsModes, TheProgramEndsWithOneLine) {
     ChildProcess program(arguments);
     const std::string output = program.read_all();
     EXPECT_EQ(program.wait(), 1) << output;
-    EXPECT_THAT(output, NamesAll("bess-train, timedatectl, 127.0.0.1"));
+    EXPECT_THAT(output, Names("bess-train timedatectl 127.0.0.1"));
     EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
     EXPECT_TRUE(std::filesystem::is_empty(folder_ / ""));
   }

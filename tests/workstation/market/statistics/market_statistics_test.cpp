@@ -63,7 +63,7 @@ TEST(Statistics, EachRegimeHasARowOfItsOwn) {
   EXPECT_EQ(result.regimes[1].price.count, 3U * 96);
   EXPECT_EQ(result.regimes[1].price.minimum, 80);
   EXPECT_EQ(result.regimes[1].price.median, 80);
-  EXPECT_THAT(format_statistics_text(result), NamesAll("PICASSO, 288, 80.00"));
+  EXPECT_THAT(format_statistics_text(result), Names("PICASSO 288 80.00"));
   series.start_utc_s = local_midnight_utc_s({2025, 1, 1});
   ASSERT_EQ(statistics_of_minutes(series).regimes.size(), 1U);
 }
