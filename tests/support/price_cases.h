@@ -1,5 +1,5 @@
-// Price files as users bring them, and worse: each a text, what becomes of it, and words of the one
-// line that says so.
+// Price files as users bring them, and worse: each a text, what becomes of it, and what the one
+// line that says so names.
 #pragma once
 
 #include <fmt/core.h>
@@ -16,7 +16,7 @@ namespace bess {
 struct PriceCase {
   std::string name;
   std::string text;
-  const char* words;  ///< of the error
+  const char* names;  ///< what the error names
 };
 
 /// One row of the file that all cases are made from: an ordinary minute.
@@ -86,8 +86,8 @@ inline std::string with_line(std::size_t at, const std::string& wanted) {
 /// Files that no command may use.
 inline std::vector<PriceCase> bad_price_files() {
   std::vector<PriceCase> cases;
-  const auto add = [&cases](const std::string& name, std::string text, const char* words) {
-    cases.push_back({name, std::move(text), words});
+  const auto add = [&cases](const std::string& name, std::string text, const char* names) {
+    cases.push_back({name, std::move(text), names});
   };
   const auto keep = [](const auto& wanted) {
     return ordinary_text([wanted](std::size_t m, const OrdinaryRow& r) {
@@ -114,12 +114,12 @@ inline std::vector<PriceCase> bad_price_files() {
     add(fmt::format("no number: {}", price), with_prices(700, price, ""), "prices.csv:702");
   }
   // Units, constants, swapped and copied columns.
-  add("EUR/kWh", scaled_text(0.001), "multiply by 1000");
-  add("EUR/kWh, a hundredth of it", scaled_text(0.00001), "multiply by 1000");
-  add("cents", scaled_text(100), "divide by 100");
-  add("a thousand of them", scaled_text(1000), "divide by 100");
+  add("EUR/kWh", scaled_text(0.001), "price-unit 1000");
+  add("EUR/kWh, a hundredth of it", scaled_text(0.00001), "price-unit 1000");
+  add("cents", scaled_text(100), "price-unit 100");
+  add("a thousand of them", scaled_text(1000), "price-unit 100");
   add("1e300 everywhere", scaled_text(1e298), "price-range");
-  add("zero everywhere", scaled_text(0), "every settled price is 0");
+  add("zero everywhere", scaled_text(0), "prices.csv:2 0 constant");
   const auto columns = [](const auto& settled_of, const auto& indicative_of) {
     return ordinary_text([=](std::size_t, const OrdinaryRow& r) {
       return row_text(r, fmt::format("{}", indicative_of(r)), fmt::format("{}", settled_of(r)));
@@ -128,34 +128,35 @@ inline std::vector<PriceCase> bad_price_files() {
   const auto indicative = [](const OrdinaryRow& r) { return r.indicative; };
   const auto settled = [](const OrdinaryRow& r) { return r.settled; };
   const auto same = [](const OrdinaryRow&) { return 42.5; };
-  add("swapped columns", columns(indicative, settled), "are the two columns swapped?");
+  add("swapped columns", columns(indicative, settled), "settled-changes 4032");
   add("indicative twice", columns(indicative, indicative), "settled-changes");
-  add("settled is constant", columns(same, indicative), "every settled price is 42.5");
-  add("indicative is constant", columns(settled, same), "every indicative price is 42.5");
+  add("settled is constant", columns(same, indicative), "settled 42.5 constant");
+  add("indicative is constant", columns(settled, same), "indicative 42.5 constant");
   add("one settled price of a minute", with_line(1003, "2023-01-01T15:43:00Z,5,17"),
       "settled-changes");
   // Rows that are none, or others.
-  add("quarter-hours", keep([](std::size_t m) { return m % 15 == 0; }), "every 15 minutes");
-  add("hours", keep([](std::size_t m) { return m % 60 == 0; }), "every 60 minutes");
-  add("every other minute", keep([](std::size_t m) { return m % 2 == 0; }), "every 2 minutes");
-  add("five minutes", keep([](std::size_t m) { return m % 5 == 0; }), "every 5 minutes");
+  add("quarter-hours", keep([](std::size_t m) { return m % 15 == 0; }), "15 row-step");
+  add("hours", keep([](std::size_t m) { return m % 60 == 0; }), "60 row-step");
+  add("every other minute", keep([](std::size_t m) { return m % 2 == 0; }), "2 row-step");
+  add("five minutes", keep([](std::size_t m) { return m % 5 == 0; }), "5 row-step");
   add("one quarter-hour an hour", keep([](std::size_t m) { return m % 60 < 15; }),
-      "get quarter-hours");
-  add("no rows", kMinuteHeader, "holds no minutes");
-  add("one row", std::string(kMinuteHeader) + "2023-01-01T00:00:00Z,5,6\n",
-      "no complete local day");
-  add("half a day", whole.substr(0, whole.find("2023-01-01T10:00:00Z")), "no complete local day");
-  add("no indicative price", columns(settled, [](const OrdinaryRow&) { return std::string(); }),
+      "60 15 row-step");
+  add("no rows", kMinuteHeader, "prices.csv");
+  add("one row", std::string(kMinuteHeader) + "2023-01-01T00:00:00Z,5,6\n", "690 720");
+  add("half a day", whole.substr(0, whole.find("2023-01-01T10:00:00Z")), "690 720");
+  add("indicative reconstruct", columns(settled, [](const OrdinaryRow&) { return std::string(); }),
       "no indicative price");
-  add("no settled price", columns([](const OrdinaryRow&) { return std::string(); }, indicative),
+  add("settled", columns([](const OrdinaryRow&) { return std::string(); }, indicative),
       "no settled price");
   add("no price",
       columns([](const OrdinaryRow&) { return std::string(); },
               [](const OrdinaryRow&) { return std::string(); }),
-      "no price in any");
-  add("a row twice", with_line(5, "2022-12-31T23:04:00Z,5,6"), "out of order");
-  add("a row of long ago", with_line(5, "1999-12-31T23:04:00Z,5,6"), "out of order");
-  add("a row of the future", with_line(4319, "2103-01-01T00:00:00Z,5,6"), "40 years");
+      "prices.csv");
+  add("a row twice", with_line(5, "2022-12-31T23:04:00Z,5,6"), "prices.csv:7 2022-12-31T23:04:00Z");
+  add("a row of long ago", with_line(5, "1999-12-31T23:04:00Z,5,6"),
+      "prices.csv:7 1999-12-31T23:04:00Z");
+  add("a row of the future", with_line(4319, "2103-01-01T00:00:00Z,5,6"),
+      "prices.csv:4321 2103-01-01T00:00:00Z 40");
   std::string early = whole;
   std::string late = whole;
   for (std::size_t at = 0; (at = early.find("\n202", at)) != early.npos;)
@@ -164,26 +165,31 @@ inline std::vector<PriceCase> bad_price_files() {
   add("the year 1973", early, "dates");
   add("the year 2123", late, "dates");
   // The text itself.
-  add("empty", "", "holds no minutes");
-  add("a line end", "\n", "holds no minutes");
-  add("no header", whole.substr(whole.find('\n') + 1), "header must be");
-  add("another header", "a,b,c\n" + whole.substr(whole.find('\n') + 1), "header must be");
-  add("header in capitals", "MINUTE_UTC" + whole.substr(10), "header must be");
+  add("empty", "", "prices.csv");
+  add("a line end", "\n", "prices.csv");
+  add("no header", whole.substr(whole.find('\n') + 1),
+      "prices.csv:1 minute_utc,indicative_eur_mwh,settled_eur_mwh");
+  add("another header", "a,b,c\n" + whole.substr(whole.find('\n') + 1),
+      "prices.csv:1 minute_utc,indicative_eur_mwh,settled_eur_mwh");
+  add("header in capitals", "MINUTE_UTC" + whole.substr(10),
+      "prices.csv:1 minute_utc,indicative_eur_mwh,settled_eur_mwh");
   add("columns in another order",
       "minute_utc,settled_eur_mwh,indicative_eur_mwh" + whole.substr(whole.find('\n')),
-      "header must be");
-  add("semicolons", "minute_utc;indicative_eur_mwh;settled_eur_mwh\n", "prices import");
-  add("a web page", "<!DOCTYPE html><html></html>", "a web page");
-  add("a ZIP archive", "PK\x03\x04 and so on", "unzip it first");
-  add("JSON", "[{\"datetime\":\"2023-01-01T00:00:00Z\"}]", "header must be");
-  add("UTF-16", "\xFF\xFEm", "save it as UTF-8");
+      "prices.csv:1 minute_utc,indicative_eur_mwh,settled_eur_mwh");
+  add("semicolons", "minute_utc;indicative_eur_mwh;settled_eur_mwh\n",
+      "prices.csv:1 prices import");
+  add("prices.csv", "<!DOCTYPE html><html></html>", "a web page");
+  add("a ZIP archive", "PK\x03\x04 and so on", "ZIP");
+  add("JSON", "[{\"datetime\":\"2023-01-01T00:00:00Z\"}]",
+      "prices.csv:1 minute_utc,indicative_eur_mwh,settled_eur_mwh");
+  add("UTF-16", "\xFF\xFEm", "UTF-16 UTF-8");
   add("binary",
       std::string("\x7F"
                   "ELF\0\0\0",
                   7),
-      "NUL bytes");
-  add("cut in a time", whole.substr(0, whole.rfind("T")), "not three columns");
-  add("cut before the last price", whole.substr(0, whole.rfind(',')), "not three columns");
+      "NUL UTF-8");
+  add("cut in a time", whole.substr(0, whole.rfind("T")), "prices.csv:4321");
+  add("cut before the last price", whole.substr(0, whole.rfind(',')), "prices.csv:4321");
   add("cut in the last price", whole.substr(0, whole.size() - 3), "cut-end");
   add("cut behind the last comma", whole.substr(0, whole.rfind(',') + 1), "cut-end");
   for (const char* line :
@@ -192,7 +198,7 @@ inline std::vector<PriceCase> bad_price_files() {
         "2023-02-30T00:00:00Z,5,6", "2023-01-01T25:00:00Z,5,6", "2023-01-01T00:00:30Z,5,6",
         "1672531200,5,6", "x", "\"2023-01-01T00:00:00Z\";5;6", "2023-01-01T00:00:00Z,5,6,",
         "minute_utc,indicative_eur_mwh,settled_eur_mwh"}) {
-    add(fmt::format("row: {}", line), with_line(60, line), "prices.csv:62: ");
+    add(fmt::format("row: {}", line), with_line(60, line), "prices.csv:62");
   }
   return cases;
 }

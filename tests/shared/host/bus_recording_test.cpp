@@ -5,13 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using Next = BusRecordingReader::Next;
 
 const RecordingHead kHead{.version = "0.1.0",
@@ -85,8 +87,7 @@ TEST_F(BusRecording, IsReadAsItWasWritten) {
 
 TEST_F(BusRecording, CutIsOneLineWithItsNumberAndIsTakenWhenAsked) {
   const std::string path = write({kRead, kRefused});
-  EXPECT_THAT(read(path), HasSubstr("device.jsonl:4: the recording was cut here, its last line is "
-                                    "missing; --accept-cut takes the 2 exchanges before it"));
+  EXPECT_THAT(read(path), Names("device.jsonl:4 --accept-cut 2"));
   EXPECT_EQ(read(path, CutRecording::kAccepted), "");
   EXPECT_TRUE(reader_->was_cut());
   EXPECT_EQ(exchanges_.size(), 2U);
@@ -95,7 +96,7 @@ TEST_F(BusRecording, CutIsOneLineWithItsNumberAndIsTakenWhenAsked) {
 TEST_F(BusRecording, CutWithinALineIsTheSame) {
   const std::string whole = write({kRead, kRefused});
   std::filesystem::resize_file(whole, std::filesystem::file_size(whole) - 20);
-  EXPECT_THAT(read(whole), HasSubstr("device.jsonl:3: the recording was cut here"));
+  EXPECT_THAT(read(whole), Names("device.jsonl:3 --accept-cut 1"));
   EXPECT_EQ(read(whole, CutRecording::kAccepted), "");
   EXPECT_EQ(exchanges_.size(), 1U);
 }
@@ -105,42 +106,40 @@ TEST_F(BusRecording, DamageIsOneLineWithItsNumber) {
     std::string line = kRead;
     return line.replace(line.find(from), from.size(), to);
   };
-  EXPECT_THAT(damage("}{"), HasSubstr("device.jsonl:3: this is no line of a recording"));
-  EXPECT_THAT(damage(""), HasSubstr(":3: this is no line"));
-  EXPECT_THAT(damage(std::string(5'000, 'x')), HasSubstr(":3: this is no line"));
-  EXPECT_THAT(damage(changed("00:01.000250Z", "00:01")), HasSubstr(":3: \"utc\" is no instant"));
-  EXPECT_THAT(damage(changed("\"unit\":3", "\"unit\":300")),
-              HasSubstr("\"unit\" must be 0 to 255"));
-  EXPECT_THAT(damage(changed("\"function\":3", "\"function\":5")),
-              HasSubstr("\"function\" must be"));
-  EXPECT_THAT(damage(changed("258", "-1")), HasSubstr("\"address\" must be 0 to 65535"));
-  EXPECT_THAT(damage(changed("\"count\":2", "\"count\":126")),
-              HasSubstr("\"count\" must be 1 to 125"));
-  EXPECT_THAT(damage(changed("\"count\":2", "\"count\":3")),
-              HasSubstr("\"values\" are not as many"));
-  EXPECT_THAT(damage(changed("65535", "65536")), HasSubstr("\"values\" are not as many"));
-  EXPECT_THAT(damage(changed("8120", "-8")), HasSubstr("\"latency_us\" must be"));
-  EXPECT_THAT(damage(changed("\"values\":[435,65535]", "\"error\":\"gone\"")),
-              HasSubstr("\"exception\" or \"error\" is none that is known"));
-  EXPECT_THAT(damage(changed("\"values\":[435,65535]", "\"exception\":0")),
-              HasSubstr("\"exception\" or \"error\" is none that is known"));
+  const std::string values = "\"values\":[435,65535]";
+  const std::pair<std::string, const char*> cases[] = {
+      {"}{", ""},
+      {"", ""},
+      {std::string(5'000, 'x'), ""},
+      {changed("00:01.000250Z", "00:01"), "\"utc\""},
+      {changed("\"unit\":3", "\"unit\":300"), "\"unit\" 255"},
+      {changed("\"function\":3", "\"function\":5"), "\"function\""},
+      {changed("258", "-1"), "\"address\" 65535"},
+      {changed("\"count\":2", "\"count\":126"), "\"count\" 125"},
+      {changed("\"count\":2", "\"count\":3"), "\"values\""},
+      {changed("65535", "65536"), "\"values\""},
+      {changed("8120", "-8"), "\"latency_us\""},
+      {changed(values, "\"error\":\"gone\""), "\"exception\" \"error\""},
+      {changed(values, "\"exception\":0"), "\"exception\" \"error\""}};
+  for (const auto& [line, names] : cases) {
+    EXPECT_THAT(damage(line), Names("device.jsonl:3 " + std::string(names))) << line;
+  }
 }
 
 TEST_F(BusRecording, MissingLinesShowInTheCount) {
-  EXPECT_THAT(read(write({kRead, kRefused, kSilence, kEndOfFour})),
-              HasSubstr(":5: the last line counts 4 exchanges, before it are 3"));
+  EXPECT_THAT(read(write({kRead, kRefused, kSilence, kEndOfFour})), Names("device.jsonl:5 4 3"));
   EXPECT_THAT(read(write({kRead, kRefused, kSilence, kLostWrite, kEndOfFour, kRead})),
-              HasSubstr("something follows the last line"));
+              Names("device.jsonl:7"));
 }
 
 TEST_F(BusRecording, AnythingElseIsNoRecording) {
-  EXPECT_THAT(read(folder_.write("a.jsonl", "")), HasSubstr("a.jsonl:1: this is no recording"));
-  EXPECT_THAT(read(folder_.write("b.csv", "minute_utc,soc\n")), HasSubstr("b.csv:1: this is no"));
+  EXPECT_THAT(read(folder_.write("a.jsonl", "")), Names("a.jsonl:1"));
+  EXPECT_THAT(read(folder_.write("b.csv", "minute_utc,soc\n")), Names("b.csv:1"));
   EXPECT_THAT(read(folder_.write("c.jsonl", R"({"bess_recording":2})"
                                             "\n")),
-              HasSubstr(":1: this is"));
+              Names("c.jsonl:1"));
   EXPECT_THAT(read(folder_.file("none.jsonl")),
-              HasSubstr("none.jsonl: cannot be read: No such file"));
+              Names("none.jsonl " + std::string(std::strerror(ENOENT))));
 }
 
 }  // namespace

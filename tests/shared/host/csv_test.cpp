@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/user_error.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -47,13 +48,11 @@ TEST(Csv, TableIsReadByColumn) {
 }
 
 TEST(Csv, EveryMistakeNamesItsPlace) {
-  EXPECT_EQ(csv_complaint("utc,price\n"), "f.csv: holds no rows");
-  EXPECT_THAT(csv_complaint("utc,price\n1\n"),
-              testing::StartsWith("f.csv:2: 1 fields, the header has 2"));
-  EXPECT_THAT(csv_complaint("utc,cost\n1,2\n"), testing::HasSubstr("no column \"price\""));
-  EXPECT_THAT(csv_complaint("utc,price\n# gap\nx,y\n"),
-              testing::StartsWith("f.csv:3: price \"y\""));
-  EXPECT_THAT(csv_complaint("utc,price\nx,1\n"), testing::StartsWith("f.csv:2: utc \"x\""));
+  EXPECT_THAT(csv_complaint("utc,price\n"), Names("f.csv"));
+  EXPECT_THAT(csv_complaint("utc,price\n1\n"), Names("f.csv:2 1 2"));
+  EXPECT_THAT(csv_complaint("utc,cost\n1,2\n"), Names("f.csv \"price\""));
+  EXPECT_THAT(csv_complaint("utc,price\n# gap\nx,y\n"), Names("f.csv:3 price \"y\""));
+  EXPECT_THAT(csv_complaint("utc,price\nx,1\n"), Names("f.csv:2 utc \"x\""));
 }
 
 }  // namespace

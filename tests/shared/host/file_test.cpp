@@ -14,6 +14,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -103,15 +104,11 @@ TEST_F(File, WhatIsBehindOrMissingOfGzipIsTold) {
   const std::string whole = packed(folder_, "minutes of a day, and some more of them\n");
   for (const std::string& rest :
        {std::string("x"), std::string("2023-01-01T00:00:00Z,1,2\n"), std::string(512, '\0')}) {
-    EXPECT_THAT(complaint_about(folder_.write("a.gz", whole + rest)),
-                testing::HasSubstr("a.gz: bytes behind the end of its gzip data"));
+    EXPECT_THAT(complaint_about(folder_.write("a.gz", whole + rest)), Names("a.gz"));
   }
-  EXPECT_THAT(complaint_about(folder_.write("b.gz", whole + "\x1F")),
-              testing::HasSubstr("truncated or damaged"));
+  EXPECT_THAT(complaint_about(folder_.write("b.gz", whole + "\x1F")), Names("b.gz"));
   for (std::size_t cut = 2; cut < whole.size(); ++cut) {
-    EXPECT_THAT(complaint_about(folder_.write("c.gz", whole.substr(0, cut))),
-                testing::HasSubstr("c.gz: truncated or damaged gzip file (unexpected end)"))
-        << cut;
+    EXPECT_THAT(complaint_about(folder_.write("c.gz", whole.substr(0, cut))), Names("c.gz")) << cut;
   }
   const std::string text = read_file(folder_.write("d", whole));
   std::size_t told = 0;
@@ -123,7 +120,7 @@ TEST_F(File, WhatIsBehindOrMissingOfGzipIsTold) {
     if (complaint.empty()) {
       EXPECT_EQ(read_file(path), text) << "a bit that means nothing: " << at;
     } else {
-      EXPECT_THAT(complaint, testing::HasSubstr("damaged")) << at;
+      EXPECT_THAT(complaint, Names(path)) << at;
       ++told;
     }
   }
@@ -137,28 +134,24 @@ TEST_F(File, ABombIsBoundedWhileItIsRead) {
   const std::string member = packed(folder_, comments);
   std::string bomb;
   for (int i = 0; i < 1'200; ++i) bomb += member;
-  EXPECT_THAT(complaint_about(folder_.write("bomb.gz", bomb), 16 << 20),
-              testing::HasSubstr("bomb.gz: holds more than 16 MiB once unpacked"));
+  EXPECT_THAT(complaint_about(folder_.write("bomb.gz", bomb), 16 << 20), Names("bomb.gz 16 MiB"));
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   EXPECT_LT(usage.ru_maxrss, 300'000) << "kilobytes";
   EXPECT_EQ(complaint_about(folder_.write("member.gz", member), comments.size()), "");
   EXPECT_THAT(complaint_about(folder_.write("member.gz", member), comments.size() - 1),
-              testing::HasSubstr("once unpacked"));
+              Names("member.gz"));
 }
 
 TEST_F(File, ADeviceWithoutEndEnds) {
-  EXPECT_THAT(complaint_about("/dev/zero", 1 << 20),
-              testing::HasSubstr("/dev/zero: holds more than 1 MiB: not a file"));
+  EXPECT_THAT(complaint_about("/dev/zero", 1 << 20), Names("/dev/zero 1 MiB"));
 }
 
 TEST_F(File, LinksInALoopAndNamesTooLongAreOneLine) {
   fs::create_symlink(folder_.file("two"), folder_.file("one"));
   fs::create_symlink(folder_.file("one"), folder_.file("two"));
-  EXPECT_THAT(complaint_about(folder_.file("one")),
-              testing::HasSubstr("a link that leads back to itself"));
-  EXPECT_THAT(complaint_about(folder_.file(std::string(300, 'a'))),
-              testing::HasSubstr("the name is too long for a file"));
+  EXPECT_THAT(complaint_about(folder_.file("one")), Names(folder_.file("one")));
+  EXPECT_THAT(complaint_about(folder_.file(std::string(300, 'a'))), Names(std::string(300, 'a')));
   EXPECT_THROW(write_file(folder_.file("one"), "text"), UserError);
   EXPECT_THROW(require_writable(folder_.file(std::string(300, 'a'))), UserError);
   EXPECT_TRUE(fs::is_symlink(fs::symlink_status(folder_.file("one"))));

@@ -5,15 +5,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/core.h>
+
+#include <cstring>
+
 #include "shared/host/toml_traps.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tests/support/toml_mistakes.h"
 
 namespace bess {
 namespace {
-
-using testing::HasSubstr;
-using testing::StartsWith;
 
 int trap_line(std::string_view toml) { return TomlTrapFinder(toml).find().line; }
 
@@ -77,9 +79,7 @@ TEST(TomlDocument, EveryMistakeIsOneLineThatNamesFileAndLine) {
     TomlValue document;
     std::string error;
     EXPECT_FALSE(parse_toml_text(mistake.text, "some.toml", document, error));
-    EXPECT_THAT(error,
-                StartsWith("some.toml:" + std::to_string(mistake.line) + ": not valid TOML: "));
-    EXPECT_THAT(error, HasSubstr(mistake.complaint));
+    EXPECT_THAT(error, Names(fmt::format("some.toml:{} {}", mistake.line, mistake.names)));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -89,9 +89,9 @@ TEST(TomlDocument, AFileThatCannotBeReadIsNamed) {
   TomlValue document;
   std::string error;
   EXPECT_FALSE(parse_toml_file(folder.file("missing.toml"), document, error));
-  EXPECT_THAT(error, HasSubstr("missing.toml: cannot open: No such file"));
+  EXPECT_THAT(error, Names("missing.toml " + std::string(std::strerror(ENOENT))));
   EXPECT_FALSE(parse_toml_file(folder.file(""), document, error));
-  EXPECT_THAT(error, HasSubstr("is it a folder?"));
+  EXPECT_THAT(error, Names(folder.file("")));
 }
 
 /// A device that never ends stands for a file of any size: neither memory nor time may grow with
@@ -100,7 +100,7 @@ TEST(TomlDocument, AFileIsReadNoFurtherThanItCouldBeParsed) {
   TomlValue document;
   std::string error;
   EXPECT_FALSE(parse_toml_file("/dev/zero", document, error));
-  EXPECT_THAT(error, StartsWith("/dev/zero:1: not valid TOML: longer than 256 KiB"));
+  EXPECT_THAT(error, Names("/dev/zero:1 256 KiB"));
 }
 
 TEST(TomlTraps, NonAsciiIsFoundOutsideQuotesAndCommentsOnly) {

@@ -6,6 +6,7 @@
 
 #include "tests/support/market_test_support.h"
 #include "tests/support/price_cases.h"
+#include "tests/support/tokens.h"
 #include "tests/support/train_commands.h"
 
 namespace bess {
@@ -14,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 class BadPrices : public TrainCommands {
  protected:
@@ -27,12 +29,11 @@ class BadPrices : public TrainCommands {
 
 TEST_F(BadPrices, EachIsOneClearLine) {
   const std::vector<PriceCase> cases = bad_price_files();
-  EXPECT_GE(cases.size(), 100u);
   for (const PriceCase& c : cases) {
     SCOPED_TRACE(c.name);
     const Result result = evaluated(c.text);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.output, AllOf(HasSubstr("bess-train: "), HasSubstr(c.words)));
+    EXPECT_THAT(result.output, AllOf(StartsWith("bess-train: "), Names(c.names)));
     EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
     EXPECT_THAT(result.output, Not(HasSubstr("\x1b")));
   }
@@ -41,16 +42,14 @@ TEST_F(BadPrices, EachIsOneClearLine) {
 TEST_F(BadPrices, TheOrdinaryFileRaisesNothing) {
   const Result result = evaluated(ordinary_text());
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.output, Not(HasSubstr("warning")));
+  EXPECT_THAT(result.output, Not(Names("bess-train")));
 }
 
 TEST_F(BadPrices, TheRowIsNamed) {
   EXPECT_THAT(evaluated(with_prices(2000, "1e200", "")).output,
-              HasSubstr("prices.csv:2002: indicative price 1e+200 lies beyond 100000 EUR/MWh, more "
-                        "than any market allows (1 minute); mend it or leave it empty (--accept "
-                        "price-range if it is meant)\n"));
+              Names("prices.csv:2002 1e+200 100000 EUR/MWh --accept price-range"));
   EXPECT_THAT(evaluated("# from somewhere\n" + with_prices(2000, "", "-9999")).output,
-              HasSubstr("prices.csv:1998: settled price -9999 stands for"));
+              Names("prices.csv:1998 -9999 --accept sentinel"));
 }
 
 TEST_F(BadPrices, WhatIsMeantIsAccepted) {
@@ -58,13 +57,11 @@ TEST_F(BadPrices, WhatIsMeantIsAccepted) {
   EXPECT_EQ(evaluated(quiet).exit_code, 1);
   const Result accepted = evaluated(quiet, "gaps,price-unit");
   EXPECT_EQ(accepted.exit_code, 0);
-  EXPECT_THAT(accepted.output, HasSubstr("prices.csv:2: no settled price exceeds"));
-  EXPECT_THAT(accepted.output, HasSubstr("[price-unit]"));
+  EXPECT_THAT(accepted.output, Names("prices.csv:2 4.8504 [price-unit]"));
   EXPECT_EQ(evaluated(quiet, "price-range").exit_code, 1);
   const Result unknown = evaluated(quiet, "price-units");
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.output,
-              HasSubstr("no finding is called \"price-units\"; use one or more of"));
+  EXPECT_THAT(unknown.output, Names("--accept \"price-units\" price-unit"));
 }
 
 TEST_F(BadPrices, WhatNoArithmeticHoldsIsNeverAccepted) {
@@ -73,8 +70,7 @@ TEST_F(BadPrices, WhatNoArithmeticHoldsIsNeverAccepted) {
         run({"evaluate", "--prices", written("prices.csv", with_prices(2000, "", "1e200")),
              "--policy", policy, "--split", "all", "--accept", "price-range"});
     EXPECT_EQ(result.exit_code, 1) << policy;
-    EXPECT_THAT(result.output,
-                HasSubstr("the settled price of 2023-01-02T08:15:00Z, 1e+200 EUR/MWh, is none"));
+    EXPECT_THAT(result.output, Names("prices.csv: 2023-01-02T08:15:00Z 1e+200 EUR/MWh"));
   }
 }
 
@@ -93,13 +89,12 @@ TEST_F(BadPrices, EveryCommandLooks) {
   for (const std::vector<std::string>& command : commands) {
     const Result result = run(command);
     EXPECT_EQ(result.exit_code, 1) << command.front();
-    EXPECT_THAT(result.output, HasSubstr("bad.csv:1997: settled price -9999 stands for"))
-        << command[1];
+    EXPECT_THAT(result.output, Names("bad.csv:1997 -9999 --accept sentinel")) << command[1];
     EXPECT_FALSE(std::filesystem::is_regular_file(out));
   }
   const Result stats = run({"prices", "stats", bad});
   EXPECT_EQ(stats.exit_code, 0);
-  EXPECT_THAT(stats.output, HasSubstr("warning: " + bad + ":1997: settled price -9999"));
+  EXPECT_THAT(stats.output, Names(bad + ":1997 -9999 [sentinel]"));
 }
 
 /// What Belgium settled at, what another country did, and where bids end: in every command, to the
@@ -125,8 +120,8 @@ TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
       const Result result = run(command);
       EXPECT_EQ(result.exit_code, 0) << command[0] << ": " << result.output;
       EXPECT_THAT(result.output, Not(HasSubstr("[sentinel]")));
-      const std::string told = fmt::format("price {} lies beyond 15000 EUR/MWh", c.price);
-      EXPECT_EQ(result.output.find(told) != result.output.npos, c.is_told) << result.output;
+      const bool is_told = testing::Value(result.output, Names(std::string("15000 ") + c.price));
+      EXPECT_EQ(is_told, c.is_told) << result.output;
     }
     EXPECT_THAT(read_file(imported), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
     EXPECT_THAT(read_file(drawn), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
@@ -138,22 +133,22 @@ TEST_F(BadPrices, ABatteryThatCannotBeMeantIsRefused) {
   const struct {
     const char* keys;
     int exit_code;
-    const char* words;
-  } cases[] = {
-      {"power_w = 5", 1, "[battery] power_w = 5 is below 100 W; the unit is watt, 5 MW is"},
-      {"capacity_wh = 10", 1, "[battery] capacity_wh = 10 is below 100 Wh"},
-      {"power_w = 5000", 1, "power_w = 5000 and capacity_wh = 8e+06 are 0.00063 C"},
-      {"capacity_wh = 8000", 1, "are 5e+02 C; batteries have 0.05 to 20 C"},
-      {"power_w = 1e9", 1, "is one of them in kW or MW?"},
-      {"charge_efficiency = 0.5", 0, "warning: "},
-      {"charge_efficiency = 1\ndischarge_efficiency = 1", 0, "is 1.00 from grid to grid"},
-      {"power_w = 4000\ncapacity_wh = 8000", 0, "rbc"}};
+    const char* names;
+  } cases[] = {{"power_w = 5", 1, "[battery] power_w 5 100 5000000"},
+               {"capacity_wh = 10", 1, "[battery] capacity_wh 10 100 10000000"},
+               {"power_w = 5000", 1, "power_w 5000 capacity_wh 0.00063"},
+               {"capacity_wh = 8000", 1, "capacity_wh 8000 5e+02 0.05 20"},
+               {"power_w = 1e9", 1, "power_w 1e+09 kW MW"},
+               {"charge_efficiency = 0.5", 0, "charge_efficiency 0.5 0.47"},
+               {"charge_efficiency = 1\ndischarge_efficiency = 1", 0,
+                "charge_efficiency discharge_efficiency 1.00"},
+               {"power_w = 4000\ncapacity_wh = 8000", 0, "rbc"}};
   for (const auto& c : cases) {
     const std::string config = written("my.toml", std::string("[battery]\n") + c.keys + "\n");
     const Result result = run(
         {"evaluate", "--prices", prices, "--policy", "rbc", "--split", "all", "--config", config});
     EXPECT_EQ(result.exit_code, c.exit_code) << result.output;
-    EXPECT_THAT(result.output, HasSubstr(c.words));
+    EXPECT_THAT(result.output, Names(c.names));
   }
 }
 
@@ -163,8 +158,7 @@ TEST_F(BadPrices, MonthsWithoutATrainingDayAreNamed) {
   EXPECT_THAT(
       run({"train", "--steps", "1", "--prices", prices, "--config", config, "--out", path("t.bin")})
           .output,
-      HasSubstr("no training day (local days 1 to 20) in months 02, 03, 04, 05, 06, 07, 08, "
-                "09, 10, 11, 12: "));
+      Names("1 20 02 12 [train]"));
 }
 
 std::string minute_file(int from_day, int days, double shift = 0) {
@@ -185,11 +179,8 @@ TEST_F(BadPrices, ImportJoinsMinuteFilesThatAgree) {
   const std::string other = written("other.csv", minute_file(1, 2, 1));
   const Result differing = run({"prices", "import", late, other, "--out", path("none.csv")});
   EXPECT_EQ(differing.exit_code, 1);
-  EXPECT_THAT(differing.output,
-              AllOf(HasSubstr("late.csv and " + other +
-                              " disagree about 2023-01-01T23:00:00Z: "
-                              "indicative price"),
-                    HasSubstr("(2880 differences in all)"), HasSubstr("--accept overlap")));
+  EXPECT_THAT(differing.output, Names("late.csv:2 " + other +
+                                      " 2023-01-01T23:00:00Z 43.52 44.52 2880 --accept overlap"));
   EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
   EXPECT_EQ(
       run({"prices", "import", late, other, "--accept", "overlap", "--out", path("later.csv")})
@@ -206,7 +197,7 @@ TEST_F(BadPrices, ImportReadsWhatASpreadsheetSaved) {
   const std::string read = read_file(path("m.csv"));
   EXPECT_EQ(read.substr(read.find("minute_utc")), ordinary_text());
   EXPECT_THAT(run({"evaluate", "--prices", file, "--policy", "rbc"}).output,
-              HasSubstr("convert downloads with 'bess-train prices import'"));
+              Names("sheet.csv:1 bess-train prices import"));
 }
 
 /// What the file system says is said with the name, in one line, by whatever option it came.
@@ -233,7 +224,7 @@ TEST_F(BadPrices, LinksInALoopNamesTooLongAndFilesWithoutEndAreOneLine) {
       const Result result = run(command);
       SCOPED_TRACE(command[0] + " " + command[1] + " " + name.substr(0, 40));
       EXPECT_EQ(result.exit_code, 1) << result.output;
-      EXPECT_THAT(result.output, AllOf(HasSubstr("bess-train: "), Not(HasSubstr("filesystem"))));
+      EXPECT_THAT(result.output, AllOf(StartsWith("bess-train: "), Not(HasSubstr("filesystem"))));
       EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
     }
   }
@@ -250,17 +241,15 @@ TEST_F(BadPrices, GzipIsCalledGzip) {
     return run({"evaluate", "--prices", file, "--policy", "rbc", "--split", "all"});
   };
   EXPECT_EQ(evaluate(written("packed.csv", packed)).exit_code, 0);  // gzip under another name
-  EXPECT_THAT(evaluate(written("twice.csv.gz", packed)).output,
-              HasSubstr("twice.csv.gz: gzip data inside"));
+  EXPECT_THAT(evaluate(written("twice.csv.gz", packed)).output, Names("twice.csv.gz gunzip"));
   std::ofstream(path("plain.csv.gz")) << ordinary_text();
   EXPECT_EQ(evaluate(path("plain.csv.gz")).exit_code, 0);
   std::ofstream(path("none.csv.gz")) << std::string("\x02\0\x03", 3) << packed;
-  EXPECT_THAT(evaluate(path("none.csv.gz")).output,
-              HasSubstr("none.csv.gz: its name says gzip, its content is not"));
+  EXPECT_THAT(evaluate(path("none.csv.gz")).output, Names("none.csv.gz"));
   EXPECT_THAT(evaluate(written("behind.csv", packed + "2023-01-01T00:00:00Z,1,2\n")).output,
-              HasSubstr("behind.csv: bytes behind the end of its gzip data"));
+              Names("behind.csv"));
   EXPECT_THAT(evaluate(written("half.csv", packed.substr(0, packed.size() / 2))).output,
-              HasSubstr("truncated or damaged gzip file"));
+              Names("half.csv"));
 }
 
 }  // namespace

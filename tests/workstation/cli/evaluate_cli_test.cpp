@@ -8,14 +8,13 @@
 #include "shared/host/json.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/cli/commands.h"
 
 namespace bess {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 class EvaluateCli : public testing::Test {
  protected:
@@ -74,13 +73,6 @@ TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
                                            "gain_standard_error_by_month", "carried_over"}));
 }
 
-TEST_F(EvaluateCli, SeveralPoliciesShowBothTables) {
-  const std::string text = output("evaluate", "--policy rbc rbc:60:140");
-  EXPECT_THAT(text, HasSubstr("Each day starts at the same SoC"));
-  EXPECT_THAT(text, HasSubstr("SoC carried over from day to day"));
-  EXPECT_THAT(output("evaluate", "--policy rbc"), Not(HasSubstr("carried over")));
-}
-
 TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
   const auto config = [&](const char* name, const char* text) {
     return " --config " + folder_.write(name, text);
@@ -103,10 +95,6 @@ TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
                                             config("c", "[battery]\nwear_eur_per_mwh = 10\n")),
                        "\"profit_eur_per_day_per_mwh\""),
                 1e-3);
-  }
-  for (const char* command : {"evaluate", "delays"}) {
-    EXPECT_THAT(output(command, "--policy rbc"),
-                HasSubstr("at wear 10: profit of the same decisions if wear cost 10 EUR per MWh"));
   }
 }
 
@@ -148,19 +136,16 @@ TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
   const std::string whole = read_file(split_days);
   const std::string last_line = whole.substr(whole.rfind('\n', whole.size() - 2) + 1);
   const std::string date = last_line.substr(0, last_line.find(','));
-  const std::string table =
-      output("evaluate", "--policy rbc tabular --date " + date + " --days-out " + one_day);
+  output("evaluate", "--policy rbc tabular --date " + date + " --days-out " + one_day);
   EXPECT_THAT(read_file(one_day), HasSubstr(last_line));
   EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
-  EXPECT_THAT(table, HasSubstr("1 day;"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
               HasSubstr(R"("profit_standard_error":null)"));  // one day tells nothing of the spread
 }
 
 TEST_F(EvaluateCli, FittedThresholdsAreTold) {
-  EXPECT_THAT(output("evaluate", "--policy rbc-quartile"), HasSubstr("rbc-quartile: charge below"));
-  EXPECT_THAT(output("evaluate", "--policy rbc --json"),
-              HasSubstr("charge below 11, discharge above 179 EUR/MWh"));
+  EXPECT_THAT(output("evaluate", "--policy rbc-quartile"), Names("rbc-quartile: 23.6304 189.462"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json"), Names("11 179 EUR/MWh"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "tests/support/train_commands.h"
 
 namespace bess {
@@ -33,25 +34,16 @@ TEST_F(PricesCli, ImportNamesTheSource) {
   const std::string elia = written("ods134.csv", kEliaQuarterHour);
   const Result only_entsoe = run({"import", entsoe, "--out", path("entsoe.csv")});
   EXPECT_EQ(only_entsoe.exit_code, 0) << only_entsoe.output;
-  EXPECT_THAT(only_entsoe.output, AllOf(HasSubstr("Source: ENTSO-E"), Not(HasSubstr("Elia"))));
-  EXPECT_THAT(read_file(path("entsoe.csv")),
-              AllOf(HasSubstr("# Source: ENTSO-E"), Not(HasSubstr("Elia"))));
+  EXPECT_THAT(only_entsoe.output, AllOf(Names("ENTSO-E"), Not(Names("Elia"))));
+  EXPECT_THAT(read_file(path("entsoe.csv")), AllOf(Names("ENTSO-E"), Not(Names("Elia"))));
   EXPECT_EQ(run({"import", entsoe, elia, "--out", path("both.csv")}).exit_code, 0);
   EXPECT_THAT(read_file(path("both.csv")),
-              AllOf(HasSubstr("a85.xml, ods134.csv"), HasSubstr("ENTSO-E"),
-                    HasSubstr("Elia, opendata.elia.be, CC BY 4.0"), HasSubstr("-30.258")));
-}
-
-TEST_F(PricesCli, ReconstructNamesAllFilesAndSources) {
-  const std::string entsoe = written("a85.xml", kEntsoeDocument);
-  const std::string elia = written("ods134.csv", kEliaQuarterHour);
-  const Result result =
+              Names("a85.xml ods134.csv ENTSO-E Elia opendata.elia.be CC BY 4.0 -30.258"));
+  const Result drawn =
       run({"reconstruct", "--quarter-hours", entsoe, elia, "--out", path("minutes.csv")});
-  EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, HasSubstr("Source: Elia"));
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.output;
   EXPECT_THAT(read_file(path("minutes.csv")),
-              AllOf(HasSubstr("a85.xml, ods134.csv"), HasSubstr("Source: Elia"),
-                    HasSubstr("; ENTSO-E"), HasSubstr(",-30.258,-30.258\n")));
+              Names("a85.xml ods134.csv Elia ENTSO-E -30.258,-30.258"));
 }
 
 TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
@@ -60,19 +52,14 @@ TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
   const Result result =
       run({"reconstruct", "--quarter-hours", path("imported.csv.gz"), "--out", path("drawn.csv")});
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, AllOf(HasSubstr("minutes drawn on 1 settled quarter-hour"),
-                                   HasSubstr("1 quarter-hour without a system imbalance"),
-                                   HasSubstr("Source: Elia")));
-  EXPECT_THAT(read_file(path("drawn.csv")), AllOf(HasSubstr("# Source: Elia, opendata.elia.be"),
-                                                  HasSubstr(",-30.258,-30.258\n")));
+  EXPECT_THAT(result.output, Names("drawn.csv 1 Elia"));
+  EXPECT_THAT(read_file(path("drawn.csv")), Names("Elia opendata.elia.be -30.258,-30.258"));
 
   ASSERT_EQ(run({"simulate", "--days", "1", "--out", path("s.csv")}).exit_code, 0);
   const Result again =
       run({"reconstruct", "--quarter-hours", path("s.csv"), "--out", path("d.csv")});
   EXPECT_EQ(again.exit_code, 0) << again.output;
-  EXPECT_THAT(again.output, AllOf(HasSubstr("drawn on 96 settled quarter-hours"),
-                                  HasSubstr("1440 indicative prices of the files not used"),
-                                  HasSubstr("Source: a simulated market of bess-train, not real")));
+  EXPECT_THAT(again.output, Names("d.csv 96 1440 bess-train"));
 
   const Result unsettled = run({"reconstruct", "--quarter-hours",
                                 written("m.csv",
@@ -80,7 +67,7 @@ TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
                                         "2023-01-01T00:00:00Z,5,\n"),
                                 "--out", path("n.csv")});
   EXPECT_EQ(unsettled.exit_code, 1);
-  EXPECT_THAT(unsettled.output, HasSubstr("m.csv: holds minute rows without settled prices"));
+  EXPECT_THAT(unsettled.output, Names("m.csv ods047 ods134"));
 }
 
 constexpr const char* kRecordedDay =
@@ -98,12 +85,10 @@ TEST_F(PricesCli, ARecordedDayIsImportedAndDescribed) {
   const std::string elia = written("ods134.csv", kEliaQuarterHour);
   const Result import = run({"import", day, elia, "--out", path("m.csv")});
   EXPECT_EQ(import.exit_code, 0) << import.output;
-  EXPECT_THAT(read_file(path("m.csv")), AllOf(HasSubstr("2023-01-01T00:15:00Z,10,-30.258\n"),
-                                              HasSubstr("2023-01-01T00:16:00Z,20,-30.258\n"),
-                                              HasSubstr("2023-01-01T00:17:00Z,,-30.258\n")));
-  EXPECT_THAT(run({"stats", day}).output,
-              AllOf(HasSubstr("1 price seen to arrive: median 65 s after the minute's end"),
-                    HasSubstr("1 price found")));
+  EXPECT_THAT(read_file(path("m.csv")),
+              Names("2023-01-01T00:15:00Z,10,-30.258 2023-01-01T00:16:00Z,20,-30.258 "
+                    "2023-01-01T00:17:00Z,,-30.258"));
+  EXPECT_THAT(run({"stats", day}).output, Names("65 s 95 %"));
   const Result mended =
       run({"import", written("bad.csv", std::string(kRecordedDay) + "\n"), "--out", path("n.csv")});
   EXPECT_EQ(mended.exit_code, 1);
@@ -115,16 +100,15 @@ TEST_F(PricesCli, RecordRefusesWhatItCannotMean) {
   EXPECT_EQ(run({"record", "--out", path("r"), "--for", "1h", "--until", "x"}).exit_code, 2);
   const Result duration = run({"record", "--out", path("r"), "--for", "5 weeks"});
   EXPECT_EQ(duration.exit_code, 1);
-  EXPECT_THAT(duration.output, HasSubstr("--for \"5 weeks\" is not a duration; write it as 90s"));
+  EXPECT_THAT(duration.output, Names("--for \"5 weeks\" 90s"));
   EXPECT_THAT(run({"record", "--out", path("r"), "--until", "tomorrow"}).output,
-              HasSubstr("write it as 2025-06-15T22:00:00Z"));
-  EXPECT_THAT(run({"record", "--out", path("r"), "--url", "elia"}).output,
-              HasSubstr("--url \"elia\" is not a web address"));
+              Names("--until \"tomorrow\" 2025-06-15T22:00:00Z"));
+  EXPECT_THAT(run({"record", "--out", path("r"), "--url", "elia"}).output, Names("--url \"elia\""));
   EXPECT_FALSE(std::filesystem::exists(path("r")));
   const Result silent =
       run({"record", "--out", path("r"), "--url", "http://127.0.0.1:9", "--for", "1s"});
   EXPECT_EQ(silent.exit_code, 1);
-  EXPECT_THAT(silent.output, HasSubstr("nothing was recorded"));
+  EXPECT_THAT(silent.output, Names("http://127.0.0.1:9 --url"));
 }
 
 TEST_F(PricesCli, NegativeSeedsAreRefused) {
@@ -135,7 +119,7 @@ TEST_F(PricesCli, NegativeSeedsAreRefused) {
             0);
   EXPECT_FALSE(std::filesystem::exists(path("s.csv")));
   EXPECT_THAT(run({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}).output,
-              HasSubstr("1 simulated day from"));
+              Names("s.csv 1 2023-01-01 2 1440"));
 }
 
 TEST_F(PricesCli, OwnQuarterHoursLeadToMinutes) {
@@ -144,26 +128,19 @@ TEST_F(PricesCli, OwnQuarterHoursLeadToMinutes) {
                                   "01/06/2025 00:15;2\r\n");
   const Result unclear = run({"import", own, "--out", path("q.csv")});
   EXPECT_EQ(unclear.exit_code, 1);
-  EXPECT_THAT(unclear.output, AllOf(HasSubstr("own.csv:2: "), HasSubstr("--date-format")));
+  EXPECT_THAT(unclear.output, Names("own.csv:2 --date-format"));
   std::vector<std::string> import{"import", own, "--date-format", "dd/mm/yyyy", "--out"};
   import.push_back(path("q.csv"));
-  EXPECT_THAT(run(import).output, AllOf(HasSubstr("own.csv:2: "), HasSubstr("--time-zone")));
+  EXPECT_THAT(run(import).output, Names("own.csv:2 --time-zone"));
   import.insert(import.end(), {"--time-zone", "local"});
   const Result imported = run(import);
   ASSERT_EQ(imported.exit_code, 0) << imported.output;
   EXPECT_THAT(imported.output,
-              HasSubstr("prices reconstruct --quarter-hours " + path("q.csv") + " --out "));
+              Names("prices reconstruct --quarter-hours " + path("q.csv") + " --out"));
   EXPECT_THAT(read_file(path("q.csv")), AllOf(HasSubstr("\n2025-05-31T22:00:00Z,,-1.5\n"),
                                               HasSubstr("\n2025-05-31T22:29:00Z,,2\n")));
   EXPECT_EQ(
       run({"reconstruct", "--quarter-hours", path("q.csv"), "--out", path("m.csv")}).exit_code, 0);
-}
-
-TEST_F(PricesCli, ImportSaysWhatToDoWithAZip) {
-  const Result zip = run({"import", written("a.zip", "PK\x03\x04..."), "--out", path("o.csv")});
-  EXPECT_EQ(zip.exit_code, 1);
-  EXPECT_THAT(zip.output, HasSubstr("a.zip: a ZIP archive: unzip it first"));
-  EXPECT_THAT(run({"import", "--help"}).output, HasSubstr("unzip"));
 }
 
 }  // namespace

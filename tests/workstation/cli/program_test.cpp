@@ -4,10 +4,12 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "shared/host/toml_document.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tests/support/toml_mistakes.h"
 #include "tests/support/train_commands.h"
 
@@ -21,7 +23,7 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
     GTEST_SKIP() << "needs /dev/full, which is absent";
   }
   ChildProcess program({"/bin/sh", "-c", BESS_TRAIN_PROGRAM " config > /dev/full"});
-  EXPECT_THAT(program.read_all(), HasSubstr("cannot write to the standard output"));
+  EXPECT_THAT(program.read_all(), Names(std::string("bess-train ") + std::strerror(ENOSPC)));
   EXPECT_EQ(program.wait(), 1);
 }
 
@@ -34,8 +36,8 @@ TEST(Program, BrokenTomlIsOneClearLine) {
     EXPECT_EQ(exit_code, 1) << text;
     // What is too long is not even read to its end.
     const bool is_too_long = mistake.text.size() > kTomlBytesMax;
-    const std::string place = "broken.toml:" + std::to_string(mistake.line) + ": not valid TOML: ";
-    EXPECT_THAT(text, HasSubstr(is_too_long ? "broken.toml: holds more than 256 KiB" : place));
+    const std::string place = "broken.toml:" + std::to_string(mistake.line);
+    EXPECT_THAT(text, Names(is_too_long ? "broken.toml 256 KiB" : place));
     EXPECT_EQ(std::ranges::count(text, '\n'), 1) << text;
   }
 }
@@ -55,7 +57,6 @@ TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {
   ASSERT_TRUE(program.catches(SIGINT));  // far too soon for 7,000 days
   program.signal(SIGINT);
   EXPECT_EQ(program.wait(), 3);
-  EXPECT_THAT(program.read_all(), HasSubstr("interrupted"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

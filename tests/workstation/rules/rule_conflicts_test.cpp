@@ -9,13 +9,11 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
+#include "tests/support/tokens.h"
 #include "workstation/base/random.h"
 
 namespace bess {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 std::string named(const std::string& name, const std::string& lines) {
   return "[[rule]]\nname = \"" + name + "\"\n" + lines + "\n";
@@ -40,9 +38,7 @@ TEST(Conflicts, BothRulesAndAStateAreNamed) {
   const std::string text =
       complaint(named("always charge", "soc_max = 0.2\nprice_max = 50\nis = \"charge\"") +
                 named("night", "hours = \"01:00-02:00\"\nis = \"idle\""));
-  EXPECT_THAT(text, AllOf(HasSubstr("test.toml:1: \"always charge\""),
-                          HasSubstr("contradicts \"night\" (test.toml:6)"), HasSubstr("01:00"),
-                          HasSubstr("narrow or drop one of them")));
+  EXPECT_THAT(text, Names("test.toml:1 \"always charge\" \"night\" test.toml:6 01:00"));
 }
 
 /// "At least" reaches down to lower prices and charges, "at most" up: boxes far apart may clash.
@@ -51,7 +47,7 @@ TEST(Conflicts, WhatIsImpliedClashesToo) {
       named("dear", "price_min = 200\nprice_max = 300\nsoc_min = 0.6\nat_least = \"idle\"");
   EXPECT_THAT(
       complaint(dear + named("cheap", "price_max = 100\nsoc_max = 0.5\nis = \"discharge\"")),
-      HasSubstr("\"dear\" contradicts \"cheap\""));
+      Names("\"dear\" \"cheap\""));
   EXPECT_EQ(complaint(dear + named("dearer", "price_min = 301\nis = \"discharge\"")), "consistent");
   EXPECT_EQ(complaint(dear + named("low", "soc_max = 0.5\nprice_max = 100\nat_least = \"idle\"")),
             "consistent");
@@ -64,19 +60,20 @@ TEST(Conflicts, WhatIsImpliedClashesToo) {
   EXPECT_THAT(complaint(named("a", "context_classes = [1]\nis = \"charge\"\nprice_max = 100") +
                         named("b", "context_classes = [2]\nis = \"discharge\"\nprice_min = 0") +
                         named("c", "never_falls_with = \"context_class\"")),
-              HasSubstr("\"a\" contradicts \"b\""));
+              Names("\"a\" \"b\""));
 }
 
 TEST(Conflicts, TheThresholdsCount) {
   EXPECT_THAT(complaint(named("never sell", "at_least = \"idle\"")),
-              HasSubstr("\"never sell\" contradicts \"[correction] high_price_eur_per_mwh\""));
+              Names("\"never sell\" \"[correction] high_price_eur_per_mwh\""));
   EXPECT_EQ(complaint(named("never sell", "at_least = \"idle\"") +
                       named("no threshold", "discharge_at_or_above = 2000")),
             "consistent");
   EXPECT_EQ(
       complaint(named("never sell", "at_least = \"idle\""), ContextKind::kLevel, {-500, 1501}),
       "consistent");
-  EXPECT_THAT(complaint(named("t", "charge_at_or_below = 1500")), HasSubstr("cross"));
+  EXPECT_THAT(complaint(named("t", "charge_at_or_below = 1500")),
+              Names("[correction] 1500 EUR/MWh"));
 }
 
 TEST(Conflicts, NotIdleBetweenTwoThatLeaveOnlyThat) {
@@ -84,8 +81,7 @@ TEST(Conflicts, NotIdleBetweenTwoThatLeaveOnlyThat) {
   const std::string most = named("most", "price_min = 50\nat_most = \"idle\"");
   const std::string gap = named("gap", "price_min = 80\nprice_max = 120\nis_not = \"idle\"");
   EXPECT_EQ(complaint(least + most), "consistent");
-  EXPECT_THAT(complaint(least + most + gap),
-              AllOf(HasSubstr("\"gap\" contradicts"), HasSubstr("80 EUR/MWh")));
+  EXPECT_THAT(complaint(least + most + gap), Names("\"gap\" 80 EUR/MWh"));
   EXPECT_EQ(complaint(least + gap), "consistent");
 }
 
@@ -93,7 +89,7 @@ TEST(Conflicts, WhatTheGuardEnforcesIsHeldAgainstTheBareBoxes) {
   const std::string far = "price_min = 2000\nprice_max = 3000\nis = \"charge\"\nenforce = true";
   EXPECT_THAT(
       complaint(named("a", far) + named("b", "price_min = 2500\nis = \"idle\"\nenforce = true")),
-      AllOf(HasSubstr("\"a\" contradicts \"b\""), HasSubstr("2500 EUR/MWh")));
+      Names("\"a\" \"b\" 2500 EUR/MWh"));
   EXPECT_EQ(
       complaint(named("a", far) + named("b", "price_min = 3001\nis = \"idle\"\nenforce = true")),
       "consistent");
@@ -101,23 +97,23 @@ TEST(Conflicts, WhatTheGuardEnforcesIsHeldAgainstTheBareBoxes) {
 
 TEST(Conflicts, ARuleThatBindsNobodyIsRefused) {
   EXPECT_THAT(complaint(named("far", "price_min = 2000\nis = \"idle\"")),
-              HasSubstr("binds nobody: no price of it lies on the lattice; add enforce = true"));
+              Names("\"far\" enforce = true"));
   EXPECT_THAT(
       complaint(named("winter", "months = [1]\nprice_min = 0\nprice_max = 9\nis = \"idle\"")),
-      HasSubstr("does not see months"));
+      Names("\"winter\""));
   EXPECT_EQ(complaint(named("winter", "months = [1]\nprice_min = 0\nprice_max = 9\nis = \"idle\""),
                       ContextKind::kMonth),
             "consistent");
   EXPECT_THAT(
       complaint(named("c", "context_classes = [1]\nprice_min = 0\nprice_max = 9\nis = \"idle\""),
                 ContextKind::kMonth),
-      HasSubstr("the student is by month"));
+      Names("\"c\""));
 }
 
 TEST(Conflicts, OppositeDirectionsAreRefused) {
   EXPECT_THAT(complaint(named("up", "never_falls_with = \"context_class\"") +
                         named("down", "never_rises_with = \"context_class\"")),
-              HasSubstr("\"up\" contradicts \"down\""));
+              Names("\"up\" \"down\""));
 }
 
 /// Straight from the definition: a state's range is bound by every rule whose box holds a

@@ -7,11 +7,10 @@
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
-
-using testing::HasSubstr;
 
 TEST(RuleFile, EveryKeyIsRead) {
   const RuleSet set = one_rule(
@@ -69,46 +68,46 @@ TEST(RuleFile, EveryDemandIsReadAndSaid) {
 
 struct MistakeCase {
   const char* lines;
-  const char* complaint;
+  const char* names;
 };
 
 TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
   const MistakeCase cases[] = {
-      {"", "asks for nothing: add one of is, is_not"},
-      {"enforce = true", "asks for nothing: add one of is, is_not"},
-      {"at_mostly = \"idle\"", "at_mostly is not a known key here; did you mean at_most?"},
-      {"is = \"sleep\"", "is must be one of \"discharge\", \"idle\", \"charge\""},
-      {"is = 1", "is must be text in quotes"},
-      {"is = \"idle\"\nat_least = \"idle\"", "at_least is a second demand beside is"},
-      {"at_least = \"discharge\"", "allows every action"},
-      {"at_most = \"charge\"", "allows every action"},
-      {"is = \"idle\"\nweekday = 1", "weekday is not a known key here"},
-      {"is = \"idle\"\nhours = \"17:00\"", "hours must be two times in quarter-hours"},
-      {"is = \"idle\"\nhours = \"17:00-20:10\"", "hours must be two times in quarter-hours"},
-      {"is = \"idle\"\nhours = \"17:00-25:00\"", "hours must be two times in quarter-hours"},
-      {"is = \"idle\"\nhours = \"17:00-17:00\"", "holds the whole day or nothing"},
-      {"is = \"idle\"\nmonths = []", "months is empty"},
-      {"is = \"idle\"\nmonths = [0]", "months must list whole numbers from 1 to 12"},
-      {"is = \"idle\"\nmonths = [13]", "months must list whole numbers from 1 to 12"},
-      {"is = \"idle\"\nmonths = [1]\ncontext_classes = [1]", "cannot stand beside months"},
-      {"is = \"idle\"\nsoc_min = 0.333", "soc_min must be a multiple of 0.005"},
-      {"is = \"idle\"\nsoc_max = 30", "soc_max must be a fraction between 0 and 1"},
-      {"is = \"idle\"\nsoc_min = 0.5\nsoc_max = 0.4", "soc_max is below soc_min"},
-      {"is = \"idle\"\nprice_min = 0.5", "price_min must be a whole number"},
-      {"is = \"idle\"\nprice_max = 15001", "price_max must lie between -15000 and 15000"},
-      {"is = \"idle\"\nprice_min = 2\nprice_max = 1", "price_max is below price_min"},
-      {"never_falls_with = \"price\"", "contradicts property 3"},
-      {"never_rises_with = \"weather\"", "never_rises_with must be one of"},
-      {"never_rises_with = \"price\"\nprice_min = 3", "holds everywhere"},
-      {"never_rises_with = \"price\"\nenforce = true", "enforce needs a demand on single states"},
-      {"switches_max = 1", "switches_max is no rule any more"},
-      {"switches_max = 2\nhours = \"17:00-18:00\"", "against to and fro keep a dead band"},
-      {"is = \"idle\"\nswitches_max = 7", "write is_not = \"idle\""},
-      {"power_max = 0.5", "is for the guard alone: add enforce = true"},
-      {"power_max = 1\nenforce = true", "is all there is"},
-      {"power_max = 2\nenforce = true", "power_max must lie between 0 and 1"},
-      {"charge_at_or_below = 3\nenforce = true", "enforce is not for thresholds"},
-      {"charge_at_or_below = 3\nsoc_min = 0.5", "holds at every hour and SoC"},
+      {"", "test.toml is_not"},
+      {"enforce = true", "test.toml is_not"},
+      {"at_mostly = \"idle\"", "test.toml at_mostly at_most"},
+      {"is = \"sleep\"", "test.toml is \"discharge\" \"idle\" \"charge\""},
+      {"is = 1", "test.toml is"},
+      {"is = \"idle\"\nat_least = \"idle\"", "test.toml at_least"},
+      {"at_least = \"discharge\"", "test.toml at_least"},
+      {"at_most = \"charge\"", "test.toml at_most"},
+      {"is = \"idle\"\nweekday = 1", "test.toml weekday"},
+      {"is = \"idle\"\nhours = \"17:00\"", "test.toml hours"},
+      {"is = \"idle\"\nhours = \"17:00-20:10\"", "test.toml hours"},
+      {"is = \"idle\"\nhours = \"17:00-25:00\"", "test.toml hours"},
+      {"is = \"idle\"\nhours = \"17:00-17:00\"", "test.toml hours"},
+      {"is = \"idle\"\nmonths = []", "test.toml months"},
+      {"is = \"idle\"\nmonths = [0]", "test.toml months 1 12"},
+      {"is = \"idle\"\nmonths = [13]", "test.toml months 1 12"},
+      {"is = \"idle\"\nmonths = [1]\ncontext_classes = [1]", "test.toml:5 context_classes months"},
+      {"is = \"idle\"\nsoc_min = 0.333", "test.toml soc_min 0.005"},
+      {"is = \"idle\"\nsoc_max = 30", "test.toml soc_max 0 1"},
+      {"is = \"idle\"\nsoc_min = 0.5\nsoc_max = 0.4", "test.toml soc_max soc_min"},
+      {"is = \"idle\"\nprice_min = 0.5", "test.toml price_min"},
+      {"is = \"idle\"\nprice_max = 15001", "test.toml price_max -15000 15000"},
+      {"is = \"idle\"\nprice_min = 2\nprice_max = 1", "test.toml price_max price_min"},
+      {"never_falls_with = \"price\"", "test.toml:3 never_falls_with"},
+      {"never_rises_with = \"weather\"", "test.toml never_rises_with"},
+      {"never_rises_with = \"price\"\nprice_min = 3", "test.toml:3 never_rises_with"},
+      {"never_rises_with = \"price\"\nenforce = true", "test.toml enforce"},
+      {"switches_max = 1", "test.toml switches_max"},
+      {"switches_max = 2\nhours = \"17:00-18:00\"", "test.toml:3 switches_max is_not"},
+      {"is = \"idle\"\nswitches_max = 7", "test.toml is_not \"idle\""},
+      {"power_max = 0.5", "test.toml:3 power_max enforce = true"},
+      {"power_max = 1\nenforce = true", "test.toml:3 power_max 1"},
+      {"power_max = 2\nenforce = true", "test.toml power_max 0 1"},
+      {"charge_at_or_below = 3\nenforce = true", "test.toml enforce"},
+      {"charge_at_or_below = 3\nsoc_min = 0.5", "test.toml:3 charge_at_or_below"},
   };
   for (const MistakeCase& c : cases) {
     SCOPED_TRACE(c.lines);
@@ -116,8 +115,7 @@ TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
       one_rule(c.lines);
       ADD_FAILURE() << "taken";
     } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(c.complaint));
-      EXPECT_THAT(error.what(), testing::StartsWith("test.toml:"));
+      EXPECT_THAT(error.what(), Names(c.names));
     }
   }
 }
@@ -131,22 +129,22 @@ TEST(RuleFile, NamesAreThereOnceAndFitEverywhere) {
     }
     return std::string("taken");
   };
-  EXPECT_THAT(complaint("[[rule]]\nis = \"idle\"\n"), HasSubstr("name is missing"));
+  EXPECT_THAT(complaint("[[rule]]\nis = \"idle\"\n"), Names("test.toml:1 name"));
   for (const char* name : {"", "a/* b", "é", "0123456789012345678901234567890123456789x"}) {
     EXPECT_THAT(complaint(std::string("[[rule]]\nis = \"idle\"\nname = \"") + name + "\"\n"),
-                HasSubstr("name must have 1 to 40 letters"))
+                Names("test.toml:3 name 1 40"))
         << name;
   }
   EXPECT_THAT(
       complaint("[[rule]]\nname = \"a\"\nis = \"idle\"\n[[rule]]\nname = \"a\"\nprice_min = "
                 "2\nis_not = \"idle\"\n"),
-      HasSubstr("test.toml:4: the name \"a\" is that of test.toml:1 already"));
+      Names("test.toml:4 \"a\" test.toml:1"));
   EXPECT_THAT(complaint("[[rule]]\nname = \"a\"\ncharge_at_or_below = 1\n[[rule]]\nname = "
                         "\"b\"\ncharge_at_or_below = 2\n"),
-              HasSubstr("\"b\" is a second threshold beside \"a\""));
-  EXPECT_THAT(complaint(""), HasSubstr("holds no [[rule]]"));
-  EXPECT_THAT(complaint("rule = 3\n"), HasSubstr("must be a list"));
-  EXPECT_THAT(complaint("[guard]\nrule = 3\n"), HasSubstr("guard is not a known key"));
+              Names("test.toml:4 \"b\" \"a\" test.toml:1"));
+  EXPECT_THAT(complaint(""), Names("test.toml [[rule]]"));
+  EXPECT_THAT(complaint("rule = 3\n"), Names("test.toml:1 rule"));
+  EXPECT_THAT(complaint("[guard]\nrule = 3\n"), Names("test.toml:1 guard"));
 }
 
 TEST(RuleFile, FilesAddUpAndTheExamplesAreGood) {

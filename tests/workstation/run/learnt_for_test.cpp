@@ -11,6 +11,7 @@
 #include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/chain/built_in_market.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/market/series/local_date.h"
@@ -54,32 +55,29 @@ TEST_F(LearntFor, IsInTheTeachersFileAndInThatOfItsStudent) {
   EXPECT_THAT(told,
               testing::Contains(Entries::value_type("[costs] import_adder_eur_per_mwh", "42")));
   EXPECT_EQ(evaluated(teacher_, " --config " + dear_), "");
-  const char* const other = "[costs] import_adder_eur_per_mwh is 42 there and 0 here";
-  EXPECT_THAT(evaluated(teacher_), HasSubstr(other));
+  const char* const other = "[costs] import_adder_eur_per_mwh 42 0";
+  EXPECT_THAT(evaluated(teacher_), Names(other));
   EXPECT_THAT(
       evaluated(teacher_,
                 " --delay 3 --config " + folder_.write("small.toml",
                                                        "[battery]\npower_w = 1000000\n"
                                                        "[costs]\nimport_adder_eur_per_mwh = 42\n")),
-      AllOf(HasSubstr("observation_delay_min is 1 there and 3 here"),
-            HasSubstr("power_w is 4000000 there and 1000000 here"), Not(HasSubstr("costs"))));
+      AllOf(Names("observation_delay_min 1 3 power_w 4000000 1000000"), Not(Names("[costs]"))));
   const std::string student = folder_.file("student.json");
   StudentFile file = compiled_student();
   file.learnt_for = told;
   save_student(student, file);
   EXPECT_EQ(load_student(student).learnt_for, told);
-  EXPECT_THAT(evaluated(student), HasSubstr(other));
+  EXPECT_THAT(evaluated(student), Names(other));
 }
 
 TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
-  EXPECT_THAT(evaluated(teacher_, " --config " + dear_), Not(HasSubstr("regime")));
+  EXPECT_THAT(evaluated(teacher_, " --config " + dear_), Not(Names("PICASSO")));
   MinuteSeries later = small_series();
   later.start_utc_s += 731 * kDay_s;  // January 2025
   const std::string prices = folder_.file("later.csv.gz");
   write_minute_file(prices, later, "");
-  EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices),
-              AllOf(HasSubstr("its prices are of 20"),
-                    HasSubstr("another regime: from 26 November 2024 (PICASSO)")));
+  EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices), Names("2024 PICASSO"));
 }
 
 /// Two months of which the last six days are PICASSO's: what is fitted before them is told of.
@@ -88,9 +86,9 @@ TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
   across.start_utc_s = kPicasso_s - 25 * kDay_s;
   const std::string prices = folder_.file("across.csv.gz");
   write_minute_file(prices, across, "");
-  const auto told = HasSubstr("saw nothing of: from 26 November 2024 (PICASSO)");
+  const auto told = Names("2024 PICASSO");
   const std::string test = "evaluate --prices " + prices + " --policy ";
-  EXPECT_THAT(warnings(test + "sdp"), AllOf(told, HasSubstr("on 2024-11-01 to 2024-11-25")));
+  EXPECT_THAT(warnings(test + "sdp"), AllOf(told, Names("2024-11-01 2024-11-25")));
   EXPECT_EQ(warnings(test + "rbc"), "") << "it is fitted on nothing";
   EXPECT_EQ(warnings("evaluate --split val --prices " + prices + " --policy sdp"), "");
   EXPECT_EQ(warnings("evaluate --fit " + prices + " --prices " + prices_ + " --policy rbc"), "");
@@ -101,8 +99,7 @@ TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
   write_minute_file(prices, months, "");
   EXPECT_THAT(warnings("backtest --window-days 30 --policy rbc --prices " + prices + " --out " +
                        folder_.file("months")),
-              AllOf(HasSubstr("2024-11 is fitted on 2024-10-02"), told,
-                    Not(HasSubstr("2025-01 is fitted"))));
+              AllOf(Names("2024-11 2024-10-02"), told, Not(HasSubstr("2025-01 "))));
 }
 
 /// A run's days 26 to 30 lie behind the boundary, and nothing else does.
@@ -118,8 +115,7 @@ TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
                Interrupted);
   interruption() = false;
   testing::internal::GetCapturedStdout();
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              HasSubstr("this run is fitted on 2024-11-01 to 2024-11-25, and trades in"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), Names("2024-11-01 2024-11-25 PICASSO"));
 }
 
 /// Each month's teacher is learnt from the days before it, says so, and is kept.
@@ -130,11 +126,9 @@ TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   warnings(command);
   const std::string model = out + "/2023-02.teacher.bin";
   const Teacher teacher = load_teacher(model);
-  EXPECT_THAT(teacher.provenance, AllOf(HasSubstr(" on prices.csv.gz, by level"),
-                                        HasSubstr(", days 2023-01-02 to 2023-01-31")));
-  EXPECT_THAT(
-      learnt_for_of(model),
-      testing::Contains(testing::Pair("prices", HasSubstr("43200 minutes from 2023-01-01T23:00"))));
+  EXPECT_THAT(teacher.provenance, Names("prices.csv.gz level 2023-01-02 2023-01-31"));
+  EXPECT_THAT(learnt_for_of(model), testing::Contains(testing::Pair(
+                                        "prices", Names("crc32 43200 2023-01-01T23:00:00Z"))));
   const std::string kept = read_file(model);
   const std::string answer = read_file(out + "/backtest.json");
   warnings(command);
@@ -155,9 +149,8 @@ TEST(OldPrices, AreToldOfByTheClock) {
   EXPECT_EQ(old_prices(series, end_utc_s + 179 * kDay_s), "");
   const std::string told = old_prices(series, end_utc_s + 181 * kDay_s);
   const std::string yesterday{local_date_text(end_utc_s + 180 * kDay_s).view()};
-  EXPECT_THAT(told, AllOf(HasSubstr(", was 182 days ago; "), HasSubstr("prices fetch --from "),
-                          HasSubstr(" --to " + yesterday + " --out ")));
-  EXPECT_THAT(old_prices(series, kPicasso_s), HasSubstr("(PICASSO)"));
+  EXPECT_THAT(told, Names("182 prices fetch --from --out --to " + yesterday));
+  EXPECT_THAT(old_prices(series, kPicasso_s), Names("PICASSO"));
 }
 
 TEST_F(LearntFor, ARunOnOldPricesSaysSoUnlessTheyAreMadeUp) {
@@ -183,8 +176,8 @@ TEST(PriceRegimes, BeginAtLocalMidnight) {
     EXPECT_EQ(regimes_met(day(regime.from_utc_s - 60)), (std::vector{&regime - 1, &regime}));
   }
   EXPECT_EQ(regimes_not_learnt(before, before), "");
-  EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), HasSubstr("PICASSO"));
-  EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), HasSubstr("22 May 2024"));
+  EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), Names("PICASSO"));
+  EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), Names("22 2024"));
   EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it learnt a minute of it";
 }
 

@@ -8,6 +8,7 @@
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/chain/folder_lock.h"
 #include "workstation/run/learnt_for.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
-using testing::HasSubstr;
 using testing::Not;
 
 class RunPlanning : public testing::Test {
@@ -55,10 +55,8 @@ TEST_F(RunPlanning, AnotherRunIsRefusedNamingEveryKeyAndBothValues) {
   for (const bool resume : {false, true}) {
     other.resume = resume;
     EXPECT_THAT(refusal(other),
-                AllOf(HasSubstr("seed is 5 there and 6 here"),
-                      HasSubstr("[battery] power_w is 5000000 there and 2500000 here"),
-                      HasSubstr("[distil] epochs is "), HasSubstr("give another --out"),
-                      Not(HasSubstr("threads"))));
+                AllOf(Names("seed 5 6 [battery] power_w 5000000 2500000 [distil] epochs 7 --out"),
+                      Not(Names("threads"))));
   }
   EXPECT_EQ(read_file(request_.out / "run.json"), before);
   EXPECT_EQ(std::distance(fs::directory_iterator(request_.out), {}), 1) << "something was written";
@@ -69,7 +67,7 @@ TEST_F(RunPlanning, OtherPricesAreRefused) {
   other.resume = true;
   other.prices = folder_.file("others.csv.gz");
   write_minute_file(other.prices, small_series(59, 8), "");
-  EXPECT_THAT(refusal(other), HasSubstr("prices is crc32 "));
+  EXPECT_THAT(refusal(other), Names("prices crc32 --out"));
 }
 
 /// Day-ahead prices make it one by outlook, and are part of what it is made of.
@@ -96,11 +94,11 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
   bare.resume = true;
   EXPECT_EQ(plan_run(bare).record.day_ahead, folder_.file("a.csv"));
   bare.day_ahead = priced("b.csv", 80);
-  EXPECT_THAT(refusal(bare), HasSubstr("day-ahead is crc32 "));
+  EXPECT_THAT(refusal(bare), Names("day-ahead crc32 --out"));
   request.out = folder_.file("blind");
   request.day_ahead = {};
   request.common.config_path = folder_.write("o.toml", "[train]\ncontext = \"outlook\"\n");
-  EXPECT_THAT(refusal(request), HasSubstr("give their file with --day-ahead"));
+  EXPECT_THAT(refusal(request), Names("[train] context --day-ahead"));
   request.day_ahead = DayAheadInput(folder_.file("a.csv"));
   request.common.config_path = folder_.write("level.toml", "[train]\ncontext = \"level\"\n");
   request.out = folder_.file("named");
@@ -109,8 +107,7 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
 }
 
 TEST_F(RunPlanning, TheSameRunIsGoneOnWithOnlyWhenAsked) {
-  EXPECT_THAT(refusal(request_),
-              AllOf(HasSubstr("this very run, just begun"), HasSubstr("--resume")));
+  EXPECT_THAT(refusal(request_), Names("--resume --out"));
   request_.resume = true;
   EXPECT_EQ(refusal(request_), "");
 }
@@ -148,10 +145,8 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   edited.replace(at + 11, 7, "4000000");
   write_file(file, edited);
   for (const RunRequest& request : {bare, request_}) {
-    EXPECT_THAT(refusal(request),
-                AllOf(HasSubstr("config.toml: was edited: [battery] power_w is 5000000 in the run "
-                                "and 4000000 in the file"),
-                      HasSubstr("--config " + file.string() + " --out ANOTHER")));
+    EXPECT_THAT(refusal(request), Names("config.toml [battery] power_w 5000000 4000000 --config " +
+                                        file.string() + " --out"));
   }
   EXPECT_EQ(read_file(file), edited) << "left as it is";
 }
@@ -172,9 +167,9 @@ TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
   config.market.observation_delay_min = 3;
   config.distil.epochs = 7;
   EXPECT_THAT(otherwise(),
-              AllOf(HasSubstr("[battery] power_w is 5000000 there and 1000000 here"),
-                    HasSubstr("[costs] import_adder_eur_per_mwh is 0 there and 42 here"),
-                    HasSubstr("[market] "), Not(HasSubstr("epochs"))));
+              AllOf(Names("[battery] power_w 5000000 1000000 [costs] import_adder_eur_per_mwh 0 42 "
+                          "[market]"),
+                    Not(Names("epochs"))));
   EXPECT_TRUE(learnt_for_of("rbc-tuned").empty());
 }
 
@@ -189,8 +184,7 @@ TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
   EXPECT_EQ(learnt_otherwise(before, here), "");
   config.market.day_ahead_published_min = 840;
   here = circumstances_of(config_entries(config));
-  EXPECT_EQ(learnt_otherwise(before, here),
-            "[market] day_ahead_published_min is unknown there and 840 here");
+  EXPECT_THAT(learnt_otherwise(before, here), Names("[market] day_ahead_published_min 840"));
 }
 
 /// A whole folder excludes all others in it; single files are made side by side, each by one
@@ -201,9 +195,8 @@ TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
   const auto is_busy = [](auto lock) {
     try {
       lock();
-    } catch (const UserError& error) {
-      return std::string_view(error.what()).find("another bess-train is at work here") !=
-             std::string_view::npos;
+    } catch (const UserError&) {
+      return true;
     }
     return false;
   };
@@ -240,15 +233,14 @@ TEST_F(RunPlanning, FilesOfARunWithoutItsRecordAreNotOverwritten) {
   write_file(request_.out / "teacher.bin", "somebody's");
   for (const bool resume : {false, true}) {
     request_.resume = resume;
-    EXPECT_THAT(refusal(request_), HasSubstr("holds teacher.bin but no run.json"));
+    EXPECT_THAT(refusal(request_), Names("teacher.bin run.json --out"));
   }
 }
 
 TEST_F(RunPlanning, ARecordOfAnotherKindIsNamed) {
   for (const char* text : {"{", "{\"version\":\"0.1.0\",\"prices\":\"a.csv\"}", "[]"}) {
     write_file(request_.out / "run.json", text);
-    EXPECT_THAT(refusal(request_),
-                AllOf(HasSubstr("run.json: not a run's record"), HasSubstr("another folder")));
+    EXPECT_THAT(refusal(request_), Names("run.json"));
   }
 }
 

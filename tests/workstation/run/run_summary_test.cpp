@@ -11,6 +11,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/env/charge_left.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
@@ -40,7 +41,7 @@ std::vector<NamedEvaluation> evaluations_of(double profit_eur) {
 
 RunSummary run_of(const char* seed, double profit_eur) {
   RunSummary run{{std::string("runs/seed-") + seed}, {}, evaluations_of(profit_eur)};
-  run.record.identity = {{"prices", "the same"}, {"seed", seed}};
+  run.record.identity = {{"prices", "0badcafe"}, {"seed", seed}};
   run.record.figures = RunFigures{"made by hand", "0123abcd", 1, 2, 0};
   return run;
 }
@@ -70,10 +71,9 @@ TEST(RunSummaries, TheSameFigureStandsEverywhere) {
       fmt::format("{:.1f}", run.evaluations[1].day_reset.profit_eur_per_day_per_mwh());
   ASSERT_NE(figure, friendlier);
   const Headline headline = headline_of(run.evaluations).value();
-  EXPECT_THAT(headline_html(headline), AllOf(HasSubstr("\"headline-profit\">" + figure + "<"),
-                                             HasSubstr("says " + friendlier)));
-  EXPECT_THAT(headline_text(headline),
-              AllOf(HasSubstr("earned " + figure + " EUR"), HasSubstr("says " + friendlier)));
+  EXPECT_THAT(headline_html(headline),
+              AllOf(HasSubstr("\"headline-profit\">" + figure + "<"), Names(friendlier)));
+  EXPECT_THAT(headline_text(headline), Names(figure + " EUR " + friendlier));
   const Json json = Json::parse(summary_json(run).line());
   const JsonValue told = json.value()["headline"];
   EXPECT_EQ(fmt::format("{:.1f}", told["profit_eur_per_day_per_mwh"].number().value()), figure);
@@ -88,20 +88,16 @@ TEST(RunSummaries, TheSameFigureStandsEverywhere) {
     EXPECT_EQ(fmt::format("{:.1f}", row["profit_eur_per_day_per_mwh"].number().value()),
               is_carried ? figure : friendlier);
   }
-  EXPECT_THAT(
-      format_runs_table({run}),
-      AllOf(HasSubstr("  " + figure + " "), HasSubstr(" " + friendlier + " "),
-            HasSubstr("Test days: local days 26 to the end of each month, 3 days in 1 month "
-                      "from 2023-01-26 to 2023-01-28. All of them come after"),
-            HasSubstr("No walk-forward figure")));
-  EXPECT_THAT(format_comparison_table(run.evaluations),
-              AllOf(HasSubstr(figure), HasSubstr("valued at 87.30 EUR/MWh")));
+  EXPECT_THAT(format_runs_table({run}),
+              Names(figure + " " + friendlier +
+                    " 26 3 1 2023-01-26 2023-01-28 2023-01-25 bess-train backtest --seed 1"));
+  EXPECT_THAT(format_comparison_table(run.evaluations), Names(figure + " 87.30 EUR/MWh"));
 }
 
 TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
   const std::string table = format_runs_table({run_of("1", 24), run_of("2", 48)});
-  EXPECT_THAT(table, AllOf(HasSubstr("runs/seed-2"), HasSubstr("+2.0"), HasSubstr("seed: 1 | 2"),
-                           Not(HasSubstr("prices: "))));
+  EXPECT_THAT(table,
+              AllOf(Names("runs/seed-2 +2.0 seed"), HasSubstr("1 | 2"), Not(Names("0badcafe"))));
 }
 
 /// Rules are said, not printed as the file's text; a key that only a later run has is a difference
@@ -114,11 +110,9 @@ TEST(RunSummaries, RulesOfEitherRunAreADifference) {
     identity.emplace_back(kRulesKey, rules);
     identity.emplace_back("[new] key", "7");
     const std::string table = format_runs_table(runs);
-    const std::string said = "\"rest\" (23:00-06:00: the action is idle)";
-    EXPECT_THAT(table, HasSubstr(first_has_them ? "rules: " + said + " | none\n"
-                                                : "rules: none | " + said + "\n"));
-    EXPECT_THAT(
-        table, HasSubstr(first_has_them ? "[new] key: 7 | unknown\n" : "[new] key: unknown | 7\n"));
+    EXPECT_THAT(table, Names("rules \"rest\" 23:00-06:00 [new] key 7"));
+    const std::size_t bar = table.find(" | ", table.find("[new] key"));
+    EXPECT_EQ(table[bar - 1] == '7', first_has_them) << table;
     EXPECT_THAT(table, Not(HasSubstr("[[rule]]")));
   }
 }
@@ -163,8 +157,7 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
       (void)load_run_summary(run);
       ADD_FAILURE() << "believed";
     } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr("is not what the run wrote"),
-                                      HasSubstr("bess-train report --run")));
+      EXPECT_THAT(error.what(), Names("evaluation_days.csv bess-train report --run"));
     }
   }
 }
@@ -180,17 +173,15 @@ TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
     }
     return std::string();
   };
-  EXPECT_THAT(refusal(), HasSubstr("holds no run"));
+  EXPECT_THAT(refusal(), Names(run.path.string()));
   RunRecord record;
   record.stages = {{"teacher", {}, {}, false}};
   save_run_record(run, record);
-  EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("stopped after the teacher"), HasSubstr("run --resume --out")));
+  EXPECT_THAT(refusal(), Names("teacher run --resume --out"));
   record.stages.push_back({"corrected student", {}, {}, true});
   record.stages.push_back({"report of the failed proof", {}, {}, false});
   save_run_record(run, record);
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("ended without a proof, "), HasSubstr("report.html shows"),
-                               HasSubstr("run --from-teacher"), Not(HasSubstr("--resume"))));
+  EXPECT_THAT(refusal(), AllOf(Names("report.html run --from-teacher"), Not(Names("--resume"))));
 }
 
 }  // namespace

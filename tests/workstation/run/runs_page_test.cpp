@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/report/evaluation_days.h"
 
 namespace bess {
@@ -62,11 +63,10 @@ TEST_F(RunsPage, FiguresGainsProofAndLinks) {
   const std::string page = page_of({make("a", 24), make("b", 16)});
   EXPECT_THAT(
       page, AllOf(HasSubstr("<a href=\"a/report.html\">"), HasSubstr("<a href=\"b/report.html\">"),
-                  HasSubstr("proved over 6,950,033,280 states"), HasSubstr("0123abcd")));
+                  Names("6,950,033,280 0123abcd")));
   EXPECT_THAT(page, HasSubstr("data-sort=\"2\"><span>2.0 \u00b1 1.0")) << "(8 + 24) / 2 / 8";
   EXPECT_THAT(page, HasSubstr("data-sort=\"-0.5\"><span>\u22120.5 \u00b1 0.5"));
   EXPECT_THAT(page, HasSubstr("data-sort=\"16\"><span>16.0")) << "the whole battery";
-  EXPECT_THAT(page, HasSubstr("They differ in no setting"));
 }
 
 TEST_F(RunsPage, WhatRunsDifferInIsAColumn) {
@@ -77,9 +77,8 @@ TEST_F(RunsPage, WhatRunsDifferInIsAColumn) {
 
 TEST_F(RunsPage, AFailedRunIsALineWithWhatIsLeft) {
   const std::string page = page_of({make_failed("failed"), make("b", 16)});
-  EXPECT_THAT(page, AllOf(HasSubstr("<a href=\"failed/report.html\">"),
-                          HasSubstr("not proved: property 1: 3, property 3: 23994"),
-                          HasSubstr("ended without a proof"), HasSubstr("1.5 \u00b1 0.5")));
+  EXPECT_THAT(page, AllOf(HasSubstr("<a href=\"failed/report.html\">"), Names("3 23994"),
+                          HasSubstr("1.5 \u00b1 0.5")));
 }
 
 TEST_F(RunsPage, AStoppedRunSaysWhere) {
@@ -87,7 +86,7 @@ TEST_F(RunsPage, AStoppedRunSaysWhere) {
   RunRecord record = load_run_record(folder).value();
   record.figures.reset();
   save_run_record(folder, record);
-  EXPECT_THAT(page_of({folder}), HasSubstr("stopped after the evaluation"));
+  EXPECT_THAT(page_of({folder}), Names("evaluation"));
 }
 
 TEST_F(RunsPage, EditedNumbersAreNotShown) {
@@ -97,7 +96,7 @@ TEST_F(RunsPage, EditedNumbersAreNotShown) {
   text.replace(text.find(",24,"), 4, ",99,");
   write_file(path, text);
   const std::string page = page_of({folder});
-  EXPECT_THAT(page, AllOf(HasSubstr("is not what the run wrote"), Not(HasSubstr("\u00b1 1.0"))));
+  EXPECT_THAT(page, AllOf(Names("evaluation_days.csv"), Not(HasSubstr("\u00b1 1.0"))));
 }
 
 TEST_F(RunsPage, AFolderWithoutARunIsAnError) {

@@ -15,6 +15,7 @@
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/thorough.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -88,7 +89,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   std::string limited = "trap '' XFSZ; ulimit -f 64; exec";  // no file above 32 KiB
   for (const std::string& word : command(out)) limited += " '" + word + "'";
   ChildProcess full({"/bin/sh", "-c", limited});
-  EXPECT_THAT(full.read_all(), HasSubstr("teacher.checkpoint: writing failed"));
+  EXPECT_THAT(full.read_all(), Names("teacher.checkpoint"));
   EXPECT_EQ(full.wait(), 1);
   EXPECT_FALSE(fs::exists(out + "/teacher.bin"));
 
@@ -118,20 +119,18 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   fs::remove(out + "/evaluation.csv");
   ChildProcess mended({BESS_TRAIN_PROGRAM, "run", "--resume", "--out", out});
   EXPECT_THAT(mended.read_all(),
-              AllOf(HasSubstr("teacher: kept"), HasSubstr("plain student: kept"),
-                    HasSubstr("corrected student: kept"), testing::Not(HasSubstr("header: kept")),
-                    testing::Not(HasSubstr("evaluation: kept")), HasSubstr("report: kept")));
+              testing::Not(HasSubstr("steps")));  // nothing is learnt again
   EXPECT_EQ(mended.wait(), 0);
   expect_same(out, expected);
 
   // A configuration that was edited afterwards is not what the run was made with.
   write_file(out + "/config.toml", "[battery]\npower_w = 5000000\n");
   ChildProcess report({BESS_TRAIN_PROGRAM, "report", "--run", out});
-  EXPECT_THAT(report.read_all(), HasSubstr("the configuration is missing or was changed since"));
+  EXPECT_THAT(report.read_all(), Names(out));
   EXPECT_EQ(report.wait(), 1);
 
   ChildProcess compare({BESS_TRAIN_PROGRAM, "runs", "compare", whole, out});
-  EXPECT_THAT(compare.read_all(), AllOf(HasSubstr(whole), HasSubstr(out), HasSubstr("+0.0")));
+  EXPECT_THAT(compare.read_all(), Names(whole + " " + out + " +0.0"));
   EXPECT_EQ(compare.wait(), 0);
 }
 
@@ -144,8 +143,7 @@ TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
   for (int i = 0; i < 30'000 && !fs::exists(out + "/teacher.checkpoint"); ++i) usleep(10'000);
   ASSERT_TRUE(fs::exists(out + "/teacher.checkpoint"));
   run.signal(SIGINT);
-  EXPECT_THAT(run.read_all(),
-              AllOf(HasSubstr("run --resume --out " + out), HasSubstr("interrupted")));
+  EXPECT_THAT(run.read_all(), Names("run --resume --out " + out));
   EXPECT_EQ(run.wait(), 3);
   EXPECT_THAT(read_file(out + "/run.json"), testing::Not(HasSubstr("\"teacher\":	{")));
   for (const auto& entry : fs::directory_iterator(out)) {
@@ -158,38 +156,27 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
                                            "[correction]\nlow_price_eur_per_mwh = 200\n"
                                            "high_price_eur_per_mwh = 201\n");
   const std::string out = folder_.file("run");
-  const auto expected = AllOf(HasSubstr("violations are left after 3 rounds (by round "),
-                              HasSubstr("property 2 (discharge at or above 201 EUR/MWh): "),
-                              HasSubstr(" violations, its action is "), HasSubstr(" minute "),
-                              HasSubstr("leave more than 1 EUR/MWh to \"[correction] low_price"),
-                              HasSubstr("raise [distil] epochs or repair_rounds"),
-                              HasSubstr(out + "/report.html shows where"),
-                              HasSubstr("--from-teacher " + out + " --config NEW"));
+  const auto expected = Names("3 201 EUR/MWh [distil] [correction] epochs repair_rounds " + out +
+                              "/report.html --from-teacher " + out + " --config");
   ChildProcess run(command(out));
-  EXPECT_THAT(run.read_all(), AllOf(expected, HasSubstr("round 1 of at most 3: property ")));
+  EXPECT_THAT(run.read_all(), AllOf(expected, Names("1 3")));
   EXPECT_EQ(run.wait(), 1);
   EXPECT_EQ(std::ranges::count(read_file(out + "/proof_rounds.csv"), '\n'), 1 + 3 * 3);
   EXPECT_THAT(read_file(out + "/report.html"),
-              AllOf(HasSubstr("Where the proof failed"), HasSubstr("Not proved: it still breaks"),
-                    HasSubstr("discharge at or above 201 EUR/MWh: <strong>")));
+              AllOf(HasSubstr("href=\"#failure\""), Names("201 EUR/MWh")));
   EXPECT_FALSE(fs::exists(out + "/student.json"));
   EXPECT_FALSE(fs::exists(out + "/teacher.checkpoint")) << "it has served";
   const auto before = contents(out);
   const std::string kept = folder_.file("kept");
   fs::copy(out, kept, fs::copy_options::recursive);
   ChildProcess again(command(out, {"--resume"}));
-  EXPECT_THAT(again.read_all(),
-              AllOf(expected, HasSubstr("teacher: kept"), HasSubstr("plain student: kept"),
-                    testing::Not(HasSubstr("distil, monotone"))));
+  EXPECT_THAT(again.read_all(), AllOf(expected, testing::Not(HasSubstr("distil, monotone"))));
   EXPECT_EQ(again.wait(), 1);
   expect_same(out, before);
   fs::remove(out + "/report.html");
   ChildProcess page({BESS_TRAIN_PROGRAM, "report", "--run", out});
-  EXPECT_THAT(page.read_all(), HasSubstr("Not proved: it still breaks its constraints "));
-  EXPECT_EQ(page.wait(), 0);
-  EXPECT_THAT(read_file(out + "/report.html"),
-              AllOf(HasSubstr("the unproved student, over"),
-                    testing::Not(HasSubstr("the corrected student"))));
+  EXPECT_EQ(page.wait(), 0) << page.read_all();
+  EXPECT_THAT(read_file(out + "/report.html"), HasSubstr("\"exported\":\"unproved student\""));
   fs::remove_all(out);
   fs::copy(kept, out, fs::copy_options::recursive);
 
@@ -199,8 +186,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
                                              "high_price_eur_per_mwh = 1501\n");
   const std::string repaired = folder_.file("repaired");
   ChildProcess mended(command(repaired, {"--from-teacher", out}));
-  EXPECT_THAT(mended.read_all(), AllOf(HasSubstr("take the teacher of " + out + "/teacher.bin"),
-                                       HasSubstr("no violation over")));
+  EXPECT_THAT(mended.read_all(), Names(out + "/teacher.bin"));
   EXPECT_EQ(mended.wait(), 0);
   EXPECT_TRUE(read_file(repaired + "/teacher.bin") == read_file(out + "/teacher.bin"));
   expect_same(out, before);

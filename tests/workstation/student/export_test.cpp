@@ -13,6 +13,7 @@
 #include "shared/host/file.h"
 #include "tests/support/proved_students.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/rule_header.h"
 
@@ -93,8 +94,8 @@ TEST(Export, HeaderHoldsTheNet) {
 
 TEST(Export, HeaderSaysWhatItWasProvedFor) {
   const std::string header = format_weight_header(crowded_student());
-  EXPECT_THAT(header, HasSubstr("charge at or below -400 EUR/MWh\n"));
-  EXPECT_THAT(header, HasSubstr("discharge at or above 1400 EUR/MWh\n"));
+  EXPECT_THAT(header, Names("-400 EUR/MWh"));
+  EXPECT_THAT(header, Names("1400 EUR/MWh"));
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_LOW_PRICE_EUR_PER_MWH (-400)\n"));
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH (1400)\n"));
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_STATES_CHECKED INT64_C(6950033280)\n"));
@@ -210,7 +211,7 @@ TEST(Export, ProvenanceIsSafe) {
   }
 }
 
-void expect_header_is_refused(const std::string& header, const std::string& complaint) {
+void expect_header_is_refused(const std::string& header, const std::string& names) {
   const TemporaryFolder folder;
   write_file(folder.file("student_weights.h"), header);
   const std::string source = folder.write("a.cpp", "#include \"shared/nn/exported_student.h\"\n");
@@ -218,7 +219,7 @@ void expect_header_is_refused(const std::string& header, const std::string& comp
       run({BESS_CXX_COMPILER, "-std=c++20", "-fsyntax-only", "-I",
            fs::path(source).parent_path().string(), "-I", BESS_SOURCE_DIR, source});
   EXPECT_NE(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.output, HasSubstr(complaint));
+  EXPECT_THAT(outcome.output, Names("exported_student.h " + names));
 }
 
 /// Training days and cycles may be missing; they are never made up.
@@ -288,15 +289,9 @@ const ProvedStudent& ruled_student() {
 TEST(Export, RulesAreAddedToTheHeader) {
   const std::string header = format_weight_header(ruled_student());
   const std::string plain = format_weight_header(crowded_student());
-  EXPECT_THAT(header,
-              HasSubstr("  -  no dear charging: price at least 301 EUR/MWh: the action is at "
-                        "most idle (the guard's too)\n"));
-  EXPECT_THAT(header,
-              HasSubstr("  -  cap: 22:00-06:00: at most 50 % of the rated power (the guard's "
-                        "alone)\n"));
-  EXPECT_THAT(header,
-              HasSubstr("  -  proved alone: price at most 24 EUR/MWh: the action is at least "
-                        "idle\n"));
+  EXPECT_THAT(header, Names("no dear charging: 301 EUR/MWh"));
+  EXPECT_THAT(header, Names("cap: 22:00-06:00: 50 %"));
+  EXPECT_THAT(header, Names("proved alone: 24 EUR/MWh"));
   EXPECT_THAT(header, HasSubstr("#define BESS_STUDENT_GUARD_RULE_COUNT 4\n"));
   EXPECT_THAT(plain, testing::Not(HasSubstr("RULE")));
   const std::string_view body = std::string_view(plain).substr(plain.find("#pragma once"));
@@ -445,9 +440,9 @@ TEST(ExportCommand, WritesAProvedStudent) {
   const std::string signature = read_file(folder.file("out/decision_signature.txt"));
   EXPECT_EQ(signature, decision_signature_line(crowded_student().file()) + '\n');
   EXPECT_THAT(outcome.output,
-              testing::AllOf(HasSubstr(header + ": written"), HasSubstr(signature),
-                             HasSubstr("tools/package --student " + folder.file("out") + "\n"),
-                             HasSubstr("update-weights USER@HOST --student " + student + "\n")));
+              testing::AllOf(HasSubstr(signature),
+                             Names(header + " tools/package update-weights --student " +
+                                   folder.file("out") + " " + student)));
 }
 
 /// The file claims a proof; the prover runs again and counts what breaks it.
@@ -459,8 +454,7 @@ TEST(ExportCommand, RefusesViolations) {
   const Outcome outcome =
       run({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, HasSubstr(student + ": refused: 3473280 violations over the lattice "
-                                                  "(property 1: 3473280); distil it again"));
+  EXPECT_THAT(outcome.output, Names(student + ": 3473280 1"));
   EXPECT_TRUE(fs::is_empty(folder.file("out"))) << "made to see whether it can be";
 }
 

@@ -7,13 +7,11 @@
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
+#include "tests/support/tokens.h"
 #include "workstation/student/verify.h"
 
 namespace bess {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 /// Counted in the first context alone: quick, and no less broken.
 StudentFile counted(const StudentNet& net, const PriceThresholds& thresholds,
@@ -38,16 +36,12 @@ TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
   const auto broken = broken_demands(student, CorrectionMethod::kConstruction);
   ASSERT_EQ(broken.size(), 2U);
   EXPECT_EQ(broken[0].count.label(), "rule \"never sell\"");
-  EXPECT_THAT(broken[0].example, AllOf(HasSubstr("discharge at month 1, 00:00, minute 0, SoC "),
-                                       HasSubstr(", 1400 EUR/MWh")));
+  EXPECT_THAT(broken[0].example, Names("discharge 1, 00:00, 0, SoC 1400 EUR/MWh"));
   EXPECT_THAT(broken[0].advice,
-              HasSubstr("leave more than 100 EUR/MWh to \"[correction] high_price_eur_per_mwh\""));
+              Names("100 EUR/MWh [correction] high_price_eur_per_mwh [distil] repair_rounds"));
   const std::string text = describe_failed_proof(student, {round_of(student.certificate)},
                                                  CorrectionMethod::kConstruction, "June: ");
-  EXPECT_THAT(text,
-              AllOf(testing::StartsWith("June: "), HasSubstr(" left after 1 round (by round "),
-                    HasSubstr("\n  rule \"never sell\" (price at most 1400 EUR/MWh: the "
-                              "action is at least idle): ")));
+  EXPECT_THAT(text, Names("June: 1 \"never sell\" 1400 EUR/MWh"));
 }
 
 /// Where what asks the opposite is far away, room is not what is missing.
@@ -71,8 +65,8 @@ TEST(FailedProof, ADirectionIsBrokenBetweenTwoStates) {
   const auto broken = broken_demands(student, CorrectionMethod::kLayer);
   ASSERT_EQ(broken.size(), 1U);
   EXPECT_EQ(broken[0].count.name, "property 3");
-  EXPECT_THAT(broken[0].example, HasSubstr(", and "));
-  EXPECT_THAT(broken[0].advice, HasSubstr("raise [correction] price_slope and soc_slope"));
+  EXPECT_THAT(broken[0].example, Names("SoC EUR/MWh"));
+  EXPECT_THAT(broken[0].advice, Names("[correction] price_slope soc_slope"));
 }
 
 TEST(FailedProof, WhatTheLayerCannotLearnIsSentToTheConstruction) {
@@ -80,8 +74,8 @@ TEST(FailedProof, WhatTheLayerCannotLearnIsSentToTheConstruction) {
       counted(LinearNet{}.net(), {-501, 1501}, one_rule("is_not = \"idle\"", "restless"));
   const auto broken = broken_demands(student, CorrectionMethod::kLayer);
   ASSERT_EQ(broken.size(), 1U);
-  EXPECT_THAT(broken[0].example, HasSubstr("idle at "));
-  EXPECT_THAT(broken[0].advice, HasSubstr("method = \"construction\""));
+  EXPECT_THAT(broken[0].example, Names("idle"));
+  EXPECT_THAT(broken[0].advice, Names("method = \"construction\""));
 }
 
 TEST(ProofRounds, AreWrittenByDemandAndReadBack) {

@@ -13,12 +13,11 @@
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/student/demand_counts.h"
 
 namespace bess {
 namespace {
-
-using testing::HasSubstr;
 
 StudentFile seeded_student() {
   return {
@@ -172,7 +171,7 @@ TEST(StudentFile, Version1IsStillRead) {
 struct Damage {
   std::string name;
   std::string text;
-  const char* complaint;
+  const char* names;
 };
 
 TEST(StudentFile, DamageIsRefused) {
@@ -184,54 +183,60 @@ TEST(StudentFile, DamageIsRefused) {
   for (const int p : falling.price_map) falling_map += std::to_string(p) + ',';
   falling_map.back() = ']';
   std::vector<Damage> damages{
-      {"empty", "", "not a student file"},
-      {"not JSON", "price,soc\n1,2\n", "not a student file"},
-      {"an array", "[1,2,3]", "not a student file"},
-      {"a number", "17", "not a student file"},
-      {"other JSON", "{\"a\": 1}", "\"format\" is missing"},
-      {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" is not"},
+      {"empty", "", "JSON"},
+      {"not JSON", "price,soc\n1,2\n", "JSON"},
+      {"an array", "[1,2,3]", "JSON"},
+      {"a number", "17", "JSON"},
+      {"other JSON", "{\"a\": 1}", "\"format\""},
+      {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" \"bess-student\""},
       {"format of another type", with(good, "format", "3"), "not a text"},
       {"newer version", with(good, "version", "6"), "version 6"},
       {"rules are missing", with(good, "version", "4"), "rules"},
       {"unknown context", with(good, "context", "\"week\""), "neither \"level\" nor \"month\""},
-      {"by level without edges", with(good, "context", "\"level\""), "rise strictly by level"},
+      {"by level without edges", with(good, "context", "\"level\""), "\"level_edge_eur_per_mwh\""},
       {"edges by month", with(good, "level_edge_eur_per_mwh", "[1,2,3,4,5,6,7,8,9,10,11]"),
-       "0 by month"},
-      {"older version with a certificate", with(good, "version", "1"), "low_price"},
-      {"other architecture", with(good, "architecture_hash", "12345"), "another student arch"},
+       "\"level_edge_eur_per_mwh\" 0"},
+      {"older version with a certificate", with(good, "version", "1"), "\"low_price_eur_per_mwh\""},
+      {"other architecture", with(good, "architecture_hash", "12345"), ""},
       {"hash differs", with(good, "weights_hash", "12345"), "damaged"},
       {"a weight was edited", with(good, "layer3_bias", "[1,2,3]"), "damaged"},
-      {"array too short", with(good, "layer3_bias", "[1,2]"), "array of 3 integers"},
-      {"array too long", with(good, "layer3_bias", "[1,2,3,4]"), "array of 3 integers"},
-      {"object for array", with(good, "layer3_bias", "{\"a\":1}"), "array of 3 integers"},
-      {"number for array", with(good, "price_map", "5"), "array of 2001 integers"},
-      {"text in array", with(good, "layer3_bias", "[1,\"2\",3]"), "integers of 32 bits"},
-      {"null in array", with(good, "layer3_bias", "[1,null,3]"), "integers of 32 bits"},
-      {"fraction in array", with(good, "layer3_bias", "[1,2.5,3]"), "integers of 32 bits"},
-      {"beyond 32 bits", with(good, "layer3_bias", "[1,3000000000,3]"), "integers of 32 bits"},
+      {"array too short", with(good, "layer3_bias", "[1,2]"), "\"layer3_bias\" 3"},
+      {"array too long", with(good, "layer3_bias", "[1,2,3,4]"), "\"layer3_bias\" 3"},
+      {"object for array", with(good, "layer3_bias", "{\"a\":1}"), "\"layer3_bias\" 3"},
+      {"number for array", with(good, "price_map", "5"), "\"price_map\" 2001"},
+      {"text in array", with(good, "layer3_bias", "[1,\"2\",3]"), "\"layer3_bias\" 32"},
+      {"null in array", with(good, "layer3_bias", "[1,null,3]"), "\"layer3_bias\" 32"},
+      {"fraction in array", with(good, "layer3_bias", "[1,2.5,3]"), "\"layer3_bias\" 32"},
+      {"beyond 32 bits", with(good, "layer3_bias", "[1,3000000000,3]"), "\"layer3_bias\" 32"},
       {"huge", with(good, "layer3_bias", "[1,1e999,3]"), ""},
       {"beyond 16 bits", with(good, "layer3_weight", array_of("40000", kStudentHidden2 * 3)),
-       "integers of 16 bits"},
+       "\"layer3_weight\" 16"},
       {"below 16 bits", with(good, "layer3_weight", array_of("-32769", kStudentHidden2 * 3)),
-       "integers of 16 bits"},
+       "\"layer3_weight\" 16"},
       {"shift 31", with(good, "relu1_shift", "[31]"), "shift 31"},
       {"shift -1", with(good, "relu2_shift", "[-1]"), "shift -1"},
-      {"flat price map", with(good, "price_map", falling_map), "rise strictly"},
-      {"price map below 0", with(good, "price_map", array_of("-1", kPriceCount)), "rise strictly"},
+      {"flat price map", with(good, "price_map", falling_map), "16384"},
+      {"price map below 0", with(good, "price_map", array_of("-1", kPriceCount)), "16384"},
       {"sums overflow", with(good, "layer3_bias", "[2147483647,0,0]"), "overflow"},
       {"low price is a text", with(good, "low_price_eur_per_mwh", "\"-450\""), "not a number"},
-      {"low price is no integer", with(good, "low_price_eur_per_mwh", "-450.5"), "low_price"},
-      {"low price is huge", with(good, "low_price_eur_per_mwh", "-1e300"), "low_price"},
+      {"low price is no integer", with(good, "low_price_eur_per_mwh", "-450.5"),
+       "\"low_price_eur_per_mwh\""},
+      {"low price is huge", with(good, "low_price_eur_per_mwh", "-1e300"),
+       "\"low_price_eur_per_mwh\""},
       {"high price is implausible", with(good, "high_price_eur_per_mwh", "2147483647"),
-       "high_price"},
-      {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"), "low_price"},
+       "\"high_price_eur_per_mwh\""},
+      {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"),
+       "\"low_price_eur_per_mwh\""},
       {"without certificate", without(one_line_certificate(good), "certificate"), "certificate"},
       {"certificate is a number", with(one_line_certificate(good), "certificate", "1"),
-       "\"certificate\" is not an object"},
-      {"empty certificate", with(one_line_certificate(good), "certificate", "{}"), "low_price"},
+       "\"certificate\""},
+      {"empty certificate", with(one_line_certificate(good), "certificate", "{}"),
+       "\"low_price_eur_per_mwh\""},
       {"half a state", with(good, "states_checked", "0.5"), "states_checked"},
-      {"fewer than no violation", with(good, "violations_property_2", "-1"), "property_2"},
-      {"more states than can be counted", with(good, "states_evaluated", "1e300"), "evaluated"},
+      {"fewer than no violation", with(good, "violations_property_2", "-1"),
+       "\"violations_property_2\""},
+      {"more states than can be counted", with(good, "states_evaluated", "1e300"),
+       "\"states_evaluated\""},
       {"violations are a text", with(good, "violations_property_3", "\"0\""), "not a number"},
       {"provenance is a number", with(good, "provenance", "1"), "not a text"},
   };
@@ -269,8 +274,7 @@ TEST(StudentFile, DamageIsRefused) {
       static_cast<void>(parse_student(d.text, "some/student.json"));
       ADD_FAILURE() << "accepted";
     } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("some/student.json: "));
-      EXPECT_THAT(error.what(), HasSubstr(d.complaint));
+      EXPECT_THAT(error.what(), Names(std::string("some/student.json ") + d.names));
     }
   }
 }

@@ -12,6 +12,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/chain/learning_class.h"
 #include "workstation/sweep/sweep_plan.h"
 
@@ -19,7 +20,6 @@ namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
@@ -91,16 +91,18 @@ TEST_F(SweepPlans, EachMonthThatCanBeTradedIsATask) {
 
 TEST_F(SweepPlans, WhatCannotBeIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1,\n 1000]\n"),
-              AllOf(HasSubstr("plan.toml:"), HasSubstr("[distil] fidelity: 1000 is out of range")));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelty\" = 1\n"), HasSubstr("plan.toml:2: unknown key"));
-  EXPECT_THAT(refusal("[grid]\nfidelity = [1, 2]\n"), HasSubstr("write section.key"));
-  EXPECT_THAT(refusal("[gird]\n"), AllOf(HasSubstr("plan.toml:1: gird"), HasSubstr("grid, list")));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = []\n"), HasSubstr("is empty"));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 1.0]\n"), HasSubstr("twice"));
+              Names("plan.toml:3 [distil] fidelity 1000"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelty\" = 1\n"),
+              Names("plan.toml:2 \"fidelty\" [distil] fidelity"));
+  EXPECT_THAT(refusal("[grid]\nfidelity = [1, 2]\n"), Names("plan.toml:2 \"fidelity\""));
+  EXPECT_THAT(refusal("[gird]\n"), Names("plan.toml:1 gird grid list"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = []\n"), Names("plan.toml:2 distil.fidelity"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 1.0]\n"),
+              Names("plan.toml:2 distil.fidelity"));
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = 1\n[[list]]\n\"distil.fidelity\" = 2\n"),
-              HasSubstr("more than one axis"));
+              Names("distil.fidelity"));
   EXPECT_THAT(refusal("[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n"),
-              AllOf(HasSubstr("task 2"), HasSubstr("initial_soc 0.5 is outside")))
+              Names("2 initial_soc 0.5 soc_min 0.6"))
       << "what keys are to each other is looked at before task 1 begins";
   EXPECT_FALSE(fs::exists(folder_.path));
 }
@@ -119,22 +121,17 @@ TEST_F(SweepPlans, PlannedAgainWithMoreEveryTaskKeepsItsNumber) {
 
 TEST_F(SweepPlans, AnotherPlanPricesOrConfigurationIsRefusedNamingBoth) {
   write_plan(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n"), request_);
-  EXPECT_THAT(
-      refusal("[grid]\n\"distil.fidelity\" = [1, 3]\n"),
-      AllOf(HasSubstr("holds another plan"), HasSubstr("task 2 (seed 1, distil.fidelity 2)"),
-            HasSubstr("distil.fidelity 1")));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 3]\n"), Names("2 1 distil.fidelity"));
   request_.full = true;
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"),
-              HasSubstr("kind is lean there and full here"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("kind lean full"));
   request_.full = false;
   request_.config = root_.write("other.toml", "[train]\nsteps = 7\n");
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"),
-              AllOf(HasSubstr("[train] steps is"), HasSubstr("7 here")));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("[train] steps 7"));
   request_.config.clear();
   const std::string minutes = read_file(request_.prices);
   request_.prices =
       root_.write("fewer.csv", minutes.substr(0, minutes.rfind('\n', minutes.size() * 9 / 10) + 1));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), HasSubstr("prices is crc32"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("prices crc32"));
 }
 
 TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
@@ -142,8 +139,7 @@ TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
   std::string record = read_file(folder_.record());
   record.replace(record.find("commit "), 11, "commit older");
   write_file(folder_.record(), record);
-  EXPECT_THAT(what_of([&] { load_own_sweep(folder_); }),
-              AllOf(HasSubstr("was planned by"), HasSubstr("commit older"), HasSubstr("this is")));
+  EXPECT_THAT(what_of([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
 }
 
 TEST_F(SweepPlans, PricesCountByContent) {
@@ -214,11 +210,9 @@ TEST_F(SweepPlans, WhatIsWrongWithASiteIsToldWithItsLine) {
     request_.sites = root_.write("sites.csv", csv);
     return refusal("");
   };
-  EXPECT_THAT(with("id,battery.power_w\na,5\n"),
-              AllOf(HasSubstr("sites.csv:2"), HasSubstr("power_w = 5 is below")));
-  EXPECT_THAT(with("id,region\na,x\na,y\n"),
-              HasSubstr("sites.csv:3: site \"a\" stands there twice"));
-  EXPECT_THAT(with("id,batery\na,x\n"), HasSubstr("unknown column \"batery\""));
+  EXPECT_THAT(with("id,battery.power_w\na,5\n"), Names("sites.csv:2 power_w 5 100"));
+  EXPECT_THAT(with("id,region\na,x\na,y\n"), Names("sites.csv:3 \"a\""));
+  EXPECT_THAT(with("id,batery\na,x\n"), Names("sites.csv \"batery\" id"));
   EXPECT_THAT(with("id,battery\na,none.toml\n"), HasSubstr("none.toml"));
 }
 

@@ -12,13 +12,13 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "workstation/base/random.h"
 
 namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 constexpr const char* kFiles[] = {"student.json", "student_weights.h", "run.json"};
 
@@ -76,7 +76,7 @@ TEST_F(Task, IsPublishedOnceAndThenLeftAlone) {
 TEST_F(Task, WhatFailedLeavesItsReasonAndIsRunAgain) {
   EXPECT_THROW(complete_task(folder_, 2, kFailing), UserError);
   EXPECT_FALSE(fs::exists(folder_.result(2)));
-  EXPECT_THAT(text_of_file(folder_.log(2)), HasSubstr("failed: no space left\n"));
+  EXPECT_THAT(text_of_file(folder_.log(2)), Names("no space left"));
   EXPECT_TRUE(complete_task(folder_, 2, writing("2")));
   expect_whole(2);
 }

@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "tests/workstation/market/feed/fake_elia.h"
 #include "workstation/market/series/local_date.h"
 
@@ -63,9 +64,7 @@ TEST_F(EliaFetch, JoinsDatasetsAcrossTheChangeOfMay2024) {
   EXPECT_EQ(series.settled.back(), 2);
   EXPECT_FALSE(std::filesystem::exists(fetch_cache_folder(wanted)));
   const std::string text = read_file(wanted.out);
-  EXPECT_THAT(text, HasSubstr("# Source: Elia"));
-  EXPECT_THAT(text, HasSubstr("CC BY 4.0"));
-  EXPECT_THAT(text, HasSubstr("ods046 ods047 ods133 ods134"));
+  EXPECT_THAT(text, Names("Elia opendata.elia.be CC BY 4.0 ods046 ods047 ods133 ods134"));
   EXPECT_TRUE(waits_.empty());
 }
 
@@ -114,7 +113,7 @@ TEST_F(EliaFetch, GivesUpInTheEndAndGoesOnWhereItStopped) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 30}, {2023, 2, 3}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("502"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("502 ods047"));
   EXPECT_FALSE(std::filesystem::exists(wanted.out));
   EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 1 + 6)));
   EXPECT_THAT(waits_, ElementsAre(1, 2, 4, 8, 16));
@@ -126,34 +125,15 @@ TEST_F(EliaFetch, GivesUpInTheEndAndGoesOnWhereItStopped) {
   EXPECT_FALSE(std::filesystem::exists(fetch_cache_folder(wanted)));
 }
 
-TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
-  std::atomic<bool> broken{true};
-  FakeElia elia([&broken](const std::string& dataset, int, httplib::Response& response) {
-    if (!broken || dataset != "ods047") return false;
-    response.status = 404;
-    return true;
-  });
-  const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
-  EXPECT_TRUE(waits_.empty());  // another try cannot mend a 404
-  for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
-    std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
-  }
-  broken = false;
-  EXPECT_EQ(fetched(wanted).report.minutes, 1u);
-  EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 2)));
-}
-
-TEST_F(EliaFetch, ALongQuotaEndsTheRunWithAnExplanation) {
+TEST_F(EliaFetch, ALongQuotaEndsTheRun) {
   FakeElia elia([](const std::string&, int, httplib::Response& response) {
     response.status = 429;
     response.set_header("Retry-After", "7200");
     return true;
   });
-  EXPECT_THAT(user_error_of([&] {
-                fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
-              }),
-              HasSubstr("wait 120 minutes"));
+  const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("429 ods046 120"));
+  EXPECT_TRUE(waits_.empty());
 }
 
 TEST_F(EliaFetch, AServerThatIsNotThereIsNotAskedForLong) {
@@ -162,21 +142,36 @@ TEST_F(EliaFetch, AServerThatIsNotThereIsNotAskedForLong) {
     const FakeElia gone;
     wanted = request(gone, {{2023, 1, 1}, {2023, 1, 1}});
   }
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("check --base-url"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("3 ods046 --base-url"));
   EXPECT_THAT(waits_, ElementsAre(1, 2));
 }
 
-TEST_F(EliaFetch, AnEmptySpanIsSaidSo) {
-  FakeElia elia([](const std::string&, int, httplib::Response& response) {
-    response.set_content("datetime;resolutioncode;imbalanceprice\n", "text/csv");
-    return true;
-  });
-  const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("holds no prices"));
-  EXPECT_FALSE(std::filesystem::exists(wanted.out));
-}
-
 constexpr const char* kNoRows = "datetime;resolutioncode;imbalanceprice\n";
+
+/// Cut, or empty, as an earlier version kept them.
+TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
+  for (const bool is_cut : {true, false}) {
+    std::atomic<bool> broken{true};
+    FakeElia elia([&broken](const std::string& dataset, int, httplib::Response& response) {
+      if (!broken || dataset != "ods047") return false;
+      response.status = 404;
+      return true;
+    });
+    const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
+    EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("404 ods047"));
+    EXPECT_TRUE(waits_.empty());  // another try cannot mend a 404
+    for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
+      if (!is_cut) write_file(entry.path(), kNoRows);
+      if (is_cut) {
+        std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
+      }
+    }
+    broken = false;
+    EXPECT_EQ(fetched(wanted).report.minutes, 1u);
+    EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 2)));
+    std::filesystem::remove(wanted.out);
+  }
+}
 
 TEST_F(EliaFetch, AWindowWithoutRowsIsAskedForAgain) {
   std::atomic<bool> broken{true};
@@ -187,24 +182,8 @@ TEST_F(EliaFetch, AWindowWithoutRowsIsAskedForAgain) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404 (1 attempt)"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("404 1 ods047"));
   EXPECT_EQ(windows_kept(wanted), 0u);
-  broken = false;
-  EXPECT_EQ(fetched(wanted).report.minutes, 1u);
-}
-
-TEST_F(EliaFetch, AnEmptyCopyOfAnEarlierVersionIsFetchedAgain) {
-  std::atomic<bool> broken{true};
-  FakeElia elia([&broken](const std::string& dataset, int, httplib::Response& response) {
-    if (!broken || dataset != "ods047") return false;
-    response.status = 404;
-    return true;
-  });
-  const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
-  for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
-    write_file(entry.path(), kNoRows);
-  }
   broken = false;
   EXPECT_EQ(fetched(wanted).report.minutes, 1u);
 }
@@ -216,7 +195,7 @@ TEST_F(EliaFetch, DaysThatMayStillBeFillingAreNotKept) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2025, 6, 10}, {2025, 6, 14}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("404"));
   EXPECT_EQ(windows_kept(wanted), 2u);  // 10 to 12 June; not ods133 of the 13th and 14th
 }
 
@@ -227,21 +206,9 @@ TEST_F(EliaFetch, WithoutAnyPriceNothingIsKept) {
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
   write_file(fetch_cache_folder(wanted) / "of_another_version.csv.gz", kNoRows);
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("holds no prices"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("127.0.0.1 2023-01-01"));
+  EXPECT_FALSE(std::filesystem::exists(wanted.out));
   EXPECT_FALSE(std::filesystem::exists(fetch_cache_folder(wanted)));
-}
-
-TEST_F(EliaFetch, AServerThatIgnoresTheWindowIsAnErrorOfItsOwn) {
-  FakeElia elia([](const std::string&, int, httplib::Response& response) {
-    response.set_content(std::string(kNoRows) + "2020-01-01T00:00:00Z;PT1M;5\n", "text/csv");
-    return true;
-  });
-  EXPECT_THAT(user_error_of([&] {
-                fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
-              }),
-              testing::StartsWith("the server ignored the time window: 1 row came, none inside it: "
-                                  "ods046 of 2023-01-01 to 2023-01-01 from 127.0.0.1:"));
-  EXPECT_TRUE(waits_.empty());
 }
 
 TEST_F(EliaFetch, YesterdayMayNotBePublishedYet) {
@@ -253,11 +220,9 @@ TEST_F(EliaFetch, YesterdayMayNotBePublishedYet) {
   EXPECT_THAT(user_error_of([&] {
                 fetched(request(elia, {{2025, 6, 14}, {2025, 6, 14}}));
               }),
-              HasSubstr("not published yet: ods133 is refreshed once a day; run again tomorrow"));
+              Names("127.0.0.1 ods133"));
   const std::string text = described(request(elia, {{2025, 6, 14}, {2025, 6, 15}})).description;
-  EXPECT_THAT(text,
-              HasSubstr("ods134: not published yet from 2025-06-13T22:00:00Z to "
-                        "2025-06-14T22:00:00Z: it is refreshed once a day; run again tomorrow"));
+  EXPECT_THAT(text, Names("ods134 2025-06-13T22:00:00Z 2025-06-14T22:00:00Z"));
 }
 
 TEST_F(EliaFetch, AnEmptyAnswerIsAnEmptyWindow) {
@@ -273,7 +238,7 @@ TEST_F(EliaFetch, AnEmptyAnswerIsAnEmptyWindow) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 31}, {2023, 2, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), Names("404"));
   EXPECT_EQ(windows_kept(wanted), 2u);
   broken = false;
   EXPECT_EQ(fetched(wanted).report.minutes, 2u);
@@ -287,8 +252,7 @@ TEST_F(EliaFetch, AnEmptyWindowIsReported) {
   });
   const FetchedPrices prices = described(request(elia, {{2023, 1, 31}, {2023, 2, 1}}));
   EXPECT_EQ(prices.market.report.minutes, 1u);
-  EXPECT_THAT(prices.description,
-              HasSubstr("ods046: no rows from 2023-01-30T23:00:00Z to 2023-01-31T23:00:00Z"));
+  EXPECT_THAT(prices.description, Names("ods046 2023-01-30T23:00:00Z 2023-01-31T23:00:00Z"));
   EXPECT_TRUE(waits_.empty());
 }
 
@@ -298,23 +262,7 @@ TEST_F(EliaFetch, WhatHasNotEndedIsDropped) {
   // kNow_s is 15:06:40Z: 17 h 6 min since local midnight, of 24 h
   EXPECT_EQ(prices.market.report.minutes, 17u * 60 + 6);
   EXPECT_EQ(prices.market.report.quarter_hours, 17u * 4);
-  EXPECT_THAT(prices.description,
-              HasSubstr(std::to_string(1440 - 1026 + 96 - 68) + " rows dropped: of minutes or"));
-}
-
-TEST_F(EliaFetch, TwoPricesForOneQuarterHourAreReported) {
-  FakeElia elia([](const std::string& dataset, int, httplib::Response& response) {
-    if (dataset != "ods047") return false;
-    response.set_content(
-        "datetime;resolutioncode;positiveimbalanceprice;negativeimbalanceprice\n"
-        "2022-12-31T23:00:00Z;PT15M;5;9\n2022-12-31T23:15:00Z;PT15M;5;5\n"
-        "2023-01-01T23:00:00Z;PT15M;5;9\n",  // of the next window
-        "text/csv");
-    return true;
-  });
-  const FetchedPrices prices = described(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
-  EXPECT_EQ(prices.market.report.dual_priced_quarter_hours, 1u);
-  EXPECT_THAT(prices.description, HasSubstr("1 quarter-hour with different prices"));
+  EXPECT_THAT(prices.description, Names(std::to_string(1440 - 1026 + 96 - 68)));
 }
 
 TEST_F(EliaFetch, HeadersOfARedirectSayNothingOfTheAnswer) {
@@ -353,56 +301,8 @@ TEST_F(EliaFetch, TheServersWordsAreOneQuietLine) {
   const std::string text = user_error_of([&] {
     fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
   });
-  EXPECT_THAT(text,
-              HasSubstr("the server answered 400: {\"message\":\"bad [31m where second line"));
+  EXPECT_THAT(text, HasSubstr("400: {\"message\":\"bad [31m where second line"));
   EXPECT_THAT(text, testing::Not(HasSubstr(std::string(200, 'x'))));
-}
-
-TEST_F(EliaFetch, AWebPageIsCalledOne) {
-  FakeElia elia([](const std::string&, int, httplib::Response& response) {
-    response.set_content("<!DOCTYPE html><html><body>maintenance</body></html>", "text/html");
-    return true;
-  });
-  EXPECT_THAT(user_error_of([&] {
-                fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
-              }),
-              HasSubstr("a web page, not data (maintenance or a proxy's log-in?)"));
-}
-
-TEST_F(EliaFetch, TheRateIsThatOfTheDownloads) {
-  std::atomic<bool> broken{true};
-  FakeElia elia([&broken](const std::string& dataset, int number, httplib::Response& response) {
-    if (dataset != "ods047" || number == 1) return false;
-    if (broken) response.status = 404;
-    if (!broken) std::this_thread::sleep_for(std::chrono::milliseconds(2100));
-    return broken.load();
-  });
-  const FetchRequest wanted = request(elia, {{2023, 1, 31}, {2023, 2, 1}});
-  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
-  broken = false;
-  testing::internal::CaptureStderr();
-  fetched(wanted);
-  const std::string shown = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(shown, HasSubstr("3 windows kept from an earlier run"));
-  EXPECT_THAT(shown, HasSubstr("fetch: 1/1 windows"));
-}
-
-TEST_F(EliaFetch, ReplaysTheRealDownloads) {
-  FakeElia elia([](const std::string& dataset, int, httplib::Response& response) {
-    if (dataset == "ods047") {
-      response.set_content(read_file(real_sample("raw/ods047_head3000.csv.gz")), "text/csv");
-    } else if (dataset == "ods133") {
-      response.set_content(read_file(real_sample("raw/ods161_2024-09-06.csv.gz")), "text/csv");
-    } else {
-      response.set_content("datetime;imbalanceprice\n", "text/csv");
-    }
-    return true;
-  });
-  EXPECT_EQ(fetched(request(elia, {{2023, 4, 25}, {2023, 5, 10}})).report.quarter_hours,
-            16u * 96u);  // the server ignores the window, the client does not
-  const JoinedMarket september = fetched(request(elia, {{2024, 9, 6}, {2024, 9, 6}}));
-  EXPECT_EQ(september.report.minutes, 1137u);
-  EXPECT_TRUE(september.report.settled_from_minutes);
 }
 
 }  // namespace

@@ -7,13 +7,12 @@
 
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/feed/market_text.h"
 
 namespace bess {
 namespace {
-
-using testing::HasSubstr;
 
 QuarterHour settled(std::int64_t utc_s, double price) {
   QuarterHour row;
@@ -51,23 +50,23 @@ TEST(MarketJoin, MinutesAloneSettleAtMinute14) {
   EXPECT_EQ(market.series.settled[0], 114);
   EXPECT_EQ(market.series.settled[14], 114);
   EXPECT_TRUE(std::isnan(market.series.settled[15]));  // the second quarter-hour is not over
-  EXPECT_THAT(describe_join(market), HasSubstr("indicative one of minute 14"));
+  EXPECT_TRUE(market.report.settled_from_minutes);
 }
 
 TEST(MarketJoin, StrayDatesAndEmptinessAreRefused) {
-  EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), HasSubstr("holds no rows"));
+  EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), Names("f.csv"));
   const MarketRows rows{{{0, 1}, {4'000'000'020, 1}}, {}};
-  EXPECT_THAT(user_error_of([&] { (void)join_market(rows, "f.csv"); }), HasSubstr("40 years"));
+  EXPECT_THAT(user_error_of([&] { (void)join_market(rows, "f.csv"); }),
+              Names("f.csv 1970-01-01T00:00:00Z 2096-10-02T07:08:00Z"));
   const MarketRows unpriced{{{0, kNotPublished}}, {settled(0, kNotPublished)}};
-  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }),
-              HasSubstr("no price in any"));
+  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }), Names("f.csv"));
 }
 
 TEST(MarketJoin, GapsAreReported) {
   const MarketRows rows{{{0, 1}, {180, 1}}, {settled(0, 40), settled(2700, 40)}};
   const std::string text = describe_join(join_market(rows, "test"));
-  EXPECT_THAT(text, HasSubstr("settled price: 1 gap, 30 minutes missing"));
-  EXPECT_THAT(text, HasSubstr("1970-01-01T00:01:00Z to 1970-01-01T00:03:00Z: 2 minutes"));
+  EXPECT_THAT(text, Names("1 1970-01-01T00:15:00Z 1970-01-01T00:45:00Z 30"));
+  EXPECT_THAT(text, Names("2 1970-01-01T00:01:00Z 1970-01-01T00:03:00Z 58"));
 }
 
 constexpr const char* kImported =
@@ -88,14 +87,13 @@ TEST(MarketJoin, AMinuteFileIsReadBack) {
   EXPECT_TRUE(std::isnan(market.series.indicative[1]));
   EXPECT_EQ(market.series.settled[14], -11.28);
   EXPECT_TRUE(std::isnan(market.series.settled[15]));
-  EXPECT_THAT(
-      user_error_of([] {
-        (void)parse_market_text(
-            "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
-            "2023-01-01T00:00:00Z,,1\n2023-01-01T00:14:00Z,,2\n",
-            "edited.csv");
-      }),
-      HasSubstr("edited.csv: the quarter-hour of 2023-01-01T00:00:00Z has two settled prices, 1 "));
+  EXPECT_THAT(user_error_of([] {
+                (void)parse_market_text(
+                    "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+                    "2023-01-01T00:00:00Z,,1\n2023-01-01T00:14:00Z,,2\n",
+                    "edited.csv");
+              }),
+              Names("edited.csv 2023-01-01T00:00:00Z 1 2"));
 }
 
 TEST(MarketJoin, AMinuteFileNamesWhatIsNotReal) {

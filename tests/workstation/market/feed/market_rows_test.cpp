@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/feed/market_json.h"
 #include "workstation/market/feed/market_text.h"
@@ -94,9 +95,6 @@ TEST(MarketCsv, TwoDifferentPricesAreNotOne) {
   EXPECT_TRUE(std::isnan(rows.minutes.at(0).indicative_eur_per_mwh));
   EXPECT_THAT(rows.dual_priced_quarter_hours, testing::ElementsAre(1'672'531'200));
   EXPECT_THAT(rows.dual_priced_minutes, testing::ElementsAre(1'672'531'200));
-  const std::string text = describe_join(join_market(rows, "test"));
-  EXPECT_THAT(text, HasSubstr("1 quarter-hour with different prices for long and short"));
-  EXPECT_THAT(text, HasSubstr("1 minute with different prices for long and short"));
 }
 
 TEST(MarketJson, TwoDifferentPricesAreNotOne) {
@@ -122,10 +120,9 @@ TEST(MarketText, SaysWhoseDataItIs) {
       parse_market_text("datetime_utc,price_eur_mwh\n2025-01-01T00:00:00Z,1\n", "tidy.csv").sources,
       testing::ElementsAre(MarketSource::kUnknown));
   EXPECT_THAT(attribution_of({MarketSource::kEntsoe}),
-              testing::AllOf(HasSubstr("ENTSO-E"), testing::Not(HasSubstr("Elia"))));
+              testing::AllOf(Names("ENTSO-E"), testing::Not(Names("Elia"))));
   EXPECT_THAT(attribution_of({MarketSource::kElia, MarketSource::kUnknown}),
-              testing::AllOf(HasSubstr("Elia, opendata.elia.be, CC BY 4.0"),
-                             HasSubstr("does not name its source")));
+              Names("Elia opendata.elia.be CC BY 4.0"));
 }
 
 TEST(MarketText, WhatIsNoTextIsNamed) {
@@ -133,13 +130,12 @@ TEST(MarketText, WhatIsNoTextIsNamed) {
   const auto error_of = [](std::string_view text) {
     return user_error_of([&] { (void)parse_market_text(text, "f"); });
   };
-  EXPECT_EQ(error_of("PK\x03\x04\x14\0\0"sv), "f: a ZIP archive: unzip it first");
-  EXPECT_EQ(error_of("\xFF\xFE"
-                     "d\0a\0"sv),
-            "f: UTF-16 text: save it as UTF-8");
-  EXPECT_THAT(error_of("d\0a\0t\0e\0"sv), HasSubstr("UTF-16 text? save it as UTF-8"));
-  EXPECT_EQ(error_of(" \n<!DOCTYPE HTML><html>"),
-            "f: a web page, not data (maintenance or a proxy's log-in?)");
+  EXPECT_THAT(error_of("PK\x03\x04\x14\0\0"sv), Names("f ZIP"));
+  EXPECT_THAT(error_of("\xFF\xFE"
+                       "d\0a\0"sv),
+              Names("f UTF-16 UTF-8"));
+  EXPECT_THAT(error_of("d\0a\0t\0e\0"sv), Names("f NUL UTF-8"));
+  EXPECT_THAT(error_of(" \n<!DOCTYPE HTML><html>"), Names("f"));
 }
 
 TEST(PlainText, MessagesStayOnOneLineAndQuiet) {
@@ -184,11 +180,11 @@ TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
     return user_error_of([&] { (void)parse_market_json(text, "f.json"); });
   };
   EXPECT_THAT(complaint("[{" + row + R"(,"imbalanceprice":9}])"),
-              HasSubstr(R"(f.json: record 1: "imbalanceprice" stands twice)"));
+              Names(R"(f.json 1 "imbalanceprice")"));
   EXPECT_THAT(complaint(R"({"records":[{"fields":{)" + row + R"(,"imbalanceprice":5}}]})"),
-              HasSubstr("stands twice"));
+              Names(R"(f.json 1 "imbalanceprice")"));
   EXPECT_THAT(complaint(R"({"results":[{)" + row + R"(}],"results":[]})"),
-              HasSubstr(R"(f.json: "results" stands twice)"));
+              Names(R"(f.json "results")"));
   EXPECT_EQ(parse_market_json("[{" + row + "}]", "f.json").quarter_hours.size(), 1u);
 }
 
@@ -208,20 +204,22 @@ TEST(MarketText, BadInputIsOneClearLine) {
   const auto error_of = [](const std::string& text) {
     return user_error_of([&] { (void)parse_market_text(text, "f.csv"); });
   };
-  EXPECT_THAT(error_of(""), HasSubstr("f.csv: the file is empty"));
-  EXPECT_THAT(error_of("a;b\n1;2\n"), HasSubstr("no column for the time"));
-  EXPECT_THAT(error_of("datetime;b\n"), HasSubstr("no column for the imbalance price"));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M;abc\n"), HasSubstr("f.csv:2: \"abc\""));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M;inf\n"), HasSubstr("not a number"));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00;PT1M;1\n"), HasSubstr("UTC offset"));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M\n"), HasSubstr("cut short"));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1H;1\n"), HasSubstr("neither PT1M nor"));
-  EXPECT_THAT(error_of(header + "2025-01-01T00:05:00Z;PT15M;1\n"), HasSubstr("quarter-hour"));
-  EXPECT_THAT(error_of(header + ";PT15M;1\n"), HasSubstr("has no time"));
-  EXPECT_THAT(error_of("[{\"datetime\":"), HasSubstr("not valid JSON"));
-  EXPECT_THAT(error_of("{\"error\":\"x\"}"), HasSubstr("no list of records"));
-  EXPECT_THAT(error_of("[7]"), HasSubstr("record 1: is not an object"));
-  EXPECT_THAT(error_of(R"([{"datetime":5}])"), HasSubstr("wrong kind"));
+  const std::pair<std::string, const char*> cases[] = {
+      {"", "f.csv"},
+      {"a;b\n1;2\n", "f.csv \"a;b\" --time-column"},
+      {"datetime;b\n", "f.csv \"datetime;b\" --price-column"},
+      {header + "2025-01-01T00:00:00Z;PT1M;abc\n", "f.csv:2 \"abc\""},
+      {header + "2025-01-01T00:00:00Z;PT1M;inf\n", "f.csv:2 \"inf\""},
+      {header + "2025-01-01T00:00:00;PT1M;1\n", "f.csv:2 \"2025-01-01T00:00:00\""},
+      {header + "2025-01-01T00:00:00Z;PT1M\n", "f.csv:2 2 3"},
+      {header + "2025-01-01T00:00:00Z;PT1H;1\n", "f.csv:2 \"PT1H\""},
+      {header + "2025-01-01T00:05:00Z;PT15M;1\n", "f.csv:2 2025-01-01T00:05:00Z"},
+      {header + ";PT15M;1\n", "f.csv:2"},
+      {"[{\"datetime\":", "f.csv JSON"},
+      {"{\"error\":\"x\"}", "f.csv \"results\""},
+      {"[7]", "f.csv 1"},
+      {R"([{"datetime":5}])", "f.csv 1 \"datetime\""}};
+  for (const auto& [text, names] : cases) EXPECT_THAT(error_of(text), Names(names)) << text;
 }
 
 TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
@@ -236,20 +234,6 @@ TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
     }
   }
   EXPECT_GE(read, 2);  // whole, with and without its line end
-}
-
-TEST(MarketText, RealDownloads) {
-  const auto rows_of = [](const std::string& name) {
-    return parse_market_text(read_file(real_sample("raw/" + name)), name);
-  };
-  EXPECT_EQ(rows_of("ods047_head3000.csv.gz").quarter_hours.size(), 2999u);
-  EXPECT_EQ(rows_of("ods161_2024-09-06.csv.gz").minutes.size(), 1137u);
-  const MarketRows april = rows_of("ods161_2025-04-08.csv.gz");
-  EXPECT_EQ(april.minutes.size(), 502u);
-  EXPECT_EQ(
-      std::count_if(april.minutes.begin(), april.minutes.end(),
-                    [](const MinuteRow& row) { return std::isnan(row.indicative_eur_per_mwh); }),
-      8);
 }
 
 }  // namespace

@@ -6,12 +6,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <cstring>
 #include <fstream>
 
 #include "shared/host/child_process.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 #include "tests/workstation/market/feed/live_elia.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/feed/recording_folder.h"
@@ -121,8 +123,7 @@ TEST_F(PriceRecorder, WritesEachRowWithItsArrival) {
   EXPECT_EQ(summary.lateness.median_s, 40);
   EXPECT_THAT(pauses_, testing::Each(20));
   EXPECT_THAT(read_file(file("2025-06-15")),
-              testing::AllOf(HasSubstr("# Source: Elia, opendata.elia.be, CC BY 4.0"),
-                             HasSubstr("1440 minutes"), HasSubstr(elia_.base_url())));
+              Names("Elia opendata.elia.be CC BY 4.0 1440 " + std::string(elia_.base_url())));
 }
 
 TEST_F(PriceRecorder, ARevisionIsAFurtherLineAndTheFirstPriceCounts) {
@@ -160,30 +161,20 @@ TEST_F(PriceRecorder, TakesWhatTheSourceHasOfTodayAndNothingTwice) {
 
 TEST_F(PriceRecorder, AnOutageIsToldOnceAndCaughtUp) {
   elia_.publish(kNoon_s - 60, 1, 2);
-  const Script script{[this] {
-                        elia_.set_fault([](const std::string&, httplib::Response& response) {
-                          response.status = 500;
-                          return true;
-                        });
-                      },
-                      [] {},
-                      [] {},
-                      [] {},
-                      [] {},
-                      [] {},
-                      [] {},
-                      [] {},
-                      [this] {
-                        elia_.set_fault({});
-                        for (std::int64_t t = kNoon_s; t + 60 <= now_s_; t += 60)
-                          elia_.publish(t, 3, 4);
-                      },
-                      [] {}};
+  Script script(10, [] {});
+  script.front() = [this] {
+    elia_.set_fault([](const std::string&, httplib::Response& response) {
+      response.status = 500;
+      return true;
+    });
+  };
+  script[8] = [this] {
+    elia_.set_fault({});
+    for (std::int64_t t = kNoon_s; t + 60 <= now_s_; t += 60) elia_.publish(t, 3, 4);
+  };
   const RecordSummary summary = record(script);
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("ods161: the server answered 500"),
-                                               HasSubstr("ods169: the server answered 500")));
-  EXPECT_THAT(told(Kind::kOver), ElementsAre(HasSubstr("ods161: answers again after"),
-                                             HasSubstr("ods169: answers again after")));
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods161 500"), Names("ods169 500")));
+  EXPECT_THAT(told(Kind::kOver), ElementsAre(Names("ods161 1500 s 25"), Names("ods169 1500 s 25")));
   EXPECT_THAT(pauses_, testing::Contains(300)) << "backs off, and no further";
   EXPECT_EQ(summary.prices, lines("2025-06-15").size());
   EXPECT_GT(summary.prices, 15u);
@@ -213,7 +204,7 @@ TEST_F(PriceRecorder, WaitsAsToldFor429) {
     elia_.publish(kNoon_s, 1, 2);
   }});
   EXPECT_EQ(pauses_.front(), 1800);
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("next look in 1800 s")))
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods161 429 1800 s")))
       << "the other data set is left alone too";
   EXPECT_EQ(lines("2025-06-15").size(), 1u);
 }
@@ -228,7 +219,7 @@ TEST_F(PriceRecorder, AHangingServerCostsNoMoreThanTheDeadline) {
   const auto start = std::chrono::steady_clock::now();
   const RecordSummary summary = record({});
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(1900));
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("ods161: ")));
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods161 0.5 s")));
   EXPECT_EQ(summary.prices, 0u);
   EXPECT_EQ(summary.imbalances, 1u) << "the other one is recorded all the same";
   EXPECT_FALSE(summary.answered);
@@ -240,8 +231,7 @@ TEST_F(PriceRecorder, NonsenseIsAnOutage) {
     return true;
   });
   record({});
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("ods161: cannot read the answer"),
-                                               HasSubstr("ods169: cannot read the answer")));
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods161 JSON"), Names("ods169 JSON")));
 }
 
 TEST_F(PriceRecorder, AServerWithoutImbalancesIsRecordedWithoutThem) {
@@ -252,7 +242,7 @@ TEST_F(PriceRecorder, AServerWithoutImbalancesIsRecordedWithoutThem) {
   });
   elia_.publish(kNoon_s - 60, 1, 2);
   EXPECT_EQ(record({[] {}, [] {}}).prices, 1u);
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("ods169: the server answered 404")));
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods169 404")));
 }
 
 TEST_F(PriceRecorder, AServerWithoutPricesIsAnErrorAtTheStartAlone) {
@@ -261,7 +251,7 @@ TEST_F(PriceRecorder, AServerWithoutPricesIsAnErrorAtTheStartAlone) {
     return true;
   };
   elia_.set_fault(gone);
-  EXPECT_THAT(user_error_of([this] { record({}); }), HasSubstr("404; check --url"));
+  EXPECT_THAT(user_error_of([this] { record({}); }), Names("ods161 404 --url"));
   elia_.set_fault({});
   elia_.publish(kNoon_s - 60, 1, 2);
   EXPECT_EQ(record({[&] { elia_.set_fault(gone); }, [] {}, [this] { elia_.set_fault({}); }, [] {}})
@@ -276,7 +266,7 @@ TEST_F(PriceRecorder, ANetworkThatIsNotThereYetIsWaitedFor) {
     base_url_ = gone.base_url();
   }
   const RecordSummary summary = record({[] {}});
-  EXPECT_THAT(told(Kind::kOutage), ElementsAre(HasSubstr("ods161: ")));
+  EXPECT_THAT(told(Kind::kOutage), ElementsAre(Names("ods161")));
   EXPECT_FALSE(summary.answered);
   EXPECT_THAT(summary.trouble, Not(IsEmpty()));
 }
@@ -313,9 +303,8 @@ TEST_F(PriceRecorder, DaysChangeAtLocalMidnightAndHaveTheMinutesTheyHave) {
     EXPECT_EQ(lines(c.day).size(), c.minutes);
     EXPECT_EQ(lines(c.next).size(), 120u);
     const std::string whole = std::to_string(c.minutes);
-    EXPECT_THAT(told(Kind::kDay), ElementsAre(std::string(c.day) + ".csv: " + whole + " of " +
-                                              whole + " minutes have a price"));
-    EXPECT_THAT(read_file(file(c.day)), HasSubstr(" " + whole + " minutes:"));
+    EXPECT_THAT(told(Kind::kDay), ElementsAre(Names(std::string(c.day) + ".csv " + whole)));
+    EXPECT_THAT(read_file(file(c.day)), Names(std::string(c.day) + " " + whole));
   }
 }
 
@@ -347,34 +336,39 @@ TEST_F(PriceRecorder, AFileThatIsNoRecordedDayIsLeftAlone) {
   const std::string other = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
   write_file(file("2025-06-15"), other);
   elia_.publish(kNoon_s - 60, 1, 2);
-  EXPECT_THAT(user_error_of([this] { record({}); }), HasSubstr("2025-06-15.csv: is not a day of"));
+  EXPECT_THAT(user_error_of([this] { record({}); }), Names("2025-06-15.csv"));
   EXPECT_EQ(read_file(file("2025-06-15")), other);
 }
 
 TEST_F(PriceRecorder, AFolderHasOneRecorder) {
   const RecordingFolder first(folder(), "test", {});
-  EXPECT_THAT(user_error_of([this] { record({}); }),
-              HasSubstr("another recorder writes here (process " + std::to_string(getpid()) + ")"));
+  EXPECT_THAT(user_error_of([this] { record({}); }), Names(std::to_string(getpid())));
 }
 
+/// From the start, and with room for a part of a line.
 TEST_F(PriceRecorder, AFullDiskIsAnErrorAndTakesNothing) {
-  elia_.publish(kNoon_s - 120, 1, 2);
-  record({});
-  const std::string before = read_file(file("2025-06-15"));
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const rlimit full{before.size() + 10, limit.rlim_max};  // room for a part of a line
-  const auto handler = signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
-  elia_.publish(kNoon_s - 60, 3, 4);
-  const std::string error = user_error_of([this] { record({}); });
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  signal(SIGXFSZ, handler);
-  EXPECT_THAT(error, testing::AllOf(HasSubstr("2025-06-15.csv: writing failed: File too large"),
-                                    HasSubstr("1 new line not recorded, what it held is kept")));
-  EXPECT_EQ(read_file(file("2025-06-15")), before);
-  record({});
-  EXPECT_EQ(lines("2025-06-15").size(), 2u);
+  for (const bool has_begun : {true, false}) {
+    fs::remove_all(folder());
+    elia_.publish(kNoon_s - 120, 1, 2);
+    if (has_begun) record({});
+    const std::string before = has_begun ? read_file(file("2025-06-15")) : "";
+    rlimit limit{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const rlimit full{has_begun ? before.size() + 10 : 0, limit.rlim_max};
+    const auto handler = signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+    elia_.publish(kNoon_s - 60, 3, 4);
+    const std::string error = user_error_of([this] { record({}); });
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    signal(SIGXFSZ, handler);
+    EXPECT_THAT(error, Names("2025-06-15.csv"));
+    ASSERT_EQ(fs::exists(folder()), has_begun);
+    if (!has_begun) continue;
+    EXPECT_THAT(error, Names("1 " + std::string(std::strerror(EFBIG))));
+    EXPECT_EQ(read_file(file("2025-06-15")), before);
+    record({});
+    EXPECT_EQ(lines("2025-06-15").size(), 2u);
+  }
 }
 
 /// A lock file or an empty folder would say that something was recorded, or is.
@@ -390,20 +384,6 @@ TEST_F(PriceRecorder, WhatRecordedNothingLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder())) << "a folder that was there stays";
 }
 
-TEST_F(PriceRecorder, ADiskThatIsFullFromTheStartKeepsNothing) {
-  elia_.publish(kNoon_s - 60, 1, 2);
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const rlimit full{0, limit.rlim_max};
-  const auto handler = signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
-  const std::string error = user_error_of([this] { record({}); });
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  signal(SIGXFSZ, handler);
-  EXPECT_THAT(error, HasSubstr("2025-06-15.csv"));
-  EXPECT_FALSE(fs::exists(folder()));
-}
-
 /// Half a minute off: each row is there before it can be, and is taken when it can.
 TEST_F(PriceRecorder, AClockThatIsALittleSlowCostsNoRow) {
   elia_.publish(kNoon_s - 60, 1, 2);
@@ -411,7 +391,7 @@ TEST_F(PriceRecorder, AClockThatIsALittleSlowCostsNoRow) {
   elia_.publish(kNoon_s + 100 * 86'400, 1, 2);
   record({[] {}, [] {}, [] {}});
   EXPECT_THAT(told(Kind::kClock),
-              ElementsAre(HasSubstr("ods161: the row of 2025-09-23"), HasSubstr("ods169: ")));
+              ElementsAre(Names("ods161 2025-09-23T10:00:00Z"), Names("ods169")));
   EXPECT_THAT(lines("2025-06-15"),
               ElementsAre("2025-06-15T09:59:00Z,1,2,2025-06-15T10:00:00Z,2025-06-15T10:00:00Z,"
                           "DataIssue,found",
@@ -426,9 +406,7 @@ TEST_F(PriceRecorder, ASourceAheadOfTheClockIsAnErrorAtTheStart) {
     elia_.publish(kNoon_s + 7'200 - 60 * (minute + 1), minute, minute);
   }
   EXPECT_THAT(user_error_of([this] { record({[] {}}); }),
-              testing::AllOf(HasSubstr("ods161: the row of 2025-06-15T11:59:00Z came at "
-                                       "2025-06-15T10:00:00Z, 7200 s before its minute had ended"),
-                             HasSubstr("Nothing is recorded until they agree")));
+              Names("ods161 2025-06-15T11:59:00Z 2025-06-15T10:00:00Z 7200 s"));
   EXPECT_FALSE(fs::exists(file("2025-06-15")));
 }
 
@@ -442,9 +420,9 @@ TEST_F(PriceRecorder, ASourceThatJumpsAheadIsAnOutage) {
                                         },
                                         [] {}, [] {}});
   EXPECT_THAT(told(Kind::kOutage),
-              ElementsAre(HasSubstr("before its minute had ended"), HasSubstr("ods169: ")));
+              ElementsAre(Names("ods161 2025-06-15T11:00:00Z"), Names("ods169")));
   EXPECT_EQ(lines("2025-06-15").size(), 1u);
-  EXPECT_THAT(summary.trouble, HasSubstr("is this computer's clock right"));
+  EXPECT_THAT(summary.trouble, Names("2025-06-15T11:00:00Z"));
 }
 
 TEST_F(PriceRecorder, AnArrivalBeforeItsMinutesEndIsRefusedByWhoReadsTheDay) {
@@ -458,8 +436,7 @@ TEST_F(PriceRecorder, AnArrivalBeforeItsMinutesEndIsRefusedByWhoReadsTheDay) {
     ASSERT_NE(at, early.npos);
     early.replace(early.find("10:00:00Z", at), 9, "09:59:59Z");
     EXPECT_THAT(user_error_of([&] { parse_recorded_rows(early, "day.csv"); }),
-                HasSubstr("day.csv: the line of 2025-06-15T09:59:00Z: arrived at "
-                          "2025-06-15T09:59:59Z, before its minute had ended"));
+                Names("day.csv 2025-06-15T09:59:00Z 2025-06-15T09:59:59Z"));
   }
 }
 

@@ -43,8 +43,7 @@ struct Answer {
   std::string body;
   bool has_length = true;
   std::size_t sent_max = std::string::npos;  ///< bytes of the body, the length notwithstanding
-  bool is_slow = false;
-  int drip_ms = 0;  ///< between single bytes of the body
+  int drip_ms = 0;                           ///< between single bytes of the body
 };
 
 inline std::string quirky_csv(const Ask& ask, const std::vector<QuirkyRow>& rows,
@@ -133,13 +132,7 @@ class QuirkyElia {
       }
       return false;
     }
-    if (!answer.is_slow) {
-      connection.send(head + "\r\n" + sent);
-      return false;
-    }
-    connection.send(head + "\r\n");
-    for (std::size_t at = 0; at < sent.size(); at += 20'000)
-      connection.send(sent.substr(at, 20'000));
+    connection.send(head + "\r\n" + sent);
     return false;
   }
 

@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <set>
 #include <thread>
 
 #include "shared/host/child_process.h"
 #include "tests/support/dated_certificate.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/test_server.h"
+#include "tests/support/tokens.h"
 #include "workstation/market/feed/elia_fetch.h"
 
 namespace bess {
 namespace {
-
-using testing::AnyOf;
-using testing::HasSubstr;
 
 constexpr long kDay_s = DatedCertificate::kDayS;
 constexpr const char* kBusy = "HTTP/1.1 404 Not Found\r\n";
@@ -94,56 +93,48 @@ class TlsModes : public testing::Test {
 TEST_F(TlsModes, ACertificateThatHoldsIsBelieved) {
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   trust(certificate);
-  EXPECT_THAT(error_of(certificate), HasSubstr("the server answered 404 (1 attempt)"));
+  EXPECT_THAT(error_of(certificate), Names("404 1 ods046"));
 }
 
-TEST_F(TlsModes, AnotherName) {
-  const DatedCertificate certificate("DNS:elsewhere.example", -kDay_s, kDay_s);
-  trust(certificate);
-  EXPECT_THAT(error_of(certificate),
-              HasSubstr("is of another name: is it the host that is configured? (1 attempt)"));
-}
-
-TEST_F(TlsModes, AnotherTime) {
+/// Each is told in its own words.
+TEST_F(TlsModes, CertificatesThatDoNotHold) {
+  std::set<std::string> told;
+  const auto refused = [&](const DatedCertificate& certificate, const char* names) {
+    const std::string error = error_of(certificate);
+    EXPECT_THAT(error, Names("1 ods046 " + std::string(names)));
+    told.insert(error.substr(0, error.find("ods046")));
+  };
+  const DatedCertificate other("DNS:elsewhere.example", -kDay_s, kDay_s);
+  trust(other);
+  refused(other, "");
   const DatedCertificate old("IP:127.0.0.1", -2 * kDay_s, -kDay_s);
   trust(old);
-  EXPECT_THAT(error_of(old), HasSubstr("has expired: renew it there"));
+  refused(old, "timedatectl");
   const DatedCertificate early("IP:127.0.0.1", kDay_s, 2 * kDay_s);
   trust(early);
-  EXPECT_THAT(error_of(early), HasSubstr("is not valid yet: is this computer's clock right"));
+  refused(early, "timedatectl");
+  const DatedCertificate good("IP:127.0.0.1", -kDay_s, kDay_s);
+  unsetenv("SSL_CERT_FILE");
+  refused(good, "");
+  trust(DatedCertificate("IP:127.0.0.1", -kDay_s, kDay_s, "another CA"));  // its folder is gone
+  refused(good, "SSL_CERT_FILE");
+  EXPECT_EQ(told.size(), 5u);
 }
 
-TEST_F(TlsModes, AnAuthorityThatNobodyKnows) {
-  const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
-  EXPECT_THAT(error_of(certificate), HasSubstr("is of no authority that is known here"));
-  trust(DatedCertificate("IP:127.0.0.1", -kDay_s, kDay_s, "another CA"));
-  EXPECT_THAT(error_of(certificate),
-              HasSubstr("SSL_CERT_FILE may name a file of others (1 attempt)"))
-      << "its folder is gone";
-}
-
-TEST_F(TlsModes, NoTls) {
+TEST_F(TlsModes, NoTlsOnOneSide) {
   const ClosingServer plain("HTTP/1.1 400 Bad Request\r\n\r\n");
-  EXPECT_THAT(error_of(url("https", plain.port())),
-              HasSubstr("no TLS there: is the port right, does the server speak TLS? (1 "));
+  EXPECT_THAT(error_of(url("https", plain.port())), Names("TLS 1 ods046"));
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   const TestServer tls(say_404, with(certificate));
-  EXPECT_THAT(error_of(url("http", tls.port())),
-              AnyOf(HasSubstr("is it https:// instead of http://?"),
-                    HasSubstr("http:// or https:// right?")));
+  EXPECT_THAT(error_of(url("http", tls.port())), Names("http:// https:// ods046"));
 }
 
-TEST_F(TlsModes, ClosedInTheHandshake) {
-  const ClosingServer server("");
-  EXPECT_THAT(error_of(url("https", server.port())),
-              HasSubstr("in the TLS handshake: is there no TLS there, is the port right? (3 "));
-  EXPECT_EQ(server.connections(), 3);
-}
-
-TEST_F(TlsModes, RefusedInTheHandshake) {
-  const TestServer server(say_404, {.certificate = "none", .key = "none"});
-  EXPECT_THAT(error_of(url("https", server.port())),
-              HasSubstr("refused the TLS handshake: it knows no common version or cipher (1 "));
+TEST_F(TlsModes, TheHandshakeFails) {
+  const ClosingServer closing("");
+  EXPECT_THAT(error_of(url("https", closing.port())), Names("TLS 3 ods046"));
+  EXPECT_EQ(closing.connections(), 3);
+  const TestServer refusing(say_404, {.certificate = "none", .key = "none"});
+  EXPECT_THAT(error_of(url("https", refusing.port())), Names("TLS 1 ods046"));
 }
 
 /// As a user runs it: the program's exit code, one line, and no file.
@@ -162,7 +153,7 @@ TEST_F(TlsModes, TheProgramEndsWithOneLine) {
     ChildProcess program(arguments);
     const std::string output = program.read_all();
     EXPECT_EQ(program.wait(), 1) << output;
-    EXPECT_THAT(output, HasSubstr("the server's certificate has expired"));
+    EXPECT_THAT(output, Names("bess-train timedatectl 127.0.0.1"));
     EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
     EXPECT_TRUE(std::filesystem::is_empty(folder_ / ""));
   }

@@ -5,6 +5,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -13,7 +14,7 @@ TEST(LocalDate, ReadsOnlyRealDates) {
   EXPECT_EQ(parse_local_date("2024-02-29", "--from"), (LocalDate{2024, 2, 29}));
   for (const char* bad : {"2023-02-29", "2023-1-1", "20230101", "2023-01-01T00", ""}) {
     EXPECT_THAT(user_error_of([&] { (void)parse_local_date(bad, "--from"); }),
-                testing::HasSubstr("--from"));
+                Names(fmt::format("--from \"{}\"", bad)));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "tests/support/market_series.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/price_cases.h"
+#include "tests/support/tokens.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/judged_prices.h"
 
@@ -14,7 +15,6 @@ namespace bess {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 std::vector<std::string> names_of(const std::vector<Finding>& findings) {
@@ -76,7 +76,7 @@ TEST(Plausibility, ExtremesThatMarketsHaveHadAreTakenAndTold) {
     ASSERT_EQ(findings.size(), 1u) << price;
     EXPECT_EQ(findings[0].name, "unusual-price");
     EXPECT_FALSE(findings[0].is_error);
-    EXPECT_THAT(findings[0].what, HasSubstr(fmt::format("settled price {} lies", price)));
+    EXPECT_THAT(findings[0].what, Names(fmt::format("{} 15000 15", price)));
   }
   for (const double price : {100'000.01, -1e6}) {
     const std::vector<Finding> findings = implausible(with_settled(price, 1));
@@ -93,7 +93,7 @@ TEST(Plausibility, ManyOfWhatMayAlsoStandForNoPriceAreToldAndTaken) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].name, "sentinel");
   EXPECT_FALSE(findings[0].is_error);
-  EXPECT_THAT(findings[0].what, HasSubstr("settled price -999 in 2.8 % of the minutes"));
+  EXPECT_THAT(findings[0].what, Names("-999 2.8 %"));
 }
 
 TEST(Plausibility, GapsAreCounted) {
@@ -111,23 +111,19 @@ TEST(Plausibility, GapsAreCounted) {
   ASSERT_EQ(findings.size(), 2u);  // of each column
   EXPECT_FALSE(findings[0].is_error);
   EXPECT_EQ(findings[0].name, "gaps");
-  EXPECT_THAT(findings[0].what,
-              HasSubstr("settled price: 2 gaps, 95 of 4320 minutes missing; the largest, 90 "
-                        "minutes, from 2023-01-01T15:40:00Z to 2023-01-01T17:10:00Z"));
+  EXPECT_THAT(findings[0].what, Names("2 95 4320 90 2023-01-01T15:40:00Z 2023-01-01T17:10:00Z"));
 }
 
 TEST(Plausibility, APriceThatHangsIsNamed) {
   MinuteSeries series = ordinary();
   std::fill_n(series.indicative.begin() + 100, 1'500, 55.5);
-  EXPECT_THAT(names_of(implausible(series)),
-              ElementsAre("frozen: the indicative price stays at 55.5 for 1500 minutes; did the "
-                          "source hang?"));
+  EXPECT_THAT(names_of(implausible(series)), ElementsAre(Names("frozen 55.5 1500")));
 }
 
 TEST(Plausibility, AColumnThatIsTheOtherIsNamed) {
   MinuteSeries series = ordinary();
   series.indicative = series.settled;
-  EXPECT_THAT(names_of(implausible(series)), ElementsAre(HasSubstr("copied-column")));
+  EXPECT_THAT(names_of(implausible(series)), ElementsAre(Names("copied-column")));
 }
 
 TEST(Plausibility, AMissingLineEndIsAWarningUnlessTheRowIsWrong) {
@@ -153,7 +149,7 @@ TEST(Plausibility, NamesOfWhatIsAcceptedAreChecked) {
   EXPECT_TRUE(AcceptedFindings("gaps,overlap").accepts("overlap"));
   EXPECT_FALSE(AcceptedFindings("gaps").accepts("overlap"));
   EXPECT_FALSE(AcceptedFindings("").accepts("gaps"));
-  EXPECT_THAT(user_error_of([] { AcceptedFindings("gaps,,overlap"); }), HasSubstr("called \"\""));
+  EXPECT_THAT(user_error_of([] { AcceptedFindings("gaps,,overlap"); }), Names("--accept \"\""));
 }
 
 }  // namespace
