@@ -295,6 +295,17 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
   return 99;
 }
 
+TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
+  const auto inverted = [](FakeBattery& battery, int) { battery.inverted = true; };
+  const auto every_other = [](FakeBattery& battery, int cycle) {
+    battery.inverted = cycle % 2 == 1;
+  };
+  EXPECT_EQ(runs_until_trip(20, inverted), 3);
+  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order that it finds is as old as the log says
+  EXPECT_EQ(runs_until_trip(2, inverted), 3);
+  EXPECT_LE(runs_until_trip(1, every_other), 6);
+}
+
 TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
   Plant plant;
   plant.prices.price = [](std::int64_t) { return -60'000; };
