@@ -409,7 +409,8 @@ TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
   EXPECT_EQ(hesitant.exit_code, 2);
   EXPECT_EQ(bess::edge({"release", "--config", config, "--yes"}).exit_code, 0);
   const std::int64_t ordered_utc_s = utc_of(order.substr(4, order.find(' ') - 4));
-  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 3);  // 100 s
+  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) +
+                        100 * kNanosecondsPerSecond / outlasting_scale());
   EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
   bool ended_by_hand = false;  // the watchdog would have after 300 s
   for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
