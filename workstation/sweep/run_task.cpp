@@ -99,7 +99,10 @@ bool complete_task(const SweepFolder& folder, int task, const TaskWork& work) {
       throw;
     }
   }
-  fs::remove_all(folder.parts(task), ignored);  // of those who died, or are too late
+  // Of those who died, or are too late. Two that clear up at once may each give up on the other's.
+  for (int tries = 0; tries < 10 && fs::exists(folder.parts(task), ignored); ++tries) {
+    fs::remove_all(folder.parts(task), ignored);
+  }
   fs::remove(folder.log(task), ignored);
   return true;
 }
