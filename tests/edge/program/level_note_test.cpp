@@ -31,7 +31,7 @@ TEST(LevelNote, SaysHowTheLevelWasComeBy) {
         .hours = 40,
         .rows = 2'400,
         .status = Status::kTimeout},
-       "-84.20 2400 40 72 timeout_ms"},
+       "-84.20 2400 40 72"},
       {{.start = {kLevel, kSetting}}, "-84.20 level_start_eur_per_mwh history_hours"},
       {{.hours_wanted = 72}, ""},
       {{.start = {.level = kLevel, .source = kSetting, .refused_log = true}},
