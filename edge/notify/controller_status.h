@@ -1,5 +1,5 @@
-// How the controller is, as anybody may ask bess-edge, and the troubles in it. It is asked without
-// locks, so that nobody who asks can be in a controller's way.
+// The controller's status as bess-edge prints it, and the troubles in it. Asking takes no lock, so
+// it cannot delay the controller.
 #pragma once
 
 #include <cstdint>

@@ -33,9 +33,9 @@ class MqttClient {
   /// Says offline, and goes.
   ~MqttClient();
 
-  /// Held by the broker for whoever comes later. Kept here as well, for the next connect.
+  /// Retained by the broker for later subscribers. Kept here as well, for the next connect.
   void retain(const std::string& topic, const std::string& payload);
-  /// Once, for whoever listens.
+  /// Not retained: delivered once, to current subscribers.
   void publish(const std::string& topic, const std::string& payload);
   /// Until the broker has all that was published; false when it has not within that time.
   bool wait_until_sent(std::chrono::milliseconds patience);

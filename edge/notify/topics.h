@@ -36,7 +36,7 @@ std::string alarms_json(const std::vector<Alarm>& alarms);
 std::string day_json(JsonValue earned);
 Json event_json(const std::string& node, const Message& message);
 
-/// discovery.json or controls.json, embedded when it is built: what Home Assistant is told, with
+/// discovery.json or controls.json, embedded when it is built: the discovery message, with
 /// $NAMES of what is ours.
 std::string_view page_file(std::string_view name);
 

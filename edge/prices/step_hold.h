@@ -37,7 +37,7 @@ class StepHold {
   [[nodiscard]] constexpr const PriceRow& held() const { return held_; }
 
  private:
-  [[nodiscard]] constexpr bool is_large(const PriceRow& from, const PriceRow& to) const {
+  [[nodiscard]] static constexpr bool is_large(const PriceRow& from, const PriceRow& to) {
     const std::int32_t step = to.price_centi_eur_per_mwh - from.price_centi_eur_per_mwh;
     return (step < 0 ? -step : step) > kStepCentiEurPerMwh;
   }

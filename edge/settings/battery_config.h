@@ -16,7 +16,7 @@ struct BatteryConfig {
   BatteryLinkSettings link;
   RegisterMap map;
   FixedText<511> map_path;
-  std::int32_t capacity_wh = 8'000;     ///< what the battery must report, within the tolerance
+  std::int32_t capacity_wh = 8'000;     ///< what the battery must report, within a quarter
   bool allow_without_watchdog = false;  ///< drive a battery that keeps its order if we die
   std::int32_t start_timeout_s = 10;    ///< wall time to reach the battery at start
 };

@@ -468,7 +468,7 @@ TEST(SelfTest, PassesWhereTheControllerCanWork) {
 
 TEST(SelfTest, NamesWhatFails) {
   SimulatedSite site(60);
-  const Said missing = self_test(site.write_config());  // nobody listens
+  const Said missing = self_test(site.write_config());  // no server listens
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.text, AllOf(ContainsRegex("network +FAIL"),
                                   ContainsRegex("battery +FAIL +127[.]0[.]0[.]1:1 ")));

@@ -102,10 +102,9 @@ class StateFiles : public ::testing::Test {
     return said.text;
   }
   std::string notify() {
-    ChildProcess child({BESS_NOTIFY_PROGRAM, "--once", "--config", config_});
-    std::string text = child.read_all();
-    exit_code_ = child.wait();
-    return text;
+    const Said said = answer_of({BESS_NOTIFY_PROGRAM, "--once", "--config", config_});
+    exit_code_ = said.exit_code;
+    return said.text;
   }
   [[nodiscard]] std::size_t mails() const {
     return count_of(text_of_file(site_.folder.file("mails")), "Subject:");
@@ -269,12 +268,8 @@ TEST_F(StateFiles, ACarefulRootsHoldIsReadByTheService) {
   for (const char* folder : {"state", "run"}) {
     ASSERT_EQ(chown(site_.folder.file(folder).c_str(), 65'534, 65'534), 0);
   }
-  const Said given = [&] {
-    ChildProcess child({"/bin/sh", "-c", "umask 077; exec \"$0\" \"$@\"", edge_program(), "hold",
-                        "-500", "--for", "2h", "--config", config_});
-    std::string text = child.read_all();
-    return Said{child.wait(), std::move(text)};
-  }();
+  const Said given = answer_of({"/bin/sh", "-c", "umask 077; exec \"$0\" \"$@\"", edge_program(),
+                                "hold", "-500", "--for", "2h", "--config", config_});
   ASSERT_EQ(given.exit_code, 0) << given.text;
   for (const char* path : {"state/hold", "run/hold"}) {
     struct stat facts {};

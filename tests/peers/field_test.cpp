@@ -11,6 +11,7 @@
 
 #include "tests/support/journal_fields.h"
 #include "tests/support/peer_programs.h"
+#include "tests/support/said.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
 
@@ -45,11 +46,6 @@ struct Device {
   std::string trouble = "{}";
   double soc = 0.3;
   double price = kCheap;
-};
-
-struct Answer {
-  int exit_code = -1;
-  std::string text;
 };
 
 /// A line of the journal about a cycle.
@@ -119,16 +115,12 @@ class Field : public ::testing::TestWithParam<Draw> {
   void begin_trouble() const { ASSERT_TRUE(site_.battery->signal(SIGUSR1)); }
   void end_trouble() const { ASSERT_TRUE(site_.battery->signal(SIGUSR2)); }
 
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+  [[nodiscard]] Said run(std::vector<std::string> words) const {
     words.insert(words.begin(), edge_program());
     words.insert(words.end(), {"--config", config_});
-    ChildProcess child(words);
-    Answer answer;
-    answer.text = child.read_all();
-    answer.exit_code = child.wait();
-    return answer;
+    return answer_of(std::move(words));
   }
-  [[nodiscard]] Answer commission() const { return run({"commission", "--yes"}); }
+  [[nodiscard]] Said commission() const { return run({"commission", "--yes"}); }
 
   void start_edge() {
     edge_ = std::make_unique<ChildProcess>(
@@ -216,7 +208,7 @@ class Field : public ::testing::TestWithParam<Draw> {
   void drive_into_trouble(const Device& device) {
     start(device);
     if (HasFatalFailure()) return;
-    const Answer check = commission();
+    const Said check = commission();
     ASSERT_EQ(check.exit_code, 0) << check.text;
     start_edge();
     ASSERT_GE(driven(cycles(2)), 1);
@@ -226,7 +218,7 @@ class Field : public ::testing::TestWithParam<Draw> {
   std::vector<Cycle> commission_and_drive(const Device& device, int count) {
     start(device);
     if (HasFatalFailure()) return {};
-    const Answer check = commission();
+    const Said check = commission();
     EXPECT_EQ(check.exit_code, 0) << check.text;
     if (check.exit_code != 0) return {};
     start_edge();
@@ -310,7 +302,7 @@ TEST_P(Field, ProtectionLostForGood) {
   EXPECT_EQ(record("power ").back().what, "power 0");
   for (const Cycle& c : all) EXPECT_EQ(c.reason, reason);
   EXPECT_EQ(all.front().mode, reason == "grid_unknown" ? "safe" : "holding");
-  const Answer status = run({"status", "--prometheus"});
+  const Said status = run({"status", "--prometheus"});
   EXPECT_THAT(status.text, HasSubstr(",reason=\"" + reason + "\""));
   EXPECT_EQ(run({"status"}).exit_code, 1);
   // Tried for 10 s, not twice at once.
@@ -334,12 +326,12 @@ TEST_P(Field, SunSpecBootsOrIsAnother) {
   start(
       {.kind = "sunspec", .keys = map_keys("sunspec_124"), .trouble = "{\"boot\": " + boot + "}"});
   if (HasFatalFailure()) return;
-  const Answer check = commission();
+  const Said check = commission();
   ASSERT_EQ(check.exit_code, 0) << check.text;
   begin_trouble();
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"--check"}, {"--self-test"}, {"commission", "--yes"}, {"release", "--yes"}}) {
-    const Answer answer = run(words);
+    const Said answer = run(words);
     EXPECT_EQ(answer.exit_code, 1) << words[0] << ": " << answer.text;
     EXPECT_THAT(answer.text, Not(HasSubstr("CHECK failed"))) << words[0];
     figures_ += words[0] + " " + std::to_string(answer.exit_code) + ", ";
@@ -363,7 +355,7 @@ TEST_P(Field, SunSpecChainIsAnother) {
   const std::string missing = GetParam().index == 1 ? "124" : "103";
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"--check"}, {"--self-test"}, {"commission", "--yes"}, {"release", "--yes"}, {}}) {
-    const Answer answer = run(words);
+    const Said answer = run(words);
     const std::string name = words.empty() ? "run" : words[0];
     EXPECT_EQ(answer.exit_code, 1) << name << ": " << answer.text;
     EXPECT_THAT(answer.text, AllOf(HasSubstr(missing), HasSubstr("40000"))) << name;
@@ -383,7 +375,7 @@ TEST_P(Field, SocAboveHundred) {
          .soc = becomes_full ? 0.96 : 1,
          .price = becomes_full ? kCheap : kDear});
   if (HasFatalFailure()) return;
-  const Answer check = commission();
+  const Said check = commission();
   ASSERT_EQ(check.exit_code, 0) << check.text;
   begin_trouble();
   start_edge();
@@ -449,7 +441,7 @@ TEST_P(Field, VictronSetPointEndsSooner) {
          .keys = victron_keys(),
          .firmware = "{\"timeout_s\": " + timeout_s + "}"});
   if (HasFatalFailure()) return;
-  const Answer check = commission();
+  const Said check = commission();
   if (check.exit_code != 0) {
     EXPECT_THAT(check.text, AllOf(HasSubstr("refresh_s"), Not(HasSubstr("settle_s"))));
     figures_ = "commission " + std::to_string(check.exit_code);
@@ -606,7 +598,7 @@ TEST_P(Field, SmaObeysTheSetPointAlone) {
          .firmware =
              variant<std::string>(R"({"smart_energy": true})", R"({"smart_energy": true})", "{}")});
   if (HasFatalFailure()) return;
-  const Answer check = commission();
+  const Said check = commission();
   // Limits that are ignored are found before the first trade.
   EXPECT_EQ(check.exit_code, variant(0, 1, 0)) << check.text;
   figures_ = "commission " + std::to_string(check.exit_code);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "shared/host/child_process.h"
+#include "tests/support/said.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
@@ -51,9 +52,8 @@ inline void expect_refused(const std::string& program, const BadCommandLine& lin
   SCOPED_TRACE(line.words);
   std::vector<std::string> arguments = words_of(line, files);
   arguments.insert(arguments.begin(), program);
-  ChildProcess child(arguments);
-  const std::string text = child.read_all();
-  EXPECT_EQ(child.wait(), line.exit_code) << text;
+  const auto [exit_code, text] = answer_of(std::move(arguments));
+  EXPECT_EQ(exit_code, line.exit_code) << text;
   EXPECT_THAT(text, Names(line.complaint));
   const std::size_t last = text.rfind('\n', text.size() - 2);
   const std::string complaint = last == text.npos ? text : text.substr(last + 1);

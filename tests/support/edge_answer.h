@@ -1,4 +1,4 @@
-// What programs answer to one command line, once they have ended, and what they say as they run.
+// What bess-edge answers to one command line, once it has ended, and what it says as it runs.
 #pragma once
 
 #include <string>
@@ -9,21 +9,10 @@
 #include "shared/local_text.h"
 #include "shared/utc_text.h"
 #include "tests/support/programs_under_test.h"
+#include "tests/support/said.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
-
-struct Said {
-  int exit_code;
-  std::string text;
-};
-
-/// Waits for its end. `arguments`: the program first.
-inline Said answer_of(std::vector<std::string> arguments) {
-  ChildProcess child(std::move(arguments));
-  std::string text = child.read_all();
-  return {child.wait(), std::move(text)};
-}
 
 /// bess-edge's. `arguments`: without the program.
 inline Said edge(std::vector<std::string> arguments) {

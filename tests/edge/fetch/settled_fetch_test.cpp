@@ -167,7 +167,7 @@ TEST_F(SettledServer, MayBeLateFailOrTalkNonsense) {
   EXPECT_NE(fetch().trouble, "");
   EXPECT_EQ(text_of_file(source_.file), before);
   source_.url = "http://127.0.0.1:1/{from}{until}";
-  EXPECT_EQ(fetch().trouble, redirected) << "nobody listens there";
+  EXPECT_EQ(fetch().trouble, redirected) << "no server listens there";
   EXPECT_EQ(text_of_file(source_.file), before);
 }
 

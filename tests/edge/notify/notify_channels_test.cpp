@@ -1,5 +1,5 @@
 // Channels that hang, beside ones that do not: the whole program with a command that sleeps and a
-// broker that comes and goes. What is told, when, how often, and what of it outlasts a kill.
+// broker that comes and goes. What is reported, when, how often, and what survives a kill.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "shared/host/child_process.h"
 #include "shared/scaled_clock.h"
 #include "tests/edge/notify/notify_site.h"
+#include "tests/support/said.h"
 #include "tests/support/test_server.h"
 
 namespace bess {
@@ -199,16 +200,9 @@ TEST_F(Channels, AKillLosesNothing) {
 }
 
 /// What the program says on one run.
-struct Said {
-  int exit_code;
-  std::string text;
-};
-
 Said run(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
-  ChildProcess child(std::move(arguments));
-  std::string text = child.read_all();
-  return {child.wait(), std::move(text)};
+  return answer_of(std::move(arguments));
 }
 
 TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {

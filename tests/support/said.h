@@ -1,0 +1,24 @@
+// What a program answers to one command line, once it has ended.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shared/host/child_process.h"
+
+namespace bess {
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+/// Waits for its end. `arguments`: the program first.
+inline Said answer_of(std::vector<std::string> arguments) {
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+}  // namespace bess
