@@ -14,6 +14,7 @@
 #include "edge/program/operator_note.h"
 #include "edge/program/threshold_note.h"
 #include "edge/registers/codec.h"
+#include "edge/settings/idle_keys.h"
 #include "edge/settings/price_transport.h"
 #include "edge/site/house_watch.h"
 #include "edge/storage/commission_file.h"
@@ -200,6 +201,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
               config.battery.map.variant.c_str(),
               config.control.control ? "true" : "false (read-only)");
   std::fflush(stdout);
+  for (const RetiredKey& old : config.retired) {
+    report(JournalLevel::kWarning, "note: %s", retired_key_text(old).c_str());
+  }
   print_thresholds(config);
   print_transport(config);
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;

@@ -67,7 +67,7 @@ bool is_safe_url(const std::string& url) {
 
 void read_settled(TomlTable table, SettledSource& source) {
   table.line("url", source.url);
-  static_cast<void>(table.node("days"));  // of earlier versions
+  static_cast<void>(table.take_retired("days"));  // of earlier versions
   table.line("ca_file", source.ca_file);
   table.finish();
   if (source.url.empty() || !table.ok()) return;

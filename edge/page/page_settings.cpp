@@ -22,7 +22,7 @@ void read_page(TomlTable table, PageSettings& settings) {
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
   // Keys of earlier versions.
-  static_cast<void>(table.node("refresh_s"));
+  static_cast<void>(table.take_retired("refresh_s"));
   table.line("token_file", token_file);
   read_program(table, settings);
   read_hosts(table, settings.hosts);

@@ -17,10 +17,7 @@ namespace bess {
 namespace {
 
 /// Keys of earlier versions, whose value is fixed by now. A configuration with them still works.
-constexpr struct {
-  std::string_view section;
-  const char* key;
-} kRetiredKeys[] = {
+constexpr RetiredKey kRetiredKeys[] = {
     {"battery", "capacity_tolerance_percent"},
     {"battery", "full_charge_power"},
     {"battery", "read_lead_s"},
@@ -51,9 +48,9 @@ static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
 TomlTable section(TomlTable& root, std::string_view name, RetiredKeys* retired = nullptr) {
   TomlTable table(root.table(name), root.file(), std::string("[").append(name).append("]"),
                   root.error());
-  for (const auto& [of, key] : kRetiredKeys) {
-    if (of != name || table.node(key) == nullptr || retired == nullptr) continue;
-    static_cast<void>(retired->try_push_back(key));
+  for (const RetiredKey& old : kRetiredKeys) {
+    if (old.section != name || !table.take_retired(old.key) || retired == nullptr) continue;
+    static_cast<void>(retired->try_push_back(old));
   }
   return table;
 }

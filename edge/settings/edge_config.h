@@ -15,8 +15,12 @@
 
 namespace bess {
 
-/// Keys of earlier versions that the file still has; they do nothing.
-using RetiredKeys = StaticVector<const char*, 32>;
+/// A key of earlier versions that the file still has; it does nothing.
+struct RetiredKey {
+  std::string_view section;
+  std::string_view key;
+};
+using RetiredKeys = StaticVector<RetiredKey, 32>;
 
 struct EdgeConfig {
   ControlSettings control;

@@ -61,11 +61,14 @@ void add_site(const EdgeConfig& config, std::vector<std::string>& keys) {
 
 }  // namespace
 
+std::string retired_key_text(const RetiredKey& old) {
+  return "[" + std::string(old.section) + "] " + std::string(old.key) +
+         ": no longer a setting, the value is fixed; delete it";
+}
+
 std::vector<std::string> keys_without_effect(const EdgeConfig& config) {
   std::vector<std::string> keys;
-  for (const char* const key : config.retired) {
-    keys.emplace_back(formatted("%s: no longer a setting, the value is fixed; delete it", key));
-  }
+  for (const RetiredKey& old : config.retired) keys.push_back(retired_key_text(old));
   add_guard(config, keys);
   add_reserves(config, keys);
   add_site(config, keys);

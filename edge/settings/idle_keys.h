@@ -9,6 +9,9 @@
 
 namespace bess {
 
+/// "[price] timeout_ms: no longer a setting, ...".
+std::string retired_key_text(const RetiredKey& old);
+
 /// "guard.ramp_w_max: no change of order is larger than 8000 W".
 std::vector<std::string> keys_without_effect(const EdgeConfig& config);
 

@@ -142,10 +142,15 @@ const TomlArray* TomlTable::array(std::string_view key) {
   return expect<TomlArray>(key, "must be a list in [ ]");
 }
 
+bool TomlTable::take_retired(std::string_view key) {
+  retired_.emplace(key);
+  return has(key);
+}
+
 void TomlTable::finish() {
   if (table_ == nullptr || !error_.empty()) return;
   for (const auto& [key, value] : *table_->as<TomlMembers>()) {
-    if (asked_.contains(key)) continue;
+    if (asked_.contains(key) || retired_.contains(key)) continue;
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
     if (known.empty()) known = "none";

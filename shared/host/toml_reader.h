@@ -57,6 +57,8 @@ class TomlTable {
   /// Paths are relative to the file's folder; an absolute one stays as it is.
   [[nodiscard]] std::string resolved(std::string_view path) const;
 
+  /// A key of earlier versions: let through, and never proposed. True when the table has it.
+  bool take_retired(std::string_view key);
   /// Complains about every key that was not asked for.
   void finish();
   /// Records "file:line: where key message", once.
@@ -74,7 +76,7 @@ class TomlTable {
   std::string file_;
   std::string where_;
   std::string& error_;
-  std::set<std::string, std::less<>> asked_;
+  std::set<std::string, std::less<>> asked_, retired_;
 };
 
 }  // namespace bess

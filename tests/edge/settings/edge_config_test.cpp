@@ -334,11 +334,18 @@ TEST(EdgeConfig, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
   EXPECT_EQ(config.control.hold_s, 300);
   EXPECT_EQ(config.price.feed.http.timeout_ms, 5'000);
-  std::vector<std::string> named(config.retired.begin(), config.retired.end());
+  std::vector<std::string> named;
+  for (const RetiredKey& old : config.retired) named.emplace_back(old.key);
   EXPECT_THAT(named,
               testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
                                             "resolve_every_s", "ask_spread_s", "lock_folder"));
-  EXPECT_THAT(keys_without_effect(config), testing::Contains(HasSubstr("ask_spread_s")));
+  EXPECT_THAT(keys_without_effect(config), testing::Contains(Names("[outlook] ask_spread_s")));
+  // It is no proposal for a key that is misspelt.
+  text.replace(text.find("timeout_ms"), 10, "timeoutms ");
+  EdgeConfig refused;
+  EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), refused, error));
+  EXPECT_THAT(
+      error, testing::AllOf(Names("[price] timeoutms url"), testing::Not(HasSubstr("timeout_ms"))));
 }
 
 /// Of a thousand real machines; a simulated one asks at once.
