@@ -10,7 +10,7 @@
 #include "edge/notify/journal_line.h"
 #include "edge/notify/topics.h"
 #include "shared/host/run_program.h"
-#include "shared/local_time.h"
+#include "shared/local_day.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
@@ -19,7 +19,6 @@ namespace {
 
 constexpr int kDaysMax = 7;  ///< told at once, after the notifier was away
 constexpr std::int64_t kOrderS = 10;
-constexpr std::int64_t kEarnedS = 30;  ///< once a day
 constexpr std::int64_t kKeepEnergyEveryS = 3'600;
 
 /// 0 when no cycle has ended yet.
@@ -208,11 +207,8 @@ void Notifier::read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s) {
   read_up_to_utc_s_ = newest_utc_s;
   energy_.count_new(log);
   const std::int32_t today = local_day_at(newest_utc_s);
-  const std::vector<DayAccount> accounts =
-      accounts_of_days(log, today, today,
-                       {.contract = settings_.money.contract,
-                        .settled = {},
-                        .capacity_wh = settings_.money.capacity_wh});
+  const std::vector<DayAccount> accounts = accounts_of_days(
+      log, today, today, {.settled = {}, .capacity_wh = settings_.money.capacity_wh});
   today_ = accounts.empty() ? DayAccount(today) : accounts.front();
   if (settings_.daily) tell_days(log, newest_utc_s, now_utc_s);
 }
@@ -230,12 +226,7 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
   if (days.size() > kDaysMax) days.erase(days.begin(), days.end() - kDaysMax);
   for (const DayAccount& day : days) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});
-    if (mqtt_ == nullptr) continue;
-    const ProgramResult answer = run_and_hear({settings_.program, "earned", day.date(), "--beside",
-                                               "--json", "--config", settings_.config_path},
-                                              kEarnedS);
-    const Json earned = Json::parse(answer.output);
-    mqtt_->retain(topic(settings_.name, "day"), day_json(day, earned.value()["beside"]));
+    if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.name, "day"), day_json(day));
   }
   told_.local_day = yesterday;
 }

@@ -114,30 +114,17 @@ void add_controls(const NotifySettings& settings, const std::string& id, Json& c
                                                  "{{ 'ON' if value_json.held else 'OFF' }}"));
 }
 
-/// Of yesterday: a key, a name, and a member of its message.
-constexpr const char* kMoneyOfYesterday[][3] = {
-    {"earned_yesterday", "Earned yesterday (estimate)", "earned_eur"},
-    {"net_yesterday", "Earned yesterday less the contract", "net_eur"},
-    {"battery_yesterday", "Yesterday with the same charge at both ends", "this_battery_eur"},
-    {"rule_yesterday", "Yesterday by a rule", "rule_eur"},
-    {"student_yesterday", "Yesterday by the student undisturbed", "student_undisturbed_eur"},
-    {"foresight_yesterday", "Yesterday with foresight", "foresight_eur"},
-};
-
 void add_yesterday(const NotifySettings& settings, const std::string& id, Json& components) {
-  for (const auto& [key, name, member] : kMoneyOfYesterday) {
-    const std::string unique = id + "_" + key;
-    components.set(unique.c_str(),
-                   Json::object({{"platform", "sensor"},
-                                 {"unique_id", unique},
-                                 {"name", name},
-                                 {"state_topic", topic(settings.name, "day")},
-                                 {"value_template",
-                                  std::string("{{ value_json.") + member + " | default('None') }}"},
-                                 {"availability_topic", topic(settings.name, "status")},
-                                 {"device_class", "monetary"},
-                                 {"unit_of_measurement", "EUR"}}));
-  }
+  const std::string unique = id + "_earned_yesterday";
+  components.set(unique.c_str(),
+                 Json::object({{"platform", "sensor"},
+                               {"unique_id", unique},
+                               {"name", "Earned yesterday (estimate)"},
+                               {"state_topic", topic(settings.name, "day")},
+                               {"value_template", "{{ value_json.earned_eur | default('None') }}"},
+                               {"availability_topic", topic(settings.name, "status")},
+                               {"device_class", "monetary"},
+                               {"unit_of_measurement", "EUR"}}));
 }
 
 /// Who decides, and what ends it: "student", or "price_age, until a newer price comes".
@@ -181,7 +168,6 @@ void set_ledger(Json& json, const Ledger& ledger) {
   }
   if (!ledger.today.is_empty()) {
     json.set("earned_today_eur", Decimals{ledger.today.earned_eur(), 2});
-    json.set("contract_today_eur", Decimals{ledger.today.money().contract_eur, 2});
     json.set("today_since_utc", utc_text(ledger.today.start_utc_s()).view());
   }
 }
@@ -229,23 +215,16 @@ std::string alarms_json(const std::vector<Alarm>& alarms) {
   return list.line();
 }
 
-std::string day_json(const DayAccount& day, JsonValue beside) {
-  const QuarterHourMoney& money = day.money();
-  Json json = Json::object({{"date", day.date()},
-                            {"earned_eur", Decimals{day.earned_eur(), 2}},
-                            {"charged_kwh", Decimals{day.charged_kwh(), 3}},
-                            {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
-                            {"full_cycles", Decimals{day.full_cycles(), 3}},
-                            {"cycles", day.cycles()},
-                            {"interventions", day.interventions()},
-                            {"estimated_eur", Decimals{money.estimated_eur, 2}},
-                            {"contract_eur", Decimals{money.contract_eur, 2}},
-                            {"net_eur", Decimals{money.net_eur(), 2}}});
-  for (const char* rival :
-       {"this_battery_eur", "rule_eur", "student_undisturbed_eur", "foresight_eur"}) {
-    set_scaled(json, rival, beside, rival, 1, 2);
-  }
-  return json.line();
+std::string day_json(const DayAccount& day) {
+  return Json::object({{"date", day.date()},
+                       {"earned_eur", Decimals{day.earned_eur(), 2}},
+                       {"charged_kwh", Decimals{day.charged_kwh(), 3}},
+                       {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
+                       {"full_cycles", Decimals{day.full_cycles(), 3}},
+                       {"cycles", day.cycles()},
+                       {"interventions", day.interventions()},
+                       {"estimated_eur", Decimals{day.money().estimated_eur, 2}}})
+      .line();
 }
 
 std::string discovery_topic(const NotifySettings& settings) {

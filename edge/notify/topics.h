@@ -34,8 +34,7 @@ struct Ledger {
 std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
                        const Ledger& ledger);
 std::string alarms_json(const std::vector<Alarm>& alarms);
-/// `companion`: what others would have earned (rivals.h); left out where nothing is known of them.
-std::string day_json(const DayAccount& day, JsonValue beside);
+std::string day_json(const DayAccount& day);
 
 /// Home Assistant's discovery: one message for the device and all its entities (since 2024.11).
 std::string discovery_topic(const NotifySettings& settings);

@@ -71,7 +71,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_meter(section(root, "meter"), {config.battery.link, config.battery.map}, config.site);
   read_limits(section(root, "limits"), config.site);
   // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
-  for (const char* const others : {"notify", "page", "contract", "settled"}) {
+  for (const char* const others : {"notify", "page", "settled"}) {
     static_cast<void>(root.table(others));
   }
   root.finish();
