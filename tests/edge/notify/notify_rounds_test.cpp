@@ -89,7 +89,7 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
   EXPECT_EQ(count_of(told(), "Subject: "), 1U);
   EXPECT_THAT(told(),
               HasSubstr("day 2023-03-27: +0.77 EUR (0 of 4 quarter-hours at the settled price, an "
-                        "estimate in the others; no fees), charged 0.0 kWh, discharged 3.9 "
+                        "estimate in the others), charged 0.0 kWh, discharged 3.9 "
                         "kWh, 0.00 full cycles, 0 interventions"));
 }
 
