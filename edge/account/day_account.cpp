@@ -2,61 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 
+#include "shared/host/text.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
 
-void QuarterHourMoney::add(const QuarterHourMoney& other) {
-  earned_eur += other.earned_eur;
-  estimated_eur += other.estimated_eur;
-  prices_eur_per_mwh += other.prices_eur_per_mwh;
-  contract_eur += other.contract_eur;
-  quarter_hours += other.quarter_hours;
-  published += other.published;
-  validated += other.validated;
-  unpriced += other.unpriced;
-}
-
-double QuarterHourMoney::mean_price_eur_per_mwh() const {
-  const int priced = quarter_hours - unpriced;
-  return priced == 0 ? 0 : prices_eur_per_mwh / priced;
-}
-
 void DayAccount::add(const CycleRecord& record) {
   if (record.mode == Mode::kStopping) return;  // no cycle
+  const auto reason = static_cast<std::size_t>(record.reason);
+  const bool is_driven = record.mode == Mode::kRunning;
   ++cycles_;
-  ++cycles_by_reason_[static_cast<std::size_t>(record.reason)];
-  if (record.mode == Mode::kRunning) ++driven_cycles_;
+  ++cycles_by_reason_[reason];
+  if (is_driven) ++driven_cycles_;
+  if (!is_driven) ++not_driven_[reason];
   if (record.throughput.local_day == local_day_) {
     soc_moved_e4_ = std::max(soc_moved_e4_, record.throughput.soc_moved_e4);
   }
   if (!record.has_measurement) return;
-  note_soc(record);
+  const Charge now{record.utc_s, record.measurement.soc_e4};
+  if (now.utc_s < first_.utc_s) first_ = now;
+  if (now.utc_s >= last_.utc_s) {
+    last_ = now;
+    capacity_wh_ = record.measurement.capacity_wh;
+  }
   if (record.price.has_row) ++valued_cycles_;
 }
 
-void DayAccount::add(const Exchange& exchange) {
-  const double size_wh = std::fabs(exchange.energy_wh);
-  (exchange.energy_wh > 0 ? charged_wh_ : discharged_wh_) += size_wh;
-  if (!exchange.is_seen) unseen_wh_ += size_wh;
-}
-
-void DayAccount::note_soc(const CycleRecord& record) {
-  if (record.utc_s < first_soc_utc_s_) {
-    first_soc_utc_s_ = record.utc_s;
-    first_soc_e4_ = record.measurement.soc_e4;
+void DayAccount::add(const DayAccount& other) {
+  exchanged_.add(other.exchanged_);
+  soc_moved_e4_ += other.soc_moved_e4_;
+  cycles_ += other.cycles_;
+  missing_cycles_ += other.missing_cycles_;
+  driven_cycles_ += other.driven_cycles_;
+  valued_cycles_ += other.valued_cycles_;
+  if (other.first_.utc_s < first_.utc_s) first_ = other.first_;
+  if (other.last_.utc_s > last_.utc_s) {
+    last_ = other.last_;
+    capacity_wh_ = other.capacity_wh_;
   }
-  if (record.utc_s >= last_soc_utc_s_) {
-    last_soc_utc_s_ = record.utc_s;
-    last_soc_e4_ = record.measurement.soc_e4;
-    capacity_wh_ = record.measurement.capacity_wh;
+  for (std::size_t i = 0; i < cycles_by_reason_.size(); ++i) {
+    cycles_by_reason_[i] += other.cycles_by_reason_[i];
+    not_driven_[i] += other.not_driven_[i];
   }
 }
 
 double DayAccount::full_cycles() const { return soc_moved_e4_ / (2.0 * kSocFullE4); }
+
+double DayAccount::driven_share() const {
+  const int all = cycles_ + missing_cycles_;
+  return all == 0 ? 0 : static_cast<double>(driven_cycles_) / all;
+}
+
+double DayAccount::first_soc_percent() const {
+  return has_soc() ? first_.soc_e4 / 100.0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+double DayAccount::last_soc_percent() const {
+  return has_soc() ? last_.soc_e4 / 100.0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+double DayAccount::stored_kwh() const {
+  if (!has_soc()) return 0;
+  return static_cast<double>(last_.soc_e4 - first_.soc_e4) / kSocFullE4 * capacity_wh_ / 1'000;
+}
+
+double DayAccount::stored_eur() const {
+  const BatteryParameters battery;
+  const double grid_mwh =
+      stored_kwh() / 1'000 *
+      (stored_kwh() > 0 ? battery.discharge_efficiency : 1 / battery.charge_efficiency);
+  return grid_mwh * money().mean_price_eur_per_mwh();
+}
 
 int DayAccount::interventions() const {
   return cycles_ - cycles_by_reason_[static_cast<std::size_t>(Reason::kStudent)];
@@ -72,37 +91,28 @@ std::int64_t DayAccount::start_utc_s() const {
 }
 
 std::string DayAccount::date() const {
-  char text[16];
-  std::snprintf(text, sizeof text, "%04d-%02d-%02d", local_day_ / 10'000 % 10'000,
-                local_day_ / 100 % 100, local_day_ % 100);
-  return text;
+  return formatted("%04d-%02d-%02d", local_day_ / 10'000 % 10'000, local_day_ / 100 % 100,
+                   local_day_ % 100);
 }
 
-std::string interventions_text(const CyclesByReason& cycles) {
+std::string DayAccount::interventions_text() const {
   std::string text;
-  for (int i = 0; i < kReasonCount; ++i) {
-    const int count = cycles[static_cast<std::size_t>(i)];
-    if (count == 0 || static_cast<Reason>(i) == Reason::kStudent) continue;
-    text.append(text.empty() ? "" : ", ").append(reason_name(static_cast<Reason>(i)));
-    text.append(" ").append(std::to_string(count));
+  for (std::size_t i = 0; i < cycles_by_reason_.size(); ++i) {
+    const auto reason = static_cast<Reason>(i);
+    if (cycles_by_reason_[i] == 0 || reason == Reason::kStudent) continue;
+    add_formatted(text, "%s%s %d", text.empty() ? "" : ", ", reason_name(reason).data(),
+                  cycles_by_reason_[i]);
   }
   return text;
 }
 
 std::string DayAccount::line() const {
-  char text[512];
-  char fees[64] = "no fees";
-  if (money_.contract_eur != 0) {
-    std::snprintf(fees, sizeof fees, "%.2f EUR of fees not taken off", money_.contract_eur);
-  }
-  std::snprintf(
-      text, sizeof text,
-      "%s: %+.2f EUR (%d of %d quarter-hours at the settled price, an estimate in the others; %s), "
+  std::string line = formatted(
+      "%s: %+.2f EUR (%d of %d quarter-hours at the settled price, an estimate in the others), "
       "charged %.1f kWh, discharged %.1f kWh, %.2f full cycles, %d interventions",
-      date().c_str(), earned_eur(), money_.published, money_.quarter_hours, fees, charged_kwh(),
+      date().c_str(), earned_eur(), money().published, money().quarter_hours, charged_kwh(),
       discharged_kwh(), full_cycles(), interventions());
-  std::string line = text;
-  if (interventions() > 0) line += " (" + interventions_text(cycles_by_reason_) + ")";
+  if (interventions() > 0) line += " (" + interventions_text() + ")";
   return line;
 }
 

@@ -51,10 +51,6 @@ bool parse_date(std::string_view text, std::int32_t& day) {
 
 }  // namespace
 
-std::int32_t day_after(std::int32_t day, int days) {
-  return day_of(days_of(day) + std::chrono::days{days});
-}
-
 bool parse_period(std::string_view text, std::int32_t today, Period& period) {
   using std::chrono::days;
   const Days now = days_of(today);

@@ -14,9 +14,6 @@ struct Period {
   friend constexpr bool operator==(const Period&, const Period&) = default;
 };
 
-/// The day so many days later; earlier where `days` is negative.
-std::int32_t day_after(std::int32_t day, int days);
-
 /// A week begins on Monday; week and month end today. False when it is none of these, or ends
 /// before it begins.
 bool parse_period(std::string_view text, std::int32_t today, Period& period);

@@ -11,16 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "shared/host/quarter_prices.h"
+
 namespace bess {
-
-enum class PriceState : std::uint8_t { kIndicative, kPublished, kValidated };
-
-struct SettledQuarter {
-  std::int64_t start_utc_s = 0;  ///< a multiple of 900
-  double eur_per_mwh = 0;
-  PriceState state = PriceState::kPublished;
-  friend bool operator==(const SettledQuarter&, const SettledQuarter&) = default;
-};
 
 class SettledPrices {
  public:

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "edge/account/money_settings.h"
 #include "edge/battery/modbus_battery.h"
 #include "edge/battery/modbus_meter.h"
 #include "edge/commands/price_check.h"
@@ -144,14 +143,6 @@ bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid
   return status == Status::kOk || complain_of_meter(site, status_text(status).data());
 }
 
-/// What only counts money keeps no controller from driving; --check names its slips.
-bool read_contract(const std::string& path, MoneySettings& money) {
-  std::string error;
-  if (load_money_settings(path, money, error)) return true;
-  report(JournalLevel::kError, "%s", error.c_str());
-  return false;
-}
-
 /// One reading of the meter, and the house's load that follows from it; true when there is none, or
 /// it can be read.
 bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& meter) {
@@ -239,11 +230,8 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
 }  // namespace
 
 int run_check(const EdgeConfig& config, const std::string& path) {
-  MoneySettings money;
-  if (!read_contract(path, money)) return 1;
   DeviceSession session;
   if (!session.begin(config)) return 1;
-  std::printf("contract   %s\n", money.contract.text().c_str());
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   const bool is_well = report_check(config, battery, path, session.clock());

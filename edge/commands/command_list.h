@@ -15,7 +15,6 @@ namespace bess {
   ROW(Log)                 \
   ROW(Why)                 \
   ROW(Earned)              \
-  ROW(Replay)              \
   ROW(Hold)                \
   ROW(Limit)               \
   ROW(Record)              \

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "shared/local_time.h"
+#include "shared/local_day.h"
 
 namespace bess {
 
@@ -13,10 +13,6 @@ struct DayThroughput {
   std::int32_t local_day = 0;
   std::int32_t soc_moved_e4 = 0;
 };
-
-constexpr std::int32_t local_day_of(const LocalMinute& now) {
-  return (now.year * 100 + now.month) * 100 + now.day;
-}
 
 class CycleBudget {
  public:

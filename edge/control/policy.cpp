@@ -1,7 +1,6 @@
 #include "edge/control/policy.h"
 
 #include "shared/nn/exported_student.h"
-#include "shared/nn/learnt_prices.h"
 #include "shared/outlook/exported_outlook.h"
 
 namespace bess {
@@ -11,13 +10,6 @@ const OutlookModel* student_outlook() { return exported_outlook(); }
 
 std::int16_t student_context_class(const LocalMinute& now, std::int32_t context_centi) {
   return kExportedStudent.context.class_of(now.month, context_centi);
-}
-
-std::int16_t context_class_now(const CycleRecord& record) {
-  const bool is_told = student_outlook() != nullptr ? record.outlook.source != OutlookSource::kNone
-                                                    : record.price_level.is_known();
-  if (record.context_class > 0 && !is_told) return record.context_class;
-  return student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
 }
 
 Action decide_with_student(const LatticeState& state) { return kExportedStudent.decide(state); }
@@ -40,10 +32,6 @@ bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& sta
 int guard_rule_count() { return kExportedGuardRuleCount; }
 
 const char* guard_rule_name(int index) { return exported_guard_rule_name(index); }
-
-std::int32_t student_price_quartile(int quartile) {
-  return learnt_price_quartile(kExportedStudent, quartile);
-}
 
 int count_student_self_check_failures() {
   return count_exported_self_check_failures() + count_exported_outlook_failures();

@@ -26,9 +26,6 @@ inline std::int32_t context_centi_of(const CycleRecord& record) {
   return student_outlook() != nullptr ? record.outlook.break_even_centi
                                       : record.price_level.centi_eur_per_mwh();
 }
-/// The class that this build's student would have been given in a cycle: anew where the log tells
-/// of what, for the class that was logged is of the student of that time.
-std::int16_t context_class_now(const CycleRecord& record);
 /// What the exported student would do.
 Action decide_with_student(const LatticeState& state);
 
@@ -41,9 +38,6 @@ const char* guard_rule_name(int index);
 /// Whether that rule has a say there.
 bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& state,
                       std::int32_t price_centi_eur_per_mwh);
-
-/// Of the prices that the student learnt to decide on (learnt_prices.h).
-std::int32_t student_price_quartile(int quartile);
 
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edge/account/account_days.h"
+#include "edge/account/day_account.h"
 #include "edge/account/money_settings.h"
 #include "edge/control/quarter_hour_energy.h"
 #include "edge/fetch/pause.h"

@@ -134,7 +134,7 @@ void Notifier::tell_day(const ControllerStatus& status, std::int64_t now_utc_s) 
   today_ = std::move(today);
   const std::string before = std::exchange(state_.day, date);
   if (before.empty() || before == date || !settings_.daily) return;
-  const Json yesterday = ask_earned(settings_, {"yesterday", "--beside"});
+  const Json yesterday = ask_earned(settings_, {"yesterday"});
   const JsonValue day = *yesterday.value()["days"].begin();
   if (!day.exists()) return;
   tell({.severity = "day",

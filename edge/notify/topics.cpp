@@ -81,7 +81,6 @@ std::string state_json(const ControllerStatus& status, const std::vector<Alarm>&
   set_number(json, "charged_kwh", day["charged_kwh"], 1, 3);
   set_number(json, "discharged_kwh", day["discharged_kwh"], 1, 3);
   set_number(json, "earned_today_eur", day["earned_eur"], 1, 2);
-  set_number(json, "contract_today_eur", day["contract_eur"], 1, 2);
   if (day.exists()) json.set("today_since_utc", day["start_utc"].text_or(""));
   if (hold_power_w.has_value()) json.set("hold_power_w", *hold_power_w);
   return json.line();
@@ -104,11 +103,9 @@ std::string alarms_json(const std::vector<Alarm>& alarms) {
 std::string day_json(JsonValue earned) {
   const JsonValue day = *earned["days"].begin();
   Json json = Json::object({{"date", day["date"].text_or("")}});
-  for (const JsonValue part : {day, earned["beside"]}) {
-    for (const JsonValue member : part) {
-      const std::optional<double> number = member.number();
-      if (number.has_value()) json.set(std::string(member.key()).c_str(), *number);
-    }
+  for (const JsonValue member : day) {
+    const std::optional<double> number = member.number();
+    if (number.has_value()) json.set(std::string(member.key()).c_str(), *number);
   }
   return json.line();
 }

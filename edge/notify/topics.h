@@ -32,7 +32,7 @@ std::string state_json(const ControllerStatus& status, const std::vector<Alarm>&
 Json alarm_json(const Alarm& alarm);
 /// Of those that are reported.
 std::string alarms_json(const std::vector<Alarm>& alarms);
-/// `earned` is what ask_earned gave of that day, with --beside: all of its numbers.
+/// `earned` is what ask_earned gave of that day: all of its numbers.
 std::string day_json(JsonValue earned);
 Json event_json(const std::string& node, const Message& message);
 

@@ -122,20 +122,17 @@ function showWhy(why) {
 
 const kColumns = [  // head, key, decimals
   ["earned, EUR", "earned_eur", 2], ["of it an estimate", "estimated_eur", 2],
-  ["contract, EUR", "contract_eur", 2], ["net, EUR", "net_eur", 2],
   ["charged, kWh", "charged_kwh", 1], ["discharged, kWh", "discharged_kwh", 1],
   ["full cycles", "full_cycles", 2], ["EUR/MWh, mean", "mean_price_eur_per_mwh", 2],
   ["cycles driven", "driven_cycles", 0]];
 
 function showMonth(month) {
   const stops = month.stops.by_reason.map((stop) =>
-    ` ${stop.reason}: ${say(stop.cycles)} cycles, cost ` +
-    `${stop.cost_eur === null ? "not known" : eur(stop.cost_eur)}.`);
+    ` ${stop.reason}: ${say(stop.cycles)} cycles, ${say(stop.not_driven)} not driven.`);
   byId("money").textContent =
     `${eur(month.earned_eur)} earned, ${eur(month.estimated_eur)} of it an estimate: ` +
     `${say(month.settled_quarter_hours)} of ${say(month.quarter_hours)} quarter-hours are at ` +
-    `their settled price. The contract takes ${eur(month.contract_eur)}: ` +
-    `${eur(month.net_eur)} net; with the same charge at both ends ` +
+    "their settled price. With the same charge at both ends " +
     `${eur(month.earned_at_equal_soc_eur)}. ` +
     `Driven ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");

@@ -42,6 +42,11 @@ constexpr RetiredKey kRetiredKeys[] = {
     {"meter", "age_s_max"},
     {"meter", "check_every_s"},
     {"meter", "house_rise_w"},
+    {"contract", "import_adder_eur_per_mwh"},  // `bess-train log statement --config` has them
+    {"contract", "import_percent"},
+    {"contract", "export_fee_eur_per_mwh"},
+    {"contract", "export_percent"},
+    {"contract", "wear_eur_per_mwh"},
 };
 static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
 
@@ -106,8 +111,9 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_meter(section(root, "meter", &config.retired), {config.battery.link, config.battery.map},
              config.site);
   read_limits(section(root, "limits"), config.site);
+  static_cast<void>(section(root, "contract", &config.retired));
   // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
-  for (const char* const others : {"notify", "page", "contract", "settled"}) {
+  for (const char* const others : {"notify", "page", "settled"}) {
     static_cast<void>(root.table(others));
   }
   root.finish();

@@ -176,7 +176,7 @@ TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   const Json state = Json::parse(all.await("/state", "\"price_eur_per_mwh\""));
   for (const char* number :
        {"soc_percent", "power_w", "setpoint_w", "price_eur_per_mwh", "charged_kwh",
-        "discharged_kwh", "earned_today_eur", "contract_today_eur", "full_cycles_today"}) {
+        "discharged_kwh", "earned_today_eur", "full_cycles_today"}) {
     EXPECT_TRUE(state.value()[number].number().has_value()) << number;
   }
   EXPECT_STREQ(state.value()["mode"].text(), "running");

@@ -148,11 +148,6 @@ spoil=''
 echo "no package" >noise.deb
 refuses "no package" "noise.deb: is no package of bess-edge" --package noise.deb
 refuses "a missing package" "absent.deb: no such package" --package absent.deb
-for bad in "" 0 abc -5 101 "1 0"; do
-  code=0
-  flash --replay-limit "$bad" || code=$?
-  [ $code -eq 2 ] || fail "--replay-limit \"$bad\": exit code $code"
-done
 code=0
 flash --bogus || code=$?
 [ $code -eq 2 ] || fail "an unknown option: exit code $code"

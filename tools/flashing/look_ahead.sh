@@ -1,9 +1,8 @@
 # Sent to a machine by tools/flash ssh, before anything is installed there: what the new program
-# makes of this machine's settings, and of its log.
-#   sh look_ahead.sh PACKAGE SETTINGS MAPS LIMIT [SUDO]
-# LIMIT: percent of the log's decisions that may differ (bess-edge replay); empty: any.
-# Exit codes: 0 go on, 1 the settings are refused, 3 more decisions than LIMIT would differ.
-package=$1 settings=$2 maps=$3 limit=$4 as_root=${5:-}
+# makes of this machine's settings.
+#   sh look_ahead.sh PACKAGE SETTINGS MAPS [SUDO]
+# Exit codes: 0 go on, 1 the settings are refused.
+package=$1 settings=$2 maps=$3 as_root=${4:-}
 # Without settings, or the maps that they name, there is nothing to look at yet.
 [ -e "$settings" ] && [ -d "$maps" ] || exit 0
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
@@ -18,12 +17,4 @@ if systemctl is-active --quiet bess-edge; then
 else
   $as_root "$edge" --config "$settings" --check >&2 || echo "note: --check is not content yet" >&2
 fi
-code=0
-$as_root "$edge" replay month --config "$settings" ${limit:+--limit "$limit"} \
-  >"$work/replay" 2>"$work/said" || code=$?
-case $code in
-  0 | 3) sed 's/^/replay: /' "$work/replay"; [ $code -eq 0 ] || { cat "$work/said" >&2; exit 3; } ;;
-  *)  # a machine without a log of its own has nothing to compare with; one that asked is told
-    [ -z "$limit" ] || echo "note: nothing was replayed: $(tail -n 1 "$work/said")" >&2 ;;
-esac
 exit 0

@@ -77,10 +77,8 @@ void print_found(const std::vector<std::pair<std::string, Fitted>>& found, bool 
 
 BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& nameplate) {
   if (options.logs.empty()) return {};
-  std::vector<LoggedCycle> cycles;
-  for (const std::string& log : options.logs)
-    std::ranges::copy(read_cycle_log(log), std::back_inserter(cycles));
-  std::ranges::sort(cycles, {}, &LoggedCycle::utc_s);
+  std::vector<LoggedCycle> cycles = read_cycle_log(options.logs).cycles;
+  std::erase_if(cycles, [](const LoggedCycle& cycle) { return !cycle.has_reading; });
   const BatteryFit fit = fit_battery(cycles, nameplate);
   if (fit.found().empty()) {
     fail(

@@ -21,6 +21,7 @@ void add_commands(ProgramCommand& app) {
   add_report_command(app);
   add_refresh_command(app);
   add_battery_commands(app);
+  add_log_commands(app);
   add_config_command(app);
   add_schema_command(app);
 }

@@ -37,6 +37,10 @@ void add_sweep_task(ProgramCommand& sweep);
 void add_sweep_collect(ProgramCommand& sweep);
 void add_sweep_packages(ProgramCommand& sweep);
 void add_battery_commands(ProgramCommand& app);  ///< fit
+void add_log_commands(ProgramCommand& app);
+void add_log_compare(ProgramCommand& log);
+void add_log_replay(ProgramCommand& log);
+void add_log_statement(ProgramCommand& log);
 void add_config_command(ProgramCommand& app);
 void add_schema_command(ProgramCommand& app);
 

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "shared/battery_keys.h"
-#include "shared/host/csv.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
@@ -314,20 +313,6 @@ void require_same_battery(const std::vector<LoggedCycle>& cycles,
 }
 
 }  // namespace
-
-std::vector<LoggedCycle> read_cycle_log(const std::string& path) {
-  const CsvTable table = CsvTable::read(path);
-  const std::size_t utc = table.column("utc"), soc = table.column("soc_e4");
-  const std::size_t power = table.column("battery_power_w");
-  const std::size_t ordered = table.column("ordered_power_w"), reason = table.column("reason");
-  std::vector<LoggedCycle> cycles;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    if (table.text(row, soc).empty() || table.text(row, power).empty()) continue;
-    cycles.push_back({table.utc_s(row, utc), table.number(row, soc) / 1e4, table.number(row, power),
-                      table.number(row, ordered), table.text(row, reason) == "power_limit"});
-  }
-  return cycles;
-}
 
 std::vector<std::pair<std::string, Fitted>> BatteryFit::found() const {
   const std::pair<const char*, const std::optional<Fitted>&> all[] = {

@@ -5,27 +5,15 @@
 // recording.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "workstation/env/cycle_log.h"
 
 namespace bess {
-
-struct LoggedCycle {
-  std::int64_t utc_s;
-  double soc_frac;
-  double power_w;       ///< measured at the tick, before its order
-  double ordered_w;     ///< from this tick on
-  bool is_cut = false;  ///< that order, to what the battery said it could
-};
-
-/// Of `bess-edge log --csv`, cycles without a reading left out. Throws UserError naming file and
-/// line.
-std::vector<LoggedCycle> read_cycle_log(const std::string& path);
 
 struct Fitted {
   double value = 0;
@@ -48,8 +36,9 @@ struct BatteryFit {
   [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
 };
 
-/// Power, capacity and SoC window are those of `nameplate`. Throws UserError where the log says
-/// that they cannot be: more power than it has, or cells that give back more than they were given.
+/// All `cycles` have a reading. Power, capacity and SoC window are those of `nameplate`. Throws
+/// UserError where the log says that they cannot be: more power than it has, or cells that give
+/// back more than they were given.
 BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate);
 
 }  // namespace bess

@@ -65,22 +65,45 @@ TEST(DayAccount, TheLineIsThis) {
   EXPECT_EQ(
       account_of(records).line(),
       "2023-11-26: +0.40 EUR (0 of 3 quarter-hours at the settled price, an estimate in the "
-      "others; "
-      "no fees), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
+      "others), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
       "soc_empty 3, held 1)");
 }
 
-/// 2 kWh in at 50 EUR/MWh and 45 a MWh.
-TEST(DayAccount, TheLineTellsTheFees) {
-  MoneyTerms terms{.capacity_wh = 8'000};
-  terms.contract.costs.import_adder_eur_per_mwh = 45;
-  const DayAccount day = account_of(std::vector<CycleRecord>(15, cycle(4'000, 5'000)), terms);
-  EXPECT_NEAR(day.money().contract_eur, 0.09, 1e-9);
-  EXPECT_NEAR(day.money().net_eur(), -0.19, 1e-9);
-  EXPECT_NE(day.line().find("-0.10 EUR (0 of 2 quarter-hours at the settled price, an estimate in "
-                            "the others; 0.09 EUR of fees not taken off)"),
-            std::string::npos)
-      << day.line();
+/// An order holds from when it was written, which the price's age tells; a release is none.
+TEST(DayAccount, ASampleIsARecordsOwn) {
+  CycleRecord record = cycle(-7, 100);
+  ExchangeSample taken;
+  record.price.minute_utc_s = -60;
+  record.price_age_s = 5;
+  record.written = true;
+  ASSERT_TRUE(sample_of(record, taken));
+  EXPECT_EQ(taken.power_w, -7);
+  EXPECT_TRUE(taken.is_ordered);
+  EXPECT_NEAR(taken.written_after_s, 5.5, 1e-6);
+  record.mode = Mode::kSafe;
+  ASSERT_TRUE(sample_of(record, taken));
+  EXPECT_FALSE(taken.is_ordered);
+  record.has_measurement = false;
+  EXPECT_FALSE(sample_of(record, taken));
+}
+
+/// Three ticks without a record, and a clock that was stepped back, which leaves none out.
+TEST(DayAccount, TicksWithoutARecordCount) {
+  set_market_time_zone();
+  const MoneyTerms terms;
+  DayBook book(kDay, kDay, terms);
+  const std::int64_t noon_utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
+  for (const int tick : {-400, 0, 1, 5, 2}) {  // the first is of the day before
+    CycleRecord record = cycle(0, 0, Reason::kPriceAge);
+    record.mode = Mode::kHolding;
+    record.utc_s = noon_utc_s + tick * kSecondsPerStep;
+    book.add(record);
+  }
+  const DayAccount day = book.accounts().at(0);
+  EXPECT_EQ(day.cycles(), 4);
+  EXPECT_EQ(day.missing_cycles(), 3);
+  EXPECT_EQ(day.driven_share(), 0);
+  EXPECT_EQ(day.not_driven_by_reason()[static_cast<std::size_t>(Reason::kPriceAge)], 4);
 }
 
 TEST(DayAccount, TheThroughputOfAnotherDayIsNotThisDays) {

@@ -73,35 +73,16 @@ TEST(SettledPrices, ADamagedFileIsNotBelieved) {
   EXPECT_EQ(prices.quarters().size(), 2u);
 }
 
-TEST(MoneySettings, AreReadAndRefusedByFileAndLine) {
+TEST(MoneySettings, AreReadOutOfTheWholeConfiguration) {
   const TemporaryFolder folder;
-  MoneySettings money;
+  const std::string path = folder.write("edge.toml", "[battery]\ncapacity_wh = 5000\n");
+  TomlValue document;
   std::string error;
-  ASSERT_TRUE(load_money_settings(
-      folder.write("edge.toml",
-                   "[battery]\ncapacity_wh = 5000\n[contract]\nimport_percent = 2\n"
-                   "import_adder_eur_per_mwh = 45.5\nwear_eur_per_mwh = 3\n"),
-      money, error))
-      << error;
+  ASSERT_TRUE(parse_toml_file(path, document, error)) << error;
+  TomlTable root(&document, path, "", error);
+  const MoneySettings money = read_money_settings(root);
   EXPECT_EQ(money.capacity_wh, 5'000);
-  EXPECT_EQ(money.contract.costs.import_adder_eur_per_mwh, 45.5);
   EXPECT_EQ(money.settled_file, folder.file("state/settled.csv"));
-  // At -100 EUR/MWh and 2 %: 45.5 + 2 + 3 a MWh taken, 3 a MWh given.
-  EXPECT_NEAR(money.contract.costs_eur(2, -100), 2 * 50.5, 1e-9);
-  EXPECT_NEAR(money.contract.costs_eur(-2, -100), 6, 1e-9);
-  const auto refused = [&](const std::string& text) {
-    std::string why;
-    MoneySettings ignored;
-    EXPECT_FALSE(load_money_settings(folder.write("edge.toml", text), ignored, why)) << text;
-    return why;
-  };
-  EXPECT_THAT(refused("[contract]\nimport_percent = 101\n"),
-              HasSubstr("edge.toml:2: [contract] import_percent must lie between 0 and 100"));
-  EXPECT_THAT(refused("[contract]\nexport_fee_eur_per_mwh = -1\n"),
-              HasSubstr("between 0 and 1000"));
-  EXPECT_THAT(refused("[contract]\nwear = 1\n"),
-              HasSubstr("edge.toml:2: [contract] wear is not a known key"));
-  EXPECT_THAT(refused("[contract]\nimport_percent = \"2\"\n"), HasSubstr("must be a number"));
 }
 
 }  // namespace

@@ -214,23 +214,6 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   EXPECT_NEAR(json.value()["estimated_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 0);
   EXPECT_EQ(json.value()["stops"]["driven_share"].number(), 1);
-  const Json beside = Json::parse(ask({"earned", span, "--beside", "--json"}).out);
-  EXPECT_DOUBLE_EQ(beside.value()["beside"]["this_battery_eur"].number().value(),
-                   beside.value()["earned_at_equal_soc_eur"].number().value());
-  EXPECT_THAT(ask({"earned", span, "--beside", "--csv"}).error, Names("--beside --csv"));
-}
-
-/// What only counts money is named by its file and line, and keeps nobody from driving.
-TEST_F(Questions, ASlipInTheContractIsNamed) {
-  log_until_now(2);
-  const std::string good = text_of_file(config_);
-  const std::string bad = folder_.write("edge.toml", good + "\n[contract]\nimport_percent = 101\n");
-  EXPECT_EQ(bad, config_);
-  for (const Said& said : {ask({"earned"}), ask({"--check"})}) {
-    EXPECT_EQ(said.exit_code, 1);
-    EXPECT_THAT(said.error, Names("edge.toml:9 [contract] import_percent 0 100"));
-  }
-  EXPECT_EQ(ask({"why"}).exit_code, 0);
 }
 
 /// The bill of the day that the log is of, at a price that was published since.
@@ -243,17 +226,11 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   prices.put(published);
   std::filesystem::create_directories(folder_.file("notify"));
   ASSERT_NE(folder_.write("state/settled.csv", prices.text()), "");
-  const std::string good = text_of_file(config_);
-  ASSERT_NE(folder_.write("edge.toml", good + "\n[contract]\nimport_adder_eur_per_mwh = 100\n"),
-            "");
   const std::string span = "2020-01-01.." + day;
   const Json json = Json::parse(ask({"earned", span, "--json"}).out);
   // 3 kW at 40 EUR/MWh for two hours, a quarter of an hour of it billed at 140.
   EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), -0.240 - 0.750 * 0.1, 1e-9);
-  EXPECT_NEAR(json.value()["contract_eur"].number().value_or(0), 0.6, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
-  EXPECT_THAT(ask({"earned", span, "--html"}).out, HasSubstr("</html>"));
-  EXPECT_THAT(ask({"earned", "--html", "--csv"}).error, Names("--html --csv"));
   ASSERT_NE(folder_.write("state/settled.csv", "damaged"), "");
   const Said damaged = ask({"earned", span});
   EXPECT_EQ(damaged.exit_code, 0);
@@ -270,52 +247,6 @@ TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
   EXPECT_THAT(ask({"earned", "tomorrow"}).error, Names("today yesterday"));
   EXPECT_EQ(ask({"earned", "week", "month"}).exit_code, 2);
   EXPECT_THAT(ask({"earned", "--csv", "--json"}).error, Names("--csv --json"));
-}
-
-Action of_this_student(const CycleRecord& r) {
-  return decide_with_student(make_lattice_state(local_minute_of(r.utc_s), r.context_class,
-                                                r.measurement.soc_e4,
-                                                r.price.price_centi_eur_per_mwh));
-}
-
-std::string last_two_days(std::int64_t utc_s) {
-  return std::string(local_text(utc_s - 43'200).view()).substr(0, 10) + ".." +
-         std::string(local_text(utc_s).view()).substr(0, 10);
-}
-
-TEST_F(Questions, ReplayOfTheSameStudentDiffersNowhere) {
-  log_until_now(60, of_this_student);
-  const Said said = ask({"replay", last_two_days(newest_utc_s_), "--limit", "1"});
-  EXPECT_EQ(said.exit_code, 0) << said.error;
-  EXPECT_THAT(said.out, Names("0 60 0.00"));
-}
-
-TEST_F(Questions, ReplayCountsWhatDiffersAndWhatItIsWorth) {
-  int cycle = 0;
-  int turned = 0;
-  log_until_now(60, [&](const CycleRecord& r) {
-    const Action own = of_this_student(r);
-    const bool is_turned = ++cycle % 6 == 0;  // a version before, which did the contrary there
-    turned += is_turned ? 1 : 0;
-    return !is_turned ? own : own == Action::kIdle ? Action::kCharge : Action::kIdle;
-  });
-  const std::string days = last_two_days(newest_utc_s_);
-  const Json json = Json::parse(ask({"replay", days, "--json"}).out);
-  EXPECT_EQ(json.value()["differing"].number().value(), turned);
-  EXPECT_NEAR(json.value()["differing_percent"].number().value(), 100.0 / 6, 1e-3);
-  // All prices are the day's mean: no decision is worth anything.
-  EXPECT_NEAR(json.value()["gained_eur"].number().value(), 0, 1e-9);
-  EXPECT_EQ(ask({"replay", days, "--limit", "17"}).exit_code, 0);
-  const Said over = ask({"replay", days, "--limit", "16"});
-  EXPECT_EQ(over.exit_code, 3);
-  EXPECT_THAT(over.error, Names("16.67 %"));
-}
-
-TEST_F(Questions, ReplayRefusesWhatItCannotAnswer) {
-  log_until_now(1);
-  EXPECT_EQ(ask({"replay", "2020-01-01..2020-01-31"}).exit_code, 1);
-  EXPECT_EQ(ask({"replay", "--limit", "101"}).exit_code, 2);
-  EXPECT_EQ(ask({"replay", "soon"}).exit_code, 2);
 }
 
 TEST_F(Questions, AMomentIsTheNewestThatHasBeen) {

@@ -108,7 +108,7 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
   settings_.program = write_script("bess-edge", R"(case "$*" in
 "earned today --json --config edge.toml") cat )" + folder_.file("today") +
                                                     R"(;;
-"earned yesterday --beside --json --config edge.toml")
+"earned yesterday --json --config edge.toml")
   echo '{"days": [{"date": "2023-03-27", "line": "2023-03-27: +0.77 EUR"}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
   const auto cycle = [&](std::int64_t utc_s, const std::string& today) {
@@ -207,8 +207,7 @@ TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
   Broker broker(folder_, port());
   settings_.program = write_script("bess-edge", R"(case "$1 $2" in
 "earned today") cat )" + folder_.file("today") + R"(;;
-"earned yesterday") echo '{"days": [{"date": "2023-03-27", "net_eur": 0.125, "cycles": 9}],
-  "beside": {"rule_eur": 1.25}}';;
+"earned yesterday") echo '{"days": [{"date": "2023-03-27", "earned_eur": 0.125, "cycles": 9}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
   const auto cycle = [&](std::int64_t utc_s, const char* today) {
     static_cast<void>(folder_.write("today", today));
@@ -224,8 +223,8 @@ TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
                     HasSubstr("\"today_since_utc\":\"2023-03-26T22:00:00Z\"")));
   cycle(kNow + 86'400, R"({"days": [{"date": "2023-03-28"}]})");
   Listener later(port(), "bess/v1/garage/day");
-  EXPECT_EQ(later.await("/day", "net_eur"),
-            R"({"date":"2023-03-27","net_eur":0.125,"cycles":9,"rule_eur":1.25})");
+  EXPECT_EQ(later.await("/day", "earned_eur"),
+            R"({"date":"2023-03-27","earned_eur":0.125,"cycles":9})");
 }
 
 /// A hold and its end by the broker, where the key allows it: one at a time, in order, never one

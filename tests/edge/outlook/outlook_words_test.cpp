@@ -1,8 +1,7 @@
-// What people are told of an outlook: why, status, replay.
+// What people are told of an outlook: why, status.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/account/replay.h"
 #include "edge/control/policy.h"
 #include "edge/log/health.h"
 #include "edge/log/ring_log.h"
@@ -77,28 +76,5 @@ TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
 
 /// What was logged is decided again alike; by another break-even price some of it is not; what was
 /// logged without an outlook cannot be.
-TEST_F(OutlookWords, ReplayDecidesByTheBreakEvenPriceThatWasLogged) {
-  TemporaryFolder folder;
-  RingLog ring;
-  FileMessage error;
-  const std::string path = folder.file("decisions.ring");
-  ASSERT_TRUE(ring.open(path.c_str(), 720, error)) << error.c_str();
-  for (int i = 0; i < 40; ++i) {
-    CycleRecord record = decided(noon_utc_s_ + i * kSecondsPerStep, -3'000 + 500 * i);
-    record.cycle = i + 1;
-    if (i >= 30) record.outlook = {};
-    if (i < 10) record.outlook.break_even_centi = 30'000;
-    ASSERT_TRUE(ring.append(record));
-  }
-  LogReader log;
-  EventLogSettings settings;
-  settings.ring = path.c_str();
-  ASSERT_TRUE(log.open(settings, error)) << error.c_str();
-  const Replay replay = replay_days(log, 20'250'611, 20'250'611, 4'000);
-  EXPECT_EQ(replay.compared, 30);
-  EXPECT_GT(replay.differing, 0);
-  EXPECT_LE(replay.differing, 10);
-}
-
 }  // namespace
 }  // namespace bess

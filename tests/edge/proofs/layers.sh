@@ -109,6 +109,7 @@ layer $w/run                        $w/run $w/chain $w/report $w/backtest $learn
 layer $w/sweep                      $w/sweep $w/run $w/chain $w/report $learnt shared
 layer $w/size                       $w/size $w/chain $w/report $w/backtest $learnt shared
 layer $w/impact                     $w/impact $w/chain $w/report $learnt shared
+layer $w/log                        $w/log $w/chain $w/report $learnt shared
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared
 

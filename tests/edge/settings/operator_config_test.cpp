@@ -64,7 +64,6 @@ TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
   EdgeConfig config;
   std::string error;
   EXPECT_TRUE(load_pieces({.rest = "[notify]\nno_such_key = 1\n"}, config, error)) << error;
-  EXPECT_TRUE(load_pieces({.rest = "[contract]\nno_such_key = 1\n"}, config, error)) << error;
   EXPECT_TRUE(load_pieces({.rest = "[settled]\nno_such_key = 1\n"}, config, error)) << error;
 }
 

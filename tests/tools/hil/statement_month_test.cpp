@@ -10,7 +10,7 @@
 
 #include "edge/account/account_days.h"
 #include "edge/account/cycle_account.h"
-#include "edge/account/statement.h"
+#include "edge/account/earnings.h"
 #include "edge/log/ring_log.h"
 #include "shared/host/json.h"
 #include "shared/host/minute_file.h"
@@ -102,10 +102,10 @@ struct Month {
   MoneyTerms terms;
   Account record;
 
-  [[nodiscard]] Statement statement() const {
+  [[nodiscard]] Earnings statement() const {
     DayBook book(kFirstDay, kLastDay, terms);
     for (const CycleRecord& cycle : outcome.evidence.log) book.add(cycle);
-    return Statement(book.accounts(), terms.contract);
+    return Earnings(book.accounts());
   }
 };
 
@@ -141,7 +141,7 @@ double by_readings_eur(const Month& month) {
   return eur;
 }
 
-void tell(const char* name, const Statement& statement, const Month& month) {
+void tell(const char* name, const DayAccount& statement, const Month& month) {
   const double net_wh = month.record.charged_wh - month.record.discharged_wh;
   const double told_wh = 1'000 * (statement.charged_kwh() - statement.discharged_kwh());
   std::printf("%-12s by readings alone %+.3f %%\n", name,
@@ -159,7 +159,7 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
     const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
     const Month month = run_month("[battery]\nmap = \"" + map + "\"\n");
     EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
-    const Statement statement = month.statement();
+    const DayAccount statement = month.statement().together();
     tell(map.c_str(), statement, month);
     const QuarterHourMoney money = statement.money();
     EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
@@ -170,25 +170,18 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
   }
 }
 
-/// The contract is of each direction: the sums of both, and what it takes of them.
-TEST(StatementOfAMonth, CountsBothDirectionsAndTheContract) {
-  Month month = run_month("[battery]\nmap = \"alphaess\"\n");
-  month.terms.contract.costs = {.import_adder_eur_per_mwh = 45, .export_fee_eur_per_mwh = 3};
-  month.terms.contract.wear_eur_per_mwh = 4;
-  const Statement statement = month.statement();
+TEST(StatementOfAMonth, CountsBothDirections) {
+  const Month month = run_month("[battery]\nmap = \"alphaess\"\n");
+  const DayAccount statement = month.statement().together();
   const Directions hand = by_hand(month.scenario, month.outcome.evidence);
   std::printf("charged %.3f kWh, by hand %.3f; discharged %.3f, by hand %.3f\n",
               statement.charged_kwh(), hand.charged_wh / 1'000, statement.discharged_kwh(),
               hand.discharged_wh / 1'000);
   EXPECT_NEAR(statement.charged_kwh(), hand.charged_wh / 1'000, hand.charged_wh / 1e6);
   EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
-  const double contract_eur = (hand.charged_wh * (45 + 4) + hand.discharged_wh * (3 + 4)) / 1e6;
-  const double net_eur = month.record.profit_eur - contract_eur;
-  EXPECT_NEAR(statement.money().contract_eur, contract_eur, kOfTheMoney * contract_eur);
-  EXPECT_NEAR(statement.money().net_eur(), net_eur, kOfTheMoney * net_eur);
 }
 
-/// From its ring and the notifier's file, by the program, in the few MB that it has; with rivals.
+/// From its ring and the notifier's file, by the program, in the few MB that it has.
 TEST(StatementOfAMonth, IsWhatTheProgramSays) {
   const Month month = run_month("[battery]\nmap = \"alphaess\"\n");
   const TemporaryFolder folder("/dev/shm");  // each record waits for its disk
@@ -203,28 +196,27 @@ TEST(StatementOfAMonth, IsWhatTheProgramSays) {
       folder.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
                                 "/edge/maps/alphaess.toml\"\n"
                                 "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
-  const ProgramResult said = run_and_hear(
-      {BESS_EDGE_PROGRAM, "earned", "2023-03", "--beside", "--json", "--config", config}, 60);
+  const ProgramResult said =
+      run_and_hear({BESS_EDGE_PROGRAM, "earned", "2023-03", "--json", "--config", config}, 60);
   ASSERT_TRUE(said.is_well()) << said.complaint();
   const Json json = Json::parse(said.output);
-  const Statement statement = month.statement();
+  const DayAccount statement = month.statement().together();
   EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), statement.money().earned_eur, 1e-4);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value_or(0), statement.charged_kwh(), 1e-3);
   EXPECT_EQ(json.value()["validated_quarter_hours"].number(), 31 * 96 - 4);
-  EXPECT_GT(json.value()["beside"]["foresight_eur"].number().value_or(0),
-            json.value()["beside"]["student_undisturbed_eur"].number().value_or(1e9));
   EXPECT_EQ(json.value()["stops"]["missing_cycles"].number(), 0);
 }
 
 TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
   const Month month = run_month(kDisturbed);
-  const Statement statement = month.statement();
+  const Earnings earnings = month.statement();
+  const DayAccount& statement = earnings.together();
   tell("disturbed", statement, month);
   EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
               kOfTheMoney * month.record.profit_eur);
   EXPECT_GT(statement.unseen_kwh(), 0);
   EXPECT_LT(statement.unseen_kwh(), 2);
-  EXPECT_EQ(statement.json().value()["days"].size(), 31u);
+  EXPECT_EQ(earnings.days().size(), 31u);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ class Answers(unittest.TestCase):
     def answers(self, *arguments, code=0):
         """What a command answers, each line held; all keys of a kind are always there."""
         arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
-        self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery) )?\S+",
+        self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery|log) )?\S+",
                                        " ".join(arguments))[0])
         lines = [json.loads(line) for line in self.bess([*arguments, "--json"], code).splitlines()]
         self.assertTrue(lines, arguments)
@@ -195,10 +195,14 @@ class Answers(unittest.TestCase):
 
     def test_4_battery(self):
         with open(self.file("log.csv"), "w") as log:
-            print("utc,soc_e4,battery_power_w,ordered_power_w,reason", file=log)
+            print("utc,soc_e4,battery_power_w,ordered_power_w,reason,mode,price_minute_utc,"
+                  "price_centi_eur_per_mwh,price_age_s,student_action,battery_status,written,"
+                  "price_level_centi_q16,outlook,break_even_centi,price_stands_in,stand_in_centi",
+                  file=log)
             for cycle in range(40):
                 at = f"2026-06-01T{cycle // 30:02}:{2 * cycle % 60:02}:00Z"
-                print(f"{at},5000,{30 + cycle % 3},0,student", file=log)
+                print(f"{at},5000,{30 + cycle % 3},0,student,running,{at},5000,2,idle,ok,1,"
+                      "327680000,none,0,0,0", file=log)
         with open(self.file("steps.toml"), "w") as steps:
             print("[battery]\ndelay_s = 2.5\nramp_w_per_s = 0\ntime_constant_s = 3", file=steps)
         keys = self.answers("battery", "fit", "--log", "@log.csv", "--steps", "@steps.toml",
@@ -209,6 +213,11 @@ class Answers(unittest.TestCase):
         shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc",
                              "--config", "@battery.toml")
         self.assertEqual(len(shown), 1)
+        compared = self.answers("log", "compare", "@log.csv", "--policy", "rbc", "compiled")
+        self.assertEqual([c["policy"] for c in compared],
+                         ["this battery", "rbc", "compiled", "foresight"])
+        replayed = self.answers("log", "replay", "@log.csv", "--student", "compiled")[0]
+        self.assertEqual(replayed["compared"], 40)
 
     def test_5_rules(self):
         check = ["rules", "check", "--rules", "@rules.toml"]

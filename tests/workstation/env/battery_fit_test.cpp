@@ -137,20 +137,24 @@ TEST(BatteryFit, TheLogOfAnotherBatteryIsRefused) {
 TEST(BatteryFit, ALogIsReadByTheNamesOfItsColumns) {
   const TemporaryFolder folder;
   const std::string path = folder.file("log.csv");
-  std::ofstream(path) << "utc,cycle,soc_e4,battery_power_w,ordered_power_w,reason\n"
-                         "2026-06-01T00:00:00Z,1,5000,12,4000,student\n"
-                         "2026-06-01T00:02:00Z,2,,,0,link\n"
-                         "2026-06-01T00:04:00Z,3,5100,4012,2400,power_limit\n";
-  const std::vector<LoggedCycle> cycles = read_cycle_log(path);
-  ASSERT_EQ(cycles.size(), 2U) << "a cycle without a reading is left out";
-  EXPECT_EQ(cycles[1].utc_s - cycles[0].utc_s, 240);
-  EXPECT_EQ(cycles[1].power_w, 4'012);
+  std::ofstream(path)
+      << "utc,cycle,mode,soc_e4,battery_power_w,ordered_power_w,reason,battery_status,written,"
+         "price_minute_utc,price_centi_eur_per_mwh,price_age_s,student_action,"
+         "price_level_centi_q16,outlook,break_even_centi,price_stands_in,stand_in_centi\n"
+         "2026-06-01T00:00:00Z,1,running,5000,12,4000,student,ok,1,none,0,-1,none,0,none,0,0,0\n"
+         "2026-06-01T00:02:00Z,2,holding,0,0,0,link,timeout,0,none,0,-1,none,0,none,0,0,0\n"
+         "2026-06-01T00:04:00Z,3,running,5100,4012,2400,power_limit,ok,1,none,0,-1,none,0,none,0,0,"
+         "0\n";
+  const std::vector<LoggedCycle> cycles = read_cycle_log({path}).cycles;
+  ASSERT_EQ(cycles.size(), 3U);
+  EXPECT_FALSE(cycles[1].has_reading);
+  EXPECT_EQ(cycles[2].power_w, 4'012);
   EXPECT_EQ(cycles[0].ordered_w, 4'000);
   EXPECT_EQ(cycles[0].soc_frac, 0.5);
   EXPECT_FALSE(cycles[0].is_cut);
-  EXPECT_TRUE(cycles[1].is_cut);
+  EXPECT_TRUE(cycles[2].is_cut);
   std::ofstream(path) << "utc,cycle,soc_e4\n2026-06-01T00:00:00Z,1,5000\n";
-  EXPECT_THROW(static_cast<void>(read_cycle_log(path)), UserError);
+  EXPECT_THROW(static_cast<void>(read_cycle_log({path})), UserError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Some days together: sums by hand, the charge at both ends, and the same numbers as text, CSV and
 // JSON.
-#include "edge/account/statement.h"
+#include "edge/account/earnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "edge/account/account_days.h"
-#include "edge/account/statement_page.h"
 #include "shared/local_time.h"
 
 namespace bess {
@@ -16,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kStatementStart = 1'795'341'600;  // 2026-11-22T10:00:00Z
+constexpr std::int64_t kEarningsStart = 1'795'341'600;  // 2026-11-22T10:00:00Z
 
 /// Half an hour at that power and price, from that SoC to that one.
 void add_half_hour(DayBook& book, std::int64_t from_utc_s, std::int32_t power_w,
@@ -38,72 +37,62 @@ void add_half_hour(DayBook& book, std::int64_t from_utc_s, std::int32_t power_w,
 }
 
 /// 2 kWh in at 50 EUR/MWh on the first day, 1 kWh out at 250 on the second: half of it is left.
-Statement two_days(const MoneyTerms& terms = {}) {
+Earnings two_days(const MoneyTerms& terms = {}) {
   set_market_time_zone();
   DayBook book(20'261'122, 20'261'123, terms);
-  add_half_hour(book, kStatementStart, 4'000, 5'000, 3'000, 5'500);
+  add_half_hour(book, kEarningsStart, 4'000, 5'000, 3'000, 5'500);
   CycleRecord rest{
-      .utc_s = kStatementStart + 15 * 120, .mode = Mode::kRunning, .reason = Reason::kStudent};
+      .utc_s = kEarningsStart + 15 * 120, .mode = Mode::kRunning, .reason = Reason::kStudent};
   rest.has_measurement = true;
   rest.measurement.soc_e4 = 5'500;
   book.add(rest);
-  rest.utc_s = kStatementStart + 86'400 - 120;
+  rest.utc_s = kEarningsStart + 86'400 - 120;
   rest.ordered_power_w = -2'000;
   rest.written = true;
   book.add(rest);
-  add_half_hour(book, kStatementStart + 86'400, -2'000, 25'000, 5'500, 4'250);
-  book.add(
-      {.utc_s = kStatementStart + 90'000, .mode = Mode::kHolding, .reason = Reason::kPriceAge});
-  return Statement(book.accounts(), terms.contract);
+  add_half_hour(book, kEarningsStart + 86'400, -2'000, 25'000, 5'500, 4'250);
+  book.add({.utc_s = kEarningsStart + 90'000, .mode = Mode::kHolding, .reason = Reason::kPriceAge});
+  return Earnings(book.accounts());
 }
 
-TEST(Statements, AddUp) {
-  const Statement both = two_days({.capacity_wh = 8'000});
-  EXPECT_NEAR(both.earned_eur(), -0.10 + 0.25, 1e-9);
-  EXPECT_NEAR(both.charged_kwh(), 2, 1e-9);
-  EXPECT_NEAR(both.discharged_kwh(), 1, 1e-9);
-  EXPECT_NEAR(both.unseen_kwh(), 0, 1e-9);
-  EXPECT_NEAR(both.stored_kwh(), (0.425 - 0.30) * 8, 1e-9);
+TEST(EarningsOfDays, AddUp) {
+  const Earnings both = two_days({.capacity_wh = 8'000});
+  const DayAccount& all = both.together();
+  EXPECT_NEAR(all.earned_eur(), -0.10 + 0.25, 1e-9);
+  EXPECT_NEAR(all.charged_kwh(), 2, 1e-9);
+  EXPECT_NEAR(all.discharged_kwh(), 1, 1e-9);
+  EXPECT_NEAR(all.unseen_kwh(), 0, 1e-9);
+  EXPECT_NEAR(all.stored_kwh(), (0.425 - 0.30) * 8, 1e-9);
   // Three quarter-hours each, of the first and of the second day; what is stored has losses.
-  EXPECT_NEAR(both.mean_price_eur_per_mwh(), 150, 1e-9);
-  EXPECT_NEAR(both.stored_eur(), 0.15 * std::sqrt(0.9), 1e-9);
-  EXPECT_NEAR(both.money().estimated_eur, 0.15, 1e-9);
+  EXPECT_NEAR(all.money().mean_price_eur_per_mwh(), 150, 1e-9);
+  EXPECT_NEAR(all.stored_eur(), 0.15 * std::sqrt(0.9), 1e-9);
+  EXPECT_NEAR(all.money().estimated_eur, 0.15, 1e-9);
 }
 
 /// 2 kWh in and 1 kWh out, in three quarter-hours each; the first of the second day is published at
 /// 300 EUR/MWh, the second validated at 100: 0.0667 kWh, 0.5 kWh; the rest at the indicative 250.
-TEST(Statements, AreBilledByQuarterHoursAsFarAsTheyAreSettled) {
+TEST(EarningsOfDays, AreBilledByQuarterHoursAsFarAsTheyAreSettled) {
   MoneyTerms terms{.capacity_wh = 8'000};
-  terms.contract.costs = {.import_adder_eur_per_mwh = 45, .export_percent = 10};
-  terms.contract.wear_eur_per_mwh = 2;
-  const std::int64_t second = kStatementStart + 86'400;
+  const std::int64_t second = kEarningsStart + 86'400;
   const SettledQuarter settled[] = {{second - 900, 300, PriceState::kPublished},
                                     {second, 100, PriceState::kValidated}};
   terms.settled.put(settled);
-  const Statement both = two_days(terms);
-  const QuarterHourMoney money = both.money();
+  const Earnings both = two_days(terms);
+  const QuarterHourMoney money = both.together().money();
   const double before_kwh = 2.0 / 30, then_kwh = 0.5, last_kwh = 1 - before_kwh - then_kwh;
   const double out_eur = (before_kwh * 300 + then_kwh * 100 + last_kwh * 250) / 1'000;
   EXPECT_NEAR(money.earned_eur, -0.10 + out_eur, 1e-9);
   EXPECT_NEAR(money.estimated_eur, -0.10 + last_kwh * 0.25, 1e-9);
-  EXPECT_NEAR(money.contract_eur, 2 * 0.047 + 0.1 * out_eur + 1 * 0.002, 1e-9);
+  EXPECT_EQ(money.contract_eur, 0);
   EXPECT_EQ(money.published, 2);
   EXPECT_EQ(money.validated, 1);
-  EXPECT_EQ(both.earned_eur(), money.earned_eur);
-  // What is stored would be sold, by the same contract.
-  EXPECT_NEAR(both.earned_at_equal_soc_eur(),
-              money.net_eur() + 0.001 * std::sqrt(0.9) * (both.mean_price_eur_per_mwh() * 0.9 - 2),
-              1e-9);
   const Json json = Json::parse(both.json().text());
-  EXPECT_NEAR(json.value()["net_eur"].number().value(), money.net_eur(), 5e-5);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 2);
-  EXPECT_EQ(json.value()["contract"]["import_adder_eur_per_mwh"].number(), 45);
   EXPECT_THAT(both.text(), HasSubstr("2 at the settled price (1 validated)"));
-  EXPECT_THAT(both.text(), HasSubstr("the contract takes 0.11 EUR (import 45 EUR/MWh and 0 %"));
 }
 
-TEST(Statements, SayTheSameInEachForm) {
-  const Statement both = two_days({.capacity_wh = 8'000});
+TEST(EarningsOfDays, SayTheSameInEachForm) {
+  const Earnings both = two_days({.capacity_wh = 8'000});
   const std::string text = both.text();
   EXPECT_THAT(text, HasSubstr("2026-11-22       -0.10          2.0             0.0"));
   EXPECT_THAT(text, HasSubstr("together         +0.15          2.0             1.0"));
@@ -112,7 +101,7 @@ TEST(Statements, SayTheSameInEachForm) {
   EXPECT_THAT(text, HasSubstr("cycles that the student did not decide: price_age 1\n"));
   EXPECT_THAT(
       both.csv(),
-      HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,0.0000,0.2500,"));
+      HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,3,0,0,0,"));
   const Json json = Json::parse(both.json().text());
   EXPECT_DOUBLE_EQ(json.value()["earned_eur"].number().value(), 0.15);
   EXPECT_DOUBLE_EQ(json.value()["earned_at_equal_soc_eur"].number().value(), 0.2923);
@@ -127,28 +116,14 @@ TEST(Statements, SayTheSameInEachForm) {
   }
 }
 
-TEST(Statements, ArePrintedWithTheSameSums) {
-  MoneyTerms terms{.capacity_wh = 8'000};
-  terms.contract.costs.import_adder_eur_per_mwh = 45;
-  const Statement both = two_days(terms);
-  Stops stops;
-  stops.by_reason.push_back({.reason = Reason::kPriceAge, .cycles = 1, .not_driven = 1});
-  const std::string page = statement_page(both, stops);
-  EXPECT_THAT(page, HasSubstr("<title>Battery: 2026-11-22 to 2026-11-23</title>"));
-  EXPECT_THAT(page, HasSubstr("together</th><td>2.000</td><td>1.000</td><td>0.15</td>"
-                              "<td>0.09</td><td>0.06</td>"));
-  EXPECT_THAT(page, HasSubstr("on top of what is taken</th><td>45 EUR/MWh</td>"));
-  EXPECT_THAT(page, HasSubstr("price_age</th><td>1</td><td>1</td><td>not known</td>"));
-}
-
-TEST(Statements, ADayThatWasNeverMeasuredMovesNoCharge) {
+TEST(EarningsOfDays, ADayThatWasNeverMeasuredMovesNoCharge) {
   set_market_time_zone();
   const MoneyTerms terms{.capacity_wh = 8'000};
   DayBook book(20'261'121, 20'261'122, terms);
-  book.add({.utc_s = kStatementStart - 86'400, .mode = Mode::kSafe, .reason = Reason::kLink});
-  add_half_hour(book, kStatementStart, 4'000, 5'000, 3'000, 5'500);
-  const Statement both(book.accounts());
-  EXPECT_NEAR(both.stored_kwh(), 2, 1e-9);
+  book.add({.utc_s = kEarningsStart - 86'400, .mode = Mode::kSafe, .reason = Reason::kLink});
+  add_half_hour(book, kEarningsStart, 4'000, 5'000, 3'000, 5'500);
+  const Earnings both(book.accounts());
+  EXPECT_NEAR(both.together().stored_kwh(), 2, 1e-9);
   EXPECT_THAT(both.csv(), HasSubstr("2026-11-21,0.0000,0.000,0.000,0.0000,1,0,0,0.00,,,"));
 }
 

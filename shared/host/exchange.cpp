@@ -1,9 +1,8 @@
-#include "edge/account/exchange.h"
+#include "shared/host/exchange.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "edge/control/quarter_hour_energy.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -42,7 +41,7 @@ class Stretches {
     energy_wh_ += power_w * std::max(until_s - at_s_, 0.0) / kSecondsPerHour;
     while (at_s_ < until_s) {
       const double quarter_end_s =
-          (std::floor(at_s_ / kQuarterHourS) + 1) * static_cast<double>(kQuarterHourS);
+          (std::floor(at_s_ / kSecondsPerQuarterHour) + 1) * kSecondsPerQuarterHour;
       const double stop_s = std::min(until_s, quarter_end_s);
       visit_({.from_utc_s = at_s_,
               .until_utc_s = stop_s,
@@ -195,22 +194,9 @@ ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples)
 
 }  // namespace
 
-bool sample_of(const CycleRecord& record, ExchangeSample& sample) {
-  if (!record.has_measurement) return false;
-  sample = {.utc_s = record.utc_s,
-            .power_w = record.measurement.power_w,
-            .soc_e4 = record.measurement.soc_e4,
-            .capacity_wh = record.measurement.capacity_wh,
-            .order_w = record.ordered_power_w};
-  sample.is_ordered =
-      record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
-  if (sample.is_ordered && record.price.has_row) {
-    // Whole seconds, cut off: half a one more is right in the mean.
-    const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
-    const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
-    sample.written_after_s = after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
-  }
-  return true;
+void ExchangeSample::set_written(std::int64_t price_minute_utc_s, std::int32_t price_age_s) {
+  const auto after_s = static_cast<float>(price_minute_utc_s + 60 + price_age_s - utc_s) + 0.5F;
+  written_after_s = after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
 }
 
 double ChargeScale::energy_wh(double moved_e4, double capacity_wh) const {

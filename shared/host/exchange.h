@@ -1,9 +1,10 @@
 // What flowed between battery and grid, and when, as far as the decision log can tell: stretches of
-// constant power, none across the end of a quarter-hour.
+// constant power, none across the end of a quarter-hour. The edge reads its ring, the workstation
+// the log's CSV: both count by this.
 //
-// A record's power was measured some seconds before its tick, so it is that of the order before.
-// Between two records it flows as
-//   the power of the older record, until the order of that tick was written; then
+// A sample's power was measured some seconds before its tick, so it is that of the order before.
+// Between two samples it flows as
+//   the power of the older one, until the order of that tick was written; then
 //   the power of the newer one.
 // When an order was written follows from the age that its price had then. Where the newer power is
 // neither the ordered one nor the one before, something ended in between (full, empty, an order cut
@@ -16,12 +17,11 @@
 #include <span>
 #include <vector>
 
-#include "edge/control/control_types.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
 
-/// What of a record counts here.
+/// What of a cycle with a reading counts here.
 struct ExchangeSample {
   std::int64_t utc_s = 0;
   std::int32_t power_w = 0;
@@ -30,10 +30,11 @@ struct ExchangeSample {
   std::int32_t order_w = 0;
   float written_after_s = 0;  ///< the tick; 0: not known
   bool is_ordered = false;    ///< `order_w` is in force from then on
-};
 
-/// False of a record without a measurement.
-bool sample_of(const CycleRecord& record, ExchangeSample& sample);
+  /// An order that was written when the price of `price_minute_utc_s` was `price_age_s` old; an age
+  /// is in whole seconds, cut off: half a one more is right in the mean.
+  void set_written(std::int64_t price_minute_utc_s, std::int32_t price_age_s);
+};
 
 struct Exchange {
   double from_utc_s = 0;

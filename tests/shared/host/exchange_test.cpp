@@ -1,6 +1,6 @@
 // What flowed between the records of a log, by hand: an order that begins late, a battery that is
 // full before the next tick, a tick that nobody saw, a clock that was stepped back.
-#include "edge/account/exchange.h"
+#include "shared/host/exchange.h"
 
 #include <gtest/gtest.h>
 
@@ -108,24 +108,13 @@ TEST(Exchanges, TheEfficiencyIsThatOfTheLog) {
   EXPECT_NEAR(charge_scale_of({}).charge_efficiency, kOneWayOf90, 1e-9);
 }
 
-/// A record says when its order was written by the age that its price had then.
-TEST(Exchanges, ASampleIsARecordsOwn) {
-  CycleRecord record{.utc_s = kExchangeStart, .mode = Mode::kRunning};
-  ExchangeSample taken;
-  EXPECT_FALSE(sample_of(record, taken));
-  record.has_measurement = true;
-  record.measurement.power_w = -7;
-  record.price = {.has_row = true, .minute_utc_s = kExchangeStart - 60};
-  record.price_age_s = 5;
-  record.written = true;
-  record.ordered_power_w = 300;
-  ASSERT_TRUE(sample_of(record, taken));
-  EXPECT_EQ(taken.power_w, -7);
-  EXPECT_TRUE(taken.is_ordered);
-  EXPECT_NEAR(taken.written_after_s, 5.5, 1e-6);
-  record.mode = Mode::kSafe;  // what was written was a release
-  ASSERT_TRUE(sample_of(record, taken));
-  EXPECT_FALSE(taken.is_ordered);
+/// By the age that the price of a minute had then.
+TEST(Exchanges, ASampleKnowsWhenItsOrderWasWritten) {
+  ExchangeSample sample{.utc_s = kExchangeStart};
+  sample.set_written(kExchangeStart - 60, 5);
+  EXPECT_NEAR(sample.written_after_s, 5.5, 1e-6);
+  sample.set_written(kExchangeStart - 60, 90);  // of a price that came late
+  EXPECT_EQ(sample.written_after_s, 0);
 }
 
 }  // namespace

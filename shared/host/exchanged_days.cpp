@@ -1,0 +1,86 @@
+#include "shared/host/exchanged_days.h"
+
+#include <cmath>
+
+#include "shared/exchange_cost.h"
+#include "shared/local_day.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+/// What flowed in one quarter-hour.
+struct Flow {
+  double charged_wh = 0;
+  double discharged_wh = 0;
+};
+
+QuarterHourMoney money_of(const Flow& flow, const std::optional<SettledQuarter>& price,
+                          const BatteryParameters& terms) {
+  QuarterHourMoney money{.quarter_hours = 1};
+  if (!price) {
+    money.unpriced = 1;
+    return money;
+  }
+  const double charged_mwh = flow.charged_wh / kWattsPerMegawatt;
+  const double discharged_mwh = flow.discharged_wh / kWattsPerMegawatt;
+  money.published = price->state != PriceState::kIndicative ? 1 : 0;
+  money.validated = price->state == PriceState::kValidated ? 1 : 0;
+  money.prices_eur_per_mwh = price->eur_per_mwh;
+  // Subtracted: a day without exchange has earned nothing, and not minus nothing.
+  money.earned_eur = 0.0 - (charged_mwh - discharged_mwh) * price->eur_per_mwh;
+  if (money.published == 0) money.estimated_eur = money.earned_eur;
+  money.contract_eur = exchange_cost_eur(terms, charged_mwh, price->eur_per_mwh) +
+                       exchange_cost_eur(terms, -discharged_mwh, price->eur_per_mwh) +
+                       money.earned_eur;
+  return money;
+}
+
+}  // namespace
+
+double QuarterHourMoney::mean_price_eur_per_mwh() const {
+  const int priced = quarter_hours - unpriced;
+  return priced == 0 ? 0 : prices_eur_per_mwh / priced;
+}
+
+void QuarterHourMoney::add(const QuarterHourMoney& other) {
+  earned_eur += other.earned_eur;
+  estimated_eur += other.estimated_eur;
+  contract_eur += other.contract_eur;
+  prices_eur_per_mwh += other.prices_eur_per_mwh;
+  quarter_hours += other.quarter_hours;
+  published += other.published;
+  validated += other.validated;
+  unpriced += other.unpriced;
+}
+
+void ExchangedDay::add(const ExchangedDay& other) {
+  charged_wh += other.charged_wh;
+  discharged_wh += other.discharged_wh;
+  unseen_wh += other.unseen_wh;
+  money.add(other.money);
+}
+
+std::map<std::int32_t, ExchangedDay> exchanged_days(std::span<const ExchangeSample> samples,
+                                                    const QuarterPrices& prices,
+                                                    const BatteryParameters& terms) {
+  std::map<std::int32_t, ExchangedDay> days;
+  std::map<std::int64_t, Flow> quarters;  // by number
+  for_each_exchange(samples, [&](const Exchange& exchange) {
+    if (!exchange.is_seen && exchange.energy_wh == 0) return;
+    const auto utc_s = static_cast<std::int64_t>(exchange.from_utc_s);
+    const double size_wh = std::fabs(exchange.energy_wh);
+    ExchangedDay& day = days[local_day_at(utc_s)];
+    Flow& quarter = quarters[utc_s / kSecondsPerQuarterHour];
+    (exchange.energy_wh > 0 ? day.charged_wh : day.discharged_wh) += size_wh;
+    (exchange.energy_wh > 0 ? quarter.charged_wh : quarter.discharged_wh) += size_wh;
+    if (!exchange.is_seen) day.unseen_wh += size_wh;
+  });
+  for (const auto& [number, flow] : quarters) {
+    const std::int64_t start_utc_s = number * kSecondsPerQuarterHour;
+    days[local_day_at(start_utc_s)].money.add(money_of(flow, prices.find(start_utc_s), terms));
+  }
+  return days;
+}
+
+}  // namespace bess

@@ -1,0 +1,47 @@
+// Energy and money by local days, of what flowed (exchange.h): each quarter-hour at its price
+// (quarter_prices.h). What is taken in and what is given out cost by themselves, beside the price
+// and by the terms of a contract (exchange_cost.h).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+
+#include "shared/battery_model.h"
+#include "shared/host/exchange.h"
+#include "shared/host/quarter_prices.h"
+
+namespace bess {
+
+struct QuarterHourMoney {
+  double earned_eur = 0;          ///< before the contract
+  double estimated_eur = 0;       ///< of it, where nothing is published yet
+  double contract_eur = 0;        ///< what the contract takes of it, wear included
+  double prices_eur_per_mwh = 0;  ///< the sum of those that have one
+  int quarter_hours = 0;          ///< of which the log knows something
+  int published = 0;              ///< of those, the validated among them
+  int validated = 0;
+  int unpriced = 0;  ///< without any price: their energy is not in the money
+
+  [[nodiscard]] double net_eur() const { return earned_eur - contract_eur; }
+  /// 0 where none has a price.
+  [[nodiscard]] double mean_price_eur_per_mwh() const;
+  void add(const QuarterHourMoney& other);
+};
+
+/// Of one local day; energies grid side, not negative.
+struct ExchangedDay {
+  double charged_wh = 0;
+  double discharged_wh = 0;
+  double unseen_wh = 0;  ///< of both together, by the state of charge alone
+  QuarterHourMoney money{};
+
+  void add(const ExchangedDay& other);
+};
+
+/// By local day, as 20231126; `samples` oldest first. Of `terms` costs and wear count.
+std::map<std::int32_t, ExchangedDay> exchanged_days(std::span<const ExchangeSample> samples,
+                                                    const QuarterPrices& prices,
+                                                    const BatteryParameters& terms);
+
+}  // namespace bess
