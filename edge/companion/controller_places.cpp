@@ -33,9 +33,4 @@ ControllerPlaces controller_places(TomlTable& root) {
           .state_folder = state};
 }
 
-void read_program(TomlTable& table, ControllerPlaces& places) {
-  table.line("program", places.program);
-  places.program = table.resolved(places.program);
-}
-
 }  // namespace bess

@@ -20,7 +20,4 @@ struct ControllerPlaces {
 /// Of the whole configuration. `program` is bess-edge beside this program, as both are installed.
 ControllerPlaces controller_places(TomlTable& root);
 
-/// Key program of a section: another one than that.
-void read_program(TomlTable& table, ControllerPlaces& places);
-
 }  // namespace bess

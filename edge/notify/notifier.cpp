@@ -53,9 +53,7 @@ Notifier::Notifier(const NotifySettings& settings, std::stop_token stop)
   mqtt_ = std::make_unique<MqttClient>(
       settings_, MqttPresence::kStays,
       settings_.mqtt.orders ? MqttClient::OnOrder(take_order) : MqttClient::OnOrder());
-  if (!settings_.mqtt.discovery_prefix.empty()) {
-    mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
-  }
+  mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
 }
 
 Notifier::~Notifier() {
@@ -194,8 +192,7 @@ void Notifier::follow(const Order& order) {
   if (order.payload == "OFF") {
     words.emplace_back("--release");
   } else {
-    words.insert(words.end(), {std::to_string(hold_power_w_), "--for",
-                               std::to_string(settings_.mqtt.hold_minutes) + "m"});
+    words.insert(words.end(), {std::to_string(hold_power_w_), "--for", "60m"});
   }
   words.insert(words.end(), {"--config", settings_.config_path});
   constexpr std::int64_t kOrderSMax = 10;

@@ -31,15 +31,15 @@ std::string read_password(TomlTable& table, std::string_view key, const std::str
 
 void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   std::string password_file;
-  mqtt.discovery_prefix = "homeassistant";
   table.line("mqtt_host", mqtt.host);
   table.integer("mqtt_port", mqtt.port, 1, 65'535);
   table.line("mqtt_ca_file", mqtt.ca_file);
   table.line("mqtt_user", mqtt.user);
   table.line("mqtt_password_file", password_file);
-  table.line("mqtt_discovery_prefix", mqtt.discovery_prefix);
+  for (const char* const old : {"mqtt_discovery_prefix", "mqtt_hold_minutes"}) {
+    static_cast<void>(table.take_retired(old));
+  }
   table.boolean("mqtt_orders", mqtt.orders);
-  table.integer("mqtt_hold_minutes", mqtt.hold_minutes, 2, 10'080);
   if (mqtt.host.empty() || !table.ok()) return;
   const bool is_here = mqtt.host == "localhost" || is_loopback_address(mqtt.host);
   if (mqtt.orders && mqtt.user.empty() && !is_here) {
@@ -67,7 +67,8 @@ void read_notify(TomlTable table, NotifySettings& settings) {
   table.integer("after_s", settings.after_s, 0, 86'400);
   table.boolean("daily", settings.daily);
   table.line("folder", folder);
-  read_program(table, settings);
+  table.line("program", settings.program);
+  settings.program = table.resolved(settings.program);
   table.line("command", settings.command);
   read_mqtt(table, settings.mqtt);
   folder = table.resolved(folder);

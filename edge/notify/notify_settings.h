@@ -15,9 +15,7 @@ struct MqttSettings {
   std::string ca_file;  ///< empty: in clear
   std::string user;
   std::string password;
-  std::string discovery_prefix;      ///< of Home Assistant; empty: no discovery
   bool orders = false;               ///< holds may be ordered by it
-  std::int32_t hold_minutes = 60;    ///< of such a hold
   std::int32_t wait_ms_max = 5'000;  ///< for a connection, and for an acknowledgement
 };
 

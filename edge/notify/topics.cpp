@@ -121,7 +121,7 @@ Json event_json(const std::string& node, const Message& message) {
 }
 
 std::string discovery_topic(const NotifySettings& settings) {
-  return settings.mqtt.discovery_prefix + "/device/bess_" + settings.id + "/config";
+  return "homeassistant/device/bess_" + settings.id + "/config";
 }
 
 std::string discovery_json(const NotifySettings& settings, const std::string& version) {

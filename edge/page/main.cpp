@@ -89,7 +89,6 @@ int run(const Options& options) {
   PageSettings settings;
   std::string error;
   if (!load_page_settings(options.config_path, settings, error)) return fail(error);
-  if (!settings.note.empty()) std::fprintf(stderr, "bess-page: %s\n", settings.note.c_str());
   if (options.port >= 0) settings.port = options.port;
   if (options.is_check) return print_check(settings), 0;
   const sigset_t stop_signals = block_stop_signals();

@@ -18,21 +18,14 @@ void read_hosts(TomlTable& table, std::vector<std::string>& hosts) {
 }
 
 void read_page(TomlTable table, PageSettings& settings) {
-  std::string token_file;
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
-  // Keys of earlier versions.
-  static_cast<void>(table.take_retired("refresh_s"));
-  table.line("token_file", token_file);
-  read_program(table, settings);
+  for (const char* const old : {"program", "refresh_s", "token_file"}) {
+    static_cast<void>(table.take_retired(old));
+  }
   read_hosts(table, settings.hosts);
   if (!is_numeric_address(settings.host)) {
     table.fail("host", "must be a numeric address: 127.0.0.1, ::1, or one of this machine");
-  }
-  if (!token_file.empty()) {
-    settings.note =
-        "[page] token_file has no effect any more: the page orders nothing; "
-        "bess-edge hold, limit and clear do";
   }
   table.finish();
 }

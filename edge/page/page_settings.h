@@ -15,7 +15,6 @@ struct PageSettings : ControllerPlaces {
   std::vector<std::string>
       hosts;                   ///< names under which it may be asked for, besides its own address
   std::int32_t refresh_s = 5;  ///< what is shown is at most this old
-  std::string note;            ///< for the operator, one line; empty = none
 };
 
 /// False with one line: file, key, and the mend. Makes nothing and connects to nothing.

@@ -47,6 +47,12 @@ constexpr RetiredKey kRetiredKeys[] = {
     {"contract", "export_fee_eur_per_mwh"},
     {"contract", "export_percent"},
     {"contract", "wear_eur_per_mwh"},
+    {"notify", "mqtt_discovery_prefix"},
+    {"notify", "mqtt_hold_minutes"},
+    {"page", "program"},
+    {"page", "refresh_s"},
+    {"page", "token_file"},
+    {"settled", "days"},
 };
 static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
 
@@ -111,10 +117,9 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_meter(section(root, "meter", &config.retired), {config.battery.link, config.battery.map},
              config.site);
   read_limits(section(root, "limits"), config.site);
-  static_cast<void>(section(root, "contract", &config.retired));
   // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
-  for (const char* const others : {"notify", "page", "settled"}) {
-    static_cast<void>(root.table(others));
+  for (const char* const others : {"notify", "page", "settled", "contract"}) {
+    static_cast<void>(section(root, others, &config.retired));
   }
   root.finish();
   if (config.battery.name.empty()) {

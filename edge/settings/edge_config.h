@@ -20,7 +20,7 @@ struct RetiredKey {
   std::string_view section;
   std::string_view key;
 };
-using RetiredKeys = StaticVector<RetiredKey, 32>;
+using RetiredKeys = StaticVector<RetiredKey, 40>;
 
 struct EdgeConfig {
   ControlSettings control;

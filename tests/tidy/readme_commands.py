@@ -52,7 +52,7 @@ class Readmes:
         listed = re.search(r"^subcommands:\s*\n((?:  .*\n)+)", text, re.M | re.I)
         if listed:
             return set(re.findall(r"^  ([a-z][a-z-]*)", listed[1], re.M))
-        if command[0] != "bess-edge" or command[1:] not in ((), ("map",), ("trial",)):
+        if command[0] != "bess-edge" or command[1:] not in ((), ("map",)):
             return set()
         usage = self.help(*command[:1] if command[1:] == ("map",) else command)
         return set(re.findall(r"^  %s ([a-z][a-z-]*)" % " ".join(command), usage, re.M))
@@ -64,7 +64,7 @@ class Readmes:
         if script.startswith("tools/") and "python" not in text.partition("\n")[0]:
             text = re.match(r"(?:#.*\n)*", text)[0]
         if script == "tools/hil":
-            text += self.help("bess-hil", "run") + self.help("bess-hil", "trial")
+            text += self.help("bess-hil", "run")
         if script == "tools/flash":
             parts = (self.tree / "tools/flashing").glob("[a-z]*")
             text += "".join(p.read_text(encoding="utf-8") for p in parts if p.is_file())

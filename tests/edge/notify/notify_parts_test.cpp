@@ -78,7 +78,7 @@ TEST(NotifySettings, ReadsEveryKey) {
                    "run_folder = \"run\"\n"
                    "program = \"/opt/bess-edge\"\ncommand = 'apprise -b \"$BESS_TEXT\" x://'\n"
                    "mqtt_host = \"127.0.0.1\"\nmqtt_port = 1884\nmqtt_user = \"u\"\n"
-                   "mqtt_password_file = \"password\"\nmqtt_discovery_prefix = \"ha\"\n"),
+                   "mqtt_password_file = \"password\"\n"),
       settings, error))
       << error;
   EXPECT_TRUE(settings.has_channel());
@@ -92,7 +92,6 @@ TEST(NotifySettings, ReadsEveryKey) {
   EXPECT_EQ(settings.command, "apprise -b \"$BESS_TEXT\" x://");
   EXPECT_EQ(settings.mqtt.port, 1'884);
   EXPECT_EQ(settings.mqtt.password, "open sesame");
-  EXPECT_EQ(settings.mqtt.discovery_prefix, "ha");
 }
 
 TEST(NotifySettings, APasswordIsTheFirstLineOfItsFile) {
@@ -346,7 +345,6 @@ TEST(Topics, AreTheseToTheLetter) {
   NotifySettings settings;
   settings.name = "garage";
   settings.id = "0a1b2c3d";
-  settings.mqtt.discovery_prefix = "homeassistant";
   settings.mqtt.orders = true;
   const Json earned = Json::parse(kEarned);
   const std::vector<Alarm> alarms = {{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},

@@ -241,7 +241,7 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   const std::string config = folder_.write(
       "edge.toml", "[battery]\nname = \"garage\"\npower_w = 5000\n[notify]\nprogram = \"" +
                        program + "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " +
-                       std::to_string(port()) + "\nmqtt_orders = true\nmqtt_hold_minutes = 90\n");
+                       std::to_string(port()) + "\nmqtt_orders = true\n");
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
   EXPECT_THAT(all.await("/config", "_hold\""),
               AllOf(HasSubstr("\"min\":-5000,\"max\":5000"),
@@ -269,9 +269,9 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   const std::string end = " --config " + config + "\n";
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // eight wait at most
   all.publish("bess/v1/garage/hold/set", "ON");
-  EXPECT_EQ(await_calls("hold -1500 --for 90m" + end), "hold -1500 --for 90m" + end);
+  EXPECT_EQ(await_calls("hold -1500 --for 60m" + end), "hold -1500 --for 60m" + end);
   all.publish("bess/v1/garage/hold/set", "OFF");
-  const std::string both = "hold -1500 --for 90m" + end + "hold --release" + end;
+  const std::string both = "hold -1500 --for 60m" + end + "hold --release" + end;
   EXPECT_EQ(await_calls(both), both);
 }
 

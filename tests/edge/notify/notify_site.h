@@ -88,8 +88,7 @@ class Mqtt : public Rounds {
                       .port = Broker::free_port(),
                       .ca_file = "",
                       .user = "",
-                      .password = "",
-                      .discovery_prefix = "homeassistant"};
+                      .password = ""};
     settings_.after_s = 0;
   }
   [[nodiscard]] std::uint16_t port() const {

@@ -35,7 +35,7 @@ class PageSite {
         "[simulation]\ntime_scale = 1\nutc_start = \"" +
             std::string(utc_text(kStart + cycles * kSecondsPerStep).view()) +
             "\"\nanchor_monotonic_ns = " + std::to_string(clock_ns(CLOCK_MONOTONIC)) +
-            "\n[page]\nport = 1\nprogram = \"" BESS_EDGE_PROGRAM "\"\n");
+            "\n[page]\nport = 1\n");
   }
 
   [[nodiscard]] const std::string& config() const { return config_; }

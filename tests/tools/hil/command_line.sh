@@ -70,23 +70,6 @@ printf 'title = "x"\n[edge]\nguard = "soc_minn = 0.2"\n' >"$work/edge.toml"
 TMPDIR=/nowhere "$program" run "$scenarios/quiet_hour.toml" 2>&1 | grep -q TMPDIR ||
   complain "no TMPDIR"
 
-# A trial has each week's own EUR, and a day's is their mean.
-"$program" trial --prices "$scenarios/../data/benchmark_minutes_2023.csv.gz" --weeks 2 --json \
-  >"$work/trial.json" || complain "trial --json"
-python3 - "$work/trial.json" <<'END' || complain "trial --json: $(cat "$work/trial.json")"
-import json, sys
-trial = json.load(open(sys.argv[1]))
-rows = [(trial["plain_eur_by_week"], trial["plain_eur_per_day"])]
-rows += [(row["eur_by_week"], row["eur_per_day"]) for row in trial["loop"]]
-same = all(abs(sum(weeks) / len(weeks) / trial["days_a_week"] - day) < 2e-4 for weeks, day in rows)
-sys.exit(0 if same and len(rows) == 8 and all(len(weeks) == 2 for weeks, _ in rows) else 1)
-END
-
-"$program" trial --prices "$scenarios/../data/benchmark_minutes_2023.csv.gz" --weeks 1 \
-  --guard 'hold = 1' >"$work/guard" 2>&1 && complain "trial --guard 'hold = 1' runs"
-grep -q '^bess-hil: --guard: .*hold' "$work/guard" ||
-  complain "trial --guard: $(cat "$work/guard")"
-
 # Ctrl-C: exit code 3, and nothing is left.
 mkdir "$work/tmp"
 TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null \

@@ -6,6 +6,5 @@
 namespace bess {
 
 void add_run_command(ProgramCommand& app);
-void add_trial_command(ProgramCommand& app);
 
 }  // namespace bess

@@ -9,6 +9,5 @@ int main(int argc, char** argv) {
                                  BESS_VERSION);
   bess::ProgramCommand root = command_line.root();
   bess::add_run_command(root);
-  bess::add_trial_command(root);
   return command_line.run(argc, argv);
 }

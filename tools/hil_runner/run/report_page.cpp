@@ -91,15 +91,6 @@ std::string section(const Outcome& o) {
 
 }  // namespace
 
-std::string html_page(std::string_view title, const std::string& body) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-      "<title>{0}</title>\n"
-      "<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n</body>\n</html>\n",
-      html_escaped(title), kStyle, body);
-}
-
 std::string report_page(const std::vector<Outcome>& outcomes) {
   std::string body =
       "<p>Power is positive when it charges; SoC and measured power are by the battery's own "
@@ -108,7 +99,12 @@ std::string report_page(const std::vector<Outcome>& outcomes) {
       "process, its clock or its disk.</p>\n";
   body += contents(outcomes);
   for (const Outcome& outcome : outcomes) body += section(outcome);
-  return html_page("bess-hil", body);
+  return std::string(
+             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+             "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+             "<title>bess-hil</title>\n<style>\n") +
+         kStyle + "</style>\n</head>\n<body>\n<main>\n<h1>bess-hil</h1>\n" + body +
+         "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace bess

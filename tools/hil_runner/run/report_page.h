@@ -2,17 +2,13 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tools/hil_runner/run/outcome.h"
 
 namespace bess {
 
-/// A page without scripts and without anything from elsewhere.
-std::string html_page(std::string_view title, const std::string& body);
-
-/// Throws UserError without gnuplot.
+/// A page without scripts and without anything from elsewhere. Throws UserError without gnuplot.
 std::string report_page(const std::vector<Outcome>& outcomes);
 
 }  // namespace bess

@@ -11,35 +11,33 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/base/work_folder.h"
-#include "tools/hil_runner/evidence/command_timeline.h"
 
 namespace bess {
 namespace {
 
-constexpr const char* kChargeColour = "#0072b2";
-constexpr const char* kDischargeColour = "#d55e00";
-constexpr const char* kRestColour = "#8a8f98";
 constexpr std::size_t kDrawnPointsMax = 3'000;  ///< a picture is 900 pixels wide
 
-/// `alt`: the picture in words, for those who cannot see it.
-std::string svg_of(const std::string& commands, int height_px, const char* alt) {
+std::string svg_of(const std::string& commands) {
   const WorkFolder folder;
   const std::string path = folder.file("picture.svg");
   draw_with_gnuplot(path, [&](const std::filesystem::path& out) {
     return fmt::format(
-               "set terminal svg size 900,{} noenhanced font 'Helvetica,13'\n"
+               "set terminal svg size 900,680 noenhanced font 'Helvetica,13'\n"
                "set output {}\nset encoding utf8\nset minussign\nset border 3\n"
                "set tics nomirror out scale 0.5\nunset key\n"
                "set grid lc rgb '#e3e6ea'\nset lmargin 10\nset rmargin 2\nset bmargin 2\n"
                "set tmargin 1\n",
-               height_px, gnuplot_quoted(out.string())) +
+               gnuplot_quoted(out.string())) +
            commands;
   });
   const std::string file = read_file(path);
   const std::size_t begin = file.find("<svg");
   if (begin == std::string::npos) return "";
   const std::size_t attributes = begin + std::string_view("<svg").size();
-  return fmt::format("<svg role=\"img\" aria-label=\"{}\"{}", alt, file.substr(attributes));
+  return "<svg role=\"img\" aria-label=\"Price, power, state of charge and mode of the edge over "
+         "the "
+         "run; faults as bands\"" +
+         file.substr(attributes);
 }
 
 /// `$name << EOD` with one row a point, thinned to what can be seen.
@@ -49,11 +47,6 @@ std::string block(const char* name, std::size_t count, const Row& row) {
   const std::size_t stride = std::max<std::size_t>(1, count / kDrawnPointsMax);
   for (std::size_t i = 0; i < count; i += stride) text += row(i);
   return text + "EOD\n";
-}
-
-const char* colour_of(const CommandInForce& command) {
-  if (command.power_w > 0) return kChargeColour;
-  return command.power_w < 0 ? kDischargeColour : kRestColour;
 }
 
 /// Of about four tics to a range: 1, 2 or 5 times a power of ten.
@@ -103,9 +96,7 @@ class RunPicture {
         "plot $modes using 1:2 with steps lw 2 lc rgb '#333333' notitle\nunset multiplot\n",
         is_long ? "%d %b\\n%H:%M" : "%H:%M",
         is_long ? "" : fmt::format(", from {}", utc_text(utc_s_of(from_min_)).view()));
-    return svg_of(
-        text, 680,
-        "Price, power, state of charge and mode of the edge over the run; faults as bands");
+    return svg_of(text);
   }
 
  private:
@@ -254,40 +245,6 @@ class RunPicture {
 
 std::string run_picture(const Outcome& outcome, const MinuteSpan& span) {
   return RunPicture(outcome, span).svg();
-}
-
-std::string orders_picture(const Evidence& evidence, const MinuteSeries& prices,
-                           std::int64_t from_utc_s) {
-  constexpr int kMinutes = 240;
-  const std::int64_t to_utc_s = from_utc_s + 60 * kMinutes;
-  const CommandTimeline commands(evidence.orders);
-  std::string power = "$power << EOD\n";
-  for (const MinuteRecord& m : evidence.minutes) {
-    if (m.minute_utc_s < from_utc_s || m.minute_utc_s >= to_utc_s) continue;
-    // The order of the middle of the minute.
-    const CommandInForce command = commands.at((m.minute_utc_s + 30) * kNanosecondsPerSecond);
-    power += fmt::format("{} {} {}\n", m.minute_utc_s + 30, 60 * m.energy_wh,
-                         std::string("0x") + (colour_of(command) + 1));
-  }
-  std::string price = "$price << EOD\n";
-  for (std::int64_t utc_s = from_utc_s; utc_s < to_utc_s; utc_s += 60) {
-    const auto index = static_cast<std::size_t>((utc_s - prices.start_utc_s) / 60);
-    const double value = prices.indicative[index];
-    price += std::isnan(value) ? std::string("\n") : fmt::format("{} {}\n", utc_s, value);
-  }
-  return svg_of(
-      power + "EOD\n" + price + "EOD\n" +
-          fmt::format("set xdata time\nset timefmt '%s'\nset xrange ['{}':'{}']\n"
-                      "set multiplot layout 2,1 margins 0.10,0.975,0.14,0.97 spacing 0.05\n"
-                      "set tics font ',11'\nset format x ''\nset ylabel 'EUR/MWh'\n"
-                      "plot $price using 1:2 with steps lc rgb '#333333'\n"
-                      "set format x '%H:%M'\nset xlabel 'UTC, from {}'\n"
-                      "set ylabel 'measured power, W'\n"
-                      "set boxwidth 60\nset style fill solid noborder\n"
-                      "plot $power using 1:2:3 with boxes lc rgb variable\n"
-                      "unset multiplot\n",
-                      from_utc_s, to_utc_s, utc_text(from_utc_s).view()),
-      420, "Price, and measured power in the colour of the order, over four hours");
 }
 
 }  // namespace bess

@@ -11,8 +11,4 @@ namespace bess {
 /// An SVG element. `span`: of the scenario's minutes. Throws UserError without gnuplot.
 std::string run_picture(const Outcome& outcome, const MinuteSpan& span);
 
-/// Four hours of measured power, each minute in the colour of its order, and the price above.
-std::string orders_picture(const Evidence& evidence, const MinuteSeries& prices,
-                           std::int64_t from_utc_s);
-
 }  // namespace bess
