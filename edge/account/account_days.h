@@ -4,15 +4,30 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "edge/account/day_account.h"
-#include "edge/account/money_settings.h"
+#include "edge/account/settled_prices.h"
 #include "edge/log/log_reader.h"
 #include "shared/host/exchange.h"
 #include "shared/host/quarter_prices.h"
 
 namespace bess {
+
+// Local days as a person asks for them: today, yesterday, week, month, last-month, 2026-11,
+// 2026-11-23, 2026-11-01..2026-11-23.
+
+/// Both ends belong to it; days as 20231126.
+struct Period {
+  std::int32_t first_day = 0;
+  std::int32_t last_day = 0;
+  friend constexpr bool operator==(const Period&, const Period&) = default;
+};
+
+/// A week begins on Monday; week and month end today. False when it is none of these, or ends
+/// before it begins.
+bool parse_period(std::string_view text, std::int32_t today, Period& period);
 
 /// False of a record without a measurement.
 bool sample_of(const CycleRecord& record, ExchangeSample& sample);

@@ -6,13 +6,30 @@
 #include <cstring>
 
 #include "edge/control/quarter_hour_energy.h"
-#include "edge/log/text_checksum.h"
 #include "edge/log/whole_file.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
+
+MoneySettings read_money_settings(TomlTable& root) {
+  MoneySettings settings;
+  std::string folder = "state";
+  TomlTable battery(root.table("battery"), root.file(), "[battery]", root.error());
+  battery.integer("capacity_wh", settings.capacity_wh, 1, 1'000'000'000);
+  TomlTable state(root.table("state"), root.file(), "[state]", root.error());
+  state.line("folder", folder);
+  settings.settled_file = root.resolved(folder) + "/settled.csv";
+  return settings;
+}
+
+MoneyTerms money_terms(const MoneySettings& settings, std::string& trouble) {
+  MoneyTerms terms{.capacity_wh = settings.capacity_wh};
+  trouble = terms.settled.read(settings.settled_file);
+  return terms;
+}
+
 namespace {
 
 constexpr const char* kHeader = "quarter_hour_utc,eur_per_mwh,state";

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "shared/host/quarter_prices.h"
+#include "shared/host/toml_reader.h"
 
 namespace bess {
 
@@ -38,5 +39,24 @@ class SettledPrices {
 
 /// So many quarter-hours are kept: 100 days, with those of 25 hours among them.
 inline constexpr int kSettledDaysMax = 100;
+
+// What of the configuration counts money: where bess-prices keeps settled prices, and the capacity
+// of a battery that does not tell its own. Read apart from the controller's settings.
+
+struct MoneySettings {
+  std::int32_t capacity_wh = 8'000;  ///< [battery] capacity_wh
+  std::string settled_file;          ///< of bess-prices; there may be none
+};
+
+/// `root` is the whole configuration, whose slips others name.
+MoneySettings read_money_settings(TomlTable& root);
+
+/// What is counted with.
+struct MoneyTerms {
+  SettledPrices settled{};
+  std::int32_t capacity_wh = 0;  ///< of a device that tells none
+};
+/// With what lies in the file of settled prices; `trouble` is one line when that cannot be read.
+MoneyTerms money_terms(const MoneySettings& settings, std::string& trouble);
 
 }  // namespace bess

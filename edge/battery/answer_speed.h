@@ -9,7 +9,6 @@
 #include <cstdint>
 
 #include "edge/base/response_band.h"
-#include "edge/battery/answer_curve.h"
 #include "edge/battery/step_fit.h"
 
 namespace bess {

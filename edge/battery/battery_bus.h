@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "edge/base/status.h"
+#include "edge/battery/measurement_reader.h"
 #include "edge/battery/modbus_frame.h"
-#include "edge/battery/read_plan.h"
 #include "edge/registers/live_points.h"
 #include "shared/scaled_clock.h"
 

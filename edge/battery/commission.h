@@ -20,10 +20,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "edge/battery/answer_curve.h"
 #include "edge/battery/answer_speed.h"
 #include "edge/battery/commission_types.h"
 #include "edge/battery/meter_proof.h"
+#include "edge/battery/step_fit.h"
 #include "edge/control/control_types.h"
 #include "edge/control/power_order.h"
 #include "edge/registers/codec.h"

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "edge/battery/battery_driver.h"
+#include "edge/battery/grid_meter.h"
 #include "edge/battery/modbus_link.h"
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
@@ -48,6 +49,17 @@ class ModbusBattery : public BatteryDriver<ModbusLink, DeviceTime> {
  public:
   /// `map` must outlive this object.
   ModbusBattery(const BatteryLinkSettings& link, const RegisterMap& map, const ScaledClock& clock);
+};
+
+// The meter behind a Modbus link of its own: grid_meter.h over libmodbus, in the time of the
+// configured clock.
+
+extern template class GridMeter<ModbusLink, DeviceTime>;
+
+class ModbusMeter : public GridMeter<ModbusLink, DeviceTime> {
+ public:
+  /// `map` must outlive this object.
+  ModbusMeter(const BatteryLinkSettings& link, const RegisterMap& map, const ScaledClock& clock);
 };
 
 }  // namespace bess

@@ -9,7 +9,7 @@
 
 #include "edge/base/status.h"
 #include "edge/battery/modbus_frame.h"
-#include "edge/registers/parity.h"
+#include "edge/registers/register_point.h"
 #include "shared/fixed_text.h"
 
 struct _modbus;

@@ -9,12 +9,99 @@
 // least, the best and the most of those.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
-#include "edge/battery/answer_curve.h"
+#include "edge/base/static_vector.h"
 
 namespace bess {
+
+// How a battery came to the power that it was ordered: readings since the order, of which follow
+// when it was there for good and until when it was not. A reading takes a while, and the program
+// may have been held up within it: what is said to be slow was slow however the reading lay within
+// its time. What the shape tells of it: step_fit.h.
+
+struct AnswerReading {
+  std::int64_t begin_ms = 0;  ///< since the order was in force
+  std::int64_t end_ms = 0;
+  std::int32_t along_w = 0;  ///< positive: the way it was ordered
+};
+
+class AnswerCurve {
+ public:
+  using Readings = StaticVector<AnswerReading, 256>;
+
+  /// `ordered_w` above 0 and above `from_w`, which flowed before (below 0: the other way); within
+  /// `band_w` of it the power has come.
+  AnswerCurve(std::int32_t ordered_w, std::int32_t band_w, std::int32_t from_w = 0)
+      : ordered_w_(ordered_w), band_w_(band_w), from_w_(from_w) {}
+
+  /// More than fit are left out: the first ones tell of the shape.
+  void add(const AnswerReading& reading) {
+    if (!is_within(reading.along_w)) {
+      outside_until_ms_ = reading.begin_ms;
+      came_ms_ = -1;
+    } else if (came_ms_ < 0) {
+      came_ms_ = reading.end_ms;
+    }
+    static_cast<void>(readings_.try_push_back(reading));
+  }
+
+  [[nodiscard]] const Readings& readings() const { return readings_; }
+  [[nodiscard]] std::int32_t step_w() const { return ordered_w_ - from_w_; }
+  [[nodiscard]] std::int32_t band_w() const { return band_w_; }
+  /// Of the step.
+  [[nodiscard]] std::int32_t risen_w(const AnswerReading& r) const { return r.along_w - from_w_; }
+  /// The last instant at which the power was certainly outside its band.
+  [[nodiscard]] std::int64_t outside_until_ms() const { return outside_until_ms_; }
+  [[nodiscard]] bool has_come() const { return came_ms_ >= 0; }
+  /// When it was first seen inside for good; -1: never.
+  [[nodiscard]] std::int64_t came_ms() const { return came_ms_; }
+
+  /// Its last quarter is nearer than the one before: it is slow, and not held back.
+  [[nodiscard]] bool is_rising() const {
+    const int quarter = readings_.size() / 4;
+    if (quarter == 0) return false;
+    std::int64_t rise_w = 0;
+    for (int i = readings_.size() - quarter; i < readings_.size(); ++i) {
+      rise_w += std::int64_t{readings_[i].along_w} - readings_[i - quarter].along_w;
+    }
+    return rise_w * 100 >= std::int64_t{step_w()} * quarter * kRisePercent;
+  }
+  /// The longest that the same was shown on its way: registers that are seldom brought up to date.
+  [[nodiscard]] std::int64_t stands_still_ms() const {
+    std::int64_t longest_ms = 0;
+    const AnswerReading* first = nullptr;
+    for (const AnswerReading& r : readings_) {
+      const bool is_on_its_way = !is_within(r.along_w) && risen_w(r) * 10 >= step_w();
+      if (!is_on_its_way || first == nullptr || first->along_w != r.along_w) first = &r;
+      if (is_on_its_way) longest_ms = std::max(longest_ms, r.end_ms - first->begin_ms);
+    }
+    return longest_ms;
+  }
+  [[nodiscard]] int readings_outside_after(std::int64_t ms) const {
+    int count = 0;
+    for (const AnswerReading& r : readings_) {
+      if (r.begin_ms > ms && !is_within(r.along_w)) ++count;
+    }
+    return count;
+  }
+
+ private:
+  static constexpr std::int32_t kRisePercent = 3;
+
+  [[nodiscard]] bool is_within(std::int32_t along_w) const {
+    return along_w >= ordered_w_ - band_w_ && along_w <= ordered_w_ + band_w_;
+  }
+
+  std::int32_t ordered_w_;
+  std::int32_t band_w_;
+  std::int32_t from_w_;
+  Readings readings_;
+  std::int64_t outside_until_ms_ = 0;
+  std::int64_t came_ms_ = -1;
+};
 
 struct StepDynamics {
   double dead_time_s = 0;

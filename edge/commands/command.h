@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "edge/settings/edge_config.h"
-#include "edge/why/duration_text.h"
+#include "edge/why/explanation.h"
 #include "edge/why/local_moment.h"
 
 namespace bess {

@@ -3,16 +3,15 @@
 #include <cstdio>
 
 #include "edge/battery/commission.h"
-#include "edge/battery/modbus_meter.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
-#include "edge/program/device_session.h"
-#include "edge/program/release_on_failed_check.h"
+#include "edge/program/find_battery.h"
 #include "edge/program/startup.h"
 #include "edge/recording/exchange_recorder.h"
-#include "edge/site/house_watch.h"
+#include "edge/site/meter_witness.h"
 #include "edge/storage/commission_file.h"
-#include "edge/storage/limit_file.h"
+#include "edge/storage/operator_files.h"
 
 namespace bess {
 namespace {

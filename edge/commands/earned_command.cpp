@@ -3,7 +3,6 @@
 
 #include "edge/account/account_days.h"
 #include "edge/account/earnings.h"
-#include "edge/account/period.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "shared/local_day.h"

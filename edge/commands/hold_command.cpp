@@ -10,9 +10,9 @@
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/whole_file.h"
-#include "edge/storage/hold_file.h"
+#include "edge/storage/instance_lock.h"
+#include "edge/storage/operator_files.h"
 #include "edge/storage/recall.h"
-#include "edge/storage/run_locks.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "edge/account/cycle_account.h"
+#include "edge/account/day_account.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"

@@ -6,8 +6,8 @@
 
 #include "edge/battery/step_fit.h"
 #include "edge/commands/command_list.h"
+#include "edge/recording/energy_evidence.h"
 #include "edge/recording/map_check.h"
-#include "edge/recording/recorded_steps.h"
 #include "edge/registers/map_file.h"
 #include "shared/host/bus_recording.h"
 #include "shared/host/json.h"

@@ -11,7 +11,7 @@
 #include "edge/battery/modbus_battery.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
-#include "edge/program/device_session.h"
+#include "edge/program/find_battery.h"
 #include "edge/recording/exchange_recorder.h"
 #include "shared/utc_text.h"
 

@@ -3,7 +3,7 @@
 
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
-#include "edge/program/device_session.h"
+#include "edge/program/find_battery.h"
 #include "edge/program/startup.h"
 
 namespace bess {

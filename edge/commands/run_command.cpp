@@ -9,7 +9,7 @@
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
-#include "edge/program/device_session.h"
+#include "edge/program/find_battery.h"
 #include "edge/program/real_world.h"
 
 namespace bess {

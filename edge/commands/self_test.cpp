@@ -10,14 +10,14 @@
 #include <string>
 
 #include "edge/battery/modbus_battery.h"
-#include "edge/commands/price_check.h"
+#include "edge/commands/check.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/seccomp_filter.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/startup.h"
-#include "edge/storage/run_locks.h"
+#include "edge/storage/instance_lock.h"
 #include "edge/storage/storage_health.h"
 #include "shared/utc_text.h"
 

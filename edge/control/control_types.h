@@ -14,11 +14,10 @@
 #include "edge/control/frozen_price.h"
 #include "edge/control/hold.h"
 #include "edge/control/lost_order_history.h"
-#include "edge/control/mode.h"
 #include "edge/control/outlook.h"
 #include "edge/control/reasons.h"
-#include "edge/control/reversal_cap.h"
 #include "edge/control/site_types.h"
+#include "edge/control/tick.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
 

@@ -2,11 +2,75 @@
 // 100 % of charge moved in and 100 % moved out, as in training. Pure integers; the day is local.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "shared/local_day.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
+
+// How often orders have changed between charging and discharging in the last hour, against the
+// operator's cap: what bounds the harm of a price source that lies. Idling in between does not make
+// two reversals of one, nor none. Pure integers; one bit for each step of the hour.
+
+inline constexpr int kStepsPerHour = 60 / kMinutesPerStep;
+
+/// What a restart takes over, as it stood at the record's time.
+struct ReversalHistory {
+  std::uint32_t steps = 0;     ///< bit n: the order n steps ago was a reversal
+  std::int16_t direction = 0;  ///< sign of the last order that was not 0 W
+  std::int16_t in_hour = 0;    ///< reversals among the steps
+};
+
+class ReversalCap {
+ public:
+  /// 0 = no cap.
+  explicit constexpr ReversalCap(std::int32_t per_hour_max) : per_hour_max_(per_hour_max) {}
+
+  constexpr void restore(const ReversalHistory& before, std::int64_t utc_s) {
+    history_ = before;
+    step_ = utc_s / kSecondsPerStep;
+  }
+
+  /// Once a cycle, before its decision. A clock that was stepped back forgets nothing.
+  constexpr void advance(std::int64_t utc_s) {
+    const std::int64_t step = utc_s / kSecondsPerStep;
+    const std::int64_t passed = step > step_ ? step - step_ : 0;
+    step_ = step;
+    history_.steps = passed < kStepsPerHour ? (history_.steps << passed) & kHourMask : 0;
+    count();
+  }
+
+  /// Sign of the power that would be one reversal too many; 0 = either may be ordered.
+  [[nodiscard]] constexpr int barred_direction() const {
+    const bool is_spent = per_hour_max_ > 0 && history_.in_hour >= per_hour_max_;
+    return is_spent ? -history_.direction : 0;
+  }
+
+  /// The order of this step.
+  constexpr void note(std::int32_t power_w) {
+    const int direction = power_w > 0 ? 1 : power_w < 0 ? -1 : 0;
+    if (direction == 0) return;
+    if (direction == -history_.direction) history_.steps |= 1U;
+    history_.direction = static_cast<std::int16_t>(direction);
+    count();
+  }
+
+  [[nodiscard]] constexpr const ReversalHistory& history() const { return history_; }
+
+ private:
+  static constexpr std::uint32_t kHourMask = (std::uint32_t{1} << kStepsPerHour) - 1;
+  static_assert(kStepsPerHour < 32);
+
+  constexpr void count() {
+    history_.in_hour = static_cast<std::int16_t>(std::popcount(history_.steps));
+  }
+
+  std::int32_t per_hour_max_;
+  ReversalHistory history_;
+  std::int64_t step_ = 0;
+};
 
 /// What a restart takes over: the local day as 20231126, and the sum of |dSoC| in 1e-4 on it.
 struct DayThroughput {

@@ -9,7 +9,7 @@
 
 #include "edge/control/control_types.h"
 #include "edge/control/full_charge.h"
-#include "edge/control/site_range.h"
+#include "edge/control/site_types.h"
 #include "shared/decision_rule.h"
 #include "shared/price_thresholds.h"
 #include "shared/soc_latches.h"

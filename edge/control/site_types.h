@@ -1,12 +1,13 @@
 // What is measured and limited beyond the battery: the house behind the same meter, its connection
 // to the grid, and whoever may cap the battery's power from outside.
-//   meter -> SiteReport -> log            limits -> SiteRange -> guard (site_range.h)
+//   meter -> SiteReport -> log            limits -> SiteRange -> guard
 // Grid power is positive for import, house load for consumption (negative: more sun than load).
 #pragma once
 
 #include <cstdint>
 
 #include "edge/base/status.h"
+#include "edge/control/reasons.h"
 
 namespace bess {
 
@@ -38,8 +39,41 @@ struct SiteReport {
   Status meter_status = Status::kOk;  ///< of the last reading
   /// kTimeout: the outside limit has lapsed, kMalformed: it cannot be understood.
   Status limit_status = Status::kOk;
-  bool house_is_implausible = false;  ///< house_watch.h
+  bool house_is_implausible = false;  ///< meter_witness.h
   MeterTrust trust{};
+};
+
+/// How far an order may go, by the site: the result of meter and outside limits, the guard's input.
+/// Always contains 0 W: a limit takes power away and never asks for any; what asks is `relief_w`.
+struct SiteRange {
+  std::int32_t charge_w_max = kAnyPowerW;     ///< 0 or more
+  std::int32_t discharge_w_max = kAnyPowerW;  ///< 0 or more
+  Reason charge_reason = Reason::kStudent;    ///< what set the limit
+  Reason discharge_reason = Reason::kStudent;
+  /// To be discharged at least, so that the quarter-hour stays under its cap; within SoC, cycle and
+  /// power limits, and within `discharge_w_max`.
+  std::int32_t relief_w = 0;
+
+  /// The tightest limit names the reason; of equal ones the first.
+  constexpr void limit_charge(std::int64_t power_w, Reason reason) {
+    limit(power_w, reason, charge_w_max, charge_reason);
+  }
+  constexpr void limit_discharge(std::int64_t power_w, Reason reason) {
+    limit(power_w, reason, discharge_w_max, discharge_reason);
+  }
+  constexpr void forbid(Reason reason) {
+    limit_charge(0, reason);
+    limit_discharge(0, reason);
+  }
+
+ private:
+  static constexpr void limit(std::int64_t power_w, Reason reason, std::int32_t& power_w_max,
+                              Reason& because) {
+    if (power_w < 0) power_w = 0;
+    if (power_w >= power_w_max) return;
+    power_w_max = static_cast<std::int32_t>(power_w);
+    because = reason;
+  }
 };
 
 }  // namespace bess

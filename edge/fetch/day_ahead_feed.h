@@ -3,16 +3,33 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "edge/base/status.h"
 #include "edge/fetch/day_ahead_book.h"
-#include "edge/prices/outlook_settings.h"
+#include "edge/prices/price_settings.h"
 #include "shared/host/day_ahead_rows.h"
 #include "shared/host/http_client.h"
 
 namespace bess {
+
+// What is kept of day-ahead prices over a restart: one file in the state folder, a line a
+// quarter-hour, replaced at once and checked as a whole.
+//   # bess day-ahead 1: quarter-hour, hundredths of EUR/MWh, received
+//   2026-11-23T23:00:00Z 4150 2026-11-23T11:57:12Z
+//   # crc32=0123abcd
+// Nothing here allocates.
+
+inline constexpr const char* kDayAheadFileName = "day_ahead";
+
+/// False with errno set.
+bool keep_day_ahead(const char* path, const DayAheadBook& book);
+
+/// How many prices came back; 0 where there is no file, or none that is whole: they are fetched
+/// again.
+int restore_day_ahead(const char* path, DayAheadBook& book);
 
 /// What a status means when it comes from there, and what mends it.
 std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings);

@@ -20,7 +20,7 @@
 #include "edge/fetch/settled_fetch.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
-#include "edge/prices/http_secrets.h"
+#include "edge/prices/http_trust.h"
 #include "edge/storage/instance_lock.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"

@@ -4,17 +4,45 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <stop_token>
 #include <string>
 
-#include "edge/fetch/ask_timing.h"
 #include "edge/fetch/fetch.h"
 #include "edge/fetch/price_json.h"
-#include "edge/fetch/price_publisher.h"
 #include "edge/fetch/unit_watch.h"
+#include "edge/prices/published_prices.h"
 #include "edge/settings/edge_config.h"
 
 namespace bess {
+
+// The record of published_prices.h, changed by several threads of bess-prices and rewritten after
+// each change.
+
+class PricePublisher {
+ public:
+  explicit PricePublisher(std::string path) : path_(std::move(path)) {}
+
+  /// `change(prices)`, then the file. A failure to write is logged once.
+  template <typename Change>
+  void publish(const Change& change) {
+    const std::lock_guard lock(mutex_);
+    change(prices_);
+    write();
+  }
+  /// A new plan.
+  void publish_outlook(OutlookBoard& board);
+
+ private:
+  void write();
+
+  const std::string path_;
+  std::mutex mutex_;
+  PublishedPrices prices_;
+  std::unique_ptr<PublishedOutlook> outlook_;
+  bool is_failing_ = false;
+};
 
 /// The price server: one request at a time, on the caller's thread.
 class PriceSource {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "edge/account/day_account.h"
-#include "edge/account/money_settings.h"
+#include "edge/account/settled_prices.h"
 #include "edge/control/quarter_hour_energy.h"
-#include "edge/fetch/pause.h"
+#include "edge/fetch/fetch.h"
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
 #include "edge/prices/http_trust.h"

@@ -12,9 +12,7 @@
 
 #include "edge/control/control_types.h"
 #include "edge/log/handover_queue.h"
-#include "edge/log/hold_lines.h"
-#include "edge/log/meter_lines.h"
-#include "edge/log/reading_lines.h"
+#include "edge/log/journal_lines.h"
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
 #include "edge/log/whole_file.h"

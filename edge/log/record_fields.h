@@ -6,8 +6,11 @@
 // numbers mean: `Places` in field.h.
 #pragma once
 
+#include <type_traits>
+
 #include "edge/control/control_types.h"
 #include "edge/log/field.h"
+#include "edge/log/run_status.h"
 
 namespace bess {
 
@@ -322,5 +325,64 @@ consteval auto make_record_fields() {
 }
 
 inline constexpr auto kRecordFields = make_record_fields();
+
+// The table of what a run counts, beside that of a cycle (record_fields.h): status.json and metrics
+// hold both.
+
+consteval auto make_run_fields() {
+  using T = RunTotals;
+  return std::to_array<Field<RunTotals>>({
+      {member<&T::cycles>(),
+       "cycles",
+       {.totals = 11, .metrics = {32, "bess_cycles_total"}},
+       {"Cycles since the start."}},
+      {member<&T::written_orders>(), "written_orders", {.totals = 13}},
+      {member<&T::battery_failures>(), "battery_failures", {.totals = 31}},
+      {member<&T::price_failures>(), "price_failures", {.totals = 32}},
+      {member<&T::records_dropped>(),
+       "records_dropped",
+       {.totals = 41, .metrics = {37, "bess_log_records_dropped_total"}},
+       {"Records lost because the disk was too slow."}},
+      {member<&T::disk_failures>(),
+       "disk_failures",
+       {.totals = 42, .metrics = {38, "bess_log_failures_total"}},
+       {"Records that a log file refused."}},
+      {member<&T::disk_is_slow>(), "disk_is_slow", {.totals = 51}},
+      {member<&T::disk_is_failing>(), "disk_is_failing", {.totals = 52}},
+      {member<&T::run_folder_is_failing>(), "run_folder_is_failing", {.totals = 53}},
+  });
+}
+
+inline constexpr auto kRunFields = make_run_fields();
+
+// Under which key status.json holds a member of CycleRecord or RunTotals: for who reads it back.
+
+inline constexpr const char* kLastSection = "last";
+inline constexpr const char* kTotalsSection = "totals";
+
+struct StatusKey {
+  const char* section;
+  const char* name;
+};
+
+/// Where status.json holds the member at this path of CycleRecord or RunTotals. Does not compile
+/// for a member that is not in it.
+template <auto... kPath>
+consteval StatusKey status_key() {
+  const auto find = [](const auto& fields) -> StatusKey {
+    for (const auto& field : fields) {
+      if (field.access.id != path_id<kPath...>()) continue;
+      if (field.place_in(&Places::last) > 0) return {kLastSection, field.name_in(&Places::last)};
+      if (field.place_in(&Places::totals) > 0)
+        return {kTotalsSection, field.name_in(&Places::totals)};
+    }
+    check_failed("no such key", __FILE__, __LINE__);
+  };
+  if constexpr (std::is_same_v<SourceOf<kPath...>, RunTotals>) {
+    return find(kRunFields);
+  } else {
+    return find(kRecordFields);
+  }
+}
 
 }  // namespace bess

@@ -3,9 +3,8 @@
 #include <string_view>
 #include <utility>
 
-#include "edge/log/run_fields.h"
-#include "edge/log/status_keys.h"
-#include "edge/log/text_checksum.h"
+#include "edge/log/record_fields.h"
+#include "edge/log/whole_file.h"
 #include "shared/utc_text.h"
 
 namespace bess {

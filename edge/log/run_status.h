@@ -65,7 +65,7 @@ struct RunTotals {
 inline constexpr std::size_t kStatusBytes = 6'144;
 inline constexpr std::size_t kMetricsBytes = 24'576;
 
-/// Both end with a checksum of what stands before (text_checksum.h): as JSON's last member, as a
+/// Both end with a checksum of what stands before (whole_file.h): as JSON's last member, as a
 /// comment.
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,
                         std::int64_t written_monotonic_ns, TextBuffer& json);

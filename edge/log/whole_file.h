@@ -12,6 +12,31 @@
 
 namespace bess {
 
+// A checksum as the end of a text that other programs and people read as well: a comment of TOML
+// and of Prometheus, or the last member of a JSON object. Nothing here allocates.
+
+/// What stands before and behind the eight hexadecimal digits. The checksum is of all that stands
+/// before.
+struct ChecksumFrame {
+  std::string_view before;
+  std::string_view after;
+};
+inline constexpr ChecksumFrame kCommentChecksum{"# crc32=", "\n"};
+inline constexpr ChecksumFrame kJsonChecksum{",\n  \"crc32\": \"", "\"\n}\n"};
+
+/// What makes a checked text of this one.
+FixedText<31> checksum_end(std::string_view text, const ChecksumFrame& frame);
+
+enum class TextState {
+  kUnchecked,  ///< of an older program, or its end is cut off
+  kIntact,
+  kBroken,
+};
+TextState check_text(std::string_view text, const ChecksumFrame& frame);
+
+/// What the checksum is of; of an unchecked text the whole.
+std::string_view without_checksum(std::string_view text, const ChecksumFrame& frame);
+
 using FileMessage = FixedText<767>;
 
 /// False with errno set. Not forced to the disk: such a file says how things are now, and after a

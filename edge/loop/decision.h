@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
+#include "edge/control/level_start.h"
 #include "edge/control/policy.h"
 #include "edge/control/safety_guard.h"
-#include "edge/control/stand_in_price.h"
-#include "edge/loop/parts/price_part.h"
+#include "edge/loop/cycle_parts.h"
 
 namespace bess {
 

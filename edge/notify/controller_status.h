@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "edge/companion/controller_places.h"
-#include "edge/notify/alarm_book.h"
+#include "edge/notify/notifier_state.h"
 #include "shared/host/json.h"
 
 namespace bess {

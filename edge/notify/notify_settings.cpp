@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "edge/companion/numeric_address.h"
-#include "edge/log/installed_folders.h"
+#include "edge/log/battery_name.h"
 
 namespace bess {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "edge/notify/alarm_book.h"
 #include "edge/notify/alarm_command.h"
 #include "edge/notify/controller_status.h"
+#include "edge/notify/notifier_state.h"
 #include "edge/notify/notify_settings.h"
 
 namespace bess {

@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edge/page/controller_answers.h"
@@ -22,6 +23,19 @@ class Server;
 }  // namespace httplib
 
 namespace bess {
+
+// The static files of the page, embedded when it is built.
+
+/// "page.html", "page.css", "page.js" or "chart.min.js".
+std::string_view page_file(std::string_view name);
+
+// Who may ask. A page on the loopback device is within reach of every browser on that machine, and
+// so of every web site that it visits: the name that is asked for must be ours (no rebinding of a
+// foreign name).
+
+/// `host` of the request, with or without a port: this server's address, localhost on loopback, or
+/// one of `hosts`.
+bool is_our_host(std::string_view host, const PageSettings& settings);
 
 class PageServer {
  public:

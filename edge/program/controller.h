@@ -14,7 +14,7 @@
 
 #include "edge/log/journal.h"
 #include "edge/loop/control_loop.h"
-#include "edge/prices/http_secrets.h"
+#include "edge/prices/http_trust.h"
 #include "edge/program/find_battery.h"
 #include "edge/program/starting_level.h"
 #include "edge/program/take_over.h"

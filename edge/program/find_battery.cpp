@@ -1,10 +1,52 @@
 #include "edge/program/find_battery.h"
 
-#include <string_view>
+#include <pthread.h>
 
+#include <string_view>
+#include <utility>
+
+#include "edge/base/check.h"
+#include "edge/log/journal.h"
+#include "edge/memory/heap_seal.h"
+#include "edge/program/startup.h"
 #include "shared/host/text.h"
 
 namespace bess {
+
+namespace {
+
+ModbusBattery* battery_of_check_handler = nullptr;
+pthread_t control_thread;
+
+/// Not from another thread, which would talk into the control thread's requests: the watchdog ends
+/// the order then. Nor twice, should the release be what broke.
+void release_after_failed_check(const char*, const char*, int) {
+  ModbusBattery* const battery = std::exchange(battery_of_check_handler, nullptr);
+  if (battery == nullptr || pthread_equal(pthread_self(), control_thread) == 0) return;
+  static_cast<void>(battery->order({.duration_s = 60}));
+  static_cast<void>(battery->release());
+}
+
+}  // namespace
+
+void release_if_a_check_fails(ModbusBattery& battery) {
+  battery_of_check_handler = &battery;
+  control_thread = pthread_self();
+  check_handler() = release_after_failed_check;
+}
+
+bool DeviceSession::begin(const EdgeConfig& config) {
+  if (!check_student() || !prepare_memory()) return false;
+  FileMessage error;
+  if (!lock_battery(config, locks_, error)) {
+    report(JournalLevel::kError, "%s", error.c_str());
+    return false;
+  }
+  prepare_process();
+  clock_.emplace(config.clock);
+  return true;
+}
+
 namespace {
 
 /// "PLACE: what is wrong there".

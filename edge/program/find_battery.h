@@ -2,13 +2,40 @@
 // here writes to it, nothing prints.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "edge/battery/modbus_battery.h"
 #include "edge/program/edge_clock.h"
 #include "edge/settings/edge_config.h"
+#include "edge/storage/instance_lock.h"
 
 namespace bess {
+
+// A broken promise of the program itself (edge/base/check.h): the battery gets 0 W and is released
+// before the process ends.
+
+/// From now on, of this battery, if it is this thread whose check fails. The battery must outlive
+/// the process.
+void release_if_a_check_fails(ModbusBattery& battery);
+
+// What everything that talks to the battery begins with: memory as it must be, the student as it
+// was exported, the battery for this process alone, a clock.
+
+class DeviceSession {
+ public:
+  /// Before any thread is started. False when somebody else has the battery, or this machine is not
+  /// fit; one line on stderr says it.
+  bool begin(const EdgeConfig& config);
+
+  /// After `begin`.
+  EdgeClock& clock() { return *clock_; }
+  RunLocks& locks() { return locks_; }
+
+ private:
+  RunLocks locks_;
+  std::optional<EdgeClock> clock_;
+};
 
 struct BatterySearch {
   Status status = Status::kOk;

@@ -10,8 +10,8 @@
 
 #include "edge/control/hold.h"
 #include "edge/memory/plain_thread.h"
-#include "edge/storage/hold_file.h"
-#include "edge/storage/trip_clearance.h"
+#include "edge/storage/operator_files.h"
+#include "edge/storage/recall.h"
 #include "shared/fixed_text.h"
 
 namespace bess {

@@ -1,10 +1,10 @@
 #include "edge/program/real_world.h"
 
 #include "edge/control/policy.h"
-#include "edge/program/release_on_failed_check.h"
+#include "edge/program/find_battery.h"
 #include "edge/program/startup.h"
 #include "edge/storage/commission_file.h"
-#include "edge/storage/hold_file.h"
+#include "edge/storage/operator_files.h"
 #include "edge/storage/published_status.h"
 #include "edge/storage/run_identity.h"
 

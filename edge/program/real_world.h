@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "edge/battery/modbus_meter.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/log/event_log.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
@@ -15,7 +15,7 @@
 #include "edge/program/service_notify.h"
 #include "edge/recording/exchange_recorder.h"
 #include "edge/settings/edge_config.h"
-#include "edge/storage/limit_file.h"
+#include "edge/storage/operator_files.h"
 #include "edge/storage/recall.h"
 
 namespace bess {

@@ -4,7 +4,7 @@
 
 #include "edge/control/policy.h"
 #include "edge/prices/published_prices.h"
-#include "edge/program/level_note.h"
+#include "edge/program/start_notes.h"
 #include "edge/settings/edge_config.h"
 
 namespace bess {

@@ -6,8 +6,8 @@
 #include "edge/control/decision_signature.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
-#include "edge/program/threshold_note.h"
-#include "edge/settings/price_transport.h"
+#include "edge/program/start_notes.h"
+#include "edge/settings/price_config.h"
 #include "edge/storage/commission_file.h"
 #include "shared/local_time.h"
 

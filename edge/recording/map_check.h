@@ -14,7 +14,6 @@
 
 #include "edge/recording/energy_evidence.h"
 #include "edge/registers/live_points.h"
-#include "edge/registers/point_places.h"
 #include "edge/registers/register_map.h"
 #include "shared/bus_exchange.h"
 

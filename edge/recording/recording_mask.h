@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "edge/registers/point_places.h"
+#include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
 #include "shared/bus_exchange.h"
 

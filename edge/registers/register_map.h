@@ -7,7 +7,6 @@
 
 #include "edge/base/response_band.h"
 #include "edge/registers/battery_command.h"
-#include "edge/registers/parity.h"
 #include "edge/registers/register_point.h"
 
 namespace bess {

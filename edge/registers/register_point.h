@@ -14,6 +14,10 @@
 
 namespace bess {
 
+// Parity of a serial line, as a register map states it and as an operator overrides it.
+
+enum class Parity : std::uint8_t { kNone, kEven, kOdd };
+
 using RegisterName = FixedText<31>;
 
 inline constexpr int kPointsMax = 48;

@@ -6,14 +6,32 @@
 #include <string_view>
 
 #include "edge/base/static_vector.h"
-#include "edge/settings/battery_config.h"
-#include "edge/settings/outlook_config.h"
+#include "edge/log/event_log.h"
+#include "edge/settings/control_config.h"
 #include "edge/settings/price_config.h"
 #include "edge/settings/site_config.h"
-#include "edge/settings/state_config.h"
+#include "shared/fixed_text.h"
+#include "shared/host/toml_reader.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
+
+// [state], [log] and [metrics]: what the controller keeps, and where; and the paths below.
+
+/// Where the controller keeps what outlives it.
+struct StateSettings {
+  FixedText<511> folder;
+  FixedText<511> run_folder;  ///< on a memory file system, beside `folder`; empty = none
+};
+
+/// The log lies in the [state] folders, unless it is said otherwise.
+struct KeptFiles {
+  StateSettings& state;
+  EventLogSettings& log;
+};
+void read_state(TomlTable table, KeptFiles kept);
+void read_log(TomlTable table, EventLogSettings& log);
+void read_metrics(TomlTable table, EventLogSettings& log);
 
 /// A key of earlier versions that the file still has; it does nothing.
 struct RetiredKey {

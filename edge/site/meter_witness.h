@@ -25,12 +25,13 @@
 // each step has shown. Six steps that agree, alone and in sum, end it; a contradiction is the
 // next pause. The pause keeps its length until a day without a finding: it cannot flap.
 //
-// What it cannot see: an offset (steps are right: house_watch.h looks at the level), a meter that
+// What it cannot see: an offset (steps are right: meter_witness.h looks at the level), a meter that
 // lies while the battery rests. Something else that holds the grid at a value (a second battery,
 // curtailed sun) takes the steps away: `judged = false`. A battery whose measured power is not
 // true looks the same: one of the two is wrong, and neither may be relied on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,6 +39,46 @@
 #include "edge/control/site_types.h"
 
 namespace bess {
+
+// Is the load that meter and battery leave for the house one that a house can have? House = grid
+// - battery; below zero it generates, and no more than its panels can. An inverted meter or
+// battery, an offset, a meter on another phase show as "house -631 W". Told, not acted on:
+// whoever has panels and has not said so would lose his battery to the sun.
+
+/// Of both meters together, with that much of the battery's power besides: it is read a moment
+/// earlier than the grid.
+inline constexpr std::int64_t kHouseErrorW = 200;
+inline constexpr std::int64_t kHouseErrorShare = 20;
+
+/// `pv_w_max`: what the panels behind the meter can give; kAnyPowerW: not known.
+constexpr bool is_plausible_house(std::int32_t grid_w, std::int32_t battery_w,
+                                  std::int32_t pv_w_max) {
+  if (pv_w_max == kAnyPowerW) return true;
+  const std::int64_t battery_magnitude_w =
+      std::max<std::int64_t>(battery_w, -std::int64_t{battery_w});
+  const std::int64_t error_w = kHouseErrorW + battery_magnitude_w / kHouseErrorShare;
+  return std::int64_t{grid_w} - battery_w >= -std::int64_t{pv_w_max} - error_w;
+}
+
+class HouseWatch {
+ public:
+  /// Readings in a row that begin and end it: one falls into a ramp.
+  static constexpr std::int32_t kReadings = 4;
+
+  void observe(bool is_plausible) {
+    if (is_plausible != is_implausible_) {
+      readings_ = 0;
+    } else if (++readings_ >= kReadings) {
+      is_implausible_ = !is_plausible;
+      readings_ = 0;
+    }
+  }
+  [[nodiscard]] bool is_implausible() const { return is_implausible_; }
+
+ private:
+  bool is_implausible_ = false;
+  std::int32_t readings_ = 0;  ///< in a row that say otherwise
+};
 
 struct MeterWitnessSettings {
   bool judges = true;

@@ -15,11 +15,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "edge/control/site_range.h"
+#include "edge/control/control_types.h"
+#include "edge/control/site_types.h"
 #include "edge/site/connection_guard.h"
-#include "edge/site/house_watch.h"
 #include "edge/site/meter_witness.h"
-#include "edge/site/outside_limit.h"
 
 namespace bess {
 

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "edge/log/text_checksum.h"
 #include "edge/log/whole_file.h"
 #include "shared/crc32.h"
 #include "shared/host/toml_reader.h"

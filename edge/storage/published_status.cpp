@@ -17,10 +17,10 @@
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/run_status.h"
-#include "edge/log/text_checksum.h"
+#include "edge/log/whole_file.h"
 #include "edge/storage/file_owner.h"
+#include "edge/storage/instance_lock.h"
 #include "edge/storage/run_identity.h"
-#include "edge/storage/run_locks.h"
 #include "edge/storage/storage_health.h"
 #include "shared/utc_text.h"
 

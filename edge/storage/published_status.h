@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "edge/log/status_keys.h"
+#include "edge/log/record_fields.h"
 #include "edge/settings/edge_config.h"
 #include "shared/host/json.h"
 

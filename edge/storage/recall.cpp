@@ -1,8 +1,90 @@
 #include "edge/storage/recall.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+
+#include "edge/log/text_buffer.h"
+#include "edge/log/whole_file.h"
+#include "shared/crc32.h"
 
 namespace bess {
+
+namespace {
+
+constexpr std::string_view kHead = "bess-cleared 1";
+constexpr std::string_view kBeforeCrc = " crc32=";
+
+constexpr ClearedTrips kUnreadable{.unreadable = true};
+
+/// Programs before this form left the instant alone.
+bool parse_older(std::string_view text, ClearedTrips& cleared) {
+  if (!text.ends_with('\n')) return false;
+  const char* const end = text.data() + text.size() - 1;
+  const auto read = std::from_chars(text.data(), end, cleared.utc_s.front());
+  return read.ec == std::errc{} && read.ptr == end;
+}
+
+}  // namespace
+
+bool ClearedTrips::has(std::int64_t trip_utc_s) const {
+  return trip_utc_s != 0 && std::find(utc_s.begin(), utc_s.end(), trip_utc_s) != utc_s.end();
+}
+
+void ClearedTrips::add(std::int64_t trip_utc_s) {
+  std::copy_backward(utc_s.begin(), utc_s.end() - 1, utc_s.end());
+  utc_s.front() = trip_utc_s;
+}
+
+ClearanceText format_cleared(const ClearedTrips& cleared) {
+  char storage[256];
+  TextBuffer text(storage);
+  text.add("%s", kHead.data());
+  for (const std::int64_t utc_s : cleared.utc_s) {
+    if (utc_s != 0) text.add(" %lld", static_cast<long long>(utc_s));
+  }
+  Crc32 crc;
+  crc.add_bytes(text.view().data(), text.view().size());
+  text.add("%s%08x\n", kBeforeCrc.data(), crc.value());
+  return {text.view()};
+}
+
+ClearedTrips parse_cleared(std::string_view text) {
+  if (ClearedTrips older; parse_older(text, older)) return older;
+  const std::size_t end = text.find(kBeforeCrc);
+  if (!text.starts_with(kHead) || end == std::string_view::npos) return kUnreadable;
+  ClearedTrips cleared;
+  const char* at = text.data() + kHead.size();
+  for (std::int64_t& utc_s : cleared.utc_s) {
+    if (at >= text.data() + end) break;
+    const auto read = std::from_chars(at + 1, text.data() + end, utc_s);
+    if (read.ec != std::errc{}) return kUnreadable;
+    at = read.ptr;
+  }
+  // Every other character, and the checksum: written again it must be the same.
+  return format_cleared(cleared) == text ? cleared : kUnreadable;
+}
+
+ClearedTrips read_cleared(const char* path) {
+  char text[256];
+  if (*path == '\0') return {};
+  const ssize_t size = read_beginning(path, text, Links::kRefused);
+  if (size < 0) return errno == ENOENT ? ClearedTrips{} : kUnreadable;
+  return parse_cleared({text, static_cast<std::size_t>(size)});
+}
+
+bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s) {
+  return read_cleared(paths.state.c_str()).has(trip_utc_s) ||
+         read_cleared(paths.run.c_str()).has(trip_utc_s);
+}
+
+bool clear_trip_of(const char* path, std::int64_t trip_utc_s) {
+  ClearedTrips cleared = read_cleared(path);
+  if (cleared.unreadable) cleared = {};
+  cleared.add(trip_utc_s);
+  return replace_file_durably(path, format_cleared(cleared).view());
+}
+
 namespace {
 
 std::string why_nothing_is_known(const RingLog& ring, std::uint64_t published_number) {

@@ -13,17 +13,20 @@
 //   arrive, loss at 0 W, a slow ramp, limits of
 //   its own that allow nothing
 // Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is
-// found soon; what is too rare for them is found by its energy (wrong_energy.h). A reading that
+// found soon; what is too rare for them is found by its energy (energy_balance.h). A reading that
 // could not show a fault leaves its count as it is: a battery that goes the wrong way at every
 // other order, with idle between, is found as well.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "edge/base/response_band.h"
+#include "edge/control/control_types.h"
+#include "edge/supervision/energy_balance.h"
 #include "edge/supervision/leaky_count.h"
 #include "edge/supervision/response.h"
 #include "edge/supervision/soc_monitor.h"
-#include "edge/supervision/wrong_energy.h"
 
 namespace bess {
 

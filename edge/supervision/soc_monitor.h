@@ -16,7 +16,6 @@
 #include "edge/supervision/energy_balance.h"
 #include "edge/supervision/leaky_count.h"
 #include "edge/supervision/response.h"
-#include "edge/supervision/seldom_soc.h"
 
 namespace bess {
 

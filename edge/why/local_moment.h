@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "edge/why/duration_text.h"
+#include "edge/why/explanation.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 

@@ -1,6 +1,5 @@
 // Day-ahead answers as the edge takes them, and the file that it keeps of them over a restart.
 #include "edge/fetch/day_ahead_feed.h"
-#include "edge/fetch/day_ahead_file.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "tests/fuzz/fuzz_target.h"

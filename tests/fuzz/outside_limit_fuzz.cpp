@@ -1,5 +1,5 @@
 // The line of an outside limit: refused, or whole and within its range.
-#include "edge/site/outside_limit.h"
+#include "edge/site/connection_guard.h"
 #include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,5 +1,5 @@
 // Faults that the counts forgive are found by what they move, whatever their rhythm: the bound of
-// edge/supervision/wrong_energy.h.
+// edge/supervision/energy_balance.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>

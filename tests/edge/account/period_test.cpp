@@ -1,5 +1,5 @@
 // What a person may ask for, and what is none of it.
-#include "edge/account/period.h"
+#include "edge/account/account_days.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/account/money_settings.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

@@ -6,7 +6,6 @@
 
 #include <functional>
 
-#include "edge/site/house_watch.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -1,5 +1,5 @@
 // The mode state machine, every mode against every input.
-#include "edge/control/mode.h"
+#include "edge/control/tick.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,7 @@
 #include "edge/control/mailbox.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
-#include "edge/loop/parts/operator_parts.h"
-#include "edge/loop/parts/price_part.h"
+#include "edge/loop/cycle_parts.h"
 #include "tests/support/guard_inputs.h"
 
 namespace bess {

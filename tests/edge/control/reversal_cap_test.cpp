@@ -1,5 +1,5 @@
 // Changes between charging and discharging, counted over the hour that moves on with the clock.
-#include "edge/control/reversal_cap.h"
+#include "edge/control/cycle_budget.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What an old price has probably become.
-#include "edge/control/stand_in_price.h"
+#include "edge/control/level_start.h"
 
 #include <gtest/gtest.h>
 

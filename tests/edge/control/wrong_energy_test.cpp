@@ -1,10 +1,10 @@
 // Energy against or beyond orders adds up over hours, is forgiven by days, and outlives pauses,
 // restarts and all but a person's word.
-#include "edge/supervision/wrong_energy.h"
+#include "edge/supervision/energy_balance.h"
 
 #include <gtest/gtest.h>
 
-#include "edge/loop/parts/supervision_part.h"
+#include "edge/loop/cycle_parts.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "edge/fetch/day_ahead_file.h"
+#include "edge/fetch/day_ahead_feed.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 

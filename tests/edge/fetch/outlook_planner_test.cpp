@@ -1,6 +1,6 @@
 // What the planning thread offers, and what a cycle makes of it when the thread keeps up, is late,
 // or has died.
-#include "edge/fetch/outlook_planner.h"
+#include "edge/fetch/outlook_fetcher.h"
 
 #include <gtest/gtest.h>
 

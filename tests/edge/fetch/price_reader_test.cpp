@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "edge/fetch/price_publisher.h"
+#include "edge/fetch/price_fetcher.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

@@ -7,7 +7,7 @@
 
 #include <atomic>
 
-#include "edge/account/money_settings.h"
+#include "edge/account/settled_prices.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "edge/fetch/ask_timing.h"
+#include "edge/fetch/fetch.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // What the journal says of a hold: each of its turns once.
-#include "edge/log/hold_lines.h"
+#include "edge/log/journal_lines.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,6 @@
 
 #include "edge/log/log_text.h"
 #include "edge/log/record_codec.h"
-#include "edge/log/status_keys.h"
 #include "shared/utc_text.h"
 #include "tests/support/csv_rows.h"
 

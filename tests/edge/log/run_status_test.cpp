@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "edge/log/text_checksum.h"
+#include "edge/log/whole_file.h"
 #include "tests/edge/log/sample_records.h"
 #include "tests/support/temporary_folder.h"
 

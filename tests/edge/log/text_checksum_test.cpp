@@ -1,5 +1,5 @@
 // Texts that end with their own checksum: every flipped bit is found, and every cut.
-#include "edge/log/text_checksum.h"
+#include "edge/log/whole_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Alarms: each once, its end once, over restarts and clocks that step.
-#include "edge/notify/alarm_book.h"
+#include "edge/notify/notifier_state.h"
 
 #include <gtest/gtest.h>
 

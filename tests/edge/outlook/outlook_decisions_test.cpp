@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "edge/control/policy.h"
-#include "edge/fetch/outlook_planner.h"
+#include "edge/fetch/outlook_fetcher.h"
 #include "shared/features.h"
 #include "shared/price_level.h"
 #include "tests/support/market_zone.h"

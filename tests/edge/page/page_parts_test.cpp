@@ -5,9 +5,9 @@
 #include <random>
 
 #include "edge/control/policy.h"
-#include "edge/page/decision_map.h"
+#include "edge/page/controller_answers.h"
+#include "edge/page/page_server.h"
 #include "edge/page/page_settings.h"
-#include "edge/page/request_guard.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

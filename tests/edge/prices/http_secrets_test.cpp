@@ -1,5 +1,5 @@
 // Secrets of the price request: what the header file may hold, and what a log may show.
-#include "edge/prices/http_secrets.h"
+#include "edge/prices/http_trust.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 
 #include "edge/log/whole_file.h"
 #include "edge/program/hold_watch.h"
-#include "edge/storage/hold_file.h"
+#include "edge/storage/operator_files.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"

@@ -1,5 +1,5 @@
 // What the journal says of the price level at the start, and what --check says of the context.
-#include "edge/program/level_note.h"
+#include "edge/program/start_notes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

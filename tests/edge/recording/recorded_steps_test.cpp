@@ -1,5 +1,5 @@
 // Steps in a recording that is made here, of a battery whose delay, ramp and lag are known.
-#include "edge/recording/recorded_steps.h"
+#include "edge/recording/energy_evidence.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-#include "edge/storage/run_locks.h"
+#include "edge/storage/instance_lock.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

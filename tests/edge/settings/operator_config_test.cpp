@@ -1,11 +1,11 @@
 // Reserve and full charge in the operator's configuration, and every mistake in them.
-#include "edge/settings/operator_config.h"
+#include "edge/settings/control_config.h"
 #include "edge/settings/edge_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/program/operator_note.h"
+#include "edge/program/start_notes.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"

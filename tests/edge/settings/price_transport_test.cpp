@@ -1,6 +1,6 @@
 // What a configuration may ask over plain http, and what the start says of it.
-#include "edge/settings/price_transport.h"
 #include "edge/settings/edge_config.h"
+#include "edge/settings/price_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

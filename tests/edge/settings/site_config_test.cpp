@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "edge/settings/edge_config.h"
-#include "edge/why/duration_text.h"
+#include "edge/why/explanation.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

@@ -11,7 +11,6 @@
 #include <fstream>
 
 #include "edge/storage/instance_lock.h"
-#include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

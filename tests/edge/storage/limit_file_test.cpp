@@ -1,6 +1,6 @@
 // The file of the outside limit: absent, good, malformed, and what must never make the control
 // thread wait.
-#include "edge/storage/limit_file.h"
+#include "edge/storage/operator_files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

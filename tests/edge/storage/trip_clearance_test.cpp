@@ -1,6 +1,6 @@
 // The file of cleared trips: its text, what is no such text, and that one word in either place is
 // enough.
-#include "edge/storage/trip_clearance.h"
+#include "edge/storage/recall.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/account/money_settings.h"
+#include "edge/account/settled_prices.h"
 #include "edge/log/log_text.h"
 #include "shared/host/minute_file.h"
 #include "shared/utc_text.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "edge/account/account_days.h"
-#include "edge/account/cycle_account.h"
+#include "edge/account/day_account.h"
 #include "edge/account/earnings.h"
 #include "edge/log/ring_log.h"
 #include "shared/host/json.h"

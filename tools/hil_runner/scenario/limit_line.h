@@ -1,11 +1,11 @@
-// The line by which a scenario's other program limits the battery (edge/site/outside_limit.h).
+// The line by which a scenario's other program limits the battery (edge/site/connection_guard.h).
 #pragma once
 
 #include <fmt/core.h>
 
 #include <string>
 
-#include "edge/site/outside_limit.h"
+#include "edge/site/connection_guard.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/scenario.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "edge/control/hold.h"
-#include "edge/site/outside_limit.h"
-#include "edge/storage/trip_clearance.h"
+#include "edge/site/connection_guard.h"
+#include "edge/storage/recall.h"
 #include "tools/hil_runner/scenario/scenario.h"
 
 namespace bess {

@@ -8,7 +8,7 @@
 
 #include "edge/control/control_types.h"
 #include "edge/fetch/day_ahead_feed.h"
-#include "edge/fetch/outlook_planner.h"
+#include "edge/fetch/outlook_fetcher.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "edge/battery/modbus_meter.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
 #include "tools/hil_runner/virtual/virtual_operator.h"

@@ -11,6 +11,7 @@
 
 #include "edge/control/hold.h"
 #include "edge/settings/edge_config.h"
+#include "edge/site/connection_guard.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -38,5 +39,22 @@ struct HoldReading {
 };
 /// Of both places the newer word; no file at all is no hold.
 HoldReading read_newest_hold(const BothPlaces& paths);
+
+// The file in which another program limits the battery (connection_guard.h has its line): read by
+// the control thread every few seconds, so no heap, a fixed buffer, and nothing that could wait: a
+// regular file on a memory file system (/run), never a pipe. Who writes it replaces it at once.
+
+class LimitFile {
+ public:
+  /// `path` must outlive this object.
+  explicit LimitFile(const char* path) : path_(path) {}
+
+  /// `is_set` is false where there is no such file. kMalformed: it cannot be understood, or is
+  /// there and cannot be read.
+  Status read(OutsideLimit& limit, bool& is_set) const;
+
+ private:
+  const char* path_;
+};
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-#include "edge/storage/hold_file.h"
+#include "edge/storage/operator_files.h"
 
 #include <sys/stat.h>
 
@@ -12,6 +12,7 @@
 #include "shared/utc_text.h"
 
 namespace bess {
+
 namespace {
 
 constexpr std::string_view kBeforePower = "bess-hold 1 power_w=";
@@ -86,6 +87,17 @@ HoldReading read_newest_hold(const BothPlaces& paths) {
   return {.hold = run_is_newer ? of_run.hold : of_state.hold,
           .state_is_lost = of_state.is_there && !of_state.counts(),
           .run_is_lost = of_run.is_there && !of_run.counts()};
+}
+
+Status LimitFile::read(OutsideLimit& limit, bool& is_set) const {
+  is_set = false;
+  char text[kLimitBytesMax + 1];
+  const ssize_t size = read_beginning(path_, text, Links::kFollowed);
+  if (size < 0 && errno == ENOENT) return Status::kOk;
+  if (size < 0 || size > static_cast<ssize_t>(kLimitBytesMax)) return Status::kMalformed;
+  const Status status = parse_outside_limit({text, static_cast<std::size_t>(size)}, limit);
+  is_set = status == Status::kOk;
+  return status;
 }
 
 }  // namespace bess

@@ -5,6 +5,7 @@
 
 #include "edge/battery/modbus_wire.h"
 #include "edge/loop/control_settings.h"
+#include "edge/prices/price_settings.h"
 #include "edge/registers/register_map.h"
 #include "shared/fixed_text.h"
 #include "shared/host/toml_reader.h"
@@ -33,5 +34,25 @@ void set_supervision(const BatteryConfig& battery, ControlSettings& control);
 
 /// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
 FixedText<159> battery_place(const BatteryConfig& battery);
+
+// [guard]: what no order may break, and how much a day may wear the battery.
+
+/// `battery`, and its power in `control`, must be known: what a day may hold follows from both.
+void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control);
+
+// What an operator decides besides trading: a reserve by the hour, full charges.
+
+/// Key full_charge_every_days of [battery]; power_w must be known.
+void read_full_charge(TomlTable& battery, ControlSettings& control);
+
+/// [[reserve]], an array of tables; bounds and hysteresis of the guard must be known.
+void read_reserve(TomlTable& root, ControlSettings& control);
+
+/// A full charge that soc_max forbids would be tried for ever.
+void check_full_charge(TomlTable& battery, const ControlSettings& control);
+
+// [outlook]: whom to ask for day-ahead prices, for a student whose context is the outlook.
+
+void read_outlook(TomlTable table, OutlookSettings& outlook);
 
 }  // namespace bess
