@@ -222,19 +222,5 @@ TEST(MarketText, BadInputIsOneClearLine) {
   for (const auto& [text, names] : cases) EXPECT_THAT(error_of(text), Names(names)) << text;
 }
 
-TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
-  const std::string text =
-      "\xEF\xBB\xBF"
-      "Datetime;Resolution code;Imbalance Price\n2025-04-08T08:21:00+02:00;PT1M;49.174\n";
-  int read = 0;
-  for (std::size_t size = 0; size <= text.size(); ++size) {
-    try {
-      read += static_cast<int>(parse_market_text(text.substr(0, size), "cut").minutes.size());
-    } catch (const UserError&) {
-    }
-  }
-  EXPECT_GE(read, 2);  // whole, with and without its line end
-}
-
 }  // namespace
 }  // namespace bess
