@@ -102,9 +102,12 @@ TEST(MarketJson, TwoDifferentPricesAreNotOne) {
       parse_market_text(R"([{"datetime":"2023-01-01T00:00:00Z","resolutioncode":"PT15M",)"
                         R"("positiveimbalanceprice":10,"negativeimbalanceprice":60},)"
                         R"({"datetime":"2023-01-01T00:15:00Z","resolutioncode":"PT15M",)"
-                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60}])",
+                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60},)"
+                        R"({"datetime":"2023-01-01T00:30:00Z","resolutioncode":"PT15M",)"
+                        R"("imbalanceprice":null}])",
                         "ods047.json");
-  ASSERT_EQ(rows.quarter_hours.size(), 2u);
+  ASSERT_EQ(rows.quarter_hours.size(), 3u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[2].price_eur_per_mwh));
   EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
   EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 60);
   EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
@@ -186,17 +189,6 @@ TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
   EXPECT_THAT(complaint(R"({"results":[{)" + row + R"(}],"results":[]})"),
               Names(R"(f.json "results")"));
   EXPECT_EQ(parse_market_json("[{" + row + "}]", "f.json").quarter_hours.size(), 1u);
-}
-
-TEST(MarketJson, QuarterHourAndNullPrice) {
-  const MarketRows rows = parse_market_text(
-      R"([{"datetime":"2025-10-08T13:00:00+02:00","resolutioncode":"PT15M","imbalanceprice":100.06},
-          {"datetime":"2025-10-08T12:45:00+02:00","resolutioncode":"PT15M",)"
-      R"("imbalanceprice":null}])",
-      "answer.json");
-  ASSERT_EQ(rows.quarter_hours.size(), 2u);
-  EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, 100.06);
-  EXPECT_TRUE(std::isnan(rows.quarter_hours[1].price_eur_per_mwh));
 }
 
 TEST(MarketText, BadInputIsOneClearLine) {
