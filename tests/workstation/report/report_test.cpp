@@ -194,16 +194,6 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
   EXPECT_NE(html.find("<td data-label=\"Pairs out of order\">42</td></tr>"), std::string::npos);
 }
 
-TEST(Report, SameInputsSameBytes) {
-  const TemporaryFolder folder;
-  const FinishedRun run;
-  EXPECT_EQ(html_of(run.inputs(), folder.file("a")), html_of(run.inputs(), folder.file("b")));
-  for (const auto& entry : fs::directory_iterator(folder.file("a"))) {
-    const std::string name = entry.path().filename().string();
-    EXPECT_EQ(read_file(entry.path()), read_file(folder.file("b/" + name))) << name;
-  }
-}
-
 TEST(Report, OnlyAMarketIsEnough) {
   const TemporaryFolder folder;
   const std::string html = html_of({.market = small_market()}, folder.file("run"));
