@@ -145,36 +145,8 @@ std::shared_ptr<Policy> fit_on_the_traded_month(const Fold& fold) {
   return make_baseline("rbc-quartile", cheating.market, {});
 }
 
-/// Prices shifted by one step: each decision sees what is published two minutes later.
-class ShiftedPolicy final : public Policy {
- public:
-  explicit ShiftedPolicy(const MarketSteps& market) : market_(market) {}
-  [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double) const override {
-    const auto next = std::ranges::upper_bound(market_.steps, step.utc_s, {}, &MarketStep::utc_s);
-    const double seen = (next == market_.steps.end() ? step : *next).observed_eur_per_mwh;
-    return seen < 100 ? Action::kCharge : Action::kDischarge;
-  }
-
- private:
-  const MarketSteps& market_;
-};
-
 TEST(WalkForward, APlantedLookAheadIsFound) {
   EXPECT_TRUE(looks_ahead(fit_on_the_traded_month, 1));
-  const FoldPolicy shifted = [](const Fold& fold) {
-    return std::make_shared<ShiftedPolicy>(fold.market);
-  };
-  EXPECT_TRUE(looks_ahead(shifted, 30)) << "prices shifted by one step";
-}
-
-TEST(WalkForward, DrawdownIsTheDeepestFall) {
-  WalkForward run;
-  run.total.capacity_mwh = 2;
-  for (const double profit : {10.0, -4.0, -8.0, 20.0, -6.0}) {
-    run.total.days.push_back({"", profit, 0, 0, 0});
-  }
-  EXPECT_EQ(run.cumulative_eur_per_mwh(), (std::vector<double>{5, 3, -1, 9, 6}));
-  EXPECT_EQ(run.drawdown_eur_per_mwh(), 6);
 }
 
 }  // namespace

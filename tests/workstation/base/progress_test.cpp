@@ -35,17 +35,5 @@ TEST(ProgressLine, FitsItsRowAndTheNoteGivesWayFirst) {
               Not(HasSubstr("\n")));
 }
 
-TEST(ProgressLine, TheLongestOfTheProgramFits) {
-  // Titles, units and notes as the commands have them, with the largest numbers they meet.
-  EXPECT_THAT(progress_line("train c51", "steps", {49'999, 50'000, 123, 1},
-                            "loss 12.3456, earns -1234.5", 79),
-              EndsWith("earns -1234.5"));
-  EXPECT_THAT(progress_line("correct, distil", "epochs", {100, 100, 12.3, 1},
-                            "KL 1.2345, layer 1.2e-05", 79),
-              EndsWith("1.2e-05"));
-  EXPECT_THAT(progress_line("distil, monotone", "epochs", {100, 100, 12.3, 1}, "regret 0.1234", 79),
-              EndsWith("0.1234"));
-}
-
 }  // namespace
 }  // namespace bess

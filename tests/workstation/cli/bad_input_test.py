@@ -2,6 +2,7 @@
 and one clear line that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
 """
 
+import errno
 import fcntl
 import json
 import os
@@ -17,79 +18,74 @@ PROGRAM = os.path.abspath(sys.argv[1])
 STUDENT_KEYS = '{"format": "bess-student", "version": 3, "version": 4}'
 RULE = '[[rule]]\nname = "a"\nis = "idle"\nhours = "22:00-06:00"\n'
 LONG = "x" * 300
-# Arguments, exit code, what the line must say.
+LOG_COLUMNS = ("utc,soc_e4,battery_power_w,ordered_power_w,reason,mode,price_minute_utc,"
+               "price_centi_eur_per_mwh,price_age_s,student_action,battery_status,written,"
+               "price_level_centi_q16,outlook,break_even_centi,price_stands_in,stand_in_centi\n")
+LOG_REST = ",running,2026-06-01T00:00:00Z,5000,2,idle,ok,1,327680000,none,0,0,0\n"
+# Arguments, exit code, what the line names: words that stand in it.
 CASES = [
     # A pipe that nobody writes into, a link to itself, a name that is too long: of every kind of
     # file.
-    ("evaluate --policy rbc --prices pipe", 1,
-     "nobody has written into it for 10 s; start its writer"),
-    ("config --config loop", 1, "a link that leads back to itself; name the file itself"),
-    ("rules check --rules loop", 1, "a link that leads back to itself"),
-    ("evaluate --prices market.csv --policy loop", 1, "a link that leads back to itself"),
-    ("runs compare loop", 1, "a link that leads back to itself"),
-    ("run --prices market.csv --out new --from-teacher loop", 1,
-     "a link that leads back to itself"),
-    ("train --prices market.csv --out loop", 1, "a link that leads back to itself"),
-    (f"config --config {LONG}", 1, "the name is too long for a file"),
-    (f"evaluate --prices market.csv --policy {LONG}", 1, "the name is too long for a file"),
-    (f"train --prices market.csv --out {LONG}", 1, "the name is too long for a file"),
-    (f"verify --student {LONG}", 1, "the name is too long for a file"),
+    ("evaluate --policy rbc --prices pipe", 1, "pipe 10 s"),
+    ("config --config loop", 1, "loop"),
+    ("rules check --rules loop", 1, "loop"),
+    ("evaluate --prices market.csv --policy loop", 1, "loop"),
+    ("runs compare loop", 1, "loop"),
+    ("run --prices market.csv --out new --from-teacher loop", 1, "loop"),
+    ("train --prices market.csv --out loop", 1, "loop"),
+    (f"config --config {LONG}", 1, LONG[:50]),
+    (f"evaluate --prices market.csv --policy {LONG}", 1, LONG[:50]),
+    (f"train --prices market.csv --out {LONG}", 1, LONG[:50]),
+    (f"verify --student {LONG}", 1, LONG[:50]),
     # Said once, and by the right name.
-    ("evaluate --policy rbc --prices market.csv --accept gapss", 2,
-     'bess-train: --accept: no finding is called "gapss"'),
-    ("config --config scalar.toml", 1,
-     'scalar.toml:1: "battery" is a section: write [battery] on a line of its own'),
-    ("config --config list.toml", 1, 'list.toml:1: "battery" is a section'),
+    ("evaluate --policy rbc --prices market.csv --accept gapss", 2, '--accept "gapss"'),
+    ("config --config scalar.toml", 1, 'scalar.toml:1 "battery" [battery]'),
+    ("config --config list.toml", 1, 'list.toml:1 "battery"'),
     # Twice: nobody knows which is meant.
-    ("verify --student twice.json", 1, '"version" stands twice'),
-    ("export --student twice.json --out new.h", 1, '"version" stands twice'),
-    ("runs compare twice", 1, '"prices" stands twice'),
+    ("verify --student twice.json", 1, 'twice.json "version"'),
+    ("export --student twice.json --out new.h", 1, 'twice.json "version"'),
+    ("runs compare twice", 1, 'twice "prices"'),
     # Another end of lines, times that are over, addresses that are none.
-    ("evaluate --policy rbc --prices cr.csv", 1, "its lines end in CR alone"),
-    ("prices stats cr.csv", 1, "its lines end in CR alone"),
-    ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "is over; give an instant to come"),
+    ("evaluate --policy rbc --prices cr.csv", 1, "cr.csv CR"),
+    ("prices stats cr.csv", 1, "cr.csv CR"),
+    ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "2020-01-01T00:00:00Z"),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
-     '--base-url "http://" is not a web address'),
+     '--base-url "http://"'),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url "
      "http://127.0.0.1:99999/a", 1,
-     "is not a web address"),
-    ("prices record --out new --for 1s --url http://:80/", 1, "is not a web address"),
+     "http://127.0.0.1:99999/a"),
+    ("prices record --out new --for 1s --url http://:80/", 1, "http://:80/"),
     # Told before the work, and by name.
     ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1,
-     "--policy nope: neither a file"),
+     "--policy nope"),
     ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
-     "scalar.toml: not a student file"),
-    ("delays --prices market.csv --policy rbc nope", 1, "--policy nope: neither a file"),
-    ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW not above HIGH"),
-    ("run --prices few.csv --out new", 1,
-     "few.csv: no test days (local days 26 to the end); add some"),
-    ("evaluate --policy rbc --prices hour.csv", 1,
-     "hour.csv: the prices hold no complete local day"),
-    ("run --prices hour.csv --out new", 1, "hour.csv: the prices hold no complete local day"),
-    ("backtest --prices market.csv --out new", 1,
-     "no month has 60 complete days in the 120 before it"),
-    ("battery fit --log few.csv", 1, 'few.csv: has no column "utc"'),
-    ("battery fit --log log.csv", 1, "log.csv: 2 cycles show nothing of the battery"),
-    ("battery fit --log log.csv --out log.csv", 1, "would replace the input --log log.csv"),
+     "scalar.toml"),
+    ("delays --prices market.csv --policy rbc nope", 1, "--policy nope"),
+    ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW HIGH"),
+    ("run --prices few.csv --out new", 1, "few.csv 26"),
+    ("evaluate --policy rbc --prices hour.csv", 1, "hour.csv"),
+    ("run --prices hour.csv --out new", 1, "hour.csv"),
+    ("backtest --prices market.csv --out new", 1, "60 120"),
+    ("battery fit --log few.csv", 1, 'few.csv "utc"'),
+    ("battery fit --log log.csv", 1, "log.csv 2"),
+    ("battery fit --log log.csv --out log.csv", 1, "--log log.csv"),
     ("battery fit --log nowhere.csv", 1, "nowhere.csv"),
-    ("battery fit --out new.toml", 1, "battery fit needs --log or --steps"),
+    ("battery fit --out new.toml", 1, "--log --steps"),
     ("battery fit --steps steps.toml", 1, "ramp_w_per_s"),
-    ("battery fit --steps single.toml", 1, "single.toml: has no [battery]: it is what"),
+    ("battery fit --steps single.toml", 1, "single.toml [battery]"),
     # Not as TOML writes it.
-    ("config --config cr.toml", 1,
-     "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
-    ("rules check --rules single.toml", 1,
-     "single.toml:1: [rule] is written [[rule]], as there may be many"),
+    ("config --config cr.toml", 1, "cr.toml:1 CR LF"),
+    ("rules check --rules single.toml", 1, "single.toml:1 [rule] [[rule]]"),
     # What was right already, and stays so.
-    ("evaluate --policy rbc --prices /dev/zero", 1, "holds more than 512 MiB"),
-    ("evaluate --policy rbc --prices folder", 1, "is a folder"),
-    ("evaluate --policy rbc --prices february.csv", 1, "february.csv:4: not a UTC minute"),
-    ("evaluate --policy rbc --prices doubled.csv", 1, "does not come after"),
-    ("evaluate --policy rbc --prices swapped.csv", 1, "the header must be"),
-    ("evaluate --policy rbc --prices trailing.csv.gz", 1, "bytes behind the end of its gzip data"),
-    ("train --prices market.csv --prices market.csv --out new.bin", 2, "given 2 times"),
-    ("prices fetch --from 2023-02-30 --to 2023-03-02 --out new.csv", 1, "is not a date"),
-    ("prices import summer.csv --out new.csv", 1, "is not a time with its UTC offset"),
+    ("evaluate --policy rbc --prices /dev/zero", 1, "/dev/zero 512 MiB"),
+    ("evaluate --policy rbc --prices folder", 1, "folder"),
+    ("evaluate --policy rbc --prices february.csv", 1, "february.csv:4"),
+    ("evaluate --policy rbc --prices doubled.csv", 1, "doubled.csv:5"),
+    ("evaluate --policy rbc --prices swapped.csv", 1, "swapped.csv:3 minute_utc,indicative_eur"),
+    ("evaluate --policy rbc --prices trailing.csv.gz", 1, "trailing.csv.gz gzip"),
+    ("train --prices market.csv --prices market.csv --out new.bin", 2, "--prices 2"),
+    ("prices fetch --from 2023-02-30 --to 2023-03-02 --out new.csv", 1, "2023-02-30"),
+    ("prices import summer.csv --out new.csv", 1, "summer.csv:2 2023-10-29T02:30:00"),
 ]
 
 
@@ -112,9 +108,9 @@ class BadInputs(unittest.TestCase):
                                         "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
-            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w,reason\n"
-                       "2026-06-01T00:00:00Z,5000,0,0,student\n"
-                       "2026-06-01T00:02:00Z,5000,0,0,student\n",
+            "log.csv": LOG_COLUMNS
+                       + "2026-06-01T00:00:00Z,5000,0,0,student" + LOG_REST
+                       + "2026-06-01T00:02:00Z,5000,0,0,student" + LOG_REST,
             "steps.toml": "[battery]\ndelay_s = 2\n",
             "few.csv": head + "".join(rows[: 15 * 1440]),
             "hour.csv": head + "".join(rows[:60]),
@@ -157,7 +153,8 @@ class BadInputs(unittest.TestCase):
                 lines = [line for line in done.stderr.splitlines()
                          if not line.startswith("bess-train: warning")]
                 self.assertEqual(done.returncode, code, done.stderr)
-                self.assertIn(said, done.stderr)
+                for word in said.split():
+                    self.assertIn(word, done.stderr)
                 self.assertEqual(len(lines), 1, done.stderr)
                 self.assertEqual(self.names() - before, set())
 
@@ -171,11 +168,7 @@ class BadInputs(unittest.TestCase):
                     done = subprocess.run([PROGRAM, *arguments], cwd=self.folder,
                                           capture_output=True, text=True)
                     self.assertEqual(done.returncode, 2)
-                    self.assertRegex(done.stderr,
-                                     r'\Abess-train: ".*" holds a line end or another control '
-                                     r'character: '
-                                                  r"leave it out, or rename the file \(see "
-                                                  r"bess-train --help\)\n\Z")
+                    self.assertRegex(done.stderr, r'\Abess-train: ".*".*bess-train --help.*\n\Z')
                     self.assertTrue(done.stderr[:-1].isprintable(), done.stderr)
 
     def test_a_pipe_with_a_writer_is_read(self):
@@ -193,7 +186,7 @@ class BadInputs(unittest.TestCase):
                 done = self.bess(arguments,
                                  lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
                 self.assertEqual(done.returncode, 1, done.stderr)
-                self.assertIn("writing failed: File too large; nothing was changed", done.stderr)
+                self.assertIn(os.strerror(errno.EFBIG), done.stderr)
                 self.assertEqual({n for n in self.names() - before if os.path.isfile(n)}, set())
 
     def test_one_backtest_at_a_time_works_in_a_folder(self):
@@ -203,8 +196,7 @@ class BadInputs(unittest.TestCase):
         backtest = "backtest --prices market.csv --window-days 30 --policy rbc --out new"
         done = self.bess(backtest)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("new: another bess-train is at work here; wait for it, or give another --out",
-                      done.stderr)
+        self.assertRegex(done.stderr, r"\bnew: .*--out")
         self.assertEqual(os.listdir(self.path("new")), [])
         os.close(folder)
         self.assertEqual(self.bess(backtest).returncode, 0)
@@ -226,8 +218,7 @@ class BadInputs(unittest.TestCase):
         done = self.bess(train + " --resume")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr,
-                         r"is of another run: \[train\] gamma [0-9.]+ there and \[train\] gamma "
-                         r"0.5 here")
+                         r"\[train\] gamma [0-9.]+ .*\[train\] gamma 0\.5 ")
 
     def test_absurd_sizes_are_told_before_they_start(self):
         with open(self.path("years.toml"), "w") as file:
@@ -239,8 +230,7 @@ class BadInputs(unittest.TestCase):
             first = program.stderr.readline()
             program.kill()
         self.assertRegex(first,
-                         r"warning: 10000000 steps of 1048576 transitions take about [0-9]+ "
-                         r"(days|years) on 1 core")
+                         r"10000000 .* 1048576 .* [0-9]+ (days|years) ")
 
 
 if __name__ == "__main__":

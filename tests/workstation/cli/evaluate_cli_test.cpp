@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "shared/host/file.h"
-#include "shared/host/json.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -43,35 +42,6 @@ class EvaluateCli : public testing::Test {
   TemporaryFolder folder_;
   std::filesystem::path prices_ = folder_.file("prices.csv.gz");
 };
-
-std::vector<std::string> json_keys(const std::string& line) {
-  const Json json = Json::parse(line);
-  std::vector<std::string> keys;
-  for (const JsonValue member : json.value()) keys.emplace_back(member.key());
-  return keys;
-}
-
-TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
-  const auto text = lines(output("evaluate", "--policy rbc --json"));
-  ASSERT_EQ(text.size(), 1U);
-  EXPECT_THAT(
-      json_keys(text[0]),
-      testing::IsSupersetOf({"policy", "split", "days", "profit_eur_per_day_per_mwh",
-                             "profit_at_wear_10_eur_per_day_per_mwh", "profit_standard_error",
-                             "cycles_per_day", "worst_day_eur_per_mwh", "share_of_foresight",
-                             "switches_per_day", "soc_end_frac_mean", "carry_soc", "description"}));
-  EXPECT_THAT(text[0], HasSubstr("\"carry_soc\":false"));
-  EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
-              HasSubstr("\"carry_soc\":true"));
-}
-
-TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
-  const auto text = lines(output("evaluate", "--policy rbc rbc:60:140 --json"));
-  ASSERT_EQ(text.size(), 2U);
-  const auto keys = json_keys(text[1]);
-  EXPECT_THAT(keys, testing::IsSupersetOf({"gain_eur_per_day_per_mwh", "gain_standard_error",
-                                           "gain_standard_error_by_month", "carried_over"}));
-}
 
 TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
   const auto config = [&](const char* name, const char* text) {

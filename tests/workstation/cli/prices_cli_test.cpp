@@ -111,13 +111,7 @@ TEST_F(PricesCli, RecordRefusesWhatItCannotMean) {
   EXPECT_THAT(silent.output, Names("http://127.0.0.1:9 --url"));
 }
 
-TEST_F(PricesCli, NegativeSeedsAreRefused) {
-  EXPECT_NE(run({"simulate", "--days", "1", "--seed", "-1", "--out", path("s.csv")}).exit_code, 0);
-  EXPECT_NE(run({"reconstruct", "--quarter-hours", written("q.csv", kEliaQuarterHour), "--seed",
-                 "-1", "--out", path("s.csv")})
-                .exit_code,
-            0);
-  EXPECT_FALSE(std::filesystem::exists(path("s.csv")));
+TEST_F(PricesCli, SimulateSaysItsSeedAndSpan) {
   EXPECT_THAT(run({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}).output,
               Names("s.csv 1 2023-01-01 2 1440"));
 }

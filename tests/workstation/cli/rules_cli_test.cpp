@@ -8,11 +8,11 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
+#include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/cli/commands.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
@@ -26,17 +26,13 @@ class RulesCli : public testing::Test {
 
   /// Standard output of `bess-train WORDS`.
   static std::string output(const std::string& words) {
-    CommandLine command_line("bess-train", "", "");
-    ProgramCommand root = command_line.root();
-    add_commands(root);
-    testing::internal::CaptureStdout();
     try {
-      command_line.parse(words);
+      return said_by_command(words).output;
     } catch (...) {
+      testing::internal::GetCapturedStderr();
       testing::internal::GetCapturedStdout();
       throw;
     }
-    return testing::internal::GetCapturedStdout();
   }
   static std::string rules_output(const std::string& arguments) {
     return output("rules " + arguments);

@@ -128,31 +128,6 @@ TEST(ConstraintLayer, RulesHoldBesideTheProperties) {
   EXPECT_LT((again - corrected).cwiseAbs().maxCoeff(), 1e-9) << "twice is once";
 }
 
-TEST(ConstraintLayer, BackwardIsTheDerivative) {
-  constexpr double kStep = 1e-6;
-  Random random(404);
-  const LatticeAxes axes = even_axes(12, 6);
-  ConstraintLayer layer(rows_with_rules({}, axes), 72);
-  for (int round = 0; round < 3; ++round) {
-    const Eigen::MatrixXd logits = random_logits(72, random, 1.5);
-    const Eigen::MatrixXd gradient = random_logits(72, random, 1);
-    Eigen::MatrixXd corrected, back;
-    layer.forward(logits, corrected);
-    layer.backward(gradient, back);
-    for (int probe = 0; probe < 40; ++probe) {
-      const auto k = static_cast<Eigen::Index>(random.index(3 * 72));
-      double loss[2];
-      for (const int side : {0, 1}) {
-        Eigen::MatrixXd moved = logits;
-        moved.reshaped()[k] += side == 1 ? kStep : -kStep;
-        layer.forward(moved, corrected);
-        loss[side] = corrected.cwiseProduct(gradient).sum();
-      }
-      EXPECT_NEAR(back.reshaped()[k], (loss[1] - loss[0]) / (2 * kStep), 1e-6) << k;
-    }
-  }
-}
-
 TEST(ConstraintLayer, ContradictingRulesAreNamed) {
   const std::vector<DifferenceRow> rows{
       {"bystander", {{0, kU, 1}}, 3},

@@ -68,36 +68,6 @@ TEST(CorrectionLayer, OutputHasTheProperties) {
   }
 }
 
-TEST(CorrectionLayer, FeasibleLogitsStay) {
-  const LatticeAxes axes = even_axes(16, 8);
-  Eigen::MatrixXd logits(kActionCount, 16 * 8);
-  for (int i = 0; i < 16; ++i) {
-    for (int j = 0; j < 8; ++j) {
-      const double u = 5 - 10 * axes.mapped_price[i] - axes.soc[j];
-      const double v = 4 - 9 * axes.mapped_price[i] - 1.5 * axes.soc[j];
-      const double mean = std::sin(i + 3.0 * j);
-      logits.col(i * 8 + j) << mean - (2 * v + u) / 3, mean + (v - u) / 3, mean + (v + 2 * u) / 3;
-    }
-  }
-  Eigen::MatrixXd corrected;
-  CorrectionLayer layer({}, 16, 8);
-  layer.forward(axes, logits, corrected);
-  EXPECT_LT((corrected - logits).cwiseAbs().maxCoeff(), 1e-10);
-}
-
-TEST(CorrectionLayer, TwiceIsOnce) {
-  Random random(202);
-  for (const LayerCase& c : kLayerCases) {
-    SCOPED_TRACE(c.name);
-    const LatticeAxes axes = even_axes(c.prices, c.socs);
-    CorrectionLayer layer(c.options, c.prices, c.socs);
-    Eigen::MatrixXd once, twice;
-    layer.forward(axes, random_logits(c.prices * c.socs, random, 2), once);
-    layer.forward(axes, once, twice);
-    EXPECT_LT((twice - once).cwiseAbs().maxCoeff(), 1e-9);
-  }
-}
-
 TEST(CorrectionLayer, BackwardIsTheDerivative) {
   constexpr double kStep = 1e-6;
   Random random(203);

@@ -81,7 +81,7 @@ TEST(Distiller, CorrectedLossFalls) {
 TEST(Distiller, SameSeedAndThreadsGiveTheSameBits) {
   const Teacher teacher = untrained_teacher(Method::kC51, 9);
   const Matrix visited = some_visited(200, 10);
-  for (const int threads : {1, 2, 3}) {
+  for (const int threads : {1, 3}) {
     SCOPED_TRACE(threads);
     DistilOptions options = tiny_options();
     options.threads = threads;
@@ -96,16 +96,6 @@ TEST(Distiller, SameSeedAndThreadsGiveTheSameBits) {
     EXPECT_TRUE(std::ranges::equal(results[0], results[1]));
     EXPECT_TRUE(results[0].allFinite());
   }
-}
-
-TEST(Distiller, OtherSeedOtherStudent) {
-  const Teacher teacher = untrained_teacher(Method::kDqn, 9);
-  const Matrix visited = some_visited(200, 10);
-  DistilOptions options = tiny_options();
-  Distiller first(teacher, visited, options);
-  options.seed = 6;
-  Distiller second(teacher, visited, options);
-  EXPECT_NE(first.parameters(), second.parameters());
 }
 
 TEST(Distiller, InterruptionReturns) {

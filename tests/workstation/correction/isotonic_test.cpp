@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlopt.hpp>
 #include <set>
 
 #include "workstation/base/random.h"
@@ -13,7 +12,6 @@
 namespace bess {
 namespace {
 
-using testing::ElementsAreArray;
 using testing::Pointwise;
 using Values = std::vector<double>;
 
@@ -21,12 +19,6 @@ Values project(int rows, int columns, const Values& y, const RowBounds& bounds =
   Values x(y.size());
   IsotonicProjection(rows, columns).project(y, bounds, x);
   return x;
-}
-
-double objective(const Values& x, const Values& y) {
-  double sum = 0;
-  for (std::size_t c = 0; c < x.size(); ++c) sum += (x[c] - y[c]) * (x[c] - y[c]);
-  return sum;
 }
 
 /// Exact: not by a tolerance.
@@ -98,24 +90,6 @@ TEST(Isotonic, HandCases) {
   }
 }
 
-TEST(Isotonic, MonotoneInputStays) {
-  Random random(101);
-  for (int round = 0; round < 20; ++round) {
-    const int rows = 1 + static_cast<int>(random.index(12));
-    const int columns = 1 + static_cast<int>(random.index(12));
-    Values y(static_cast<std::size_t>(rows * columns));
-    for (int i = 0; i < rows; ++i) {
-      for (int j = 0; j < columns; ++j) {
-        double value = random.normal();
-        if (i > 0) value = std::min(value, y[(i - 1) * columns + j]);
-        if (j > 0) value = std::min(value, y[i * columns + j - 1]);
-        y[i * columns + j] = value;
-      }
-    }
-    EXPECT_THAT(project(rows, columns, y), Pointwise(testing::DoubleNear(1e-12), y));
-  }
-}
-
 /// Constant input of every size is one level set: rounding of long sums must not split it for ever.
 TEST(Isotonic, ConstantInputOfAnySize) {
   for (const int side : {16, 64, 256, 700}) {
@@ -124,80 +98,6 @@ TEST(Isotonic, ConstantInputOfAnySize) {
     const Values x = project(side, side, y);
     EXPECT_NEAR(*std::ranges::min_element(x), 0.1, 1e-9);
     EXPECT_NEAR(*std::ranges::max_element(x), 0.1, 1e-9);
-  }
-}
-
-// The reference: a general solver that knows nothing of level sets.
-struct PairAbove {
-  std::size_t above, below;
-};
-
-Values solve_by_slsqp(int rows, int columns, const Values& y, const RowBounds& bounds) {
-  const auto cells = static_cast<unsigned>(y.size());
-  nlopt::opt solver(nlopt::LD_SLSQP, cells);
-  auto distance = [](const Values& x, Values& gradient, void* data) {
-    const Values& target = *static_cast<const Values*>(data);
-    for (std::size_t c = 0; c < gradient.size(); ++c) gradient[c] = 2 * (x[c] - target[c]);
-    return objective(x, target);
-  };
-  auto order = [](const Values& x, Values& gradient, void* data) {
-    const PairAbove& pair = *static_cast<const PairAbove*>(data);
-    if (!gradient.empty()) {
-      std::ranges::fill(gradient, 0.0);
-      gradient[pair.below] = 1;
-      gradient[pair.above] = -1;
-    }
-    return x[pair.below] - x[pair.above];
-  };
-  Values target = y;
-  solver.set_min_objective(distance, &target);
-  std::vector<PairAbove> pairs;
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const auto c = static_cast<std::size_t>(i * columns + j);
-      if (i + 1 < rows) pairs.push_back({c, c + static_cast<std::size_t>(columns)});
-      if (j + 1 < columns) pairs.push_back({c, c + 1});
-    }
-  }
-  for (PairAbove& pair : pairs) solver.add_inequality_constraint(order, &pair, 1e-10);
-  Values lower(cells, -100);
-  Values upper(cells, 100);
-  std::fill_n(lower.begin(), bounds.lower_rows * columns, bounds.lower_rows > 0 ? bounds.lower : 0);
-  std::fill_n(upper.rbegin(), bounds.upper_rows * columns, bounds.upper);
-  solver.set_lower_bounds(lower);
-  solver.set_upper_bounds(upper);
-  solver.set_xtol_rel(1e-12);
-  solver.set_maxeval(2000);
-  Values x(cells);
-  for (int i = 0; i < rows; ++i) {  // strictly inside: an all-active start stops the solver at once
-    for (int j = 0; j < columns; ++j) {
-      const int c = i * columns + j;
-      x[c] =
-          std::clamp(3 - 0.5 * i - 0.25 * j, lower[c] + 0.01 * (rows - i) + 0.001 * (columns - j),
-                     upper[c] - 0.01 * i - 0.001 * j);
-    }
-  }
-  double best = 0;
-  try {
-    solver.optimize(x, best);
-  } catch (const nlopt::roundoff_limited&) {  // x holds the best point
-  }
-  return x;
-}
-
-TEST(Isotonic, AgreesWithAGeneralSolver) {
-  Random random(102);
-  for (int round = 0; round < 200; ++round) {
-    SCOPED_TRACE(round);
-    const int rows = 1 + static_cast<int>(random.index(5));
-    const int columns = 1 + static_cast<int>(random.index(4));
-    const RowBounds bounds = random_bounds(rows, round % 4, random);
-    const Values y = random_lattice(rows * columns, random);
-    const Values x = project(rows, columns, y, bounds);
-    const Values reference = solve_by_slsqp(rows, columns, y, bounds);
-    EXPECT_TRUE(feasible(rows, columns, x, bounds));
-    EXPECT_NEAR(objective(x, y), objective(reference, y), 1e-6);
-    EXPECT_THAT(x, Pointwise(testing::DoubleNear(1e-4), reference));
   }
 }
 
@@ -212,12 +112,12 @@ std::vector<int> random_staircase(int rows, int columns, Random& random) {
 /// Variational inequality: x is the projection if and only if (x - y).d >= 0 for every feasible
 /// direction d. Raising an upper part of a set of equal cells, and lowering a lower part, generate
 /// all of them.
-TEST(Isotonic, LargerLatticesAreOptimal) {
+TEST(Isotonic, EveryLatticeIsOptimal) {
   Random random(103);
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < 40; ++round) {
     SCOPED_TRACE(round);
-    const int rows = 8 + static_cast<int>(random.index(25));
-    const int columns = 4 + static_cast<int>(random.index(13));
+    const int rows = 1 + static_cast<int>(random.index(32));
+    const int columns = 1 + static_cast<int>(random.index(16));
     const RowBounds bounds = random_bounds(rows, round % 4, random);
     Values y = random_lattice(rows * columns, random);
     for (int c = 0; c < rows * columns; ++c) {  // a trend, then some ties
@@ -277,28 +177,6 @@ TEST(Isotonic, LargerLatticesAreOptimal) {
   }
 }
 
-TEST(Isotonic, TwiceIsOnce) {
-  Random random(104);
-  for (int round = 0; round < 20; ++round) {
-    const int rows = 2 + static_cast<int>(random.index(20));
-    const int columns = 1 + static_cast<int>(random.index(12));
-    const RowBounds bounds = random_bounds(rows, round % 4, random);
-    const Values x = project(rows, columns, random_lattice(rows * columns, random), bounds);
-    EXPECT_THAT(project(rows, columns, x, bounds), Pointwise(testing::DoubleNear(1e-12), x));
-  }
-}
-
-TEST(Isotonic, LevelSetsAreCounted) {
-  IsotonicProjection projection(2, 2);
-  Values x(4);
-  projection.project(Values{1, 2, 3, 4}, {}, x);
-  EXPECT_EQ(projection.level_set_count(), 1);
-  projection.project(Values{4, 3, 2, 1}, {}, x);
-  EXPECT_EQ(projection.level_set_count(), 4);
-  projection.project(Values{4, 1, 3, 2}, {}, x);
-  EXPECT_EQ(projection.level_set_count(), 3);
-}
-
 struct AdjointCase {
   const char* name;
   int rows, columns;
@@ -340,20 +218,6 @@ TEST(Isotonic, BackwardIsTheDerivative) {
       }
     }
   }
-}
-
-TEST(Isotonic, ClippedLevelSetsPassNoGradient) {
-  IsotonicProjection projection(3, 1);
-  Values x(3);
-  projection.project(Values{0, 5, -9}, {1, 8, 1, -2}, x);
-  ASSERT_THAT(x, ElementsAreArray(Values{8, 5, -9}));
-  Values gradient(3);
-  projection.backward(Values{1, 1, 1}, gradient);
-  EXPECT_THAT(gradient, ElementsAreArray(Values{0, 1, 1}));
-  projection.project(Values{0, 10, 9}, {1, 8, 1, -2}, x);
-  ASSERT_THAT(x, ElementsAreArray(Values{8, 8, -2}));
-  projection.backward(Values{1, 1, 1}, gradient);
-  EXPECT_THAT(gradient, ElementsAreArray(Values{0, 0, 0}));
 }
 
 }  // namespace

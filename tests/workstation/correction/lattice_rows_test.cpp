@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
 #include <set>
 
 #include "shared/action.h"
@@ -101,25 +99,6 @@ TEST(LatticeRows, TheCorrectedActionsObey) {
     }
   }
   EXPECT_GT(bound, 5);
-}
-
-/// Of the built-in rules: each state and pair as the properties say, by difference and state.
-TEST(LatticeRows, ThePropertiesAreRowsOfTheBuiltInRules) {
-  const LatticeAxes axes = lattice_axes({-500, -499, 300, 301}, {0, 100, 200});
-  const CorrectionOptions options{.thresholds = {-499, 301}};
-  std::map<std::string, int> count;
-  const std::vector<DifferenceRow> rows = property_rows(options, axes);
-  for (const DifferenceRow& row : rows) ++count[row.rule];
-  EXPECT_EQ(count, (std::map<std::string, int>{{"property 1", 2 * 2 * 3},
-                                               {"property 2", 2 * 1 * 3},
-                                               {"property 3, price", 2 * 3 * 3},
-                                               {"property 3, SoC", 2 * 4 * 2}}));
-  EXPECT_EQ(rows.front().rule, "property 1");
-  EXPECT_EQ(rows[1].rule, "property 3, price");
-  EXPECT_EQ(rows[2].rule, "property 3, SoC");
-  EXPECT_TRUE(std::ranges::is_sorted(rows, {}, [](const DifferenceRow& row) {
-    return std::pair(row.terms.front().difference, row.terms.front().state);
-  }));
 }
 
 /// Through the layer alone a student comes to keep a rule that its teacher breaks.

@@ -137,18 +137,6 @@ TEST(MonotoneDistiller, InterruptionReturns) {
   EXPECT_TRUE(distiller.curve().empty());
 }
 
-TEST(CorrectAndProve, APlainStudentIsSampledAndNeverProved) {
-  DistilOptions options = school().options;
-  options.correct = false;
-  options.epochs = 1;
-  const CorrectionResult result =
-      correct_and_prove(school().teacher, school().visited, options, kRunning);
-  EXPECT_FALSE(std::holds_alternative<ProvedStudent>(result.verdict));
-  const Certificate& certificate = student_of(result.verdict).certificate;
-  EXPECT_GT(certificate.states_checked, kLatticeStateCount / (kSampleStride + 1));
-  EXPECT_LT(certificate.states_checked, kLatticeStateCount / (kSampleStride - 1));
-}
-
 /// What is left of the rules by a student that is learnt with them quickly.
 std::vector<DemandCount> counts_with_rules(const std::vector<const char*>& rules) {
   DistilOptions options = school().options;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlopt.hpp>
 #include <stdexcept>
 
 #include "tests/support/count_allocations.h"
@@ -120,8 +119,9 @@ TEST(QuadraticProgram, SolutionsAreOptimal) {
   int let_go = 0;
   for (int round = 0; round < 400; ++round) {
     SCOPED_TRACE(round);
-    const int variables = 1 + static_cast<int>(random.index(40));
-    const TestProgram program = random_program(kind_of(round), variables, random);
+    const int variables = round % 10 == 9 ? 60 + static_cast<int>(random.index(80))
+                                          : 1 + static_cast<int>(random.index(40));
+    const TestProgram program = random_program(kind_of(round / 3), variables, random);
     QuadraticProgram solver = program.solver();
     for (int again = 0; again < 2; ++again) {
       ASSERT_EQ(solver.solve(program.g), QuadraticOutcome::kSolved);
@@ -159,68 +159,8 @@ TEST(QuadraticProgram, UnitsDoNotMatter) {
   }
 }
 
-// The first peer: sequential quadratic programming, which takes the rows as black boxes.
-struct Row {
-  Vector normal;
-  double bound;
-};
-
-Vector solve_by_slsqp(const TestProgram& program, const Vector& start) {
-  const auto variables = static_cast<unsigned>(program.g.size());
-  nlopt::opt solver(nlopt::LD_SLSQP, variables);
-  auto value = [](const std::vector<double>& point, std::vector<double>& gradient, void* data) {
-    const auto& of = *static_cast<const TestProgram*>(data);
-    const Eigen::Map<const Vector> x(point.data(), static_cast<Eigen::Index>(point.size()));
-    const Vector gx = of.hessian.size() == 0 ? Vector(x) : Vector(of.hessian * x);
-    const Vector slope = gx - of.g;
-    if (!gradient.empty()) std::ranges::copy(slope, gradient.begin());
-    return 0.5 * x.dot(gx) - of.g.dot(x);
-  };
-  auto violation = [](const std::vector<double>& point, std::vector<double>& gradient, void* data) {
-    const Row& row = *static_cast<const Row*>(data);
-    for (std::size_t i = 0; i < gradient.size(); ++i) {
-      gradient[i] = -row.normal[static_cast<Eigen::Index>(i)];
-    }
-    return row.bound - row.normal.dot(Eigen::Map<const Vector>(
-                           point.data(), static_cast<Eigen::Index>(point.size())));
-  };
-  TestProgram copy = program;
-  solver.set_min_objective(value, &copy);
-  const auto& [normals, bounds, equalities] = program.constraints;
-  std::vector<Row> rows;
-  for (int i = 0; i < normals.rows(); ++i) rows.push_back({Vector(normals.row(i)), bounds[i]});
-  for (int i = 0; i < normals.rows(); ++i) {
-    if (i < equalities) {
-      solver.add_equality_constraint(violation, &rows[static_cast<std::size_t>(i)], 1e-11);
-    } else {
-      solver.add_inequality_constraint(violation, &rows[static_cast<std::size_t>(i)], 1e-11);
-    }
-  }
-  solver.set_xtol_rel(1e-13);
-  solver.set_maxeval(3000);
-  std::vector<double> x(start.begin(), start.end());
-  double best = 0;
-  try {
-    solver.optimize(x, best);
-  } catch (const nlopt::roundoff_limited&) {  // x holds the best point
-  }
-  return Eigen::Map<const Vector>(x.data(), static_cast<Eigen::Index>(x.size()));
-}
-
-TEST(QuadraticProgram, AgreesWithSlsqp) {
-  Random random(303);
-  for (int round = 0; round < 200; ++round) {
-    SCOPED_TRACE(round);
-    const int variables = 2 + static_cast<int>(random.index(11));
-    const TestProgram program = random_program(kind_of(round), variables, random);
-    QuadraticProgram solver = program.solver();
-    ASSERT_EQ(solver.solve(program.g), QuadraticOutcome::kSolved);
-    const Vector peer = solve_by_slsqp(program, normal_vector(variables, random));
-    EXPECT_LT((solver.x() - peer).cwiseAbs().maxCoeff(), 1e-6);
-  }
-}
-
-/// The second peer: an interior-point method. Of 1,000 programs five have 512 variables.
+/// A peer that shares nothing with it: an interior-point method. Of 1,000 programs five have 512
+/// variables.
 TEST(QuadraticProgram, AgreesWithCvxopt) {
   Random random(304);
   std::vector<TestProgram> programs;

@@ -59,12 +59,6 @@ TEST(ChargeLeft, ChargeThatWasBoughtOnOtherDaysIsNoGift) {
   EXPECT_NEAR(bound.days[1].charge_value_eur, -1.3 * 8 / std::sqrt(0.9) * 100, 1e-9);
 }
 
-TEST(ChargeLeft, OfNoDaysIsNothing) {
-  Evaluation none;
-  value_charge_left(none, {}, 100);
-  EXPECT_FALSE(none.values_charge_left());
-}
-
 /// Sells all that it has.
 class SellingPolicy final : public Policy {
  public:

@@ -1,10 +1,11 @@
 // The context classes of a market: what they are fitted on, and what they say.
 #include "workstation/env/context_fit.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -67,14 +68,14 @@ TEST(ContextFit, NamesAndTexts) {
   EXPECT_EQ(parse_context("month"), ContextKind::kMonth);
   EXPECT_EQ(parse_context("level"), ContextKind::kLevel);
   EXPECT_THROW((void)parse_context("week"), UserError);
-  EXPECT_EQ(context_text({}, 3), "in March");
+  EXPECT_THAT(context_text({}, 3), Names("March"));
   ContextClasses classes{.kind = ContextKind::kLevel};
   for (int e = 0; e < kContextClassCount - 1; ++e) {
     classes.level_edge_eur_per_mwh[e] = static_cast<std::int16_t>(10 * e);
   }
-  EXPECT_EQ(context_text(classes, 1), "at a price level below 0 EUR/MWh");
-  EXPECT_EQ(context_text(classes, 2), "at a price level from 0 to 10 EUR/MWh");
-  EXPECT_EQ(context_text(classes, 12), "at a price level from 100 EUR/MWh on");
+  EXPECT_THAT(context_text(classes, 1), Names("0 EUR/MWh"));
+  EXPECT_THAT(context_text(classes, 2), Names("0 10 EUR/MWh"));
+  EXPECT_THAT(context_text(classes, 12), Names("100 EUR/MWh"));
 }
 
 }  // namespace

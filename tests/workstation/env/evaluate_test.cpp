@@ -156,12 +156,6 @@ TEST(Foresight, AtAConstantPositivePriceItSellsOnceAndNeverBuys) {
   EXPECT_NEAR(result.days[0].soc_end_frac, 0.1, 1e-9);
 }
 
-TEST(Foresight, AtPriceZeroThereIsNothingToEarn) {
-  const Evaluation result =
-      foresight_on(flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 0));
-  EXPECT_EQ(result.days[0].profit_eur, 0);
-}
-
 TEST(Foresight, CarriedOverItPlansAcrossMidnight) {
   MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kMinutesPerDay, 0);
   for (std::size_t m = 2 + kMinutesPerDay; m < series.size(); ++m) series.settled[m] = 100;

@@ -10,8 +10,6 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/market_series.h"
-#include "workstation/env/policy.h"
-#include "workstation/planners/tabular.h"
 
 namespace bess {
 namespace {
@@ -71,47 +69,6 @@ TEST(MarketSteps, UnpublishedMinutesLeaveTheLastKnownPriceAndItsAge) {
     ASSERT_EQ(minute_of(series, step), c.minute);
     EXPECT_EQ(step.observed_eur_per_mwh, c.observed) << c.minute;
     EXPECT_EQ(step.observed_age_min, c.age_min) << c.minute;
-  }
-}
-
-/// Everything a causal controller may know of a step.
-bool same_knowledge(const MarketStep& a, const MarketStep& b) {
-  return a.utc_s == b.utc_s && a.observed_eur_per_mwh == b.observed_eur_per_mwh &&
-         a.observed_age_min == b.observed_age_min &&
-         a.minute_of_quarter_hour == b.minute_of_quarter_hour && a.quarter_hour == b.quarter_hour &&
-         a.month == b.month;
-}
-
-TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
-  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 4 * kMinutesPerDay, 3);
-  Random random(4);
-  for (int delay = 0; delay <= 5; ++delay) {
-    const MarketOptions options{.observation_delay_min = delay};
-    const MarketSteps market = make_market_steps(series, options);
-    TabularPolicy tabular(market, market.days_of(Split::kTrain), {});
-    const RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-    for (int trial = 0; trial < 3; ++trial) {
-      const std::size_t now = 1'000 + 2 * random.index(2'000);
-      MinuteSeries changed = series;
-      for (std::size_t m = now - static_cast<std::size_t>(delay) + 1; m < series.size(); ++m) {
-        changed.indicative[m] = random.uniform() < 0.1 ? kMissing : 1'000 * random.normal();
-      }
-      const MarketSteps other = make_market_steps(changed, options);
-      std::size_t compared = 0;
-      for (std::size_t s = 0; s < market.steps.size(); ++s) {
-        if (minute_of(series, market.steps[s]) > now) break;
-        ASSERT_TRUE(same_knowledge(market.steps[s], other.steps[s])) << "delay " << delay;
-        const double soc = 0.1 + 0.9 * random.uniform();
-        ASSERT_EQ(tabular.decide(market.steps[s], s, soc), tabular.decide(other.steps[s], s, soc));
-        ASSERT_EQ(rule.decide(market.steps[s], s, soc), rule.decide(other.steps[s], s, soc));
-        ++compared;
-      }
-      EXPECT_GE(compared, now / 2 - 3);
-      // The row that is just visible does matter, or this test would prove nothing.
-      changed.indicative[now - static_cast<std::size_t>(delay)] += 1'000;
-      const MarketSteps seen = make_market_steps(changed, options);
-      ASSERT_FALSE(same_knowledge(market.steps[compared - 1], seen.steps[compared - 1]));
-    }
   }
 }
 

@@ -70,28 +70,6 @@ TEST_P(Mlp, BackwardIsTheReferenceAndAdds) {
   EXPECT_LT(relative_l2(gradient, expected), 4e-6);
 }
 
-class SmallMlp : public Mlp {};
-
-TEST_P(SmallMlp, BackwardIsTheDifferenceQuotient) {
-  const auto loss = [&](const ReferenceNet& net) {
-    double sum = 0;
-    for (int n = 0; n < kSamples; ++n) {
-      const Doubles z = net.forward(column(x, n)).z;
-      for (std::size_t i = 0; i < z.size(); ++i) sum += z[i] * column(dz, n)[i];
-    }
-    return sum;
-  };
-  const Doubles expected = finite_differences(shape, to_doubles(parameters), loss);
-  const ConstMlp mlp(shape, parameters.data());
-  MlpTile tile;
-  Parameters gradient = Parameters::Zero(shape.parameter_count());
-  MutableMlp view(shape, gradient.data());
-  forward_hidden(mlp, x, tile);
-  backward_head(mlp, dz, tile, view);
-  backward_hidden(mlp, x, tile, view);
-  EXPECT_LT(max_relative_error(gradient.data(), expected), 1e-5);
-}
-
 TEST_P(Mlp, TheLayersFillTheFlatVector) {
   const ConstMlp mlp(shape, parameters.data());
   EXPECT_EQ(mlp.w1.data(), parameters.data());
@@ -100,20 +78,12 @@ TEST_P(Mlp, TheLayersFillTheFlatVector) {
   EXPECT_EQ(static_cast<std::size_t>(parameters.size()), reference.head.end());
 }
 
-const MlpCase kTiny{"tiny", {5, 7, 6, 4}};
-const MlpCase kOneOfEach{"one_of_each", {1, 1, 1, 1}};
-const MlpCase kStudent{"student", {5, 64, 32, 3}};
-const MlpCase kTeacher{"teacher", {5, 256, 128, 153}};
-const auto name_of = [](const auto& instance) { return instance.param.name; };
-INSTANTIATE_TEST_SUITE_P(Shapes, Mlp, testing::Values(kTiny, kOneOfEach, kStudent, kTeacher),
-                         name_of);
-INSTANTIATE_TEST_SUITE_P(Shapes, SmallMlp, testing::Values(kTiny, kOneOfEach), name_of);
-
-TEST(MlpInitial, SameSeedSameBits) {
-  const MlpShape shape{5, 16, 8, 3};
-  EXPECT_EQ(initial_parameters(shape, 4), initial_parameters(shape, 4));
-  EXPECT_NE(initial_parameters(shape, 4), initial_parameters(shape, 5));
-}
+INSTANTIATE_TEST_SUITE_P(Shapes, Mlp,
+                         testing::Values(MlpCase{"tiny", {5, 7, 6, 4}},
+                                         MlpCase{"one_of_each", {1, 1, 1, 1}},
+                                         MlpCase{"student", {5, 64, 32, 3}},
+                                         MlpCase{"teacher", {5, 256, 128, 153}}),
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST(MlpInitial, KinksCrossTheUnitCubeAndLaterLayersAreBounded) {
   const MlpShape shape{5, 200, 50, 7};

@@ -1,10 +1,7 @@
-// The packet kernels against their plain Eigen twin, and both against products in double, over
-// shapes that are not whole panels, blocks or packets.
+// The packet kernels against products in double, over shapes that are not whole panels, blocks or
+// packets.
 #include "workstation/nn/tile_kernels.h"
 
-#include <tuple>
-
-#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 #include "workstation/nn/packed_mlp.h"
 
@@ -19,10 +16,10 @@ std::ostream& operator<<(std::ostream& out, const Shape& s) {
   return out << s.lanes << "_lanes_" << s.depth << "_deep_" << s.samples << "_samples";
 }
 
-class Kernels : public testing::TestWithParam<std::tuple<const TileKernels*, Shape>> {
+class Kernels : public testing::TestWithParam<Shape> {
  protected:
-  const TileKernels& kernels = *std::get<0>(GetParam());
-  const Shape shape = std::get<1>(GetParam());
+  const TileKernels& kernels = packet_kernels();
+  const Shape shape = GetParam();
   const Eigen::Index padded = padded_to_panels(shape.lanes);
   Random random{91};
   const Matrix weights = random_matrix(shape.lanes, shape.depth);
@@ -115,17 +112,12 @@ TEST_P(Kernels, Exponentials) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, Kernels,
-    testing::Combine(testing::Values(&packet_kernels(), &plain_kernels()),
-                     testing::Values(Shape{1, 1, 1}, Shape{3, 5, 2}, Shape{31, 7, 8},
-                                     Shape{32, 8, 7}, Shape{33, 1, 9}, Shape{51, 128, 1},
-                                     Shape{101, 64, 31}, Shape{128, 51, 45}, Shape{256, 5, 64},
-                                     Shape{153, 128, 13}, Shape{303, 17, 6}, Shape{5, 256, 3})),
-    [](const auto& instance) {
-      return std::string(std::get<0>(instance.param)->name) + "_" +
-             testing::PrintToString(std::get<1>(instance.param));
-    });
+INSTANTIATE_TEST_SUITE_P(Shapes, Kernels,
+                         testing::Values(Shape{1, 1, 1}, Shape{3, 5, 2}, Shape{31, 7, 8},
+                                         Shape{32, 8, 7}, Shape{33, 1, 9}, Shape{51, 128, 1},
+                                         Shape{101, 64, 31}, Shape{128, 51, 45}, Shape{256, 5, 64},
+                                         Shape{153, 128, 13}, Shape{303, 17, 6}, Shape{5, 256, 3}),
+                         testing::PrintToStringParamName());
 
 /// A whole network in tiles, packed kernels against the plain functions of mlp.h.
 class PackedNetwork : public testing::TestWithParam<MlpShape> {};
@@ -147,32 +139,31 @@ TEST_P(PackedNetwork, IsThePlainNetwork) {
   Matrix plain_z;
   forward_hidden(mlp, x, plain_tile);
   forward_head(mlp, plain_tile, plain_z);
-  for (const TileKernels* kernels : {&packet_kernels(), &plain_kernels()}) {
-    MlpActivations tile;
-    TileMatrix z;
-    PackedGradient packed_gradient;
-    packed_gradient.set_zero(shape, kGroups);
-    Matrix all_dz = Matrix::Zero(shape.outputs, kSamples);
-    Parameters expected = Parameters::Zero(parameters.size());
-    MutableMlp expected_view(shape, expected.data());
-    for (int group = 0; group < kGroups; ++group) {
-      forward_hidden(*kernels, packed, x, tile);
-      forward_head(*kernels, packed, group, tile, z);
-      EXPECT_LT((z.rows(outputs) - plain_z.middleRows(group * outputs, outputs)).norm(),
-                1e-6F * plain_z.norm());
-      const Matrix dz = Matrix::NullaryExpr(outputs, kSamples, draw);
-      backward(*kernels, packed, group, x, dz, tile, packed_gradient);
-      all_dz.setZero();
-      all_dz.middleRows(group * outputs, outputs) = dz;
-      forward_hidden(mlp, x, plain_tile);
-      backward_head(mlp, all_dz, plain_tile, expected_view);
-      backward_hidden(mlp, x, plain_tile, expected_view);
-    }
-    Parameters gradient = Parameters::Zero(parameters.size());
-    MutableMlp view(shape, gradient.data());
-    packed_gradient.add_to(view);
-    EXPECT_LT(relative_l2(gradient, to_doubles(expected)), 1e-6) << kernels->name;
+  const TileKernels& kernels = packet_kernels();
+  MlpActivations tile;
+  TileMatrix z;
+  PackedGradient packed_gradient;
+  packed_gradient.set_zero(shape, kGroups);
+  Matrix all_dz = Matrix::Zero(shape.outputs, kSamples);
+  Parameters expected = Parameters::Zero(parameters.size());
+  MutableMlp expected_view(shape, expected.data());
+  for (int group = 0; group < kGroups; ++group) {
+    forward_hidden(kernels, packed, x, tile);
+    forward_head(kernels, packed, group, tile, z);
+    EXPECT_LT((z.rows(outputs) - plain_z.middleRows(group * outputs, outputs)).norm(),
+              1e-6F * plain_z.norm());
+    const Matrix dz = Matrix::NullaryExpr(outputs, kSamples, draw);
+    backward(kernels, packed, group, x, dz, tile, packed_gradient);
+    all_dz.setZero();
+    all_dz.middleRows(group * outputs, outputs) = dz;
+    forward_hidden(mlp, x, plain_tile);
+    backward_head(mlp, all_dz, plain_tile, expected_view);
+    backward_hidden(mlp, x, plain_tile, expected_view);
   }
+  Parameters gradient = Parameters::Zero(parameters.size());
+  MutableMlp view(shape, gradient.data());
+  packed_gradient.add_to(view);
+  EXPECT_LT(relative_l2(gradient, to_doubles(expected)), 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, PackedNetwork,

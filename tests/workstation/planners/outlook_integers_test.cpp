@@ -7,7 +7,6 @@
 
 #include <thread>
 
-#include "tests/support/market_series.h"
 #include "tests/support/outlook_market.h"
 #include "workstation/base/random.h"
 #include "workstation/env/context_fit.h"
@@ -101,34 +100,6 @@ TEST_F(OutlookIntegers, OneModelHasOneBookWhileItIsInUse) {
   OutlookModel other = model_;
   ++other.constant_centi;
   EXPECT_EQ(OutlookBook::of(other)->model().constant_centi, other.constant_centi);
-}
-
-// What is published at 13:00 changes the plan then, and not before. What tomorrow is worth shows
-// late: until then there is time to fill the battery for it.
-TEST_F(OutlookIntegers, TheBookKnowsTomorrowFromOneOClockOn) {
-  DayAheadSeries turned = market_.day_ahead;
-  for (std::size_t q = 0; q < turned.size(); ++q) {
-    if (turned.utc_s(q) >= local_midnight_utc_s({2025, 3, 30})) turned.eur_per_mwh[q] += 400;
-  }
-  const MarketSteps other = market_.steps_with(turned);
-  const OutlookBook other_book(model_);
-  const std::int64_t one_o_clock = utc_of("2025-03-29T12:00:00Z");
-  int differ = 0;
-  for (std::size_t i = 0; i < steps_.steps.size(); ++i) {
-    const MarketStep& step = steps_.steps[i];
-    if (step.utc_s < one_o_clock - 20'000 || step.utc_s > one_o_clock + 39'000) continue;
-    const bool same =
-        book_.break_even_centi(step, 0.5) == other_book.break_even_centi(other.steps[i], 0.5);
-    ASSERT_TRUE(same || step.utc_s >= one_o_clock) << step.utc_s - one_o_clock;
-    differ += same ? 0 : 1;
-  }
-  EXPECT_GT(differ, 30);
-}
-
-TEST_F(OutlookIntegers, AMarketWithoutPricesHasAPlanToo) {
-  const MarketSteps without = make_market_steps(market_.minutes, {});
-  const std::int32_t price = book_.break_even_centi(without.steps[20'000], 0.5);
-  EXPECT_LT(std::abs(price), 1'000'00);
 }
 
 TEST_F(OutlookIntegers, EachClassHoldsAsManyBreakEvenPrices) {

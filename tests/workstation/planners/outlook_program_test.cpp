@@ -91,17 +91,6 @@ TEST_F(OutlookLookAhead, SeesTomorrowFromOneOClockOnAndNotBefore) {
   EXPECT_FALSE(std::isnan(at(late, "2025-03-29T12:02:00Z")));
 }
 
-// A file in which every price stands a day early is what a leak looks like: the same test catches
-// it.
-TEST_F(OutlookLookAhead, AFileShiftedByADayIsCaught) {
-  DayAheadSeries shifted = market_.day_ahead;
-  DayAheadSeries shifted_turned = turned_from({2025, 3, 30});
-  shifted.start_utc_s -= 86'400;
-  shifted_turned.start_utc_s -= 86'400;
-  EXPECT_TRUE(changes_before(market_.steps_with(shifted), market_.steps_with(shifted_turned),
-                             utc_of("2025-03-29T12:00:00Z")));
-}
-
 // Later prices and levels of the same day are not there yet: turning over what comes changes
 // nothing before.
 TEST_F(OutlookLookAhead, KnowsNothingOfLaterPricesAndLevels) {

@@ -1,5 +1,4 @@
-// The stochastic program reaches the figures of the spikes [SPEC 8], knows what it must know, and
-// comes back from its file to the bit.
+// The stochastic program reaches the figures of the spikes [SPEC 8] and knows what it must know.
 #include "workstation/planners/stochastic_program.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +6,6 @@
 #include "shared/host/user_error.h"
 #include "tests/support/market_series.h"
 #include "tests/support/small_market.h"
-#include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
@@ -28,22 +26,6 @@ TEST(StochasticProgram, EarnsOnTheYardstickWhatTheSpikesEarn) {
   EXPECT_NEAR(profit(market, Split::kValidation, true, 0), 450.9, 6);
   EXPECT_GT(profit(market, Split::kValidation, false, 0.6), 491.7);
   EXPECT_GT(profit(market, Split::kValidation, true, 0.6), 481.5);
-}
-
-TEST(StochasticProgram, ReadBackItDecidesTheSame) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  const StochasticProgram program(market, market.days_of(Split::kTrain), {});
-  const TemporaryFolder folder;
-  BinaryWriter out("BESSTEST", 1);
-  program.save(out);
-  out.save(folder.file("program.bin"));
-  BinaryReader in(folder.file("program.bin"), "BESSTEST", 1, "program", "fit again");
-  const StochasticProgram read(in);
-  in.finish();
-  for (std::size_t i = 0; i < market.steps.size(); i += 97) {
-    const auto at = StochasticProgram::situation_of(market.steps[i]);
-    EXPECT_EQ(program.action_values(at, 0.37), read.action_values(at, 0.37));
-  }
 }
 
 TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {

@@ -37,8 +37,7 @@ class FunctionPolicy final : public Policy {
 MarketSteps day_with(double event_eur_per_mwh) {
   MarketSteps market;
   for (std::size_t i = 0; i < kSteps; ++i) {
-    const bool event = i >= kEvent && i < kEventEnd;
-    const double price = event ? event_eur_per_mwh : kUsualEurPerMwh;
+    const double price = i >= kEvent && i < kEventEnd ? event_eur_per_mwh : kUsualEurPerMwh;
     market.steps.push_back({.utc_s = static_cast<std::int64_t>(120 * i),
                             .observed_eur_per_mwh = price,
                             .paid_eur_per_mwh = price,
@@ -65,18 +64,19 @@ MarketSteps hidden_dear_day(int age_min) {
   return market;
 }
 
-/// Sells what it sees as dear, and the rest in the evening.
-FunctionPolicy attentive() {
-  return FunctionPolicy([](const MarketStep& step, std::size_t i, double) {
-    const bool sells = step.observed_eur_per_mwh > 500 || i >= kEvening;
-    return sells ? Action::kDischarge : Action::kIdle;
-  });
+/// Sells in the evening; or what it sees as dear, too; in the morning; rests; buys in the event.
+Action asleep(const MarketStep&, std::size_t i, double) {
+  return i >= kEvening ? Action::kDischarge : Action::kIdle;
 }
-/// Sells in the evening alone.
-FunctionPolicy asleep() {
-  return FunctionPolicy([](const MarketStep&, std::size_t i, double) {
-    return i >= kEvening ? Action::kDischarge : Action::kIdle;
-  });
+Action attentive(const MarketStep& step, std::size_t i, double) {
+  return step.observed_eur_per_mwh > 500 || i >= kEvening ? Action::kDischarge : Action::kIdle;
+}
+Action early(const MarketStep&, std::size_t i, double) {
+  return i >= kMorning && i < 2 * kMorning ? Action::kDischarge : Action::kIdle;
+}
+Action resting(const MarketStep&, std::size_t, double) { return Action::kIdle; }
+Action buyer(const MarketStep& step, std::size_t i, double soc_frac) {
+  return i >= kEvent && i < kEventEnd ? Action::kCharge : asleep(step, i, soc_frac);
 }
 
 DayLoss loss_of(const MarketSteps& market, const LossChain& chain, double initial_soc_frac = 0.5,
@@ -103,10 +103,40 @@ constexpr double kStepMwh = 4 * 2.0 / 60;
 constexpr double kEventMwh = kStepMwh * (kEventEnd - kEvent);
 constexpr double kSpikeEur = kEventMwh * (1000 - kUsualEurPerMwh);
 
-TEST(LostMoney, ADearMomentIsMissed) {
-  FunctionPolicy policy = asleep();
-  const DayLoss loss = loss_of(dear_day(), {policy});
-  expect_alone(loss, LossCause::kDearMissed, kSpikeEur);
+TEST(LostMoney, EachCauseAlone) {
+  const struct {
+    MarketSteps market;
+    FunctionPolicy::Function exported, under, plain;
+    double initial_soc_frac;
+    LossCause cause;
+    double missed_eur;
+  } cases[] = {
+      {dear_day(), asleep, nullptr, nullptr, 0.5, LossCause::kDearMissed, kSpikeEur},
+      {day_with(0), resting, nullptr, nullptr, 0.1, LossCause::kCheapMissed,
+       kEventMwh * 0.9 * kUsualEurPerMwh},
+      {dear_day(), early, nullptr, nullptr, 0.5, LossCause::kEmpty, kSpikeEur},
+      {day_with(-500), asleep, nullptr, nullptr, 1.0, LossCause::kFull,
+       kEventMwh * 500 + kEventMwh * 0.9 * kUsualEurPerMwh},
+      {day_with(99), buyer, nullptr, nullptr, 0.1, LossCause::kTiming,
+       kEventMwh * (99 - 0.9 * kUsualEurPerMwh)},
+      {hidden_dear_day(1), attentive, nullptr, nullptr, 0.5, LossCause::kNewestPrice, kSpikeEur},
+      {hidden_dear_day(9), attentive, nullptr, nullptr, 0.5, LossCause::kOutage, kSpikeEur},
+      {dear_day(), asleep, asleep, attentive, 0.5, LossCause::kRules, kSpikeEur},
+      {dear_day(), asleep, nullptr, attentive, 0.5, LossCause::kCorrection, kSpikeEur},
+      {dear_day(), asleep, attentive, attentive, 0.5, LossCause::kCorrection, kSpikeEur}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(loss_cause_name(c.cause));
+    FunctionPolicy exported(c.exported), under(c.under), plain(c.plain);
+    expect_alone(
+        loss_of(c.market, {exported, c.under ? &under : nullptr, c.plain ? &plain : nullptr},
+                c.initial_soc_frac),
+        c.cause, c.missed_eur);
+  }
+}
+
+TEST(LostMoney, TheMomentIsTheDecisionsNotTheDearOneItself) {
+  FunctionPolicy sleeps(asleep), sells_early(early);
+  const DayLoss loss = loss_of(dear_day(), {sleeps});
   const LossMoment& moment = loss.moment[static_cast<std::size_t>(LossCause::kDearMissed)];
   EXPECT_EQ(moment.step.paid_eur_per_mwh, 1000);
   EXPECT_EQ(moment.done, Action::kIdle);
@@ -115,67 +145,13 @@ TEST(LostMoney, ADearMomentIsMissed) {
   EXPECT_NEAR(moment.eur, kStepMwh * 900, 0.1);
   EXPECT_NEAR(loss.regret_eur[kEvent * 2 / 60] + loss.regret_eur[kEvent * 2 / 60 + 1],
               loss.missed_eur(), 1);
-}
-
-TEST(LostMoney, ACheapMomentIsMissed) {
-  FunctionPolicy idle([](const MarketStep&, std::size_t, double) { return Action::kIdle; });
-  expect_alone(loss_of(day_with(0), {idle}, 0.1), LossCause::kCheapMissed,
-               kEventMwh * 0.9 * kUsualEurPerMwh);
-}
-
-TEST(LostMoney, TheBatteryIsEmptyAtTheDearMoment) {
-  FunctionPolicy early([](const MarketStep&, std::size_t i, double) {
-    return i >= kMorning && i < 2 * kMorning ? Action::kDischarge : Action::kIdle;
-  });
-  const DayLoss loss = loss_of(dear_day(), {early});
-  expect_alone(loss, LossCause::kEmpty, kSpikeEur);
-  EXPECT_EQ(loss.moment[static_cast<std::size_t>(LossCause::kEmpty)].step.paid_eur_per_mwh,
-            kUsualEurPerMwh)
-      << "the decision, not the dear moment itself";
-}
-
-TEST(LostMoney, TheBatteryIsFullAtTheCheapMoment) {
-  FunctionPolicy policy = asleep();
-  expect_alone(loss_of(day_with(-500), {policy}, 1.0), LossCause::kFull,
-               kEventMwh * 500 + kEventMwh * 0.9 * kUsualEurPerMwh);
-}
-
-TEST(LostMoney, BoughtWhereRestingWasBest) {
-  FunctionPolicy buyer([](const MarketStep&, std::size_t i, double) {
-    if (i >= kEvening) return Action::kDischarge;
-    return i >= kEvent && i < kEventEnd ? Action::kCharge : Action::kIdle;
-  });
-  expect_alone(loss_of(day_with(99), {buyer}, 0.1), LossCause::kTiming,
-               kEventMwh * (99 - 0.9 * kUsualEurPerMwh));
-}
-
-TEST(LostMoney, TheNewestPriceIsNotTheOnePaid) {
-  FunctionPolicy policy = attentive();
-  expect_alone(loss_of(hidden_dear_day(1), {policy}), LossCause::kNewestPrice, kSpikeEur);
-}
-
-TEST(LostMoney, PricesFailToCome) {
-  FunctionPolicy policy = attentive();
-  expect_alone(loss_of(hidden_dear_day(9), {policy}), LossCause::kOutage, kSpikeEur);
-}
-
-TEST(LostMoney, ARuleForbidsIt) {
-  FunctionPolicy ruled = asleep();
-  FunctionPolicy plain = attentive();
-  expect_alone(loss_of(dear_day(), {ruled, &ruled, &plain}), LossCause::kRules, kSpikeEur);
-}
-
-TEST(LostMoney, TheCorrectionPreventsIt) {
-  FunctionPolicy corrected = asleep();
-  FunctionPolicy plain = attentive();
-  expect_alone(loss_of(dear_day(), {corrected, nullptr, &plain}), LossCause::kCorrection,
-               kSpikeEur);
-  expect_alone(loss_of(dear_day(), {corrected, &plain, &plain}), LossCause::kCorrection, kSpikeEur);
+  const DayLoss empty = loss_of(dear_day(), {sells_early});
+  EXPECT_EQ(empty.moment[static_cast<std::size_t>(LossCause::kEmpty)].step.paid_eur_per_mwh,
+            kUsualEurPerMwh);
 }
 
 TEST(LostMoney, ACorrectionThatHelpsIsNegative) {
-  FunctionPolicy corrected = attentive();
-  FunctionPolicy plain = asleep();
+  FunctionPolicy corrected(attentive), plain(asleep);
   const DayLoss loss = loss_of(dear_day(), {corrected, nullptr, &plain});
   EXPECT_NEAR(loss.missed_eur(), 0, 1);
   EXPECT_NEAR(loss.of(LossCause::kCorrection), -kSpikeEur, 0.002 * kSpikeEur);
@@ -201,21 +177,16 @@ TEST(LostMoney, TheCyclesAreUsedUp) {
   EXPECT_EQ(loss.of(LossCause::kRounding), 0);
 }
 
-TEST(LostMoney, TheBoundItselfMissesNothing) {
-  ForesightPolicy bound({});
-  const DayLoss loss = loss_of(dear_day(), {bound});
-  EXPECT_EQ(loss.missed_eur(), 0);
-  for (const double part : loss.part_eur) EXPECT_NEAR(part, 0, 0.5);
-}
-
-TEST(LostMoney, NobodyLosesWhatColdHoursTake) {
-  BatteryParameters battery;
-  battery.cold = {.power_share = 0.4, .from_hour = 0, .to_hour = 24};
-  ForesightPolicy bound(battery);
-  const DayLoss loss = loss_of(dear_day(), {bound}, 0.5, battery);
-  EXPECT_EQ(loss.missed_eur(), 0);
-  for (const double part : loss.part_eur) EXPECT_NEAR(part, 0, 0.5);
-  for (const double eur : loss.regret_eur) EXPECT_NEAR(eur, 0, 0.5);
+TEST(LostMoney, TheBoundItselfMissesNothingNorWhatColdHoursTake) {
+  BatteryParameters cold;
+  cold.cold = {.power_share = 0.4, .from_hour = 0, .to_hour = 24};
+  for (const BatteryParameters& battery : {BatteryParameters{}, cold}) {
+    ForesightPolicy bound(battery);
+    const DayLoss loss = loss_of(dear_day(), {bound}, 0.5, battery);
+    EXPECT_EQ(loss.missed_eur(), 0);
+    for (const double part : loss.part_eur) EXPECT_NEAR(part, 0, 0.5);
+    for (const double eur : loss.regret_eur) EXPECT_NEAR(eur, 0, 0.5);
+  }
 }
 
 TEST(LostMoney, AllPartsAddUpWhateverHappens) {

@@ -7,7 +7,6 @@
 #include "tests/support/rule_sets.h"
 #include "tests/support/tokens.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/page_files.h"
 #include "workstation/report/report_tables.h"
 
 namespace bess {
@@ -21,20 +20,6 @@ TEST(ReportPage, PlaceholdersAreFilledOnce) {
 
 TEST(ReportPage, DataCannotEndItsScript) {
   EXPECT_EQ(script_safe(R"({"a":"</script><b>"})"), R"({"a":"\u003c/script>\u003cb>"})");
-}
-
-TEST(ReportPage, FilesAreEmbeddedWhole) {
-  EXPECT_TRUE(page_file("student.js").starts_with("// The edge's student"));
-  EXPECT_TRUE(page_file("student.js").ends_with("}\n"));
-  EXPECT_NE(page_file("chart.min.js").find("Chart.js v3.9"), std::string_view::npos);
-  EXPECT_THROW((void)page_file("no.js"), std::logic_error);
-}
-
-TEST(ReportPage, NoScriptEndsEarly) {
-  for (const char* name : {"chart.min.js", "student.js", "archive.js", "charts.js", "tear_sheet.js",
-                           "day.js", "rule_boxes.js", "policy_map.js", "learning.js", "page.js"}) {
-    EXPECT_EQ(page_file(name).find("</script"), std::string_view::npos) << name;
-  }
 }
 
 TEST(ReportTables, AProofIsClaimedOfTheWholeLatticeOnly) {

@@ -1,9 +1,7 @@
 #include "workstation/rl/c51.h"
 
 #include "shared/host/user_error.h"
-#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
-#include "tests/workstation/nn/tile_sums.h"
 #include "workstation/rl/learner.h"
 
 namespace bess {
@@ -87,29 +85,6 @@ TEST(ProjectionOfRandomOnes, KeepsMassAndIsTheReference) {
         ASSERT_NEAR(projected[i], expected[i], 2e-5) << support.count << " atoms, atom " << i;
       }
     }
-  }
-}
-
-TEST(ProjectionOfRandomOnes, KeepsTheMeanInsideTheSupport) {
-  Random random(32);
-  for (const Support& support : kSupports) {
-    const auto count = static_cast<std::size_t>(support.count);
-    const double range = double{support.v_max} - support.v_min;
-    std::vector<float> p(count);
-    for (float& value : p) value = static_cast<float>(random.uniform());
-    const float sum = std::accumulate(p.begin(), p.end(), 0.0F);
-    for (float& value : p) value /= sum;
-    const float discount = 0.5F;  // the moved atoms fill the middle half, clipping does not happen
-    const float middle = 0.5F * (support.v_min + support.v_max);
-    const float reward = 0.5F * middle + static_cast<float>(0.2 * range * random.uniform());
-    const auto projected = project(support, p, reward, discount);
-    double before = 0;
-    double after = 0;
-    for (int i = 0; i < support.count; ++i) {
-      before += double{p[static_cast<std::size_t>(i)]} * support.atom(i);
-      after += double{projected[static_cast<std::size_t>(i)]} * support.atom(i);
-    }
-    EXPECT_NEAR(after, reward + discount * before, 2e-6 * range) << support.count << " atoms";
   }
 }
 
@@ -210,37 +185,6 @@ TEST_P(C51Gradient, OfTheRealShapeIsAlgorithm1) {
   EXPECT_NEAR(result.edge_mass_frac, expected.edge_mass, 1e-5);
 }
 
-TEST_P(C51Gradient, OfASmallShapeInTilesIsAlgorithm1) {
-  const GradientCase& c = GetParam();
-  constexpr Eigen::Index kTile = 7;  // leaves a short last tile
-  const MlpShape shape{5, 7, 6, kActionCount * c.support.count};
-  const Parameters online_parameters = random_parameters(shape, 44, 3);
-  const Parameters target_parameters = random_parameters(shape, 45, 3);
-  const ReferenceNet online(shape, to_doubles(online_parameters));
-  const ReferenceNet target(shape, to_doubles(target_parameters));
-  Random random(46);
-  const auto transitions = random_transitions(c.recipe, c.support, online, target, random);
-  const ReferenceLoss expected =
-      reference_c51(c.support, c.gamma, online, target, transitions, c.mean_weight);
-  expect_case_is_met(expected, transitions);
-
-  const MiniBatch batch = minibatch_of(transitions);
-  const PackedPair nets(shape, online_parameters, target_parameters);
-  for (const TileKernels* kernels : {&packet_kernels(), &plain_kernels()}) {
-    SCOPED_TRACE(kernels->name);
-    auto step = nets.step(*kernels, batch, c.gamma);
-    step.mean_weight = static_cast<float>(c.mean_weight);
-    C51Tile tile(c.support);
-    const auto [loss, gradient] = sum_of_tiles(
-        shape, batch, kTile,
-        [&](const auto& range, auto& sum) { return c51_tile_gradient(step, range, tile, sum); });
-    const auto samples = static_cast<double>(transitions.size());
-    EXPECT_LT(std::abs(loss / samples / expected.loss - 1), 1e-6) << loss / samples;
-    EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
-    EXPECT_NEAR(tile.edge_mass / samples, expected.edge_mass, 1e-5);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(
     Batches, C51Gradient,
     testing::Values(
@@ -272,23 +216,6 @@ TEST(C51Reference, GradientIsTheDifferenceQuotientOfItsLoss) {
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     EXPECT_NEAR(gradient[i], differences[i], 1e-7) << i;
   }
-}
-
-TEST(C51Loss, IsZeroWhereTheNetworkAlreadyIsRight) {
-  const Support support{-1, 1, 3};
-  const MlpShape shape{5, 7, 6, kActionCount * support.count};
-  const Parameters zero = Parameters::Zero(shape.parameter_count());  // uniform everywhere
-  std::vector<Transition> transitions(4, Transition{});
-  for (Transition& t : transitions) t.action = static_cast<std::int32_t>(Action::kIdle);
-  const MiniBatch batch = minibatch_of(transitions);
-  const PackedPair nets(shape, zero, zero);
-  const auto step = nets.step(packet_kernels(), batch, 1);
-  C51Tile tile(support);
-  const auto [loss, gradient] = sum_of_tiles(shape, batch, 4, [&](const auto& range, auto& sum) {
-    return c51_tile_gradient(step, range, tile, sum);
-  });
-  EXPECT_NEAR(loss, 4 * std::log(3.0), 1e-5);
-  EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-7F);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "workstation/rl/learner.h"
 
-#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 
 namespace bess {
@@ -60,15 +59,6 @@ TEST_P(LearnerOf, ThreadsChangeOnlyTheRounding) {
   EXPECT_LT((single - twin).norm(), 0.02F * (single - start).norm());
 }
 
-TEST_P(LearnerOf, TheTwinOfTheKernelsGivesTheSame) {
-  const MiniBatch batch = batch_of(4);
-  Learner packets(GetParam(), kSupport, kGamma, 9, 2);
-  Learner plain(GetParam(), kSupport, kGamma, 9, 2, 0, plain_kernels());
-  const double loss = plain.compute_gradient(batch).loss;
-  EXPECT_NEAR(packets.compute_gradient(batch).loss, loss, 1e-6 * loss);
-  EXPECT_LT(relative_l2(packets.gradient(), to_doubles(plain.gradient())), 2e-6);
-}
-
 TEST_P(LearnerOf, StepIsGradientAdamAndBlend) {
   const MiniBatch batch = batch_of(2);
   Learner learner(GetParam(), kSupport, kGamma, 9, 2);
@@ -85,15 +75,6 @@ TEST_P(LearnerOf, StepIsGradientAdamAndBlend) {
   EXPECT_LT((learner.target() - blended).cwiseAbs().maxCoeff(), 1e-6F);
   learner.step(batch, kRate, 1);
   EXPECT_LT((learner.target() - learner.online()).cwiseAbs().maxCoeff(), 1e-6F);
-}
-
-TEST_P(LearnerOf, LossFallsOnOneBatch) {
-  const MiniBatch batch = batch_of(3);
-  Learner learner(GetParam(), kSupport, kGamma, 9, 2);
-  const double first = learner.step(batch, kRate, 0).loss;
-  double last = first;
-  for (int step = 0; step < 30; ++step) last = learner.step(batch, kRate, 0).loss;
-  EXPECT_LT(last, first);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, LearnerOf, testing::Values(Method::kC51, Method::kDqn),

@@ -34,8 +34,8 @@ std::string warnings(const std::string& arguments) { return said_by_command(argu
 
 class LearntFor : public testing::Test {
  protected:
-  LearntFor() {
-    write_minute_file(prices_, small_series(), "");
+  LearntFor() { write_minute_file(prices_, small_series(), ""); }
+  void learn() const {
     warnings("train --prices " + prices_ + " --out " + teacher_ + " --steps 20 --config " + dear_);
   }
   [[nodiscard]] std::string evaluated(const std::string& model, const std::string& more = "",
@@ -51,6 +51,7 @@ class LearntFor : public testing::Test {
 };
 
 TEST_F(LearntFor, IsInTheTeachersFileAndInThatOfItsStudent) {
+  learn();
   const Entries told = load_teacher(teacher_).learnt_for;
   EXPECT_THAT(told,
               testing::Contains(Entries::value_type("[costs] import_adder_eur_per_mwh", "42")));
@@ -72,6 +73,7 @@ TEST_F(LearntFor, IsInTheTeachersFileAndInThatOfItsStudent) {
 }
 
 TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
+  learn();
   EXPECT_THAT(evaluated(teacher_, " --config " + dear_), Not(Names("PICASSO")));
   MinuteSeries later = small_series();
   later.start_utc_s += 731 * kDay_s;  // January 2025
@@ -121,8 +123,9 @@ TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
 /// Each month's teacher is learnt from the days before it, says so, and is kept.
 TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   const std::string out = folder_.file("backtest");
-  const std::string command =
-      "backtest --prices " + prices_ + " --window-days 30 --policy sdp teacher --out " + out;
+  const std::string command = "backtest --prices " + prices_ +
+                              " --window-days 30 --policy sdp teacher --out " + out + " --config " +
+                              folder_.write("few.toml", "[train]\nsteps = 20\n");
   warnings(command);
   const std::string model = out + "/2023-02.teacher.bin";
   const Teacher teacher = load_teacher(model);
@@ -179,15 +182,6 @@ TEST(PriceRegimes, BeginAtLocalMidnight) {
   EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), Names("PICASSO"));
   EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), Names("22 2024"));
   EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it learnt a minute of it";
-}
-
-/// A file of version 2 ends where its parameters do, and says nothing of what it was learnt for.
-TEST_F(LearntFor, AFileThatDoesNotSayIsReadAsBefore) {
-  StudentFile silent = compiled_student();
-  const std::string student = folder_.file("silent.json");
-  save_student(student, silent);
-  EXPECT_TRUE(load_student(student).learnt_for.empty());
-  EXPECT_EQ(evaluated(student), "") << "nobody knows";
 }
 
 }  // namespace

@@ -41,12 +41,6 @@ TEST_F(RunFacts, PricesAreNamedWithTheirChecksum) {
   EXPECT_THAT(value_of(facts(), "prices"), Names("market.csv crc32 cbf43926 9"));
 }
 
-TEST_F(RunFacts, PricesOfTheRunItselfLieInItsFolder) {
-  put("prices.csv.gz", "123456789");
-  put("run.json", R"({"prices": "prices.csv.gz"})");
-  EXPECT_THAT(value_of(facts(), "prices"), Names("crc32 cbf43926"));
-}
-
 TEST_F(RunFacts, SayWhenWhereAndHow) {
   put("run.json", "{}");
   put("times.json", R"({"teacher": {"seconds": 12.25, "finished_utc": "x"}})");

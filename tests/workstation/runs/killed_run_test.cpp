@@ -1,21 +1,15 @@
 // The program itself: a run that is killed again and again, meets a full disk, is interrupted or
-// not proved. Its battery pays so much for every exchange that it idles, which is learnt and proved
-// in seconds.
+// not proved.
 #include <gmock/gmock.h>
 #include <signal.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
 
-#include "shared/host/child_process.h"
-#include "shared/host/file.h"
-#include "tests/support/small_market.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/thorough.h"
 #include "tests/support/tokens.h"
+#include "tests/workstation/runs/idle_run.h"
 
 namespace bess {
 namespace {
@@ -27,18 +21,14 @@ using testing::HasSubstr;
 
 constexpr std::uint64_t kSeed = 20230401;
 
-constexpr const char* kIdle =
-    "[costs]\nimport_adder_eur_per_mwh = 1000\nimport_percent = 100\n"
-    "export_fee_eur_per_mwh = 1000\nexport_percent = 100\n"
+const std::string kIdle =
+    std::string(kIdleCosts) +
     "[train]\nsteps = 60\nbatch_size = 96\nvalidate_every = 20\n"
     "[distil]\nepochs = 16\nlearning_rate = 0.03\nrepair_rounds = 2\nrepair_epochs = 1\n";
 
-class KilledRun : public testing::Test {
+class KilledRun : public IdleRun {
  protected:
-  KilledRun() {
-    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);  // or the page tells when it was made
-    write_minute_file(prices_, small_series(31), "");
-  }
+  KilledRun() { write_minute_file(prices_, small_series(31), ""); }
 
   [[nodiscard]] std::vector<std::string> command(const std::string& out,
                                                  std::vector<std::string> more = {}) const {
@@ -49,43 +39,21 @@ class KilledRun : public testing::Test {
     return words;
   }
 
-  /// Every file but the times, and whatever was left behind.
-  static std::map<std::string, std::string> contents(const fs::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name != "times.json") files[name] = read_file(entry.path());
-    }
-    return files;
-  }
-  static void expect_same(const fs::path& folder, const std::map<std::string, std::string>& whole) {
-    const auto files = contents(folder);
-    for (const auto& [name, text] : whole) {
-      ASSERT_TRUE(files.contains(name)) << name << " is missing";
-      EXPECT_TRUE(files.at(name) == text) << name << " differs";
-    }
-    for (const auto& [name, text] : files) EXPECT_TRUE(whole.contains(name)) << name << " is left";
-  }
-
-  TemporaryFolder folder_;
-  std::string prices_ = folder_.file("prices.csv.gz");
-  std::string config_ = folder_.write(
-      "idle.toml",
-      std::string(kIdle) +
-          "[correction]\nlow_price_eur_per_mwh = -501\nhigh_price_eur_per_mwh = 1501\n");
+  std::string prices_ = path("prices.csv.gz");
+  std::string config_ = written("idle.toml", kIdle + kNoThresholds);
 };
 
 // BESS_KILLS=50 in the environment kills fifty times.
 TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   const char* asked = std::getenv("BESS_KILLS");
   const int kills = asked != nullptr ? std::atoi(asked) : few_or_all(3, 10);
-  const std::string whole = folder_.file("whole");
+  const std::string whole = path("whole");
   const auto start = Clock::now();
   ASSERT_EQ(ChildProcess(command(whole)).wait(), 0);
   std::chrono::duration<double> longest_s = 0.8 * (Clock::now() - start);
   const auto expected = contents(whole);
 
-  const std::string out = folder_.file("killed");
+  const std::string out = path("killed");
   std::string limited = "trap '' XFSZ; ulimit -f 64; exec";  // no file above 32 KiB
   for (const std::string& word : command(out)) limited += " '" + word + "'";
   ChildProcess full({"/bin/sh", "-c", limited});
@@ -135,10 +103,10 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
 }
 
 TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
-  config_ = folder_.write("long.toml",
-                          "[train]\nmethod = \"c51\"\nsteps = 10000000\nvalidate_every = 1\n"
-                          "batch_size = 16\n");
-  const std::string out = folder_.file("run");
+  config_ = written("long.toml",
+                    "[train]\nmethod = \"c51\"\nsteps = 10000000\nvalidate_every = 1\n"
+                    "batch_size = 16\n");
+  const std::string out = path("run");
   ChildProcess run(command(out));
   for (int i = 0; i < 30'000 && !fs::exists(out + "/teacher.checkpoint"); ++i) usleep(10'000);
   ASSERT_TRUE(fs::exists(out + "/teacher.checkpoint"));
@@ -152,10 +120,10 @@ TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
 }
 
 TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
-  config_ = folder_.write("fail.toml", std::string(kIdle) +
-                                           "[correction]\nlow_price_eur_per_mwh = 200\n"
-                                           "high_price_eur_per_mwh = 201\n");
-  const std::string out = folder_.file("run");
+  config_ = written("fail.toml", kIdle +
+                                     "[correction]\nlow_price_eur_per_mwh = 200\n"
+                                     "high_price_eur_per_mwh = 201\n");
+  const std::string out = path("run");
   const auto expected = Names("3 201 EUR/MWh [distil] [correction] epochs repair_rounds " + out +
                               "/report.html --from-teacher " + out + " --config");
   ChildProcess run(command(out));
@@ -167,7 +135,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   EXPECT_FALSE(fs::exists(out + "/student.json"));
   EXPECT_FALSE(fs::exists(out + "/teacher.checkpoint")) << "it has served";
   const auto before = contents(out);
-  const std::string kept = folder_.file("kept");
+  const std::string kept = path("kept");
   fs::copy(out, kept, fs::copy_options::recursive);
   ChildProcess again(command(out, {"--resume"}));
   EXPECT_THAT(again.read_all(), AllOf(expected, testing::Not(HasSubstr("distil, monotone"))));
@@ -181,10 +149,8 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   fs::copy(kept, out, fs::copy_options::recursive);
 
   // Nothing is lost: with a mended configuration its teacher goes on to a proved student.
-  config_ = folder_.write("mended.toml", std::string(kIdle) +
-                                             "[correction]\nlow_price_eur_per_mwh = -501\n"
-                                             "high_price_eur_per_mwh = 1501\n");
-  const std::string repaired = folder_.file("repaired");
+  config_ = written("mended.toml", kIdle + kNoThresholds);
+  const std::string repaired = path("repaired");
   ChildProcess mended(command(repaired, {"--from-teacher", out}));
   EXPECT_THAT(mended.read_all(), Names(out + "/teacher.bin"));
   EXPECT_EQ(mended.wait(), 0);

@@ -147,20 +147,6 @@ TEST(OutlookStudent, ADamagedPlanIsRefused) {
   EXPECT_THAT(error_of([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
 }
 
-TEST(OutlookStudent, TheTeachersFileIsReadBackAndDecidesTheSame) {
-  const TemporaryFolder folder;
-  const auto path = folder.file("teacher.bin");
-  save_teacher(path, school().teacher);
-  const Teacher read = load_teacher(path);
-  TeacherPolicy policy(school().teacher), again(read);
-  for (std::size_t i = 0; i < school().market.steps.size(); i += 1511) {
-    const MarketStep& step = school().market.steps[i];
-    ASSERT_EQ(policy.decide(step, 0, 0.3), again.decide(step, 0, 0.3));
-    ASSERT_EQ(school().teacher.book->break_even_centi(step, 0.3),
-              read.book->break_even_centi(step, 0.3));
-  }
-}
-
 TEST(OutlookStudent, WhatItCannotDoIsSaid) {
   const auto never = [] { return false; };
   MarketSteps blind = school().market;

@@ -1,8 +1,9 @@
 #include "workstation/student/student_checkpoints.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "shared/host/user_error.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -25,13 +26,12 @@ TEST(StudentCheckpoints, ReadBackWhatWasWritten) {
 }
 
 TEST(StudentCheckpoints, AStrangeStateNamesFileAndLine) {
-  try {
-    (void)parse_student_checkpoints_csv(
-        "round,epoch,validation_eur_per_day_per_mwh,state\n1,2,3,taken\n", "checkpoints.csv");
-    FAIL() << "was read";
-  } catch (const UserError& error) {
-    EXPECT_STREQ(error.what(), "checkpoints.csv:2: unknown state \"taken\"");
-  }
+  EXPECT_THAT(
+      [] {
+        (void)parse_student_checkpoints_csv(
+            "round,epoch,validation_eur_per_day_per_mwh,state\n1,2,3,taken\n", "checkpoints.csv");
+      },
+      testing::ThrowsMessage<UserError>(Names("checkpoints.csv:2 \"taken\"")));
 }
 
 }  // namespace

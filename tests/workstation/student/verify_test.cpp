@@ -209,29 +209,6 @@ TEST(Verify, CountsOfASeededNetMatch) {
   EXPECT_EQ(counts_of(verify_student(net, options)), expected);
 }
 
-TEST(Verify, KnownCounts) {
-  // Property 1 and 2 of a net that idles everywhere: one state per SoC and bound price.
-  const StudentNet idle = LinearNet{.charge_below = 0, .discharge_from = 20'000}.net();
-  const Certificate c =
-      verify_student(idle, {.thresholds = {-498, 1497}, .context_stride = kOneContext});
-  EXPECT_EQ(counts_of(c), (Counts{3 * kSocCount, 4 * kSocCount, 0}));
-  // Rising in price: two increases (discharge, idle, charge) per SoC.
-  const StudentNet rising = LinearNet{.price_weight = -1, .offset = 16'000}.net();
-  const Certificate r = verify_student(rising, {.context_stride = kOneContext});
-  EXPECT_EQ(counts_of(r), (Counts{kSocCount, kSocCount, 2 * kSocCount}));
-}
-
-TEST(Verify, StrideLooksAtEveryNthContext) {
-  const StudentNet idle = LinearNet{.charge_below = 0, .discharge_from = 20'000}.net();
-  for (const int stride : {kContextCount, kContextCount - 1, 5000, 999}) {
-    SCOPED_TRACE(stride);
-    const std::int64_t contexts = (kContextCount + stride - 1) / stride;
-    const Certificate c = verify_student(idle, {.context_stride = stride});
-    EXPECT_EQ(c.states_checked, contexts * kContextStates);
-    EXPECT_EQ(counts_of(c), (Counts{contexts * kSocCount, contexts * kSocCount, 0}));
-  }
-}
-
 TEST(Verify, ThreadsDoNotChangeTheCounts) {
   const StudentNet net = seeded_net(12);
   VerifyOptions options{

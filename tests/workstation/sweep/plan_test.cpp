@@ -58,20 +58,16 @@ class SweepPlans : public testing::Test {
 
 TEST_F(SweepPlans, EveryCombinationOfTheGridForEverySeed) {
   request_.seeds = 2;
-  EXPECT_THAT(settings(plan("[grid]\n\"distil.fidelity\" = [1, 2.5]\n\"distil.epochs\" = 60\n")),
+  EXPECT_THAT(settings(plan("[[list]]\n\"distil.epochs\" = 60\n[[list]]\n\"distil.epochs\" = 70\n"
+                            "[grid]\n\"distil.fidelity\" = [1, 2.5]\n")),
               ElementsAre("seed 1, distil.epochs 60, distil.fidelity 1",
                           "seed 1, distil.epochs 60, distil.fidelity 2.5",
+                          "seed 1, distil.epochs 70, distil.fidelity 1",
+                          "seed 1, distil.epochs 70, distil.fidelity 2.5",
                           "seed 2, distil.epochs 60, distil.fidelity 1",
-                          "seed 2, distil.epochs 60, distil.fidelity 2.5"));
-}
-
-TEST_F(SweepPlans, PointsOfAListAreCombinedWithTheGrid) {
-  EXPECT_THAT(settings(plan("[[list]]\n\"costs.import_percent\" = 2\n[[list]]\n"
-                            "\"costs.import_percent\" = 5\n[grid]\ndistil.fidelity = [1, 2]\n")),
-              ElementsAre("seed 1, costs.import_percent 2, distil.fidelity 1",
-                          "seed 1, costs.import_percent 2, distil.fidelity 2",
-                          "seed 1, costs.import_percent 5, distil.fidelity 1",
-                          "seed 1, costs.import_percent 5, distil.fidelity 2"));
+                          "seed 2, distil.epochs 60, distil.fidelity 2.5",
+                          "seed 2, distil.epochs 70, distil.fidelity 1",
+                          "seed 2, distil.epochs 70, distil.fidelity 2.5"));
 }
 
 TEST_F(SweepPlans, ASetOfTheCommandLineIsAnAxisOfTheGrid) {
@@ -125,6 +121,9 @@ TEST_F(SweepPlans, AnotherPlanPricesOrConfigurationIsRefusedNamingBoth) {
   request_.full = true;
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("kind lean full"));
   request_.full = false;
+  const std::string own = request_.prices;
+  request_.prices = root_.write("other name.csv", read_file(own));
+  EXPECT_EQ(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n").known, 2) << "prices count by content";
   request_.config = root_.write("other.toml", "[train]\nsteps = 7\n");
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("[train] steps 7"));
   request_.config.clear();
@@ -140,12 +139,6 @@ TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
   record.replace(record.find("commit "), 11, "commit older");
   write_file(folder_.record(), record);
   EXPECT_THAT(what_of([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
-}
-
-TEST_F(SweepPlans, PricesCountByContent) {
-  write_plan(plan(""), request_);
-  request_.prices = root_.write("other name.csv", read_file(request_.prices));
-  EXPECT_EQ(plan("").known, 1);
 }
 
 TEST_F(SweepPlans, ATaskHasItsOwnConfigurationAndOneThread) {

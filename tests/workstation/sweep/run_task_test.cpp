@@ -123,7 +123,7 @@ TEST_F(Task, AFileThatMayNotGrowIsAFailure) {
 TEST_F(Task, KilledAtAnyMomentAloneOrInPairsNothingIsHalf) {
   constexpr int kTasks = 12;
   Random random(1);
-  for (int round = 0; round < 120; ++round) {
+  for (int round = 0; round < 60; ++round) {
     const int task = 1 + static_cast<int>(random.index(kTasks));
     const pid_t first = start(task, 2'000);
     const pid_t second = start(task, 2'000);
@@ -142,13 +142,6 @@ TEST_F(Task, KilledAtAnyMomentAloneOrInPairsNothingIsHalf) {
       EXPECT_EQ(text_of_file(folder_.result(task) / name), std::to_string(task));
     }
   }
-}
-
-TEST_F(Task, ManyOfTheSameAtOnceAllEndWell) {
-  std::vector<pid_t> all;
-  for (int copy = 0; copy < 12; ++copy) all.push_back(start(5, 500));
-  for (const pid_t pid : all) EXPECT_EQ(end_of(pid), 0);
-  expect_whole(5);
 }
 
 }  // namespace

@@ -72,11 +72,27 @@ TEST(EntsoeXml, TwoPricesAreNotOne) {
   EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
 }
 
+/// An entity of the document's own, which is not expanded.
+std::string replaced_entity() {
+  std::string text = document(point(1, "&price;", "A04"));
+  return text.insert(text.find("<Balancing"), "<!DOCTYPE x [<!ENTITY price \"3\">]>\n");
+}
+
 TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
   const auto error_of = [](const std::string& text) {
     return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
   };
   const std::string good = document(point(1, "3", "A04"));
+  const auto with = [&good](const std::string& what, const std::string& instead) {
+    std::string text = good;
+    return text.replace(text.find(what), what.size(), instead);
+  };
+  const auto without = [&good](const std::string& name) {
+    const std::string closing = "</" + name + ">";
+    std::string text = good;
+    const std::size_t first = text.find("<" + name + ">");
+    return text.erase(first, text.find(closing) + closing.size() - first);
+  };
   const std::pair<std::string, const char*> cases[] = {
       {"<html><body>x</body></html>", "f.xml"},
       {"<Publication_MarketDocument/><a>", "f.xml A85 \"Publication_MarketDocument\""},
@@ -85,66 +101,28 @@ TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
       {document(point(5, "3", "A04")), "f.xml:3 5 4"},
       {document(point(0, "3", "A04")), "f.xml:3 0 4"},
       {document(point(1, "3", "A04"), "A01", "P1Y"), "f.xml:3 \"P1Y\""},
-      {document(""), "f.xml"}};
+      {document(""), "f.xml"},
+      {without("timeInterval"), "f.xml:3 timeInterval"},
+      {without("start"), "f.xml:3 start"},
+      {without("end"), "f.xml:3 end"},
+      {without("resolution"), "f.xml:3 resolution"},
+      {without("position"), "f.xml:3 position"},
+      {with("<end>2023", "<end>9999"), "f.xml:3 251698237200 s"},
+      {with("<Period>", "<currency_Unit.name>BGN</currency_Unit.name><Period>"), "\"BGN\" EUR"},
+      {with("<Period>", "<price_Measure_Unit.name>KWH</price_Measure_Unit.name><Period>"),
+       "\"KWH\" MWH"},
+      {replaced_entity(), "f.xml:4 \"&price;\""},
+      {"<?xml version=\"1.0\"?><Acknowledgement_MarketDocument xmlns=\"x\"><Reason>"
+       "<code>999</code><text>No matching\n data found</text></Reason>"
+       "</Acknowledgement_MarketDocument>",
+       "f.xml \"No matching data found\""}};
   for (const auto& [text, names] : cases) EXPECT_THAT(error_of(text), Names(names)) << text;
-}
-
-TEST(EntsoeXml, WhatAPeriodLacksIsNamed) {
-  const std::string good = document(point(1, "3", "A04"));
-  for (const std::string name : {"timeInterval", "start", "end", "resolution", "position"}) {
-    std::string text = good;
-    const std::size_t first = text.find("<" + name + ">");
-    const std::string closing = "</" + name + ">";
-    text.erase(first, text.find(closing) + closing.size() - first);
-    EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
-                Names("f.xml:3 " + std::string(name)));
-  }
 }
 
 TEST(EntsoeXml, NamespacesMayHaveAPrefix) {
   const std::string text = document(point(1, "3", "A04") + point(2, "4", "A04"));
   EXPECT_THAT(prices(std::regex_replace(text, std::regex("<(/?)(?=[A-Za-z])"), "<$1ns0:")),
               testing::ElementsAre(3, 4));
-}
-
-TEST(EntsoeXml, EntitiesOfADocumentsOwnAreNotExpanded) {
-  std::string text = document(point(1, "&price;", "A04"));
-  text.insert(text.find("<Balancing"), "<!DOCTYPE x [<!ENTITY price \"3\">]>\n");
-  EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
-              Names("f.xml:4 \"&price;\""));
-}
-
-TEST(EntsoeXml, SpansOverAYearAreRefused) {
-  std::string text = document(point(1, "3", "A04"));
-  text.replace(text.find("<end>2023"), 9, "<end>9999");
-  EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
-              Names("f.xml:3 251698237200 s"));
-}
-
-TEST(EntsoeXml, OtherUnitsAreRefused) {
-  const auto with = [](const std::string& currency, const std::string& energy) {
-    std::string text = document(point(1, "3", "A04"));
-    return text.insert(text.find("<Period>"),
-                       "<currency_Unit.name>" + currency + "</currency_Unit.name>" +
-                           "<price_Measure_Unit.name>" + energy + "</price_Measure_Unit.name>");
-  };
-  const auto error_of = [](const std::string& text) {
-    return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
-  };
-  EXPECT_THAT(prices(with("EUR", "MWH")), testing::ElementsAre(3));
-  EXPECT_THAT(error_of(with("BGN", "MWH")), Names("\"BGN\" EUR"));
-  EXPECT_THAT(error_of(with("EUR", "KWH")), Names("\"KWH\" MWH"));
-}
-
-TEST(EntsoeXml, AnAcknowledgementTellsItsReason) {
-  EXPECT_THAT(user_error_of([] {
-                (void)parse_market_text(
-                    "<?xml version=\"1.0\"?><Acknowledgement_MarketDocument xmlns=\"x\"><Reason>"
-                    "<code>999</code><text>No matching\n data found</text></Reason>"
-                    "</Acknowledgement_MarketDocument>",
-                    "f.xml");
-              }),
-              Names("f.xml \"No matching data found\""));
 }
 
 TEST(EntsoeXml, MinutesAreDrawnWithoutAPublishedImbalance) {

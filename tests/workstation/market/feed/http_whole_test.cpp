@@ -1,5 +1,6 @@
 // Whether an answer is whole, by HTTP/1 and by HTTP/2 behind nghttpx, in the clear and packed: one
 // that is must be taken, one that was cut must be worth another try.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <zlib.h>
 
@@ -11,7 +12,7 @@
 #include "shared/host/child_process.h"
 #include "tests/support/dated_certificate.h"
 #include "tests/support/test_server.h"
-#include "workstation/market/feed/day_ahead_fetch.h"
+#include "workstation/market/feed/elia_fetch.h"
 
 namespace bess {
 namespace {
@@ -182,36 +183,6 @@ TEST(HttpWhole, ByHttp2) {
   });
   const Http2Front front(server.port());
   expect_all(front.url(), said, false);  // a proxy takes the end of a connection for the body's
-}
-
-/// The first answers are cut, the next is whole: a JSON without a length.
-TEST(HttpWhole, DayAheadPricesAreAskedForAgain) {
-  std::string prices, times;
-  for (int hour = 0; hour < 24; ++hour) {
-    times += fmt::format("{}{}", hour == 0 ? "" : ",", 1'748'728'800 + 3'600 * hour);
-    prices += fmt::format("{}{}", hour == 0 ? "" : ",", hour);
-  }
-  const std::string whole =
-      fmt::format("{{\"unix_seconds\":[{}],\"price\":\n[{}]}}", times, prices);
-  const TestServer* of_requests = nullptr;
-  const TestServer server([&](TestConnection& connection, const std::string&) {
-    const std::size_t at = whole.find('\n') + 1;
-    const std::size_t ends[] = {0, at, whole.size() - 1, whole.size()};
-    connection.send("HTTP/1.0 200 OK\r\n\r\n" + whole.substr(0, ends[of_requests->requests() - 1]));
-    return false;
-  });
-  of_requests = &server;
-  const std::atomic<bool> interrupted{false};
-  const auto joined =
-      fetch_day_ahead({.span = {{2025, 6, 1}, {2025, 6, 1}},
-                       .base_url = "http://127.0.0.1:" + std::to_string(server.port()),
-                       .now_utc_s = 1'750'000'000,
-                       .retry = {},
-                       .sleep = [](double, const std::atomic<bool>&) {}},
-                      interrupted);
-  ASSERT_TRUE(joined);
-  EXPECT_EQ(joined->series.size(), 96u);
-  EXPECT_EQ(server.requests(), 4);
 }
 
 }  // namespace

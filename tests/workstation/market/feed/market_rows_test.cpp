@@ -102,9 +102,12 @@ TEST(MarketJson, TwoDifferentPricesAreNotOne) {
       parse_market_text(R"([{"datetime":"2023-01-01T00:00:00Z","resolutioncode":"PT15M",)"
                         R"("positiveimbalanceprice":10,"negativeimbalanceprice":60},)"
                         R"({"datetime":"2023-01-01T00:15:00Z","resolutioncode":"PT15M",)"
-                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60}])",
+                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60},)"
+                        R"({"datetime":"2023-01-01T00:30:00Z","resolutioncode":"PT15M",)"
+                        R"("imbalanceprice":null}])",
                         "ods047.json");
-  ASSERT_EQ(rows.quarter_hours.size(), 2u);
+  ASSERT_EQ(rows.quarter_hours.size(), 3u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[2].price_eur_per_mwh));
   EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
   EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 60);
   EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
@@ -188,17 +191,6 @@ TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
   EXPECT_EQ(parse_market_json("[{" + row + "}]", "f.json").quarter_hours.size(), 1u);
 }
 
-TEST(MarketJson, QuarterHourAndNullPrice) {
-  const MarketRows rows = parse_market_text(
-      R"([{"datetime":"2025-10-08T13:00:00+02:00","resolutioncode":"PT15M","imbalanceprice":100.06},
-          {"datetime":"2025-10-08T12:45:00+02:00","resolutioncode":"PT15M",)"
-      R"("imbalanceprice":null}])",
-      "answer.json");
-  ASSERT_EQ(rows.quarter_hours.size(), 2u);
-  EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, 100.06);
-  EXPECT_TRUE(std::isnan(rows.quarter_hours[1].price_eur_per_mwh));
-}
-
 TEST(MarketText, BadInputIsOneClearLine) {
   const std::string header = "datetime;resolutioncode;imbalanceprice\n";
   const auto error_of = [](const std::string& text) {
@@ -220,20 +212,6 @@ TEST(MarketText, BadInputIsOneClearLine) {
       {"[7]", "f.csv 1"},
       {R"([{"datetime":5}])", "f.csv 1 \"datetime\""}};
   for (const auto& [text, names] : cases) EXPECT_THAT(error_of(text), Names(names)) << text;
-}
-
-TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
-  const std::string text =
-      "\xEF\xBB\xBF"
-      "Datetime;Resolution code;Imbalance Price\n2025-04-08T08:21:00+02:00;PT1M;49.174\n";
-  int read = 0;
-  for (std::size_t size = 0; size <= text.size(); ++size) {
-    try {
-      read += static_cast<int>(parse_market_text(text.substr(0, size), "cut").minutes.size());
-    } catch (const UserError&) {
-    }
-  }
-  EXPECT_GE(read, 2);  // whole, with and without its line end
 }
 
 }  // namespace

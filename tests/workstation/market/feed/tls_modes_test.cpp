@@ -2,13 +2,11 @@
 // written, and what cannot succeed is asked once.
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <set>
 #include <thread>
 
-#include "shared/host/child_process.h"
 #include "tests/support/dated_certificate.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/test_server.h"
@@ -135,28 +133,6 @@ TEST_F(TlsModes, TheHandshakeFails) {
   EXPECT_EQ(closing.connections(), 3);
   const TestServer refusing(say_404, {.certificate = "none", .key = "none"});
   EXPECT_THAT(error_of(url("https", refusing.port())), Names("TLS 1 ods046"));
-}
-
-/// As a user runs it: the program's exit code, one line, and no file.
-TEST_F(TlsModes, TheProgramEndsWithOneLine) {
-  const DatedCertificate certificate("IP:127.0.0.1", -2 * kDay_s, -kDay_s);
-  trust(certificate);
-  const TestServer server(say_404, with(certificate));
-  const std::string address = url("https", server.port());
-  const std::string out = (folder_ / "out").string();
-  const std::vector<std::vector<std::string>> commands{
-      {"prices", "fetch", "--from", "2023-03-01", "--to", "2023-03-01", "--base-url", address,
-       "--out", out},
-      {"prices", "record", "--out", out, "--for", "20s", "--url", address}};
-  for (std::vector<std::string> arguments : commands) {
-    arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
-    ChildProcess program(arguments);
-    const std::string output = program.read_all();
-    EXPECT_EQ(program.wait(), 1) << output;
-    EXPECT_THAT(output, Names("bess-train timedatectl 127.0.0.1"));
-    EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
-    EXPECT_TRUE(std::filesystem::is_empty(folder_ / ""));
-  }
 }
 
 }  // namespace

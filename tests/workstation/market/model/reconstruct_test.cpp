@@ -29,14 +29,6 @@ TEST(Reconstruct, EndsOnTheSettledPriceAndLeavesGapsEmpty) {
   }
 }
 
-TEST(Reconstruct, SeedDecides) {
-  const MinuteSeries a = minutes_on_quarter_hours(three_quarter_hours(), 1);
-  const MinuteSeries b = minutes_on_quarter_hours(three_quarter_hours(), 1);
-  const MinuteSeries c = minutes_on_quarter_hours(three_quarter_hours(), 2);
-  EXPECT_EQ(format_minute_csv(a, ""), format_minute_csv(b, ""));
-  EXPECT_NE(format_minute_csv(a, ""), format_minute_csv(c, ""));
-}
-
 TEST(Reconstruct, WithoutImbalanceThereAreNoIndicativePrices) {
   auto rows = three_quarter_hours();
   rows[1].system_imbalance_mw = kNotPublished;

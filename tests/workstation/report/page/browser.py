@@ -1,7 +1,7 @@
 """A headless Chromium, driven through its debugging pipe (Chrome DevTools Protocol): nothing to
 install besides it.
 
-Used by page_test.py. One Browser is one process with a profile of its own; one Page is one tab of
+Used by pages_test.py. One Browser is one process with a profile of its own; one Page is one tab of
 it.
 """
 import base64
