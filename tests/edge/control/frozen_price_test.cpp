@@ -172,11 +172,5 @@ TEST(FrozenPrice, ToAndFroIsRecalledByTheLogAndAnOutageIsAFewMinutes) {
   gaps.observe(kFirstMinute, 700);
 }
 
-TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
-  Rows rows({.frozen_s = 0, .stop_s = 0});
-  rows.add(2'000, 0);
-  EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
-}
-
 }  // namespace
 }  // namespace bess
