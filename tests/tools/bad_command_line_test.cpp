@@ -25,18 +25,29 @@ constexpr BadCommandLine kCases[] = {
     {"battery --port 65536", 2, "--port"},
     {"battery --host localhost", 2, "--host"},
     {"battery --clients-max 0", 2, "--clients-max"},
+    {"battery --response-delay-ms -1", 2, "--response-delay-ms"},
     {"battery --soc 1.5", 2, "--soc 1.5 0 1"},
     {"battery --soc nan", 2, "--soc nan 0 1"},
     {"battery --power-w 0", 2, "--power-w 0"},
+    {"battery --capacity-wh -8000", 2, "--capacity-wh -8000 0"},
     {"battery --efficiency 0", 2, "--efficiency 0.01 1"},
+    {"battery --efficiency 1.1", 2, "--efficiency 1.1 0.01 1"},
+    {"battery --time-constant-s -1", 2, "--time-constant-s -1 0 600"},
     {"battery --time-scale 0", 2, "--time-scale"},
     {"battery --parity mark", 2, "--parity"},
+    {"battery --stop-bits 3", 2, "--stop-bits"},
     {"battery --exception-code 0", 2, "--exception-code"},
+    {"battery --fault-seed -1", 2, "--fault-seed"},
     // Options that contradict each other, or wait for one that is not there.
     {"battery --serial NONE --port 1502", 2, "--serial --port"},
     {"battery --baud 9600", 2, "--baud --serial"},
+    {"battery --parity even", 2, "--parity --serial"},
+    {"battery --stop-bits 2", 2, "--stop-bits --serial"},
     {"battery --fault-every 3", 2, "--fault-every --fault"},
+    {"battery --fault-probability 0.1", 2, "--fault-probability --fault"},
+    {"battery --fault-seed 3", 2, "--fault-seed --fault"},
     {"battery --fault-from-s 60", 2, "--fault-from-s --fault"},
+    {"battery --late-ms 60", 2, "--late-ms --fault"},
     {"battery --fault drop --fault-every 3 --fault-probability 0.1", 2,
      "--fault-every --fault-probability"},
     {"battery --fault drop --fault-from-s 60 --fault-to-s 60", 1, "--fault-to-s 60"},
@@ -54,6 +65,7 @@ constexpr BadCommandLine kCases[] = {
      1, "--meter-port --port"},
     {"battery --house always", 1, "always"},
     {"battery --time-scale 900", 2, "--time-scale --utc-start"},
+    {"battery --anchor-monotonic-ns 5", 2, "--anchor-monotonic-ns --utc-start"},
     {"battery --utc-start yesterday", 1, "yesterday"},
     {"battery --power-w 1e9", 1, "alphaess"},
     // Files.
@@ -68,6 +80,7 @@ constexpr BadCommandLine kCases[] = {
     {"market --prices GOOD --fault-every 3", 2, "--fault-every --fault"},
     {"market --prices GOOD --latency-s -1", 2, "--latency-s -1 0 3600"},
     {"market --prices GOOD --tls-cert NONE", 2, "--tls-cert --tls-key"},
+    {"market --prices GOOD --tls-key NONE", 2, "--tls-key --tls-cert"},
     {"market --prices GOOD --port 0 --tls-cert NONE --tls-key NONE", 1, "NONE"},
     {"market --prices GOOD --port 0 --host nowhere.invalid", 1, "nowhere.invalid"},
     {"market --prices GOOD --day-ahead GOOD", 1, "GOOD:1"},
@@ -96,7 +109,7 @@ TEST(BadSimCommandLine, EachIsRefusedInOneLineBeforeAnythingListens) {
       {"GARBAGE", folder.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n")},
       {"FOLDER", folder.file("FOLDER")},
       {"NONE", folder.file("NONE")}};
-  EXPECT_GE(std::size(kCases), 50u);
+  EXPECT_GE(std::size(kCases), 70u);
   for (const BadCommandLine& line : kCases) expect_refused(BESS_SIM_PROGRAM, line, files);
 }
 
