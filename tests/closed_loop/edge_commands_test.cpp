@@ -55,6 +55,7 @@ TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   EXPECT_EQ(code_of({"status"}), 3);
   EXPECT_EQ(code_of({"limit", "--for", "15m"}), 1);  // no [limits]
   EXPECT_EQ(code_of({"hold", "5000", "--for", "2h"}), 1);
+  EXPECT_EQ(code_of({"hold", "-4001", "--for", "2h"}), 1);
   EXPECT_EQ(code_of({"record", "--for", "1s", "--out", site_.folder.file("none.jsonl")}), 1);
   EXPECT_EQ(code_of({"map", "check", "--against", "/nonexistent"}), 1);
   EXPECT_EQ(edge({"signature"}).exit_code, 0);

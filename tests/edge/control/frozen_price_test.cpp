@@ -37,11 +37,11 @@ TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
 }
 
 TEST(FrozenPrice, OneSecondIsALimitAndZeroIsNone) {
-  Rows soon({.stop_s = 1}), never({.stop_s = 0});
+  Rows soon({.stop_s = 1}), never({.frozen_s = 0, .stop_s = 0});
   soon.add(2, 5'550);
   never.add(2'000, 5'550);
   EXPECT_TRUE(soon.frozen.is_no_price());
-  EXPECT_FALSE(never.frozen.is_no_price());
+  EXPECT_FALSE(never.frozen.is_frozen() || never.frozen.is_no_price());
 }
 
 TEST(FrozenPrice, ZeroAndTheEndsOfTheRangeArePricesLikeOthers) {

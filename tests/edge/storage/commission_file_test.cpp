@@ -160,9 +160,13 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
 }
 
 TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
-  for (const char* place : kPlaces) static_cast<void>(folder_.write(place, "\0\0\0"));
-  EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
-  EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  std::string changed = text_;
+  changed[changed.find("2023-03-26")] = '3';
+  for (const std::string& broken : {std::string(3, '\0'), changed}) {
+    for (const char* place : kPlaces) static_cast<void>(folder_.write(place, broken));
+    EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
+    EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  }
 }
 
 TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
