@@ -55,6 +55,7 @@ TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   EXPECT_EQ(code_of({"status"}), 3);
   EXPECT_EQ(code_of({"limit", "--for", "15m"}), 1);  // no [limits]
   EXPECT_EQ(code_of({"hold", "5000", "--for", "2h"}), 1);
+  EXPECT_EQ(code_of({"hold", "-4001", "--for", "2h"}), 1);
   EXPECT_EQ(code_of({"record", "--for", "1s", "--out", site_.folder.file("none.jsonl")}), 1);
   EXPECT_EQ(code_of({"map", "check", "--against", "/nonexistent"}), 1);
   EXPECT_EQ(edge({"signature"}).exit_code, 0);
@@ -98,34 +99,6 @@ TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
   }
   EXPECT_EQ(code, 0);
   EXPECT_EQ(SimulatedSite::stop(controller), 0);
-}
-
-TEST_F(EdgeCommands, TheStatusOfAnEndedControllerSaysWhatItWasAndWhenItEnded) {
-  start_site();
-  const auto expect_status = [&](int pid, bool controls, bool is_running) {
-    const Json json = status_of(config_);
-    EXPECT_EQ(json.value()["pid"].number(), pid);
-    EXPECT_EQ(json.value()["control"].boolean(), controls);
-    EXPECT_EQ(std::string(json.value()["health"].text_or("")) != "not running", is_running);
-    const Said text = edge({"status", "--config", config_});
-    EXPECT_EQ(text.exit_code == 3, !is_running);
-    EXPECT_THAT(text.text,
-                Names(std::to_string(pid) + " 127.0.0.1:" + std::to_string(site_.battery_port)));
-    return std::string(json.value()["last"]["mode"].text_or(""));
-  };
-  for (const bool controls : {true, false}) {
-    std::vector<std::string> words = {edge_program(), "--config", config_};
-    if (!controls) words.emplace_back("--dry-run");
-    ChildProcess controller(words);
-    ASSERT_NE(await_line(controller, "utc="), "");
-    ASSERT_NE(await_line(controller, "utc="), "");
-    const int pid = controller.pid();
-    expect_status(pid, controls, true);
-    controller.signal(controls ? SIGTERM : SIGKILL);
-    controller.read_all();
-    controller.wait();
-    EXPECT_EQ(expect_status(pid, controls, false) == "stopping", controls);
-  }
 }
 
 /// A hold cannot make a battery be driven that the supervision has given back: that is said where

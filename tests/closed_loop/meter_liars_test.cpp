@@ -1,6 +1,6 @@
 // The control loop behind a meter that lies, against houses that move: how long limits are passed
 // once a step of the battery has contradicted the meter, after how many cycles it is found, and
-// that an honest meter is never accused. Prints both tables.
+// that an honest meter is never accused. Prints the table of lies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -121,24 +121,16 @@ SiteSettings metered(const ConnectionSettings& connection = {}) {
 
 TEST(MeterLiars, AnHonestMeterIsNeverAccused) {
   constexpr int kDays = 30;
-  std::printf("%-12s %5s %8s %9s %9s %9s %9s\n", "house", "seeds", "cycles", "accused", "suspected",
-              "cut", "cut %");
   for (const MovingHouse::Habits& habits : kMovingHouses) {
-    int cycles = 0, accused = 0, suspected = 0, cuts = 0, seeds = 0;
-    for (std::uint64_t seed = 1; seed <= 3; ++seed, ++seeds) {
+    int accused = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const MovingHouse house(habits, kDayStartS, kDays + 1, seed);
       Trial trial(metered(), house);
       if (seed == 2) trial.battery.physics.set_habits({.delay_s = 5, .noise_frac = 0.02});
-      CycleRecord record;
-      for (int i = 0; i < kDays * kStepsPerDay; ++i, ++cycles) {
-        record = trial.cycle();
-        accused += record.site.trust.is_mismatch;
-        suspected += record.reason == Reason::kMeterMismatch;
+      for (int i = 0; i < kDays * kStepsPerDay; ++i) {
+        accused += trial.cycle().site.trust.is_mismatch;
       }
-      cuts += record.site.order_cuts;
     }
-    std::printf("%-12s %5d %8d %9d %9d %9d %9.2f\n", habits.name, seeds, cycles, accused, suspected,
-                cuts, 100.0 * cuts / cycles);
     EXPECT_EQ(accused, 0) << habits.name;
   }
 }
@@ -161,11 +153,9 @@ double earned_eur(const MovingHouse::Habits& habits, bool judges) {
 
 /// Doubts and possible ratios take power where the limits are near: in most houses next to none.
 TEST(MeterLiars, AnHonestMeterCostsLittle) {
-  std::printf("%-12s %12s %12s\n", "house", "believed EUR", "judged EUR");
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     const double believed_eur = earned_eur(habits, false);
     const double judged_eur = earned_eur(habits, true);
-    std::printf("%-12s %12.2f %12.2f\n", habits.name, believed_eur, judged_eur);
     EXPECT_GT(judged_eur, (habits.pv_w > 0 ? 0.94 : 0.985) * believed_eur) << habits.name;
   }
 }
@@ -256,13 +246,11 @@ std::function<std::int32_t(std::int64_t)> restless_price(std::uint64_t seed) {
   };
 }
 
-Damage worst_damage(const Lie& lie, const MovingHouse::Habits& habits, bool judges) {
+Damage worst_damage(const Lie& lie, const MovingHouse::Habits& habits) {
   Damage worst;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const MovingHouse house(habits, kDayStartS, 2, seed);
-    SiteSettings settings = metered({.import_w_max = 6'000, .export_w_max = 3'000});
-    settings.witness.judges = judges;
-    Trial trial(settings, house);
+    Trial trial(metered({.import_w_max = 6'000, .export_w_max = 3'000}), house);
     trial.prices.price = restless_price(seed);
     Witnessed witnessed(trial, lie);
     const Damage damage = witnessed.run(12 * 30);
@@ -292,22 +280,18 @@ TEST(MeterLiars, ALimitIsPassedForAMinuteAtMostOnceAStepHasContradicted) {
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     std::printf("house: %s, limits %.0f W in, %.0f W out, 12 h, worst of 5 seeds\n", habits.name,
                 kImportW, kExportW);
-    std::printf("%-20s | %18s | %51s\n", "", "believed", "judged");
-    std::printf("%-20s | %8s %9s | %8s %9s %10s %10s %10s\n", "meter", "over s", "by W", "over s",
-                "by W", "cycles", "steps", "trials, s");
+    std::printf("%-20s | %8s %9s %10s %10s %10s\n", "meter", "over s", "by W", "cycles", "steps",
+                "trials, s");
     for (const Lie& lie : kLies) {
-      const Damage before = worst_damage(lie, habits, false);
-      const Damage now = worst_damage(lie, habits, true);
-      std::printf("%-20s | %8d %9.0f | %8d %9.0f %10d %10d %10d\n", lie.name, before.over_s,
-                  before.over_w_max, now.over_s, now.over_w_max, now.cycles_to_find,
-                  now.steps_to_find, now.trial_s);
+      const Damage now = worst_damage(lie, habits);
+      std::printf("%-20s | %8d %9.0f %10d %10d %10d\n", lie.name, now.over_s, now.over_w_max,
+                  now.cycles_to_find, now.steps_to_find, now.trial_s);
       // In the wildest house an honest meter passes them for longer than that, house by house.
       const bool is_wild = habits.hob && habits.pv_w > 0;
       if (is_bounded(lie)) {
         EXPECT_LE(now.over_s, is_wild ? 90 : 60) << habits.name << ", " << lie.name;
       }
       if (!is_constant(lie)) continue;
-      EXPECT_GT(before.over_s, 3'600) << habits.name << ", " << lie.name;
       EXPECT_GE(now.cycles_to_find, 1) << habits.name << ", " << lie.name;
       EXPECT_LE(now.steps_to_find, 8) << habits.name << ", " << lie.name;
     }
@@ -317,19 +301,12 @@ TEST(MeterLiars, ALimitIsPassedForAMinuteAtMostOnceAStepHasContradicted) {
 // --- the quarter-hour's cap --------------------------------------------------------------------
 
 /// Quarter-hours above the cap, or above the house alone where that is more, through the battery.
-struct Peak {
-  int quarters = 0;
-  double over_w_max = 0;
-};
-
-Peak peak_of(const Lie& lie, const MovingHouse::Habits& habits, bool judges) {
+int quarters_above_cap(const Lie& lie, const MovingHouse::Habits& habits) {
   constexpr double kCapW = 4'000;
-  Peak peak;
+  int quarters = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const MovingHouse house(habits, kDayStartS, 2, seed);
-    SiteSettings settings = metered({.peak_w_max = 4'000});
-    settings.witness.judges = judges;
-    Trial trial(settings, house, 0.2);
+    Trial trial(metered({.peak_w_max = 4'000}), house, 0.2);
     trial.prices.price = restless_price(seed);
     trial.meter.lie = lie;
     trial.meter.lies_from_s = trial.clock.now_ns / kNanosecondsPerSecond + kLieAfterS;
@@ -346,27 +323,18 @@ Peak peak_of(const Lie& lie, const MovingHouse::Habits& habits, bool judges) {
       if (now_s % kQuarterHourS != 0) return;
       const double over_w = (import_ws - std::max(kCapW * kQuarterHourS, house_ws)) / kQuarterHourS;
       import_ws = house_ws = 0;
-      if (!has_stepped || over_w < 10) return;
-      ++peak.quarters;
-      peak.over_w_max = std::max(peak.over_w_max, over_w);
+      if (has_stepped && over_w >= 10) ++quarters;
     };
     for (int i = 0; i < 12 * 30; ++i) trial.cycle();
   }
-  return peak;
+  return quarters;
 }
 
 TEST(MeterLiars, ThePeakCapIsHeld) {
-  std::printf("quarter-hours above 4000 W through the battery after the first step, 5 x 9 h\n");
-  std::printf("%-12s %-12s | %9s %9s | %9s %9s\n", "house", "meter", "believed", "by W", "judged",
-              "by W");
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     for (const Lie& lie : kLies) {
       if (!is_constant(lie)) continue;
-      const Peak before = peak_of(lie, habits, false);
-      const Peak now = peak_of(lie, habits, true);
-      std::printf("%-12s %-12s | %9d %9.0f | %9d %9.0f\n", habits.name, lie.name, before.quarters,
-                  before.over_w_max, now.quarters, now.over_w_max);
-      EXPECT_EQ(now.quarters, 0) << habits.name << ", " << lie.name;
+      EXPECT_EQ(quarters_above_cap(lie, habits), 0) << habits.name << ", " << lie.name;
     }
   }
 }

@@ -65,28 +65,6 @@ TEST_F(People, AHoldOutlastsARestartAndNeedsNoPrice) {
   }
 }
 
-TEST_F(People, AFileThatIsNoHoldIsToldOnceAndTradingGoesOn) {
-  start_site();
-  std::filesystem::create_directory(site_.folder.file("state"));
-  static_cast<void>(site_.folder.write("state/hold", "hold -1000 W for two hours, please\n"));
-  const Said controller = edge({"--config", config_, "--cycles", "4"});
-  EXPECT_EQ(controller.exit_code, 0);
-  EXPECT_THAT(controller.text,
-              AllOf(Names("mode=running hold [state] folder"), Not(HasSubstr("reason=held"))));
-  const std::string place = "[state] folder";
-  EXPECT_EQ(controller.text.find(place), controller.text.rfind(place)) << controller.text;
-}
-
-/// Wrong words are refused in tests/edge/commands.
-TEST_F(People, AHoldBeyondTheBatterysPowerIsRefused) {
-  start_site();
-  const Said beyond = edge({"hold", "-4001", "--for", "1d12h", "--config", config_});
-  EXPECT_EQ(beyond.exit_code, 1);
-  EXPECT_THAT(beyond.text, Names("-4001 [battery] power_w -4000 4000 " + config_));
-  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/hold")));
-  EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);  // nothing to release
-}
-
 /// A lock that cannot even be opened without waiting for ever shows who tries.
 TEST_F(People, StatusWithoutLockTouchesNone) {
   start_site();

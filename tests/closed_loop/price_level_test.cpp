@@ -266,66 +266,6 @@ MinuteSeries four_days() {
   return series;
 }
 
-/// The log on the disk between two lives of the program.
-class PriceLevelLog : public ::testing::Test {
- protected:
-  void write(const std::vector<CycleRecord>& records) {
-    RingLog ring;
-    ASSERT_TRUE(ring.open(path_.c_str(), 100, error_)) << error_.c_str();
-    for (const CycleRecord& record : records) ASSERT_TRUE(ring.append(record));
-  }
-  /// As a power cut leaves it: half of the newest record is of the one that lay there before.
-  void tear_newest(std::size_t records) {
-    std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(
-        static_cast<std::streamoff>(4'096 + records % 100 * kRecordBytes + kRecordBytes / 2));
-    file.write("torn", 4);
-  }
-  bool newest(CycleRecord& record) {
-    RingLog ring;
-    return ring.open(path_.c_str(), 100, error_) && ring.newest(record);
-  }
-
-  const TemporaryFolder folder_;
-  const std::string path_ = folder_.file("decisions.ring");
-  FileMessage error_;
-};
-
-TEST_F(PriceLevelLog, ATornRecordCostsItsRowAndNothingElse) {
-  const MinuteSeries series = four_days();
-  Replay replay(series);
-  replay.run_until(utc_of("2023-03-25T03:00:00Z"));
-  write(replay.records);
-  tear_newest(replay.records.size());
-  const CycleRecord torn = replay.records.back();
-  replay.records.pop_back();  // nobody knows of this decision any more, nor of what it saw
-  CycleRecord before;
-  ASSERT_TRUE(newest(before));
-  EXPECT_EQ(before.utc_s, torn.utc_s - kSecondsPerStep);
-  EXPECT_EQ(before.price_level, replay.records.back().price_level);
-  replay.restart_with(before, 300);
-  replay.run_until(replay.end_utc_s());
-  expect_equal_levels(replay, 2'500);
-}
-
-TEST_F(PriceLevelLog, ALostLogIsAFirstStart) {
-  const MinuteSeries series = four_days();
-  Replay replay(series);
-  replay.run_until(utc_of("2023-03-25T03:00:00Z"));
-  write(replay.records);
-  CycleRecord before;
-  ASSERT_TRUE(newest(before));
-  std::filesystem::remove(path_);
-  before = CycleRecord{};
-  EXPECT_FALSE(newest(before));
-  const PriceLevel past = PriceLevel::starting_at(4'200);
-  const LevelStart found =
-      find_start_level(ContextKind::kLevel, before.price_level, utc_of("2023-03-25T03:00:00Z"),
-                       std::nullopt, [&] { return past; });
-  EXPECT_EQ(found.source, LevelSource::kHistory);
-  EXPECT_EQ(found.level, past);
-}
-
 /// In real time, which is late enough for three days of rows.
 struct ServerClock {
   ScaledClock scaled_clock;

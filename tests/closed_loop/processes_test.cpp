@@ -219,55 +219,6 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   EXPECT_THAT(told[4], HasSubstr("STOPPING=1"));
 }
 
-/// A minute file of ten hours with one price, from an hour before the start on.
-std::string one_price(const char* price) {
-  std::string text = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
-  for (int minute = -60; minute < 540; ++minute) {
-    text += utc_text(SimulatedSite::kStartS + 60 * minute).c_str();
-    text.append(",").append(price).append(",").append(price).append("\n");
-  }
-  return text;
-}
-
-/// What markets have settled at and where bids end: on the wire, in journal, CSV, ring, status,
-/// metrics.
-TEST_F(Processes, ExtremePricesAreExactWhereverTheyAreTold) {
-  for (const char* const price : {"25907.54", "-25907.54", "99999.00", "-99999.00"}) {
-    site_.start_clock();
-    site_.start_battery();
-    site_.start_market({}, one_price(price));
-    std::filesystem::remove_all(site_.folder.file("state"));
-    std::filesystem::remove(site_.folder.file("edge.csv"));
-    const std::string config = site_.commission();
-    const auto said = [&](std::vector<std::string> arguments) {
-      arguments.insert(arguments.end(), {"--config", config});
-      return bess::edge(arguments).text;
-    };
-    std::string centi(price);
-    centi.erase(centi.find('.'), 1);
-    char metric[80];
-    std::snprintf(metric, sizeof metric, "\"} %.10g\n", std::stod(price));
-    ChildProcess edge({edge_program(), "--config", config});
-    EXPECT_THAT(line_with_power(edge), HasSubstr(" price_centi=" + centi + " "));
-    EXPECT_THAT(said({"status", "--json"}), HasSubstr(centi + ",\n"));
-    EXPECT_THAT(said({"status"}), ContainsRegex("\nprice +" + std::string(price) + " EUR/MWh"));
-    EXPECT_THAT(said({"status"}), Names("WARN " + std::string(price) + " 15000"));
-    EXPECT_THAT(said({"status", "--prometheus"}), HasSubstr(metric));
-    EXPECT_EQ(SimulatedSite::stop(edge), 0);
-    EXPECT_THAT(said({"log", "--csv"}), HasSubstr("," + centi + ","));
-    int trading = 0;
-    for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
-      if (row.at("mode") != "running") continue;
-      ++trading;
-      EXPECT_EQ(row.at("price_centi_eur_per_mwh"), centi);
-      EXPECT_EQ(row.at("ordered_power_w"), *price == '-' ? "4000" : "-4000");
-    }
-    EXPECT_GT(trading, 0);
-    EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-    EXPECT_EQ(SimulatedSite::stop(*site_.market), 0);
-  }
-}
-
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   start_simulators();
   sleep_until_monotonic(site_.anchor_ns());
@@ -280,47 +231,6 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   EXPECT_THAT(checked.text, HasSubstr("0x0880:[1 0 28000 0 32000 2 255 0 300 255 0]"));
   // The sign check has charged a little.
   EXPECT_THAT(checked.text, AllOf(ContainsRegex(" 50[.][0-9] %"), ContainsRegex("[0-9] EUR/MWh")));
-}
-
-/// The operator's guard and the weights come from two people; where they differ is said, not
-/// refused.
-TEST_F(Processes, ThresholdsOtherThanTheProvedOnesAreSaidAtStart) {
-  start_simulators();
-  sleep_until_monotonic(site_.anchor_ns());
-  const std::string narrow = site_.commission({.guard_keys = "high_price_eur_per_mwh = 450\n"});
-  const auto warning = Names("[guard] high_price_eur_per_mwh 450 1500");
-  const Said checked = edge({"--config", narrow, "--check"});
-  EXPECT_THAT(checked.text, warning);
-  EXPECT_EQ(checked.exit_code, 0) << checked.text;
-  const Said warned = edge({"--config", narrow, "--cycles", "1"});
-  EXPECT_THAT(warned.text, AllOf(HasSubstr("mode=running"), warning));
-  EXPECT_EQ(warned.exit_code, 0);
-  const Said agreed = edge({"--config", site_.commission(), "--cycles", "1"});
-  EXPECT_THAT(agreed.text, AllOf(Names("-500 1500"), Not(Names("[guard]"))));
-  EXPECT_EQ(agreed.exit_code, 0);
-}
-
-TEST_F(Processes, BadStartsEndWithOneClearLine) {
-  site_.battery_port = 2;  // 1 is of another test, beside it
-  site_.market_port = 1;
-  const std::string config = site_.write_config();
-  struct Start {
-    std::vector<std::string> arguments;
-    int exit_code;
-    const char* message;
-  };
-  const Start starts[] = {
-      {{"--config", config}, 1, "127.0.0.1:2 85"},
-      {{"--config", "/nonexistent"}, 1, "/nonexistent"},
-      {{"--config", config, "--cycles", "x"}, 2, "--cycles x"},
-      {{"log", "--config", "/nonexistent"}, 1, "/nonexistent"},
-  };
-  for (const Start& start : starts) {
-    const auto& [exit_code, text] = edge(start.arguments);
-    EXPECT_EQ(exit_code, start.exit_code) << text;
-    EXPECT_THAT(text, Names(start.message));
-    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-  }
 }
 
 TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {

@@ -115,24 +115,6 @@ TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
   }
 }
 
-TEST_F(SiteProcesses, CommissionMovesTheMeterToo) {
-  start(own_meter());
-  const std::string config = site_.write_config({.guard_keys = meter_section("")});
-  const Said said = edge({"commission", "--config", config, "--yes"});
-  EXPECT_THAT(said.text, Names("500 -500 100 % 1500"));
-  EXPECT_EQ(said.exit_code, 0);
-}
-
-/// As most inverters do: once it was refused as a ramp of 48 W/s, which takes 166 s for 8 kW.
-TEST_F(SiteProcesses, CommissionAcceptsAFirstOrderLag) {
-  start({"--time-constant-s", "5"});
-  const std::string config = site_.write_config({.guard_keys = ""});
-  const Said said = edge({"commission", "--config", config, "--yes"});
-  EXPECT_EQ(said.exit_code, 0) << said.text;
-  EXPECT_THAT(said.text, ContainsRegex("8000 W [^0-9]+1[0-9]?[.0-9]* s"));
-  EXPECT_TRUE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
-}
-
 /// Larger than the sign needs is only ordered where nobody forbids it.
 TEST_F(SiteProcesses, CommissionOrdersNothingLargerUnderALimit) {
   start({});
@@ -159,13 +141,6 @@ TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
   EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
 }
 
-TEST_F(SiteProcesses, CommissionRefusesMorePowerThanOrdered) {
-  start({"--fault", "excess-power", "--fault-every", "1"});
-  const std::string config = site_.write_config({.guard_keys = ""});
-  EXPECT_EQ(edge({"commission", "--config", config, "--yes"}).exit_code, 1);
-  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
-}
-
 /// bess-sim's own liars, told by journal, status and log.
 TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
   std::vector<std::string> options = own_meter();
@@ -182,22 +157,6 @@ TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
   const Said again = bess::edge({"--config", config, "--cycles", "1"});
   EXPECT_THAT(again.text, HasSubstr(" reason=meter_mismatch "));  // over a restart
   EXPECT_EQ(again.exit_code, 0);
-}
-
-TEST_F(SiteProcesses, ALoadBelowZeroIsSaidOnce) {
-  std::vector<std::string> options = own_meter();
-  options.insert(options.end(), {"--meter-fault", "grid-offset", "--meter-fault-from-s", "360",
-                                 "--meter-fault-to-s", "720", "--house", "400"});
-  start(options);
-  const std::string config = commission(meter_section(""));
-  const Said said = edge({"--config", config, "--cycles", "8"});
-  EXPECT_EQ(said.exit_code, 0);
-  std::istringstream lines(said.text);
-  int told = 0;
-  for (std::string line; std::getline(lines, line);) {
-    told += !line.starts_with("utc=") && has_code(line, "house") ? 1 : 0;
-  }
-  EXPECT_EQ(told, 2) << "as it begins and as it ends: " << said.text;
 }
 
 }  // namespace

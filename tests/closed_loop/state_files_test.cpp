@@ -4,7 +4,6 @@
 // nothing is believed that was not written so.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -92,7 +91,9 @@ class StateFiles : public ::testing::Test {
   }
   void restore() {
     for (const char* folder : kFolders) {
-      fs::remove_all(site_.folder.file(folder));
+      std::error_code error;  // bess-prices may just be leaving it
+      do fs::remove_all(site_.folder.file(folder), error);
+      while (error || fs::exists(site_.folder.file(folder)));
       fs::copy(pristine(folder), site_.folder.file(folder), fs::copy_options::recursive);
     }
   }
@@ -185,12 +186,7 @@ class StateFiles : public ::testing::Test {
     expect_driven_as_before(file, how);
     // A bit in the words around the checksum costs nothing but the checksum.
     const bool is_of_the_words = how == Damage::kFlip || how == Damage::kCut;
-    const bool is_named = said_.find(path) != std::string::npos;
-    EXPECT_TRUE(is_named || is_of_the_words || !file.is_read) << said_;
-    if (!HasFailure()) {
-      std::printf("| %-26s | %-12s | %-5s | kept, true, told once |\n", file.path,
-                  kDamageNames[static_cast<int>(how)], is_named ? "named" : "-");
-    }
+    EXPECT_TRUE(said_.find(path) != std::string::npos || is_of_the_words || !file.is_read) << said_;
   }
 
   SimulatedSite site_{kScale};
@@ -260,23 +256,6 @@ TEST_F(StateFiles, AWornCardIsToldByEverybody) {
                              ContainsRegex("bess_card_spare_level[{].*[}] 3\n"),
                              ContainsRegex("bess_file_system_errors[{].*[}] 7\n")));
   EXPECT_THAT(text_of_file(site_.folder.file("mails")), Names("CRITICAL 90 %"));
-}
-
-/// sudo bess-edge hold, by a root whose files are for root alone, beside a service of another user.
-TEST_F(StateFiles, ACarefulRootsHoldIsReadByTheService) {
-  if (geteuid() != 0) GTEST_SKIP() << "needs root";
-  for (const char* folder : {"state", "run"}) {
-    ASSERT_EQ(chown(site_.folder.file(folder).c_str(), 65'534, 65'534), 0);
-  }
-  const Said given = answer_of({"/bin/sh", "-c", "umask 077; exec \"$0\" \"$@\"", edge_program(),
-                                "hold", "-500", "--for", "2h", "--config", config_});
-  ASSERT_EQ(given.exit_code, 0) << given.text;
-  for (const char* path : {"state/hold", "run/hold"}) {
-    struct stat facts {};
-    ASSERT_EQ(stat(site_.folder.file(path).c_str(), &facts), 0);
-    EXPECT_EQ(facts.st_uid, 65'534U) << path;
-    EXPECT_EQ(facts.st_mode & 07777, 0644U) << path;
-  }
 }
 
 }  // namespace

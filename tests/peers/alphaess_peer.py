@@ -12,8 +12,8 @@ bess.
                                                          noise, slow near full and empty
 
 Without --scale the state of charge stays as it is. Faults of the power: reversed, twice, third,
-dead (no power), idle-discharge, echo (shows the order, nothing flows), half-flow (shows the order,
-half flows), drain (1 kW besides, not shown). Of the display: soc-stuck, soc-inverted, capacity (100
+dead (no power), idle-discharge, echo (shows the order, nothing flows), drain (1 kW besides, not
+shown). Of the display: soc-stuck, soc-inverted, capacity (100
 kWh), wrong-echo (of every write). Besides: other-master (orders 4.5 kW of discharge every 30 s).
 What healthy ones do: recalibrates (6 % up, at once), forced-charge (below 10 %, to 11 %), balancing
 (450 W while full).
@@ -39,7 +39,7 @@ CAPACITY_WH = 8000
 RATED_W = 4000
 HEALTHY_ORDERS = 2  # of the controller, after the sign check has released the battery
 CYCLE_S = 120
-GAIN = {"reversed": -1, "twice": 2, "third": 0.3, "dead": 0, "echo": 0, "half-flow": 0.5}
+GAIN = {"reversed": -1, "twice": 2, "third": 0.3, "dead": 0, "echo": 0}
 
 
 class Cells:
@@ -146,8 +146,7 @@ class Registers(ModbusSequentialDataBlock):
             self.foreign = now
             self.values[DISPATCH:DISPATCH + 9] = [1, 0, 36500, 0, 32000, 2, 25, 0, 300]
             self.step(now, 0)
-        echoes = self.breaks("echo") or self.breaks("half-flow")
-        shown = self.ordered() if echoes else self.flowing * self.cells.shown_noise()
+        shown = self.ordered() if self.breaks("echo") else self.flowing * self.cells.shown_noise()
         self.values[BATTERY_POWER] = round(shown) & 0xFFFF
         self.values[SOC] = self.shown_soc()
         self.values[CAPACITY] = 1000 if self.breaks("capacity") else 80

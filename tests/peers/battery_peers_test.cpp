@@ -118,9 +118,6 @@ TEST_F(BatteryPeers, TheEnergyOfADayIsTheHandCalculation) {
   EXPECT_NEAR(charged_wh, 8'000, kTolerance * 8'000);
   EXPECT_NEAR(discharged_wh, -6'600, kTolerance * 6'600);
   EXPECT_NEAR(soc, 0.279057, kTolerance * 0.279057);
-  std::printf(
-      "a day: charged %.3f Wh (8000 by hand), discharged %.3f Wh (-6600), SoC %.6f (0.279057)\n",
-      charged_wh, discharged_wh, soc);
 }
 
 }  // namespace

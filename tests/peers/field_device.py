@@ -260,8 +260,6 @@ class SunSpec(Battery):
 
 
 class AlphaEss(Battery):
-    """"full" is what 100 % is in 0x0886 (250 or 255), "limit_max" the most that it keeps;
-    "single_16" false refuses function 16 for one register."""
     units = (85,)
     BLOCK = 0x0880
 
@@ -277,19 +275,12 @@ class AlphaEss(Battery):
         if self.at(0) != 1 or self.at(5) != 2:
             return 0
         power = 32000 - (self.at(1) << 16 | self.at(2))
-        limit = self.at(6) / self.firmware.get("full", 250)
+        limit = self.at(6) / 250
         reached = self.soc >= limit if power > 0 else self.soc <= limit
         return 0 if reached else power
 
     def expire(self):
         self.held[85, self.BLOCK] = 0
-
-    def write(self, unit, function, first, words, now):
-        if function == 16 and len(words) == 1 and not self.firmware.get("single_16", True):
-            raise Refused(2)
-        super().write(unit, function, first, words, now)
-        limit = (unit, self.BLOCK + 6)
-        self.held[limit] = min(self.held[limit], self.firmware.get("limit_max", 255))
 
     def take(self, unit, address, word, now):
         self.until = now + (self.at(7) << 16 | self.at(8)) if self.at(0) else math.inf

@@ -144,9 +144,6 @@ class Field : public ::testing::TestWithParam<Draw> {
                   .written = value["written"] == "1"};
       EXPECT_TRUE(parse_utc(value["utc"], cycle.utc_s)) << line;
       all.push_back(cycle);
-      shown_ +=
-          (cycle.drives() ? std::to_string(static_cast<int>(cycle.ordered_w)) : cycle.reason) +
-          (cycle.wants() && !cycle.written ? "! " : " ");
     }
     return all;
   }
@@ -227,18 +224,10 @@ class Field : public ::testing::TestWithParam<Draw> {
     return all;
   }
 
-  void TearDown() override {
-    if (HasFailure()) {
-      for (const std::string& note : notes_) std::printf("edge: %s\n", note.c_str());
-    }
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::printf("field: %s: %s; %s\n", test->name(), shown_.c_str(), figures_.c_str());
-  }
-
   SimulatedSite site_{kScale};
   std::unique_ptr<ChildProcess> edge_;
   std::mt19937 random_{GetParam().seed};
-  std::string config_, shown_, figures_;
+  std::string config_;
   std::vector<std::string> notes_;  ///< lines that are not a cycle's
 };
 
@@ -275,7 +264,6 @@ TEST_P(Field, AlarmsLostForOneRead) {
   EXPECT_EQ(wanted(rest), 0);
   EXPECT_EQ(rest.front().reason, "alarm");
   EXPECT_THAT(run({"status", "--prometheus"}).text, HasSubstr(",reason=\"alarm\""));
-  figures_ = std::to_string(wanted(rest)) + " driven after the fault";
 }
 
 /// A unit behind a gateway is gone for good: a BMS's alarms, a range, the off-grid state.
@@ -313,7 +301,6 @@ TEST_P(Field, ProtectionLostForGood) {
                                            r.utc_s <= tries.front().utc_s + 60;
                                   }),
             1);
-  figures_ = std::to_string(wanted(all)) + " of 5 driven without it";
 }
 
 /// No chain with 103 and 124, or none yet: nothing aborts, an order can be released as soon as the
@@ -334,7 +321,6 @@ TEST_P(Field, SunSpecBootsOrIsAnother) {
     const Said answer = run(words);
     EXPECT_EQ(answer.exit_code, 1) << words[0] << ": " << answer.text;
     EXPECT_THAT(answer.text, Not(HasSubstr("CHECK failed"))) << words[0];
-    figures_ += words[0] + " " + std::to_string(answer.exit_code) + ", ";
   }
   EXPECT_EQ(run({}).exit_code, 1);  // systemd starts it again
   end_trouble();
@@ -359,7 +345,6 @@ TEST_P(Field, SunSpecChainIsAnother) {
     const std::string name = words.empty() ? "run" : words[0];
     EXPECT_EQ(answer.exit_code, 1) << name << ": " << answer.text;
     EXPECT_THAT(answer.text, AllOf(HasSubstr(missing), HasSubstr("40000"))) << name;
-    figures_ += name + " " + std::to_string(answer.exit_code) + ", ";
   }
 }
 
@@ -393,7 +378,6 @@ TEST_P(Field, SocAboveHundred) {
     return std::regex_search(line, std::regex("soc.*\\b10[0-9]"));
   };
   EXPECT_EQ(std::ranges::count_if(notes_, names_it), 1);
-  figures_ = std::to_string(driven(all)) + " of 8 driven";
 }
 
 /// Whatever the firmware says of the battery's power, commission finds out and the day is driven.
@@ -409,7 +393,6 @@ TEST_P(Field, SungrowFirmware) {
     EXPECT_NEAR(all[i].measured_w, all[i - 1].ordered_w, 100);
   }
   EXPECT_GE(share_delivered(all), 0.98);
-  figures_ = std::to_string(driven(all)) + " driven, share " + std::to_string(share_delivered(all));
 }
 
 /// The firmware is updated while running: right from then on, or stopped for good.
@@ -431,7 +414,6 @@ TEST_P(Field, SungrowUpdate) {
     EXPECT_NEAR(all[i].measured_w, all[i - 1].ordered_w, 100);
   }
   EXPECT_EQ(changes, 0);
-  figures_ = std::to_string(changes) + " changes, " + std::to_string(driven(all)) + " of 12 driven";
 }
 
 /// Set-points end after 10 s, 60 s or something between: fed in time, or the key to set is named.
@@ -444,7 +426,6 @@ TEST_P(Field, VictronSetPointEndsSooner) {
   const Said check = commission();
   if (check.exit_code != 0) {
     EXPECT_THAT(check.text, AllOf(HasSubstr("refresh_s"), Not(HasSubstr("settle_s"))));
-    figures_ = "commission " + std::to_string(check.exit_code);
     return;
   }
   start_edge();
@@ -453,7 +434,6 @@ TEST_P(Field, VictronSetPointEndsSooner) {
   EXPECT_GE(driven(all), 8);
   EXPECT_EQ(std::ranges::count(all, "no_answer", &Cycle::reason), 0);
   EXPECT_GE(share_delivered(all), 0.95);
-  figures_ = std::to_string(driven(all)) + " driven, share " + std::to_string(share_delivered(all));
 }
 
 /// 2902 reads 0 until it is written.
@@ -470,7 +450,6 @@ TEST_P(Field, VictronModeReadsZero) {
   const std::vector<Recorded> modes = record("write 100 2902 ");
   ASSERT_GE(modes.size(), 2U);
   EXPECT_EQ(modes.back().what, "write 100 2902 " + variant<std::string>("0", "1", "2"));
-  figures_ = std::to_string(driven(all)) + " driven";
 }
 
 /// Exception 6 for 6 to 8 s around each third or each tick.
@@ -492,7 +471,6 @@ TEST_P(Field, BusyAroundTheTick) {
   EXPECT_GE(share, every == 3 ? 0.98 : 0.9);
   EXPECT_EQ(stop_edge(), 0);
   EXPECT_EQ(record("power ").back().what, "power 0");
-  figures_ = std::to_string(driven(all)) + " of 16 driven, share " + std::to_string(share);
 }
 
 /// A stop in the middle of a busy time releases as well.
@@ -511,7 +489,6 @@ TEST_P(Field, StopWhileBusy) {
   const int exit_code = stop_edge();
   EXPECT_EQ(exit_code, 0);
   EXPECT_EQ(record("write 85 2176 ").back().what.substr(0, 16), "write 85 2176 0 ");
-  figures_ = "stop exits " + std::to_string(exit_code);
 }
 
 /// Each so manieth answer comes only before the next one, on whatever connection.
@@ -525,7 +502,6 @@ TEST_P(Field, LateAnswers) {
   if (HasFatalFailure()) return;
   const std::vector<Cycle> all = cycles(12);
   EXPECT_EQ(driven(all), 12);
-  figures_ = std::to_string(driven(all)) + " of 12 driven";
 }
 
 /// The gateway answers with a unit of its own.
@@ -538,42 +514,6 @@ TEST_P(Field, ForeignUnitIds) {
       6);
   ASSERT_GE(all.size(), 5U);
   EXPECT_EQ(driven(all), static_cast<int>(all.size()));
-  figures_ = std::to_string(driven(all)) + " driven";
-}
-
-/// Function 16 is refused for one register: orders and release work all the same.
-TEST_P(Field, AlphaEssRefusesFunction16) {
-  const std::vector<Cycle> all = commission_and_drive(
-      {.kind = "alphaess",
-       .keys = map_keys(
-           "alphaess",
-           "variant = \"" + variant<std::string>("five_writes", "ten_and_one", "block") + "\"\n"),
-       .firmware = R"({"single_16": false})"},
-      5);
-  EXPECT_GE(driven(all), 4);
-  if (edge_) {
-    EXPECT_EQ(stop_edge(), 0);
-  }
-  ASSERT_GE(record("write ").size(), 1U);
-  ASSERT_GE(record("power ").size(), 1U);
-  EXPECT_EQ(record("power ").back().what, "power 0");
-  figures_ = std::to_string(driven(all)) + " driven";
-}
-
-/// 100 % is 255 or 250 in the limit of the dispatch: the last 2 % are charged.
-TEST_P(Field, AlphaEssCountsTo250Or255) {
-  const std::vector<Cycle> all =
-      commission_and_drive({.kind = "alphaess",
-                            .keys = map_keys("alphaess"),
-                            .firmware = variant<std::string>(R"({"full": 255})", R"({"full": 250})",
-                                                             R"({"full": 250, "limit_max": 250})"),
-                            .soc = 0.9},
-                           10);
-  ASSERT_GE(all.size(), 1U);
-  const auto from = static_cast<double>(all.front().utc_s);
-  const double wh = energy_wh(SimulatedSite::kStartS, from + 1'200);
-  EXPECT_NEAR(wh, 800, 20);
-  figures_ = std::to_string(wh) + " of 800 Wh charged";
 }
 
 /// Nobody answers at a base that the device does not use: the chain is at the next one.
@@ -586,7 +526,6 @@ TEST_P(Field, SunSpecBaseIsSilent) {
                                         R"({"base": 0, "silent": [50000]})")},
       5);
   EXPECT_GE(driven(all), 4);
-  figures_ = std::to_string(driven(all)) + " driven";
 }
 
 /// Inverters that obey the set-point alone, and have no 40153; and one that obeys both.
@@ -601,12 +540,10 @@ TEST_P(Field, SmaObeysTheSetPointAlone) {
   const Said check = commission();
   // Limits that are ignored are found before the first trade.
   EXPECT_EQ(check.exit_code, variant(0, 1, 0)) << check.text;
-  figures_ = "commission " + std::to_string(check.exit_code);
   if (check.exit_code != 0) return;
   start_edge();
   const std::vector<Cycle> all = cycles(5);
   EXPECT_GE(driven(all), 4);
-  figures_ += ", " + std::to_string(driven(all)) + " of 5 driven";
 }
 
 std::string draw_name(const ::testing::TestParamInfo<Draw>& info) { return info.param.name; }

@@ -13,7 +13,6 @@
 #include "edge/control/control_types.h"
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
-#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -243,14 +242,6 @@ class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
     return 0;
   }
 
-  std::string command(const std::vector<std::string>& words) const {
-    std::vector<std::string> arguments = {edge_program()};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    arguments.insert(arguments.end(), {"--config", config_});
-    ChildProcess child(arguments);
-    return child.read_all();
-  }
-
   SimulatedSite site_{kBreakdownScale};
   std::string config_;
 };
@@ -301,44 +292,6 @@ INSTANTIATE_TEST_SUITE_P(
                       // can the release be confirmed.
                       Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
     breakdown_name);
-
-class PeersTold : public PeersBreakdown {};
-
-TEST_P(PeersTold, IsToldByStatusAndDrivenOn) {
-  ChildProcess edge({edge_program(), "--config", config_});
-  EXPECT_GT(cycle_with(edge, " cycle=14 ", 15), 0);
-  const std::string status = command({"status"});
-  EXPECT_THAT(status, Names("WARN % capacity_wh"));
-  EXPECT_THAT(status, ::testing::Not(HasSubstr("CRITICAL")));
-  EXPECT_EQ(SimulatedSite::stop(edge), 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Bus, PeersTold, ::testing::Values(Breakdown{.fault = "half-flow"}),
-                         breakdown_name);
-
-class PeersTrip : public PeersBreakdown {};
-
-TEST_P(PeersTrip, StaysOverRestartsUntilAPersonClearsIt) {
-  const std::string reason = std::string("reason=") + GetParam().reason + " ";
-  {
-    ChildProcess edge({edge_program(), "--config", config_});
-    ASSERT_GT(cycle_with(edge, reason, 12), 0);
-    edge.signal(SIGKILL);
-    edge.wait();
-  }
-  ChildProcess edge({edge_program(), "--config", config_});
-  EXPECT_EQ(cycle_with(edge, reason, 3), 1);
-  EXPECT_THAT(command({"status"}), Names(std::string("CRITICAL ") + GetParam().reason));
-  EXPECT_THAT(command({"clear"}), Names("--yes"));
-  EXPECT_EQ(cycle_with(edge, "mode=running", 3), 0);
-  command({"clear", "--yes"});
-  EXPECT_GT(cycle_with(edge, "mode=running", 8), 0);
-  EXPECT_EQ(SimulatedSite::stop(edge), 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Bus, PeersTrip,
-                         ::testing::Values(Breakdown{"twice", "uncontrolled_power", 2}),
-                         breakdown_name);
 
 /// Lag, ramp, noise and taper, and whatever else a healthy battery does, for two hours of its time.
 class PeersHealthy : public ::testing::TestWithParam<Breakdown> {

@@ -176,8 +176,6 @@ TEST_P(PriceSources, AreTradedOnRightOrNotAtAll) {
     wrong += is_wave && cycle.drives() && !may_be_right(cycle) ? 1 : 0;
     shown += cycle.drives() ? (cycle.ordered_w > 0 ? "+ " : "- ") : cycle.reason + " ";
   }
-  std::printf("source: %s: %d of %zu driven, %d wrong; %s; prices %s\n", behaviour.name, driven,
-              all.size(), wrong, shown.c_str(), all.back().prices.c_str());
   EXPECT_EQ(wrong, 0);
   const auto count = static_cast<int>(all.size());
   const std::map<Wanted, int> least{{kAll, count - 2}, {kSome, count / 2}, {kNone, 0}, {kRight, 0}};

@@ -71,10 +71,5 @@ TEST(ContextClasses, EdgesRiseStrictlyAndAMonthHasNone) {
   EXPECT_FALSE(equal.is_valid());
 }
 
-TEST(ContextClasses, HaveNames) {
-  EXPECT_EQ(context_name(ContextKind::kMonth), "month");
-  EXPECT_EQ(context_name(ContextKind::kLevel), "level");
-}
-
 }  // namespace
 }  // namespace bess

@@ -107,12 +107,19 @@ TEST_F(LocalTime, InstantsReadAndWriteAsText) {
                            "2038-01-19T03:14:08Z", "2100-03-01T00:00:00Z"}) {
     EXPECT_EQ(utc_text(utc(text)).view(), text);
   }
-  EXPECT_EQ(utc("2023-10-29T02:30:00+01:00"), utc("2023-10-29T01:30Z"));
-  std::int64_t ignored = 0;
+  for (const char* text :
+       {"2023-10-29T02:30:00+01:00", "2023-10-29T00:00:00-01:30", "2023-10-29T01:30:00.456Z"}) {
+    EXPECT_EQ(utc(text), utc("2023-10-29T01:30Z"));
+  }
+  std::int64_t utc_s = 0;
+  EXPECT_TRUE(parse_utc("2023-10-29 01:30:00.000Z", utc_s, kAlsoBlank));
+  EXPECT_EQ(utc_s, utc("2023-10-29T01:30Z"));
   for (const char* text :
        {"", "2023", "2023-02-29T00:00:00Z", "2023-01-01T24:00:00Z", "2023-01-01T00:00:00",
-        "2023-01-01T00:00:00ZZ", "2023-01-01 00:00:00Z", "2023-13-01T00:00:00Z"}) {
-    EXPECT_FALSE(parse_utc(text, ignored)) << text;
+        "2023-01-01T00:00:00ZZ", "2023-01-01 00:00:00Z", "2023-13-01T00:00:00Z", "2023-03-26",
+        "2023-03-26T01:60:00Z", "2023-03-26T01:02:03+0200", "2023-03-26T01:02:03+99:00",
+        "2023-03-26T01:02:03.Z", "2023-03-26T01:02.5Z", "-023-03-26T01:02:03Z"}) {
+    EXPECT_FALSE(parse_utc(text, utc_s)) << text;
   }
 }
 

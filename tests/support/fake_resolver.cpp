@@ -3,19 +3,15 @@
 #include <arpa/inet.h>
 #include <netdb.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <mutex>
-#include <thread>
 
 namespace bess::fake_resolver {
 namespace {
 
 std::mutex mutex;
 std::map<std::string, std::vector<std::string>> names;
-std::map<std::string, int> counts;
-int delay_ms = 0;
 
 struct Entry {
   addrinfo info;
@@ -39,15 +35,8 @@ addrinfo* make_entry(const std::string& numeric, std::uint16_t port, addrinfo* n
 }
 
 int look_up(const char* name, const char* service, addrinfo** found) {
-  int wait_ms = 0;
-  std::vector<std::string> addresses;
-  {
-    const std::lock_guard lock(mutex);
-    ++counts[name];
-    addresses = names[name];
-    wait_ms = delay_ms;
-  }
-  std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+  const std::lock_guard lock(mutex);
+  const std::vector<std::string>& addresses = names[name];
   *found = nullptr;
   const auto port = static_cast<std::uint16_t>(service == nullptr ? 0 : std::atoi(service));
   for (auto it = addresses.rbegin(); it != addresses.rend(); ++it) {
@@ -61,16 +50,6 @@ int look_up(const char* name, const char* service, addrinfo** found) {
 void set(const std::string& name, const std::vector<std::string>& addresses) {
   const std::lock_guard lock(mutex);
   names[name] = addresses;
-}
-
-void set_delay_ms(int delay) {
-  const std::lock_guard lock(mutex);
-  delay_ms = delay;
-}
-
-int lookups(const std::string& name) {
-  const std::lock_guard lock(mutex);
-  return counts[name];
 }
 
 }  // namespace bess::fake_resolver

@@ -1,6 +1,5 @@
 // Stands in for the C library's name lookup in a test program (fake_resolver.cpp defines
-// getaddrinfo, which libcurl would call as well): the test says what a name means and how long the
-// answer takes.
+// getaddrinfo, which libcurl would call as well): the test says what a name means.
 #pragma once
 
 #include <string>
@@ -10,9 +9,5 @@ namespace bess::fake_resolver {
 
 /// From now on `name` has these numeric addresses; none = it cannot be resolved.
 void set(const std::string& name, const std::vector<std::string>& addresses);
-/// Every lookup takes this long.
-void set_delay_ms(int delay_ms);
-/// Lookups of a name so far, by whomever.
-int lookups(const std::string& name);
 
 }  // namespace bess::fake_resolver

@@ -113,16 +113,6 @@ class SupervisedSite {
     return record;
   }
 
-  /// Energy that has flowed otherwise than the order in force asked for, as the battery knows it.
-  double energy_against_order_wh() {
-    device.battery.advance(clock.now_utc_ns());
-    double sum_wh = 0;
-    for (const MinuteRecord& minute : device.battery.record()) {
-      sum_wh += std::abs(minute.energy_wh - minute.commanded_power_w / 60);
-    }
-    return sum_wh;
-  }
-
   SimulatedDevice device;
   HouseMeter meter{device};
   MovedClock clock;

@@ -107,18 +107,6 @@ TEST(Auction, ADayHasTheQuarterHoursOrHoursThatTheClockGivesIt) {
   EXPECT_EQ(rows_of(with({}).answer("2025-03-28", "2025-04-30", now_utc_s)).size(), 284u);
 }
 
-TEST(Auction, ADayOfTwentyFiveHoursEndsAtItsMidnight) {
-  std::vector<AuctionRow> rows;
-  for (std::int64_t utc_s = utc("2025-10-25T22:00:00Z"); utc_s < utc("2025-10-27T23:00:00Z");
-       utc_s += 900) {
-    rows.push_back({utc_s, 1, 900, 0});
-  }
-  const AuctionView view(std::move(rows), {});
-  const std::int64_t now_utc_s = utc("2025-10-26T12:00:00Z");  // after 12:57, winter time
-  EXPECT_EQ(rows_of(view.answer("2025-10-26", "2025-10-26", now_utc_s)).size(), 100u);
-  EXPECT_EQ(rows_of(view.answer("2025-10-26", "2025-10-27", now_utc_s)).size(), 196u);
-}
-
 TEST(Auction, TakesDatesAndRefusesOthers) {
   const AuctionView view = with({});
   const std::int64_t now_utc_s = utc("2025-03-28T13:00:00Z");
@@ -133,26 +121,6 @@ TEST(Auction, TakesDatesAndRefusesOthers) {
 }
 
 // Each fault of a day.
-
-TEST(AuctionFaults, ShiftedByAnHourOrADayMovesTheTimes) {
-  const std::vector<Published> right = rows_of(tomorrow(with({})));
-  for (const auto& [fault, shift_s] : std::map<AuctionFault, int>{
-           {AuctionFault::kShiftedHour, 3'600}, {AuctionFault::kShiftedDay, 86'400}}) {
-    const std::vector<Published> rows = rows_of(tomorrow(with({.fault = fault})));
-    ASSERT_EQ(rows.size(), right.size());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      EXPECT_EQ(rows[r], (Published{right[r].utc_s + shift_s, right[r].price}));
-    }
-  }
-}
-
-TEST(AuctionFaults, OutOfRangeIsOnePrice) {
-  std::vector<Published> rows = rows_of(tomorrow(with({.fault = AuctionFault::kOutOfRange})));
-  ASSERT_EQ(rows.size(), 96u);
-  EXPECT_EQ(rows[48], (Published{utc("2025-03-29T11:00:00Z"), 150'000}));
-  rows[48].price = 144;
-  EXPECT_EQ(rows, rows_of(tomorrow(with({}))));
-}
 
 TEST(AuctionFaults, EachHasANameAndSpoilsADay) {
   constexpr auto kAll = static_cast<std::size_t>(AuctionFault::kAll);
@@ -200,12 +168,6 @@ TEST(AuctionFaults, AllComeInTurn) {
   const AuctionView every_other = with({.fault = AuctionFault::kAll, .every = 2});
   EXPECT_EQ(every_other.answer("2025-03-30", "", utc("2025-03-29T13:00:00Z")).fault,
             AuctionFault::kLate);
-}
-
-TEST(AuctionFaults, AreMendedAWhileAfterPublication) {
-  const AuctionView view = with({.fault = AuctionFault::kHalf, .mend_s = 3'600});
-  EXPECT_EQ(rows_of(tomorrow(view, "2025-03-28T12:56:59Z")).size(), 48u);
-  EXPECT_EQ(rows_of(tomorrow(view, "2025-03-28T12:57:00Z")).size(), 96u);
 }
 
 // Where the prices come from.

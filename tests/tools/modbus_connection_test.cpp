@@ -185,17 +185,6 @@ TEST(ModbusConnection, ADescriptorBeyondSelectIsRefused) {
   EXPECT_EQ(link.read(kSoc, &soc), Status::kOk);
 }
 
-TEST(ModbusConnection, WhatTheProtocolCannotCarryIsNotSent) {
-  LoopbackBattery loopback("block");
-  ModbusLink link(loopback.link(), {}, loopback.clock);
-  std::uint16_t registers[126] = {};
-  EXPECT_EQ(link.read({.unit = 85, .address = 0, .count = 126}, registers),
-            Status::kNotExpressible);
-  EXPECT_EQ(link.write(85, 16, 0, registers, 124), Status::kNotExpressible);
-  EXPECT_EQ(link.write(85, 5, 0, registers, 1), Status::kNotExpressible);
-  EXPECT_EQ(link.counters().requests, 0);
-}
-
 TEST(ModbusConnection, AnExceptionIsAnAnswerAndKeepsTheConnection) {
   LoopbackBattery loopback("block");
   ModbusLink link(loopback.link(1'000), {}, loopback.clock);

@@ -17,31 +17,6 @@ namespace {
 constexpr PowerOrder kChargeOrder{
     .power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
 
-class EveryVariant : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(EveryVariant, OrdersAreObeyedReadBackAndReleased) {
-  LoopbackBattery loopback(GetParam());
-  ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  BatteryMeasurement m;
-  for (const std::int32_t power_w : {4'000, 0, -4'000}) {
-    PowerOrder order = kChargeOrder;
-    order.power_w = power_w;
-    ASSERT_EQ(battery.order(order), Status::kOk) << power_w;
-    ASSERT_EQ(battery.read(m), Status::kOk);
-    EXPECT_EQ(m.power_w, power_w);
-    EXPECT_TRUE(m.dispatch_active);
-  }
-  EXPECT_EQ(m.capacity_wh, 8'000);
-  EXPECT_EQ(m.charge_w_max, 4'000);
-  ASSERT_EQ(battery.release(), Status::kOk);
-  ASSERT_EQ(battery.read(m), Status::kOk);
-  EXPECT_EQ(m.power_w, 0);
-  EXPECT_FALSE(m.dispatch_active);
-}
-
-INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
-                         ::testing::Values("block", "five_writes", "ten_and_one"));
-
 TEST(ModbusLink, TheWatchdogEndsAnOrderThatIsNotRefreshed) {
   LoopbackBattery loopback("block");
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
@@ -51,23 +26,6 @@ TEST(ModbusLink, TheWatchdogEndsAnOrderThatIsNotRefreshed) {
   ASSERT_EQ(battery.read(m), Status::kOk);
   EXPECT_FALSE(m.dispatch_active);
   EXPECT_EQ(m.power_w, 0);
-}
-
-TEST(ModbusLink, AcknowledgedButNotAppliedIsSeen) {
-  BatteryServerSettings settings;
-  settings.faults = {.faults = {BatteryFault::kAckWithoutEffect}, .every = 1};
-  LoopbackBattery loopback("block", settings);
-  ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  EXPECT_EQ(battery.order(kChargeOrder), Status::kNotApplied);
-}
-
-TEST(ModbusLink, BusyForEverIsReportedAsBusy) {
-  BatteryServerSettings settings;
-  settings.faults = {.faults = {BatteryFault::kException}, .every = 1};
-  LoopbackBattery loopback("block", settings);
-  ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  BatteryMeasurement m;
-  EXPECT_EQ(battery.read(m), Status::kBusBusy);
 }
 
 TEST(ModbusLink, NobodyThereAndWrongUnitAreToldApart) {
@@ -97,17 +55,6 @@ TEST(ModbusLink, SecondClientIsRefusedUntilTheFirstIsGone) {
     EXPECT_EQ(first.read(m), Status::kOk);
   }
   EXPECT_EQ(second.read(m), Status::kOk);
-}
-
-TEST(ModbusLink, OrderBeyondTheMapIsRefusedWithoutAWrite) {
-  LoopbackBattery loopback("block");
-  ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  PowerOrder order = kChargeOrder;
-  order.power_w = 32'001;
-  EXPECT_EQ(battery.order(order), Status::kNotExpressible);
-  BatteryMeasurement m;
-  ASSERT_EQ(battery.read(m), Status::kOk);
-  EXPECT_FALSE(m.dispatch_active);
 }
 
 TEST(ModbusLink, IdentityOfTheSimulatedBatteryFits) {

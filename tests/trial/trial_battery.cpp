@@ -74,7 +74,6 @@ Status TrialBattery::release() {
 bool TrialBattery::answers_late() {
   if (nature_.late_per_answer == 0) return false;
   if (std::uniform_real_distribution<>(0, 1)(random_) >= nature_.late_per_answer) return false;
-  ++oddities_.late_answers;
   const double late_s = nature_.late_s * std::uniform_real_distribution<>(0, 2)(random_);
   clock_.now_ns += static_cast<std::int64_t>(std::min(late_s, kTimeOutS) * 1e9);
   return late_s >= kTimeOutS;
@@ -115,7 +114,6 @@ void TrialBattery::step() {
 
 void TrialBattery::restart_at_times() {
   if (now_s_ < next_restart_s_) return;
-  ++oddities_.restarts;
   back_s_ = now_s_ + static_cast<std::int64_t>(nature_.restart_s);
   is_dispatched_ = false;
   ordered_w_ = target_w_ = stage_w_ = 0;
@@ -159,7 +157,6 @@ void TrialBattery::follow_command() {
   const double fresh = std::normal_distribution<>(0, nature_.noise_frac)(random_);
   wander_ = kKept * wander_ + std::sqrt(1 - kKept * kKept) * fresh;
   const double sun = now_s_ < back_s_ ? 0 : sun_w();
-  if (sun > 0) ++oddities_.sun_s;
   honest_w_ = overridden_w(within_limits(stage_w_ * (1 + wander_) + sun));
 }
 
@@ -204,21 +201,18 @@ double TrialBattery::overridden_w(double power_w) {
     if (counted < nature_.forced_charge_below_frac) is_forced_ = true;
     if (counted >= nature_.forced_charge_until_frac) is_forced_ = false;
     if (is_forced_) {
-      ++oddities_.forced_charge_s;
       return std::max(power_w, nature_.forced_charge_w);
     }
   }
   const bool is_balancing =
       nature_.balancing_w > 0 && counted >= 0.995 && power_w >= 0 && now_s_ / 600 % 2 == 0;
   if (is_balancing) {
-    ++oddities_.balancing_s;
     return nature_.balancing_w;
   }
   return power_w;
 }
 
 void TrialBattery::account() {
-  if (derated_w() < nature_.rated_w) ++oddities_.derated_s;
   const double hours = 1 / kSecondsPerHour;
   energy_.moved_wh += std::abs(flow_w_) * hours;
   const double beyond_w = std::abs(flow_w_) - std::max(std::abs(honest_w_), std::abs(ordered_w_));
@@ -263,7 +257,6 @@ void TrialBattery::calibrate() {
     count_error_frac_ = 0;
     target_error_frac_ = (random_() % 3 == 0 ? 1 : -1) * size(random_);
   }
-  ++oddities_.calibrations;
   calibration_day_ = day;
 }
 

@@ -22,17 +22,6 @@ struct EnergyAccount {
       0;  ///< against what an honest battery would have let flow, or beyond order and it
 };
 
-/// What an honest battery did that looks odd; proves that a variant is what its name says.
-struct Oddities {
-  int calibrations = 0;
-  int restarts = 0;
-  int late_answers = 0;
-  std::int64_t derated_s = 0;
-  std::int64_t forced_charge_s = 0;
-  std::int64_t balancing_s = 0;
-  std::int64_t sun_s = 0;
-};
-
 class TrialBattery {
  public:
   TrialBattery(TrialClock& clock, const BatteryNature& nature, double soc_frac, std::uint64_t seed);
@@ -51,7 +40,6 @@ class TrialBattery {
   /// Up to the clock's now.
   void advance();
   [[nodiscard]] const EnergyAccount& energy() const { return energy_; }
-  [[nodiscard]] const Oddities& oddities() const { return oddities_; }
   [[nodiscard]] double charge_frac() const { return charge_frac_; }
 
  private:
@@ -124,7 +112,6 @@ class TrialBattery {
   BatteryMeasurement shown_at_fault_;
 
   EnergyAccount energy_;
-  Oddities oddities_;
 };
 
 }  // namespace bess::trial

@@ -34,7 +34,6 @@ struct ShownView {
 
 struct TrialFault {
   const char* name;
-  const char* text;
   double (*flow)(const FlowView&) = nullptr;                      ///< null: honest
   void (*show)(const ShownView&, BatteryMeasurement&) = nullptr;  ///< null: the truth
 };

@@ -186,8 +186,6 @@ FaultResult try_fault(const FaultCase& c) {
   return result;
 }
 
-int HonestDays::lost_in_all() const { return std::accumulate(std::begin(lost), std::end(lost), 0); }
-
 /// Real prices, but full by night and empty in the evening, each with two hours of rest.
 CycleRecord cycle_of_day(TrialSite& site, std::int32_t night_charge_power_w) {
   const std::int64_t minute = site.next_tick_utc_s() / 60 % (24 * 60);
@@ -206,7 +204,6 @@ HonestDays live_honest_days(const HonestVariant& variant, int days, const Distur
     result.driven += record.ordered_power_w != 0 ? 1 : 0;
     result.wrong_energy_e6_max =
         std::max(result.wrong_energy_e6_max, record.findings.wrong_energy_e6);
-    if (is_stop_reason(record.reason)) ++result.lost[static_cast<int>(record.reason)];
     if (often.kill_every > 0 && (i + 1) % often.kill_every == 0) site.kill_and_restart();
     if (often.step_every > 0 && (i + 1) % often.step_every == 0) site.step_clock();
     if (!record.is_tripped) continue;
@@ -216,7 +213,6 @@ HonestDays live_honest_days(const HonestVariant& variant, int days, const Distur
     }
     site.clear_trip();
   }
-  result.oddities = site.battery.oddities();
   result.moved_wh = site.battery.energy().moved_wh;
   return result;
 }

@@ -129,12 +129,8 @@ struct HonestDays {
   int trips = 0;   ///< each cleared at once
   Reason first_trip = Reason::kStudent;
   int first_trip_cycle = 0;
-  int lost[kReasonCount] = {};  ///< cycles that were stopped, by reason
   std::int32_t wrong_energy_e6_max = 0;
-  Oddities oddities{};
   double moved_wh = 0;
-
-  [[nodiscard]] int lost_in_all() const;
 };
 
 /// After so many cycles each; 0 = never.

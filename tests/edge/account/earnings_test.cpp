@@ -116,16 +116,5 @@ TEST(EarningsOfDays, SayTheSameInEachForm) {
   }
 }
 
-TEST(EarningsOfDays, ADayThatWasNeverMeasuredMovesNoCharge) {
-  set_market_time_zone();
-  const MoneyTerms terms{.capacity_wh = 8'000};
-  DayBook book(20'261'121, 20'261'122, terms);
-  book.add({.utc_s = kEarningsStart - 86'400, .mode = Mode::kSafe, .reason = Reason::kLink});
-  add_half_hour(book, kEarningsStart, 4'000, 5'000, 3'000, 5'500);
-  const Earnings both(book.accounts());
-  EXPECT_NEAR(both.together().stored_kwh(), 2, 1e-9);
-  EXPECT_THAT(both.csv(), HasSubstr("2026-11-21,0.0000,0.000,0.000,0.0000,1,0,0,0.00,,,"));
-}
-
 }  // namespace
 }  // namespace bess

@@ -37,8 +37,6 @@ TEST(Periods, ByDate) {
   expect_period("2026-10-28..2026-11-03", kMonday, {20'261'028, 20'261'103});
 }
 
-TEST(Periods, ADayIsCountedFromAnother) {}
-
 TEST(Periods, NothingElse) {
   for (const char* text :
        {"", "tomorrow", "Today", "2026-02-29", "2026-11-31", "2026-13-01", "2026-1-1",

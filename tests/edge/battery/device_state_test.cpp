@@ -196,6 +196,7 @@ TEST(DeviceState, SunSpec) {
                {3, 40'070 + 6, {0, 0x0010}, Told::kWarning},
                {3, bank + 22, {99}, Told::kAlarm},
                {3, bank + 26, {0, 1}, Told::kAlarm},  // communication lost
+               {3, bank + 26, {0, 2}, Told::kAlarm},  // too hot
                {3, bank + 26, {0, 4}, Told::kWarning},
                {3, bank + 26, {0x0020, 0}, Told::kWarning},         // fan
                {3, bank + 26, {0x0001, 0xE000}, Told::kNothing}});  // SoC near its limits

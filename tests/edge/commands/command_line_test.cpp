@@ -109,14 +109,6 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
   }
 }
 
-/// One after another in one process: nothing of a command is left to the next.
-TEST(EdgeWords, CommandsRunInThisProcess) {
-  EXPECT_THAT(said_to({"signature"}).text, HasSubstr("signature="));
-  EXPECT_EQ(said_to({"log", "--config", "/nonexistent"}).exit_code, 1);
-  EXPECT_EQ(
-      said_to({"map", "check", "--against", "/nonexistent", "--map", "/nonexistent"}).exit_code, 1);
-}
-
 /// Nobody listens: it says what it would write all the same, what cannot be reached, and that it is
 /// not well.
 TEST(EdgeWords, ACheckRunsInThisProcess) {

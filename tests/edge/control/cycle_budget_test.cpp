@@ -48,10 +48,5 @@ TEST(CycleBudget, ZeroMeansNoBudget) {
   EXPECT_FALSE(budget.is_spent());
 }
 
-TEST(CycleBudget, TheDayIsTheLocalOne) {
-  set_market_time_zone();
-  EXPECT_EQ(local_day_of(local_minute_of(1'679'785'200)), kDay);  // 2023-03-25T23:00:00Z
-}
-
 }  // namespace
 }  // namespace bess

@@ -37,11 +37,11 @@ TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
 }
 
 TEST(FrozenPrice, OneSecondIsALimitAndZeroIsNone) {
-  Rows soon({.stop_s = 1}), never({.stop_s = 0});
+  Rows soon({.stop_s = 1}), never({.frozen_s = 0, .stop_s = 0});
   soon.add(2, 5'550);
   never.add(2'000, 5'550);
   EXPECT_TRUE(soon.frozen.is_no_price());
-  EXPECT_FALSE(never.frozen.is_no_price());
+  EXPECT_FALSE(never.frozen.is_frozen() || never.frozen.is_no_price());
 }
 
 TEST(FrozenPrice, ZeroAndTheEndsOfTheRangeArePricesLikeOthers) {
@@ -170,12 +170,6 @@ TEST(FrozenPrice, ToAndFroIsRecalledByTheLogAndAnOutageIsAFewMinutes) {
   gaps.observe(INT64_MIN, 700);
   gaps.observe(INT64_MAX, 701);
   gaps.observe(kFirstMinute, 700);
-}
-
-TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
-  Rows rows({.frozen_s = 0, .stop_s = 0});
-  rows.add(2'000, 0);
-  EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
 }
 
 }  // namespace

@@ -73,18 +73,5 @@ TEST(GuardRules, StandBelowHoldsLimitsAndStopReasons) {
   expect(in, 0, Reason::kAlarm);
 }
 
-/// The committed student comes without rules; one that brings some is tested with its header.
-TEST(GuardRules, WithoutRulesEverythingIsAllowed) {
-  if (guard_rule_count() > 0) GTEST_SKIP() << "this build's student brings rules";
-  EXPECT_EQ(student_rule_limits({.year = 2023,
-                                 .month = 1,
-                                 .day = 1,
-                                 .minute_of_day = 0,
-                                 .quarter_hour = 0,
-                                 .minute_of_quarter_hour = 0},
-                                {0, 0, 1, 60, 300}, 30'000),
-            RuleLimits{});
-}
-
 }  // namespace
 }  // namespace bess

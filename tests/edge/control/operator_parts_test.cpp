@@ -164,15 +164,6 @@ TEST(FullCharge, ARestartGoesOnCounting) {
   EXPECT_EQ(charge.days_since_full(), 0);
 }
 
-/// 22:30 UTC is a new local day in Brussels' summer, and 23:30 in its winter.
-TEST(FullCharge, DaysAreLocal) {
-  set_market_time_zone();
-  const std::int64_t summer = 1'689'114'600;  // 2023-07-11T22:30:00Z
-  EXPECT_EQ(local_day_number(local_minute_of(summer)), summer / 86'400 + 1);
-  const std::int64_t winter = 1'673'476'200;  // 2023-01-11T22:30:00Z
-  EXPECT_EQ(local_day_number(local_minute_of(winter)), winter / 86'400);
-}
-
 constexpr GuardSettings kSettings{.full_charge_power_w = 2'000};
 
 GuardDecision decide(const GuardInputs& in, const GuardSettings& settings = kSettings) {

@@ -166,17 +166,6 @@ TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
   }
 }
 
-TEST(Prometheus, WhatWasNotMeasuredIsAbsentNotZero) {
-  CycleRecord blind = good_record();
-  blind.has_measurement = false;
-  blind.price.has_row = false;
-  const auto families = parse_prometheus(prometheus_text(totals_after({blind})));
-  for (const char* name :
-       {"bess_soc_ratio", "bess_power_watts", "bess_price_eur_per_mwh", "bess_price_age_seconds"}) {
-    EXPECT_FALSE(families.contains(name)) << name;
-  }
-}
-
 TEST(RunTotals, CountFailuresAndReasons) {
   CycleRecord bad = good_record();
   bad.battery_status = Status::kTimeout;
@@ -191,18 +180,6 @@ TEST(RunTotals, CountFailuresAndReasons) {
   EXPECT_EQ(totals.cycles_by_reason[static_cast<std::size_t>(Reason::kLink)], 2);
   bad.mode = Mode::kStopping;  // ends the run without asking for a price
   EXPECT_EQ(totals_after({bad}).price_failures, 0);
-}
-
-TEST(StatusJson, HoldsWhatItWasToldAndEscapesForeignText) {
-  char storage[kStatusBytes];
-  TextBuffer json(storage);
-  format_status_json(sample_identity(), totals_after({good_record()}), 5'000'000'000, json);
-  EXPECT_FALSE(json.was_cut());
-  const std::string text(json.view());
-  EXPECT_THAT(text, HasSubstr("\"provenance\": \"trained on 'prices''today \""));
-  EXPECT_THAT(text, HasSubstr("\"written_monotonic_ms\": 5000"));
-  EXPECT_THAT(text, HasSubstr("\"soc_e4\": 5555"));
-  EXPECT_THAT(text, HasSubstr("\"pid\": 4711"));
 }
 
 /// The buffers are fixed: the longest texts and numbers must fit, or readers would get half a file.

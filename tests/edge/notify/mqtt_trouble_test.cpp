@@ -4,35 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 
 #include "edge/notify/mqtt_client.h"
 #include "edge/notify/notify_settings.h"
 #include "tests/support/dated_certificate.h"
 #include "tests/support/mqtt_broker.h"
 #include "tests/support/test_server.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
-
 constexpr long kDayS = DatedCertificate::kDayS;
-
-struct BadCertificate {
-  const char* name;
-  long from_s, to_s;
-  const char* cause;
-};
-
-constexpr BadCertificate kBadCertificates[] = {
-    {"IP:127.0.0.1", -2 * kDayS, -kDayS, "the server's certificate has expired: renew it there"},
-    {"IP:127.0.0.1", kDayS, 2 * kDayS,
-     "is not valid yet: is this computer's clock right (timedatectl)?"},
-    {"IP:127.0.0.2", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
-    {"DNS:localhost", -kDayS, kDayS, "is of another name: is it the host that is configured?"},
-};
 
 class MqttTrouble : public ::testing::Test {
  protected:
@@ -60,41 +44,42 @@ class MqttTrouble : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(MqttTrouble, AGoodCertificateIsTaken) {
+TEST_F(MqttTrouble, AGoodCertificateIsTakenAndEachBadOneIsToldByItsCause) {
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   const DatedCertificate other("IP:127.0.0.1", -kDayS, kDayS, "another CA");
-  const DatedCertificate renewed("IP:127.0.0.1", -kDayS,
-                                 kDayS);  // of the same name, with another key
+  const DatedCertificate renewed("IP:127.0.0.1", -kDayS, kDayS);  // of the same name, another key
   Broker broker(folder_, Broker::free_port(), tls_keys(good));
   EXPECT_EQ(send(broker.port(), good.ca()), "");
-  EXPECT_THAT(send(broker.port(), other.ca()),
-              StartsWith("no connection to the broker: the server's certificate is of no "
-                         "authority that is known here: mqtt_ca_file must hold"));
-  EXPECT_THAT(
-      send(broker.port(), renewed.ca()),
-      HasSubstr("is the authority the one that signed the server's certificate? mqtt_ca_file"));
-}
-
-TEST_F(MqttTrouble, EachBadCertificateIsToldByItsCause) {
-  for (const auto& [name, from_s, to_s, cause] : kBadCertificates) {
-    const DatedCertificate bad(name, from_s, to_s);
-    Broker broker(folder_, Broker::free_port(), tls_keys(bad));
-    EXPECT_THAT(send(broker.port(), bad.ca()), HasSubstr(cause)) << name;
+  std::set<std::string> told = {send(broker.port(), other.ca()), send(broker.port(), renewed.ca())};
+  for (const std::string& trouble : told) EXPECT_THAT(trouble, Names("mqtt_ca_file"));
+  const DatedCertificate expired("IP:127.0.0.1", -2 * kDayS, -kDayS);
+  const DatedCertificate early("IP:127.0.0.1", kDayS, 2 * kDayS);
+  const DatedCertificate foreign("IP:127.0.0.2", -kDayS, kDayS);
+  const DatedCertificate named("DNS:localhost", -kDayS, kDayS);
+  for (const DatedCertificate* bad : {&expired, &early, &foreign, &named}) {
+    Broker badly(folder_, Broker::free_port(), tls_keys(*bad));
+    const std::string trouble = send(badly.port(), bad->ca());
+    const bool is_of_its_time = bad == &foreign || bad == &named;
+    EXPECT_NE(has_code(trouble, "timedatectl"), is_of_its_time) << trouble;
+    told.insert(trouble);
   }
+  EXPECT_EQ(told.size(), 5U) << "two of them are of another name";
 }
 
 TEST_F(MqttTrouble, BrokersThatAreNone) {
-  EXPECT_THAT(send(Broker::free_port(), ""), HasSubstr("connection refused"));
+  const std::string nobody = send(Broker::free_port(), "");
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   Broker plain(folder_, Broker::free_port());
-  EXPECT_THAT(send(plain.port(), good.ca()), HasSubstr("no TLS there"));
+  EXPECT_THAT(send(plain.port(), good.ca()), Names("TLS"));
   Broker closed(folder_, Broker::free_port(), "allow_anonymous false\n");
-  EXPECT_THAT(send(closed.port(), "", "somebody"), HasSubstr("see mqtt_user, mqtt_password_file"));
+  EXPECT_THAT(send(closed.port(), "", "somebody"), Names("mqtt_user mqtt_password_file"));
   TestServer silent([&silent](TestConnection&, const std::string&) {
     silent.wait_for_end();
     return false;
   });
-  EXPECT_THAT(send(silent.port(), ""), HasSubstr("does it speak MQTT there?"));
+  const std::string mute = send(silent.port(), "");
+  EXPECT_THAT(mute, Names("MQTT"));
+  EXPECT_TRUE(!nobody.empty() && nobody != mute) << nobody;
 }
 
 }  // namespace

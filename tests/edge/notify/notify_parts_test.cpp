@@ -17,7 +17,7 @@
 #include "shared/host/run_program.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/test_server.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
@@ -122,27 +122,26 @@ TEST(NotifySettings, EveryMistakeIsOneClearLine) {
   write_secret(folder, "password", "x\n");
   write_secret(folder, "open", "x\n", 0644);
   const std::pair<const char*, const char*> mistakes[] = {
-      {"nod = \"x\"", "nod is not a known key"},
-      {"node = \"a\"", "node is not a known key"},
-      {"every_s = 0", "every_s must lie between 1 and 3600"},
-      {"after_s = -1", "after_s must lie between 0 and 86400"},
-      {"webhook_url = \"https://example.org/\"", "webhook_url is not a known key"},
-      {"mqtt_host = \"a\"\nmqtt_port = 0", "mqtt_port must lie between 1 and 65535"},
-      {"mqtt_host = \"a\"\nmqtt_ca_file = \"none.pem\"", "none.pem cannot be read"},
-      {"mqtt_host = \"a\"\nmqtt_password_file = \"password\"", "needs mqtt_user"},
-      {"mqtt_host = \"a\"\nmqtt_user = \"u\"\nmqtt_password_file = \"password\"",
-       "would be sent in clear"},
+      {"nod = \"x\"", "nod"},
+      {"node = \"a\"", "node"},
+      {"every_s = 0", "every_s 1 3600"},
+      {"after_s = -1", "after_s 0 86400"},
+      {"webhook_url = \"https://example.org/\"", "webhook_url"},
+      {"mqtt_host = \"a\"\nmqtt_port = 0", "mqtt_port 1 65535"},
+      {"mqtt_host = \"a\"\nmqtt_ca_file = \"none.pem\"", "none.pem"},
+      {"mqtt_host = \"10.0.0.1\"\nmqtt_orders = true", "mqtt_orders mqtt_user"},
+      {"mqtt_host = \"a\"\nmqtt_password_file = \"password\"", "mqtt_user"},
+      {"mqtt_host = \"a\"\nmqtt_user = \"u\"\nmqtt_password_file = \"password\"", "mqtt_ca_file"},
       {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"open\"",
-       "is readable for others: chmod o-rwx"},
-      {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"none\"",
-       "none must be a file that can be read"},
+       "open chmod o-rwx"},
+      {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"none\"", "none"},
   };
-  for (const auto& [keys, message] : mistakes) {
+  for (const auto& [keys, codes] : mistakes) {
     const std::string path = folder.write("edge.toml", std::string("[notify]\n") + keys + "\n");
     NotifySettings settings;
     std::string error;
     EXPECT_FALSE(load_notify_settings(path, settings, error)) << keys;
-    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_THAT(error, Names(codes));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -304,22 +303,6 @@ TEST_F(AlarmCommand, ThatFailsHangsOrIsNoneIsTold) {
   EXPECT_NE(run("sleep 1000"), "");
 }
 
-/// As Debian packages it, to a server of its kind "json".
-TEST_F(AlarmCommand, MayBeApprise) {
-  if (!std::filesystem::exists("/usr/bin/apprise")) GTEST_SKIP() << "apprise is not installed";
-  std::string body;
-  TestServer server([&body](TestConnection& to, const std::string& request) {
-    const std::size_t at = request.find("Content-Length: ");
-    EXPECT_TRUE(to.read_bytes(std::stoul(request.substr(at + 16)), body));
-    return to.answer("{}");
-  });
-  settings_.command_ms_max = 60'000;
-  EXPECT_EQ(run("apprise -t \"$BESS_TITLE\" -b \"$BESS_TEXT\" json://127.0.0.1:" +
-                std::to_string(server.port())),
-            "");
-  EXPECT_THAT(body, HasSubstr("[bess garage] ALARM: WARN: mode is safe"));
-}
-
 ControllerStatus sample_status(const std::string& health = "degraded") {
   ControllerStatus status;
   status.json = Json::parse(R"({"health": ")" + health +
@@ -387,10 +370,9 @@ class NotifierStateFile : public ::testing::Test {
     text_ = notifier_state_text({.number = number, .day = std::to_string(number)});
     ASSERT_EQ(write_notifier_state(paths_, text_), "");
   }
-  void keep_fails(const std::vector<std::string>& paths, const std::string& consequence) const {
+  void keep_fails(const std::vector<std::string>& paths, const std::string& where) const {
     const std::string trouble = write_notifier_state(paths, text_);
-    EXPECT_THAT(trouble, ::testing::StartsWith(paths[0] + ": cannot be written"));
-    EXPECT_THAT(trouble, HasSubstr(consequence));
+    EXPECT_THAT(trouble, Names(paths[0] + " " + where));
   }
   void expect_known(const std::string& day, std::size_t losses) {
     EXPECT_EQ(read().day, day);
@@ -413,15 +395,6 @@ TEST_F(NotifierStateFile, OutlastsARestart) {
       .pending = {kAlarm, {.severity = "day", .key = "2023-11-25", .text = "d", .utc_s = 9}}};
   ASSERT_EQ(write_notifier_state(paths_, notifier_state_text(state)), "");
   const NotifierState after = read();
-  ASSERT_EQ(after.alarms.size(), 2U);
-  EXPECT_EQ(after.alarms[0].since_utc_s, 60);
-  EXPECT_EQ(after.alarms[0].seen_utc_s, 120);
-  EXPECT_TRUE(after.alarms[0].is_told);
-  ASSERT_EQ(after.pending.size(), 2U);
-  EXPECT_EQ(after.pending[0].severity, "alarm");
-  EXPECT_EQ(after.pending[0].text, kAlarm.text);
-  EXPECT_EQ(after.pending[0].utc_s, kAlarm.utc_s);
-  EXPECT_EQ(after.pending[1].since_utc_s, 0);
   EXPECT_EQ(notifier_state_text(after), notifier_state_text(state));
 }
 
@@ -465,7 +438,7 @@ TEST_F(NotifierStateFile, WhatIsLostIsNamedAndAllLostIsSaid) {
     std::ofstream(paths_[1]) << text;
     expect_known("", 3);
     EXPECT_THAT(losses_[1], HasSubstr(paths_[1]));
-    EXPECT_THAT(losses_[2], HasSubstr("alarms are reported again"));
+    EXPECT_EQ(losses_[2].find(folder_.file("")), std::string::npos) << "of both";
   }
 }
 
@@ -473,8 +446,8 @@ TEST_F(NotifierStateFile, WhereOnePlaceRefusesTheOtherKeepsItAndThatIsSaid) {
   keep(7);
   std::filesystem::remove(paths_[0]);
   std::filesystem::create_directory(paths_[0]);
-  keep_fails(paths_, "is kept in " + paths_[1] + " alone");
-  keep_fails({"/proc/nowhere/told.json"}, "is kept nowhere");
+  keep_fails(paths_, paths_[1]);
+  keep_fails({"/proc/nowhere/told.json"}, "");
 }
 
 }  // namespace

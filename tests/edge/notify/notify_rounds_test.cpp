@@ -30,15 +30,6 @@ TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
   EXPECT_THAT(told(), HasSubstr("over: WARN: mode is safe, reason no_price (lasted 20 min)"));
 }
 
-TEST_F(Rounds, AControllerThatIsGoneIsAnAlarm) {
-  use_command();
-  settings_.program = "/no/such";
-  Notifier notifier(settings_);
-  whole_round(notifier, kNow);
-  whole_round(notifier, kNow + 300);
-  EXPECT_THAT(told(), HasSubstr("ALARM: /no/such cannot be started"));
-}
-
 /// Raised and cleared in a drawn order, while the command fails and the notifier starts again
 /// whenever they like: each alarm and each end is told once, in turns, and none is missing.
 TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
@@ -275,30 +266,6 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   EXPECT_EQ(await_calls(both), both);
 }
 
-/// A broker that lets in anybody gives no right to order.
-TEST_F(Mqtt, OrdersNeedAUserOfTheBroker) {
-  const std::string config =
-      folder_.write("edge.toml", "[notify]\nmqtt_host = \"10.0.0.1\"\nmqtt_orders = true\n");
-  NotifySettings settings;
-  std::string error;
-  EXPECT_FALSE(load_notify_settings(config, settings, error));
-  EXPECT_THAT(error, HasSubstr("mqtt_orders needs mqtt_user"));
-}
-
-/// The last will: a notifier that is killed is told of by the broker.
-TEST_F(Mqtt, AKilledNotifierIsOffline) {
-  Broker broker(folder_, port());
-  const std::string config = folder_.write(
-      "edge.toml",
-      "[battery]\nname = \"garage\"\n[notify]\nevery_s = 1\nprogram = \"" + settings_.program +
-          "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n");
-  Listener all(port(), "#");
-  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
-  EXPECT_EQ(all.await("/status", "online"), "online");
-  notify.signal(SIGKILL);
-  EXPECT_EQ(all.await("/status", "offline"), "offline");
-}
-
 class Program : public Rounds {};
 
 TEST_F(Program, CommandLine) {
@@ -333,17 +300,6 @@ TEST_F(Program, ATestMessageGoesToEveryChannelAndSaysWhichFails) {
   ChildProcess refused({BESS_NOTIFY_PROGRAM, "--config", bad, "--test"});
   EXPECT_THAT(refused.read_all(), HasSubstr("command: failed with exit code 1"));
   EXPECT_EQ(refused.wait(), 1);
-}
-
-TEST_F(Program, SigtermEndsItBetweenRounds) {
-  const std::string config = folder_.write(
-      "edge.toml", "[notify]\nevery_s = 3600\nprogram = \"" + settings_.program + "\"\n");
-  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
-  EXPECT_THAT(notify.read_line(), HasSubstr("names no channel"));
-  EXPECT_THAT(notify.read_line(), HasSubstr("started"));
-  notify.signal(SIGTERM);
-  EXPECT_THAT(notify.read_all(), HasSubstr("stopped"));
-  EXPECT_EQ(notify.wait(), 0);
 }
 
 }  // namespace

@@ -74,7 +74,5 @@ TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
   EXPECT_THAT(health.reasons[0], Names("outlook malformed"));
 }
 
-/// What was logged is decided again alike; by another break-even price some of it is not; what was
-/// logged without an outlook cannot be.
 }  // namespace
 }  // namespace bess

@@ -50,81 +50,64 @@ TEST(LoggableUrl, HidesUsersAndSecretQueryValues) {
   for (const auto& row : table) EXPECT_EQ(loggable_url(row.url).view(), row.shown) << row.url;
 }
 
-struct HeaderFile {
-  const char* text;
-  mode_t mode;
-  const char* codes;
+class HeaderFile : public ::testing::Test {
+ protected:
+  bool load(const std::string& text, mode_t mode = 0600) {
+    const std::string path = folder_.write("headers", text);
+    EXPECT_EQ(chmod(path.c_str(), mode), 0);
+    return load_from(path);
+  }
+  bool load_from(const std::string& path) {
+    error_.clear();
+    return load_http_headers(path.c_str(), headers_, error_);
+  }
+
+  const TemporaryFolder folder_;
+  FixedText<2047> headers_;
+  std::string error_;
 };
 
-TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write(
-      "headers", "# from the portal\n\nX-Api-Key: abc def\r\n   Authorization: Bearer x\n");
-  ASSERT_EQ(chmod(path.c_str(), 0640), 0);
-  FixedText<2047> headers;
-  std::string error;
-  ASSERT_TRUE(load_http_headers(path.c_str(), headers, error)) << error;
-  EXPECT_EQ(headers, "X-Api-Key: abc def\nAuthorization: Bearer x");
+TEST_F(HeaderFile, KeepsHeadersAndSkipsComments) {
+  ASSERT_TRUE(load("# from the portal\n\nX-Api-Key: abc def\r\n   Authorization: Bearer x\n", 0640))
+      << error_;
+  EXPECT_EQ(headers_, "X-Api-Key: abc def\nAuthorization: Bearer x");
+  ASSERT_TRUE(load("A: b\nC: d")) << error_;
+  EXPECT_EQ(headers_, "A: b\nC: d");
 }
 
-TEST(HeaderFile, AFolderIsNoFile) {
-  const TemporaryFolder folder;
-  FixedText<2047> headers;
-  std::string error;
-  EXPECT_FALSE(load_http_headers(folder.file(".").c_str(), headers, error));
-  EXPECT_THAT(error, HasSubstr(folder.file(".")));
-}
-
-TEST(HeaderFile, TheLastLineNeedsNoEnd) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("headers", "A: b\nC: d");
-  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
-  FixedText<2047> headers;
-  std::string error;
-  ASSERT_TRUE(load_http_headers(path.c_str(), headers, error)) << error;
-  EXPECT_EQ(headers, "A: b\nC: d");
-}
-
-TEST(HeaderFile, ANameIsOfLettersDigitsDashAndUnderscore) {
-  const TemporaryFolder folder;
-  const auto is_taken = [&](const std::string& name) {
-    const std::string path = folder.write("headers", name + ": v\n");
-    EXPECT_EQ(chmod(path.c_str(), 0600), 0);
-    FixedText<2047> headers;
-    std::string error;
-    return load_http_headers(path.c_str(), headers, error);
-  };
-  for (const char* const name : {"azAZ", "X-0", "X_9", "0", "9"})
-    EXPECT_TRUE(is_taken(name)) << name;
+TEST_F(HeaderFile, ANameIsOfLettersDigitsDashAndUnderscore) {
+  for (const std::string name : {"azAZ", "X-0", "X_9", "0", "9"}) {
+    EXPECT_TRUE(load(name + ": v\n")) << name;
+  }
   // The neighbours of each range in ASCII.
-  for (const char* const name : {"X/", "X@", "X[", "X`", "X{", "X;", "X=", "X.", "X,", "X\xc3"}) {
-    EXPECT_FALSE(is_taken(name)) << name;
+  for (const std::string name : {"X/", "X@", "X[", "X`", "X{", "X;", "X=", "X.", "X,", "X\xc3"}) {
+    EXPECT_FALSE(load(name + ": v\n")) << name;
   }
 }
 
-TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
-  const TemporaryFolder folder;
-  const std::string long_text = "X: " + std::string(3'000, 's') + "\n";
-  const HeaderFile table[] = {
-      {"X-Api-Key: s3cret\n", 0644, "chmod o-rwx"}, {"s3cret\n", 0600, "headers:1"},
-      {"A: b\n: s3cret\n", 0600, "headers:2"},      {"A b: s3cret\n", 0600, "headers:1"},
-      {"A: s3cret\x01\n", 0600, "headers:1"},       {long_text.c_str(), 0600, "headers"},
+TEST_F(HeaderFile, MistakesAreOneLineWithoutTheContent) {
+  const struct {
+    std::string text;
+    mode_t mode;
+    const char* codes;
+  } table[] = {
+      {"X-Api-Key: s3cret\n", 0644, "chmod o-rwx"},
+      {"s3cret\n", 0600, "headers:1"},
+      {"A: b\n: s3cret\n", 0600, "headers:2"},
+      {"A b: s3cret\n", 0600, "headers:1"},
+      {"A: s3cret\x01\n", 0600, "headers:1"},
+      {"X: " + std::string(3'000, 's') + "\n", 0600, "headers"},
   };
-  for (const HeaderFile& row : table) {
-    const std::string path = folder.write("headers", row.text);
-    ASSERT_EQ(chmod(path.c_str(), row.mode), 0);
-    FixedText<2047> headers;
-    std::string error;
-    EXPECT_FALSE(load_http_headers(path.c_str(), headers, error));
-    EXPECT_THAT(error, AllOf(HasSubstr(path), Names(row.codes)));
-    EXPECT_THAT(error, Not(HasSubstr("s3cret")));
-    EXPECT_EQ(error.find('\n'), std::string::npos);
+  for (const auto& row : table) {
+    EXPECT_FALSE(load(row.text, row.mode));
+    EXPECT_THAT(error_, AllOf(HasSubstr(folder_.file("headers")), Names(row.codes)));
+    EXPECT_THAT(error_, Not(HasSubstr("s3cret")));
+    EXPECT_EQ(error_.find('\n'), std::string::npos);
   }
-  FixedText<2047> headers;
-  std::string error;
-  EXPECT_FALSE(load_http_headers(folder.file("none").c_str(), headers, error));
-  EXPECT_THAT(error, Names(folder.file("none")));
-  EXPECT_FALSE(load_http_headers("/proc", headers, error));
+  for (const std::string& path : {folder_.file("none"), folder_.file(".")}) {
+    EXPECT_FALSE(load_from(path));
+    EXPECT_THAT(error_, HasSubstr(path));
+  }
 }
 
 }  // namespace

@@ -261,14 +261,6 @@ address = 201
   EXPECT_EQ(map.sequence(Command::kCharge).writes[1].address, 200);
 }
 
-TEST_F(MapFormat, AByteOrderMarkIsPassedOver) {
-  const std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
-  const std::string path = folder_.write("map.toml", "\xEF\xBB\xBF" + text);
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(path, "", map, error)) << error;
-}
-
 TEST_F(MapFormat, AWriteOfItsOwnFunctionIsReadBackExactlyUnlessSaid) {
   std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
   const std::string plain = "\"enable = on\", \"power";
@@ -323,6 +315,15 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
 TEST_F(MapFormat, EveryMistakeHasItsMend) {
   const std::string good = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
   const MapMistake mistakes[] = {
+      {"unit = 7", "unit = 7\nunti = 7", "unti"},
+      {"unit = 7", "unit = \"7\"", "unit"},
+      {"unit = 7", "unit = 300", "unit 0 255"},
+      {"type = \"s32\"", "type = \"s31\"", "type"},
+      {"power = power", "power = watts", "\"watts\""},
+      {"measure = [\"soc\", ", "measure = [\"sco\", ", "[[point]] \"sco\""},
+      {"charge_w_max = 1000", "charge_w_max = 40000", "power 40000"},
+      {"name = \"battery_power\"", "name = \"soc\"", "name"},
+      {"[map]", "[map", "TOML"},
       {"kind = \"none\"", "kind = \"none\"\nduration = 3", "[watchdog] duration"},
       {"kind = \"none\"", "kind = \"rewrite\"\nduration_s = 60\nrefresh_s = 31", "refresh_s"},
       {"kind = \"none\"", "kind = \"duration\"\nduration_s = 60\nrefresh_s = 30", "\"heartbeat\""},
@@ -371,7 +372,9 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;
     text.replace(at, mistake.before.size(), mistake.after);
-    EXPECT_THAT(error_of(text), Names(mistake.codes)) << mistake.after;
+    const std::string error = error_of(text);
+    EXPECT_THAT(error, Names(mistake.codes)) << mistake.after;
+    EXPECT_THAT(error, StartsWith(folder_.file("map.toml") + ":")) << mistake.after;
   }
 }
 

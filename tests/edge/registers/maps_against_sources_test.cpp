@@ -85,21 +85,6 @@ TEST(SungrowHeartbeat, CountsDownWithoutBeingTakenForAnotherMaster) {
   }
 }
 
-/// sunspec/models json/model_701.json, InvSt: RUNNING 3, FAULT 6, STANDBY 7.
-TEST(SunSpec701, AFaultIsAnAlarmAndStandbyIsNot) {
-  for (const auto& [state, is_alarm] : {std::pair{3, false}, {6, true}, {7, false}}) {
-    MapUnderTest t(shipped_map("sunspec_704"));
-    t.device.set(40'000, {0x5375, 0x6E53, 701, 153});
-    t.device.set(40'002 + 4, {state});
-    t.device.set(40'157, {704, 65});
-    t.device.set(40'224, {802, 62, 0, 8'000, 4'000, 3'500});
-    t.device.set(40'224 + 11, {50});
-    t.device.set(40'288, {0xFFFF, 0});
-    ASSERT_EQ(t.read(), Status::kOk) << state;
-    EXPECT_EQ(t.measured.alarm, is_alarm) << state;
-  }
-}
-
 /// victronenergy.com, ESS mode 2 and 3, section 1.3: register 37 sets the power at the AC input,
 /// which is battery + output; attributes.csv: 23 to 25 are the output's power in 10 W.
 TEST(VictronInput, IsWhatTheBatteryTakesAndTheLoadOnTheOutput) {
@@ -126,40 +111,6 @@ TEST(VictronInput, IsWhatTheBatteryTakesAndTheLoadOnTheOutput) {
     EXPECT_FALSE(t.measured.order_replaced);
   }
   EXPECT_EQ(t.device.take_writes().back().unit, kVebus);
-}
-
-/// openWB/core issue 3355: the set-point is dropped after 10 s.
-TEST(VictronInput, IsSentAgainBeforeItIsDropped) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  EXPECT_GE(t.driver->refresh_interval_s(), 1);
-  EXPECT_LT(t.driver->refresh_interval_s(), 10);
-}
-
-/// knackerbrot fronius-modbus-control: StorCtl_Mod 3, OutWRte = P and InWRte = -P discharge with
-/// exactly P; mode 1 with InWRte alone is a floor.
-TEST(FroniusDischarge, IsAnExactPower) {
-  MapUnderTest t(shipped_map("fronius_gen24"));
-  t.device.set(40'253, {160});
-  t.device.set(40'343, {124});
-  t.device.set(40'345, {5'000});
-  t.device.set(40'351, {4'700});
-  t.device.set(40'365, {0xFFFE});
-  t.device.set(40'368, {0xFFFE});
-  ASSERT_EQ(t.order(-1'250), Status::kOk);
-  EXPECT_EQ(t.device.holding[40'348], 3);
-  EXPECT_EQ(t.device.holding[40'355], 2'500);
-  EXPECT_EQ(t.device.holding[40'356], word(-2'500));
-}
-
-/// evcc PR 11580: 40149 is the way to a Smart Energy hybrid; OpenEMS: it has no 40153.
-TEST(SmaHybrid, IsDrivenBySetPointWithoutRegister40153) {
-  MapUnderTest t(shipped_map("sma"));
-  t.device.set(30'845, {0, 55});
-  ASSERT_EQ(t.order(-3'000), Status::kOk);
-  for (const WriteRecord& write : t.device.take_writes()) {
-    EXPECT_LE(write.address + static_cast<int>(write.values.size()), 40'153);
-  }
-  EXPECT_EQ(t.device.holding[40'150], 3'000);  // positive = discharge
 }
 
 /// A SMILE-B3 as dxoverdy/Alpha2MQTT recorded it on 2022-09-10, discharging at 3.1 A.

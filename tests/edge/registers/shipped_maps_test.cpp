@@ -53,12 +53,6 @@ TEST(AlphaEssDriver, OneBlockAndItsRelease) {
   EXPECT_THAT(t.device.take_writes(),
               ElementsAre(fc16(0x0880, {0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}, 85)));
   EXPECT_EQ(t.driver->refresh_interval_s(), 0);
-  t.device.set(0x011E, {0, 4});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.alarm);
-  t.device.set(0x0440, {2});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.off_grid);
 }
 
 void fill_fronius(RegisterDevice& device) {
@@ -323,12 +317,6 @@ TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
     EXPECT_EQ(t.device.holding[40'796], 4'200) << power_w;
     EXPECT_EQ(t.device.holding[40'800], 4'200) << power_w;
   }
-}
-
-TEST(Sma, NotImplementedIsNeverUsed) {
-  MapUnderTest t(shipped_map("sma"), "bms_mode");
-  t.device.set(30'845, {0xFFFF, 0xFFFF});
-  EXPECT_EQ(t.read(), Status::kImplausible);
 }
 
 TEST(Sma, SetPointPositiveIsDischarge) {

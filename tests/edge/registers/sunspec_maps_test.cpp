@@ -59,12 +59,6 @@ TEST(SunSpec704, LocalControlAndFrozenHeartbeatAreSeen) {
   EXPECT_EQ(t.read(), Status::kImplausible);  // the counter has not moved
   t.device.set(bank + 18, {9});
   EXPECT_EQ(t.read(), Status::kOk);
-  t.device.set(bank + 26, {0, 0x0004});  // a warning
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.alarm);
-  t.device.set(bank + 26, {0, 0x0002});  // over-temperature alarm
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.alarm);
 }
 
 TEST(SunSpec704, APreviewKnowsPlacesAndScalesOnceTheDeviceWasRead) {

@@ -35,147 +35,134 @@ std::string valid_text() {
          "anchor_monotonic_ns = 5\n";
 }
 
-TEST(EdgeConfig, TheDocumentedExampleIsValidAndReadOnly) {
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(BESS_SOURCE_DIR "/edge/bess-edge.toml", config, error)) << error;
-  EXPECT_FALSE(config.control.control);
-  EXPECT_TRUE(config.clock.is_real_time());
-  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-500, 1500}));
-  EXPECT_EQ(config.control.order_duration_s, 300);
-  EXPECT_EQ(config.battery.map.unit, 85);
+class ConfigFile : public ::testing::Test {
+ protected:
+  bool load(const std::string& text) {
+    config_ = std::make_unique<EdgeConfig>();
+    error_.clear();
+    return load_edge_config(folder_.write("edge.toml", text), *config_, error_);
+  }
+  /// The valid text with `more` before the first `place`.
+  static std::string with(std::string_view place, const std::string& more) {
+    std::string text = valid_text();
+    return text.insert(text.find(place), more);
+  }
+
+  const TemporaryFolder folder_;
+  std::unique_ptr<EdgeConfig> config_ = std::make_unique<EdgeConfig>();
+  std::string error_;
+};
+
+TEST_F(ConfigFile, TheDocumentedExampleIsValidAndReadOnly) {
+  ASSERT_TRUE(load_edge_config(BESS_SOURCE_DIR "/edge/bess-edge.toml", *config_, error_)) << error_;
+  EXPECT_FALSE(config_->control.control);
+  EXPECT_TRUE(config_->clock.is_real_time());
+  EXPECT_EQ(config_->control.guard.thresholds, (PriceThresholds{-500, 1500}));
+  EXPECT_EQ(config_->control.order_duration_s, 300);
+  EXPECT_EQ(config_->battery.map.unit, 85);
 }
 
-TEST(EdgeConfig, ReadsEveryUnit) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  std::string text = valid_text();
-  text.replace(text.find("soc_min"), 0,
-               "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n");
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_TRUE(config.control.control);
-  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-120, 640}));
-  EXPECT_EQ(config.control.guard.soc_min_e4, 2'000);
-  EXPECT_EQ(config.clock.scale, 900);
-  EXPECT_EQ(config.clock.anchor_utc_s, 1'679'788'800);
-  EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
+TEST_F(ConfigFile, ReadsEveryUnit) {
+  ASSERT_TRUE(
+      load(with("soc_min", "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n")))
+      << error_;
+  EXPECT_TRUE(config_->control.control);
+  EXPECT_EQ(config_->control.guard.thresholds, (PriceThresholds{-120, 640}));
+  EXPECT_EQ(config_->control.guard.soc_min_e4, 2'000);
+  EXPECT_EQ(config_->clock.scale, 900);
+  EXPECT_EQ(config_->clock.anchor_utc_s, 1'679'788'800);
+  EXPECT_EQ(config_->clock.anchor_monotonic_ns, 5);
 }
 
 /// They bound what a price source that lies can do, and honest prices never come near:
 /// edge/prices/README.md.
-TEST(EdgeConfig, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
-  EXPECT_EQ(config.control.cycles_per_day_max_e4, 60'000);
-  EXPECT_EQ(config.control.reversals_per_hour_max, 20);
-  EXPECT_EQ(config.control.guard.ramp_w_max, 0);
-  std::string text = valid_text();
-  text.insert(text.find("soc_min"), "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n");
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.control.cycles_per_day_max_e4, 0);
-  EXPECT_EQ(config.control.reversals_per_hour_max, 0);
+TEST_F(ConfigFile, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
+  ASSERT_TRUE(load(valid_text())) << error_;
+  EXPECT_EQ(config_->control.cycles_per_day_max_e4, 60'000);
+  EXPECT_EQ(config_->control.reversals_per_hour_max, 20);
+  EXPECT_EQ(config_->control.guard.ramp_w_max, 0);
+  ASSERT_TRUE(load(with("soc_min", "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n")))
+      << error_;
+  EXPECT_EQ(config_->control.cycles_per_day_max_e4, 0);
+  EXPECT_EQ(config_->control.reversals_per_hour_max, 0);
 }
 
-TEST(EdgeConfig, ABatteryThatIsFullSoonerMayCycleMore) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  std::string text = valid_text();
-  text.insert(text.find("[battery]\n") + 10, "capacity_wh = 4000\n");
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.control.cycles_per_day_max_e4, 120'000);
+TEST_F(ConfigFile, ABatteryThatIsFullSoonerMayCycleMore) {
+  ASSERT_TRUE(load(with("power_w", "capacity_wh = 4000\n"))) << error_;
+  EXPECT_EQ(config_->control.cycles_per_day_max_e4, 120'000);
 }
 
-TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
-  const TemporaryFolder folder;
+TEST_F(ConfigFile, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   std::string text = valid_text();
   text.replace(text.find("alphaess"), 8, "victron_ess3");
   text.insert(text.find("power_w"), "units = { vebus = 246 }\n");
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  ASSERT_TRUE(load(text)) << error_;
   const RegisterPoint& set_point =
-      config.battery.map.points[find_point(config.battery.map, "set_l1")];
-  EXPECT_EQ(config.battery.map.unit_of(set_point), 246);
-  EXPECT_EQ(config.battery.map.unit, 100);
-  EXPECT_EQ(config.battery.link.port, 502);
+      config_->battery.map.points[find_point(config_->battery.map, "set_l1")];
+  EXPECT_EQ(config_->battery.map.unit_of(set_point), 246);
+  EXPECT_EQ(config_->battery.map.unit, 100);
+  EXPECT_EQ(config_->battery.link.port, 502);
   text.replace(text.find("vebus"), 5, "vecan");
-  EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
-  EXPECT_THAT(error, Names("vecan battery vebus"));
+  EXPECT_FALSE(load(text));
+  EXPECT_THAT(error_, Names("vecan battery vebus"));
 }
 
-TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
-  const TemporaryFolder folder;
-  std::string text = valid_text();
-  text.insert(text.find("power_w"),
-              "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
-              "parity = \"even\"\nstop_bits = 2\n");
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_TRUE(config.battery.link.rtu);
-  EXPECT_EQ(config.battery.link.device.view(), "/dev/ttyS1");
-  EXPECT_EQ(config.battery.link.baud, 19'200);
-  EXPECT_EQ(config.battery.link.parity, Parity::kEven);
-  EXPECT_EQ(config.battery.link.stop_bits, 2);
+TEST_F(ConfigFile, ReadsTheSerialLinesSettings) {
+  ASSERT_TRUE(load(with("power_w",
+                        "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
+                        "parity = \"even\"\nstop_bits = 2\n")))
+      << error_;
+  EXPECT_TRUE(config_->battery.link.rtu);
+  EXPECT_EQ(config_->battery.link.device.view(), "/dev/ttyS1");
+  EXPECT_EQ(config_->battery.link.baud, 19'200);
+  EXPECT_EQ(config_->battery.link.parity, Parity::kEven);
+  EXPECT_EQ(config_->battery.link.stop_bits, 2);
 }
 
-TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
-  EXPECT_EQ(config.state.folder, folder.file("state"));
-  EXPECT_EQ(config.log.ring, folder.file("state/decisions.ring"));
-  EXPECT_EQ(config.log.status, folder.file("state/status.json"));
-  EXPECT_EQ(config.log.metrics, folder.file("state/metrics.prom"));
-  EXPECT_TRUE(config.log.csv.empty());
-  EXPECT_EQ(config.log.ring_days, 35);
+TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
+  ASSERT_TRUE(load(valid_text())) << error_;
+  EXPECT_EQ(config_->state.folder, folder_.file("state"));
+  EXPECT_EQ(config_->log.ring, folder_.file("state/decisions.ring"));
+  EXPECT_EQ(config_->log.status, folder_.file("state/status.json"));
+  EXPECT_EQ(config_->log.metrics, folder_.file("state/metrics.prom"));
+  EXPECT_TRUE(config_->log.csv.empty());
+  EXPECT_EQ(config_->log.ring_days, 35);
 
   const std::string text = valid_text() +
                            "[state]\nfolder = \"/var/lib/bess\"\n"
                            "[log]\ndays = 365\ncsv = \"edge.csv\"\n"
                            "[metrics]\nprometheus = \"/tmp/bess.prom\"\n";
-  EdgeConfig other;
-  ASSERT_TRUE(load_edge_config(folder.write("other.toml", text), other, error)) << error;
-  EXPECT_EQ(other.log.ring, "/var/lib/bess/decisions.ring");
-  EXPECT_EQ(other.log.csv, folder.file("edge.csv"));
-  EXPECT_EQ(other.log.metrics, "/tmp/bess.prom");
-  EXPECT_EQ(other.log.ring_days, 365);
+  ASSERT_TRUE(load(text)) << error_;
+  EXPECT_EQ(config_->log.ring, "/var/lib/bess/decisions.ring");
+  EXPECT_EQ(config_->log.csv, folder_.file("edge.csv"));
+  EXPECT_EQ(config_->log.metrics, "/tmp/bess.prom");
+  EXPECT_EQ(config_->log.ring_days, 365);
 }
 
 /// A relative path on the command line must not be put before the state's files twice.
-TEST(EdgeConfig, ARelativeConfigurationKeepsItsStateBesideIt) {
-  const TemporaryFolder folder;
+TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateBesideIt) {
   const std::filesystem::path before = std::filesystem::current_path();
-  std::filesystem::create_directory(folder.file("etc"));
-  static_cast<void>(folder.write("etc/edge.toml", valid_text()));
-  std::filesystem::current_path(folder.file(""));
-  EdgeConfig config;
-  std::string error;
-  EXPECT_TRUE(load_edge_config("etc/edge.toml", config, error)) << error;
+  std::filesystem::create_directory(folder_.file("etc"));
+  static_cast<void>(folder_.write("etc/edge.toml", valid_text()));
+  std::filesystem::current_path(folder_.file(""));
+  EXPECT_TRUE(load_edge_config("etc/edge.toml", *config_, error_)) << error_;
   std::filesystem::current_path(before);
-  EXPECT_EQ(config.log.ring, "etc/state/decisions.ring");
+  EXPECT_EQ(config_->log.ring, "etc/state/decisions.ring");
 }
 
 /// Every way to write one battery's place must lead to one lock; every other battery to another.
-TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  config.battery.map.unit = 85;
+TEST_F(ConfigFile, TheBatterysLockIsNamedByItsPlace) {
+  config_->battery.map.unit = 85;
   const std::string folder_of_locks(lock_folder());
-  EXPECT_EQ(battery_lock_path(config), folder_of_locks + "/bess-127.0.0.1_502_unit_85.lock");
-  config.battery.link.unit = 1;
-  EXPECT_EQ(battery_lock_path(config), folder_of_locks + "/bess-127.0.0.1_502_unit_1.lock");
-  config.battery.link.rtu = true;
-  config.battery.link.device = folder.write("ttyUSB0", "").c_str();
-  const FixedText<639> direct = battery_lock_path(config);
-  std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
-  config.battery.link.device = folder.file("by-id").c_str();
-  EXPECT_EQ(battery_lock_path(config), direct.view());
+  EXPECT_EQ(battery_lock_path(*config_), folder_of_locks + "/bess-127.0.0.1_502_unit_85.lock");
+  config_->battery.link.unit = 1;
+  EXPECT_EQ(battery_lock_path(*config_), folder_of_locks + "/bess-127.0.0.1_502_unit_1.lock");
+  config_->battery.link.rtu = true;
+  config_->battery.link.device = folder_.write("ttyUSB0", "").c_str();
+  const FixedText<639> direct = battery_lock_path(*config_);
+  std::filesystem::create_symlink(folder_.file("ttyUSB0"), folder_.file("by-id"));
+  config_->battery.link.device = folder_.file("by-id").c_str();
+  EXPECT_EQ(battery_lock_path(*config_), direct.view());
 }
 
 struct ConfigMistake {
@@ -184,8 +171,7 @@ struct ConfigMistake {
   std::string codes;
 };
 
-TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
-  const TemporaryFolder folder;
+TEST_F(ConfigFile, EveryMistakeIsOneClearLineWithItsPlace) {
   const ConfigMistake mistakes[] = {
       {"control = true", "controll = true", 1, "controll"},
       {"control = true", "control = 1", 1, "control true false"},
@@ -235,79 +221,63 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;
     text.replace(at, mistake.before.size(), mistake.after);
-    const std::string path = folder.write("edge.toml", text);
-    EdgeConfig config;
-    std::string error;
-    EXPECT_FALSE(load_edge_config(path, config, error)) << mistake.after;
-    EXPECT_THAT(error, Names(mistake.codes)) << mistake.after;
-    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    EXPECT_FALSE(load(text)) << mistake.after;
+    EXPECT_THAT(error_, Names(mistake.codes)) << mistake.after;
+    EXPECT_EQ(error_.find('\n'), std::string::npos) << error_;
     if (mistake.line > 0) {
-      EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
+      EXPECT_THAT(error_, StartsWith(folder_.file("edge.toml:") + std::to_string(mistake.line)));
     }
   }
 }
 
-TEST(EdgeConfig, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
-  EXPECT_EQ(config.price.history.hours, 72);
-  EXPECT_TRUE(config.price.history.url.empty());
-  EXPECT_FALSE(config.price.level_start_centi_eur_per_mwh.has_value());
-  std::string text = valid_text();
-  text.insert(text.find("[guard]"),
-              "history_hours = 0\nhistory_url = \"http://127.0.0.1:1/past\"\n"
-              "level_start_eur_per_mwh = -12.5\n");
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.price.history.hours, 0);
-  EXPECT_EQ(config.price.history.url, "http://127.0.0.1:1/past");
-  EXPECT_EQ(config.price.level_start_centi_eur_per_mwh, -1'250);
+TEST_F(ConfigFile, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
+  ASSERT_TRUE(load(valid_text())) << error_;
+  EXPECT_EQ(config_->price.history.hours, 72);
+  EXPECT_TRUE(config_->price.history.url.empty());
+  EXPECT_FALSE(config_->price.level_start_centi_eur_per_mwh.has_value());
+  ASSERT_TRUE(load(with("[guard]",
+                        "history_hours = 0\nhistory_url = \"http://127.0.0.1:1/past\"\n"
+                        "level_start_eur_per_mwh = -12.5\n")))
+      << error_;
+  EXPECT_EQ(config_->price.history.hours, 0);
+  EXPECT_EQ(config_->price.history.url, "http://127.0.0.1:1/past");
+  EXPECT_EQ(config_->price.level_start_centi_eur_per_mwh, -1'250);
 }
 
-TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
-  const TemporaryFolder folder;
-  const std::string headers = folder.write("headers", "X-Api-Key: k\n");
+TEST_F(ConfigFile, ReadsTheKeysOfAnotherPriceServer) {
+  const std::string headers = folder_.write("headers", "X-Api-Key: k\n");
   ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
   std::string text = valid_text();
   text.replace(text.find("http://"), 7, "https://");  // secrets go over nothing else
   text.replace(
       text.find("[price]"), 7,
       "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"");
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.price.feed.http.headers, "X-Api-Key: k");
-  EXPECT_EQ(config.price.feed.http.ca_file, headers);  // relative to the configuration
-  EXPECT_EQ(config.price.feed.fields.rows, "data.rows");
+  ASSERT_TRUE(load(text)) << error_;
+  EXPECT_EQ(config_->price.feed.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config_->price.feed.http.ca_file, headers);  // relative to the configuration
+  EXPECT_EQ(config_->price.feed.fields.rows, "data.rows");
 }
 
-TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
-  const TemporaryFolder folder;
-  const std::string headers = folder.write("headers", "X-Api-Key: k\n");
+TEST_F(ConfigFile, ReadsWhereDayAheadPricesComeFrom) {
+  const std::string headers = folder_.write("headers", "X-Api-Key: k\n");
   ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
-  const auto load = [&](const std::string& keys, EdgeConfig& config, std::string& error) {
-    return load_edge_config(folder.write("edge.toml", valid_text() + "\n[outlook]\n" + keys),
-                            config, error);
+  const auto load_outlook = [&](const std::string& keys) {
+    return load(valid_text() + "\n[outlook]\n" + keys);
   };
-  EdgeConfig config;
-  std::string error;
   ASSERT_TRUE(
-      load("url = \"https://a.example/{today}\"\nheader_file = \"headers\"\n"
-           "ca_file = \"headers\"\nrows_field = \"r\"\ntime_field = \"t\"\n"
-           "price_field = \"p\"\n",
-           config, error))
-      << error;
-  EXPECT_EQ(config.outlook.http.url, "https://a.example/{today}");
-  EXPECT_EQ(config.outlook.http.headers, "X-Api-Key: k");
-  EXPECT_EQ(config.outlook.http.ca_file, headers);
-  EXPECT_EQ(config.outlook.fields.rows, "r");
-  EXPECT_EQ(config.outlook.fields.time, "t");
-  EXPECT_EQ(config.outlook.fields.price, "p");
-  EXPECT_EQ(day_ahead_offset_s(config), 0);  // in simulated time
-  EdgeConfig by_file;
-  ASSERT_TRUE(load("file = \"answer.json\"\n", by_file, error)) << error;
-  EXPECT_EQ(by_file.outlook.file, folder.file("answer.json"));
+      load_outlook("url = \"https://a.example/{today}\"\nheader_file = \"headers\"\n"
+                   "ca_file = \"headers\"\nrows_field = \"r\"\ntime_field = \"t\"\n"
+                   "price_field = \"p\"\n"))
+      << error_;
+  EXPECT_EQ(config_->outlook.http.url, "https://a.example/{today}");
+  EXPECT_EQ(config_->outlook.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config_->outlook.http.ca_file, headers);
+  EXPECT_EQ(config_->outlook.fields.rows, "r");
+  EXPECT_EQ(config_->outlook.fields.time, "t");
+  EXPECT_EQ(config_->outlook.fields.price, "p");
+  EXPECT_EQ(day_ahead_offset_s(*config_), 0);  // in simulated time
+  ASSERT_TRUE(load_outlook("file = \"answer.json\"\n")) << error_;
+  EXPECT_EQ(config_->outlook.file, folder_.file("answer.json"));
   const std::pair<const char*, const char*> mistakes[] = {
       {"file = \"a\"\nurl = \"https://a.example\"\n", "[outlook] file url"},
       {"url = \"http://a.example\"\n", "[outlook] url allow_http"},
@@ -315,52 +285,43 @@ TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
       {"minutes = 1\n", "minutes"},
   };
   for (const auto& [keys, message] : mistakes) {
-    EdgeConfig refused;
-    error.clear();
-    EXPECT_FALSE(load(keys, refused, error)) << keys;
-    EXPECT_THAT(error, Names(message));
+    EXPECT_FALSE(load_outlook(keys)) << keys;
+    EXPECT_THAT(error_, Names(message));
   }
 }
 
 /// Configurations of earlier versions still start; what they say is named as without effect.
-TEST(EdgeConfig, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
-  const TemporaryFolder folder;
+TEST_F(ConfigFile, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
   std::string text = valid_text();
   text.insert(text.find("[guard]") + 7, "\nhold_s = 10\norder_deadline_s = 5");
   text.insert(text.find("[price]") + 7, "\ntimeout_ms = 70\nresolve_every_s = 30");
   text += "\n[outlook]\nask_spread_s = 0\n[state]\nlock_folder = \"x\"\n";
-  EdgeConfig config;
-  std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.control.hold_s, 300);
-  EXPECT_EQ(config.price.feed.http.timeout_ms, 5'000);
+  ASSERT_TRUE(load(text)) << error_;
+  EXPECT_EQ(config_->control.hold_s, 300);
+  EXPECT_EQ(config_->price.feed.http.timeout_ms, 5'000);
   std::vector<std::string> named;
-  for (const RetiredKey& old : config.retired) named.emplace_back(old.key);
+  for (const RetiredKey& old : config_->retired) named.emplace_back(old.key);
   EXPECT_THAT(named,
               testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
                                             "resolve_every_s", "ask_spread_s", "lock_folder"));
-  EXPECT_THAT(keys_without_effect(config), testing::Contains(Names("[outlook] ask_spread_s")));
+  EXPECT_THAT(keys_without_effect(*config_), testing::Contains(Names("[outlook] ask_spread_s")));
   // It is no proposal for a key that is misspelt.
   text.replace(text.find("timeout_ms"), 10, "timeoutms ");
-  EdgeConfig refused;
-  EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), refused, error));
-  EXPECT_THAT(
-      error, testing::AllOf(Names("[price] timeoutms url"), testing::Not(HasSubstr("timeout_ms"))));
+  EXPECT_FALSE(load(text));
+  EXPECT_THAT(error_, testing::AllOf(Names("[price] timeoutms url"),
+                                     testing::Not(testing::HasSubstr("timeout_ms"))));
 }
 
 /// Of a thousand real machines; a simulated one asks at once.
-TEST(EdgeConfig, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
-  const TemporaryFolder folder;
+TEST_F(ConfigFile, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
   std::string text = valid_text();
   text.erase(text.find("[simulation]"));
   std::set<std::int32_t> seconds;
   for (int i = 0; i < 100; ++i) {
-    EdgeConfig config;
-    std::string error;
     const std::string state = "\n[state]\nfolder = \"state" + std::to_string(i) + "\"\n";
-    ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text + state), config, error)) << error;
-    const std::int32_t offset_s = day_ahead_offset_s(config);
-    EXPECT_EQ(offset_s, day_ahead_offset_s(config));
+    ASSERT_TRUE(load(text + state)) << error_;
+    const std::int32_t offset_s = day_ahead_offset_s(*config_);
+    EXPECT_EQ(offset_s, day_ahead_offset_s(*config_));
     EXPECT_GE(offset_s, 0);
     EXPECT_LT(offset_s, 120);
     seconds.insert(offset_s);
@@ -368,23 +329,12 @@ TEST(EdgeConfig, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
   EXPECT_GT(seconds.size(), 50U);
 }
 
-TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {
-  const TemporaryFolder folder;
-  EdgeConfig config;
-  std::string error;
-  EXPECT_TRUE(
-      load_edge_config(folder.write("edge.toml", "\xEF\xBB\xBF" + valid_text()), config, error))
-      << error;
-}
-
-TEST(EdgeConfig, MissingFileAndFolder) {
-  EdgeConfig config;
-  std::string error;
-  EXPECT_FALSE(load_edge_config("/nonexistent.toml", config, error));
-  EXPECT_THAT(error, Names("/nonexistent.toml"));
-  error.clear();
-  EXPECT_FALSE(load_edge_config("/tmp", config, error));
-  EXPECT_THAT(error, Names("/tmp"));
+TEST_F(ConfigFile, MissingFileAndFolder) {
+  EXPECT_FALSE(load_edge_config("/nonexistent.toml", *config_, error_));
+  EXPECT_THAT(error_, Names("/nonexistent.toml"));
+  error_.clear();
+  EXPECT_FALSE(load_edge_config("/tmp", *config_, error_));
+  EXPECT_THAT(error_, Names("/tmp"));
 }
 
 }  // namespace

@@ -82,13 +82,5 @@ TEST_F(PriceTransport, SecretsNeverGoOverPlainHttp) {
       << error_;
 }
 
-TEST_F(PriceTransport, AUrlWithoutAHostIsRefusedWithoutItsText) {
-  for (const char* url : {"ftp://127.0.0.1/", "https://me:s3/cret@a.example/", "127.0.0.1"}) {
-    EXPECT_FALSE(load("ca_file = \"headers\"\nurl = \"" + std::string(url) + "\"\n"));
-    EXPECT_THAT(error_,
-                AllOf(Names(path_ + ":5 [price] url http:// https://"), Not(HasSubstr("s3"))));
-  }
-}
-
 }  // namespace
 }  // namespace bess

@@ -40,10 +40,6 @@ class CommissionFile : public ::testing::Test {
   std::string error_;
 };
 
-TEST_F(CommissionFile, FitsTheConfigurationThatItWasMadeWith) {
-  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
-}
-
 TEST_F(CommissionFile, AnotherAddressIsAnotherBattery) {
   config_.battery.link.host = "192.168.1.20";
   EXPECT_THAT(complaint(), Names("commissioned.toml:6 battery \"127.0.0.1:502 unit 1\""));
@@ -56,11 +52,6 @@ TEST_F(CommissionFile, AnotherVariantOrMapMustBeCheckedAgain) {
   config_.battery.map.variant = "block";
   config_.battery.map.name = "other";
   EXPECT_THAT(complaint(), Names("map \"simulator\""));
-}
-
-TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
-  static_cast<void>(folder_.write("map.toml", "# version 2\n"));
-  EXPECT_THAT(complaint(), Names("map_crc32"));
 }
 
 TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
@@ -169,9 +160,13 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
 }
 
 TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
-  for (const char* place : kPlaces) static_cast<void>(folder_.write(place, "\0\0\0"));
-  EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
-  EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  std::string changed = text_;
+  changed[changed.find("2023-03-26")] = '3';
+  for (const std::string& broken : {std::string(3, '\0'), changed}) {
+    for (const char* place : kPlaces) static_cast<void>(folder_.write(place, broken));
+    EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
+    EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  }
 }
 
 TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
@@ -208,13 +203,6 @@ TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
   config_.state.folder.assign(folder_.file("elsewhere"));
   EXPECT_THAT(complaint(), Names("bess-edge commission --config --yes"));
-}
-
-TEST_F(CommissionFile, ATornFileIsNoProof) {
-  std::filesystem::remove(folder_.file("state/commissioned.copy"));
-  static_cast<void>(
-      folder_.write("state/commissioned.toml", "map = \"simulator\"\nvariant = \"bl"));
-  EXPECT_THAT(complaint(), Names("state/commissioned.toml"));
 }
 
 TEST_F(CommissionFile, AFolderThatCannotBeWrittenIsNamed) {

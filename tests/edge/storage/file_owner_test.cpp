@@ -58,34 +58,6 @@ TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
   }
 }
 
-/// A run as root, for a test, that was killed: the service's user may neither open what it left nor
-/// remove it.
-TEST_F(FileOwner, TheLockOfAKilledRootRunNamesTheCommandThatRemovesIt) {
-  const std::string path = folder_.file("bess-127.0.0.1_502_unit_85.lock");
-  ASSERT_EQ(chmod(folder_.file("").c_str(), 01777), 0);  // as /run/lock
-  const pid_t killed = fork();
-  if (killed == 0) {
-    InstanceLock lock;
-    _exit(lock.take(path.c_str(), "the battery", error_) ? 0 : 1);  // its file stays
-  }
-  int status = 0;
-  waitpid(killed, &status, 0);
-  ASSERT_EQ(status, 0);
-  const std::string said = folder_.write("said", "");
-  ASSERT_EQ(chmod(said.c_str(), 0666), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    if (setgid(kStranger) != 0 || setuid(kStranger) != 0) _exit(1);
-    InstanceLock lock;
-    if (lock.take(path.c_str(), "the battery", error_)) _exit(2);
-    std::ofstream(said) << error_.view();
-    _exit(0);
-  }
-  waitpid(child, &status, 0);
-  ASSERT_EQ(status, 0);
-  EXPECT_THAT(text_of_file(said), Names("pgrep -u root -x bess-edge sudo rm " + path));
-}
-
 /// Whoever may open a file can hold its lock, and so could keep the controller from starting.
 TEST_F(FileOwner, NobodyElseMayOpenTheLock) {
   const std::string path = folder_.write("lock", "");

@@ -22,15 +22,11 @@ struct ReadLimits {
       : status(LimitFile(path.c_str()).read(limit, is_set)) {}
 };
 
-TEST(LimitFile, NoFileIsNoLimit) {
+TEST(LimitFile, AGoodLineIsALimitAndNoFileIsNone) {
   const TemporaryFolder folder;
-  const ReadLimits reading(folder.file("limit"));
-  EXPECT_EQ(reading.status, Status::kOk);
-  EXPECT_FALSE(reading.is_set);
-}
-
-TEST(LimitFile, AGoodLineIsALimit) {
-  const TemporaryFolder folder;
+  const ReadLimits none(folder.file("limit"));
+  EXPECT_EQ(none.status, Status::kOk);
+  EXPECT_FALSE(none.is_set);
   const ReadLimits reading(folder.write("limit", "1500 any 2023-03-26T00:15:00Z\n"));
   EXPECT_EQ(reading.status, Status::kOk);
   EXPECT_TRUE(reading.is_set);
