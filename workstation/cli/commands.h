@@ -11,7 +11,6 @@ void add_prices_simulate(ProgramCommand& prices);
 void add_prices_reconstruct(ProgramCommand& prices);
 void add_prices_import(ProgramCommand& prices);
 void add_prices_fetch(ProgramCommand& prices);
-void add_prices_record(ProgramCommand& prices);
 void add_prices_stats(ProgramCommand& prices);
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);

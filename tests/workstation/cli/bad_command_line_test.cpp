@@ -40,7 +40,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices simulate", 2, "bess-train prices simulate --help"},
     {"prices import", 2, "bess-train prices import --help"},
     {"prices reconstruct", 2, "bess-train prices reconstruct --help"},
-    {"prices record", 2, "bess-train prices record --help"},
     {"prices stats", 2, "bess-train prices stats --help"},
     {"sweep task NONE", 2, "bess-train sweep task --help"},
     {"sweep task NONE 1", 1, "NONE bess-train sweep plan"},
@@ -95,9 +94,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices fetch --from 2023-02-01 --to 2023-01-01 --out OUT", 1, "--to"},
     {"prices fetch --from 2023-01-01 --to 2023-01-02 --out OUT --base-url elia.be", 1,
      "--base-url elia.be"},
-    {"prices record --out OUT --poll-s 1", 2, "--poll-s"},
-    {"prices record --out OUT --for soon", 1, "soon"},
-    {"prices record --out OUT --until 24:00", 1, "24:00"},
     // Files.
     {"run --out OUT --prices NONE", 1, "NONE"},
     {"run --out OUT --prices FOLDER", 1, "FOLDER"},
@@ -141,7 +137,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices import GOOD --out FOLDER", 1, "FOLDER"},
     {"prices reconstruct --quarter-hours NONE --out OUT", 1, "NONE"},
     {"prices stats NONE", 1, "NONE"},
-    {"prices record --out EMPTY", 1, "EMPTY"},
 };
 
 struct ConfigMistake {

@@ -44,16 +44,14 @@ CASES = [
     ("verify --student twice.json", 1, '"version" stands twice'),
     ("export --student twice.json --out new.h", 1, '"version" stands twice'),
     ("runs compare twice", 1, '"prices" stands twice'),
-    # Another end of lines, times that are over, addresses that are none.
+    # Another end of lines, addresses that are none.
     ("evaluate --policy rbc --prices cr.csv", 1, "its lines end in CR alone"),
     ("prices stats cr.csv", 1, "its lines end in CR alone"),
-    ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "is over; give an instant to come"),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
      '--base-url "http://" is not a web address'),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url "
      "http://127.0.0.1:99999/a", 1,
      "is not a web address"),
-    ("prices record --out new --for 1s --url http://:80/", 1, "is not a web address"),
     # Told before the work, and by name.
     ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1,
      "--policy nope: neither a file"),
