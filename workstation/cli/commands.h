@@ -22,7 +22,6 @@ void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
 void add_size_command(ProgramCommand& app);
 void add_impact_command(ProgramCommand& app);
-void add_delays_command(ProgramCommand& app);
 void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);
 void add_refresh_command(ProgramCommand& app);

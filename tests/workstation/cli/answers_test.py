@@ -139,16 +139,6 @@ class Answers(unittest.TestCase):
                          several[1]["carried_over"]["gain_eur_per_day_per_mwh"])
         day = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--date", "widest")[1]
         self.assertIsNone(day["gain_standard_error"])
-        self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular",
-                     "--carry-soc")
-        ramps = self.answers("delays", "--prices", "@market.csv", "--policy", "rbc",
-                             "--ramps", "0", "20", "--html", "@delays.html")
-        self.assertEqual([r["run_delay_min"] for r in ramps], [0, 1, 2, 3, 4, 5, 6] * 2)
-        self.assertEqual([r["ramp_percent_per_min"] for r in ramps], [0] * 7 + [20] * 7)
-        at_once, slowly = (ramps[i]["profit_eur_per_day_per_mwh"] for i in (0, 7))
-        self.assertLess(slowly, at_once)
-        with open(self.file("delays.html")) as page:
-            self.assertIn("ramp, % a minute", page.read())
         for name in ("evaluation.csv", "days.csv", "steps.csv"):
             self.table(self.file(name))
 

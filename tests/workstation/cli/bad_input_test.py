@@ -57,7 +57,6 @@ CASES = [
      "--policy nope: neither a file"),
     ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
      "scalar.toml: not a student file"),
-    ("delays --prices market.csv --policy rbc nope", 1, "--policy nope: neither a file"),
     ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW not above HIGH"),
     ("run --prices few.csv --out new", 1,
      "few.csv: no test days (local days 26 to the end); add some"),
