@@ -109,9 +109,13 @@ class BadInputs(unittest.TestCase):
                                         "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
-            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w,reason\n"
-                       "2026-06-01T00:00:00Z,5000,0,0,student\n"
-                       "2026-06-01T00:02:00Z,5000,0,0,student\n",
+            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w,reason,mode,price_minute_utc,"
+                       "price_centi_eur_per_mwh,price_age_s,student_action,battery_status,written,"
+                       "price_level_centi_q16,outlook,break_even_centi,price_stands_in,"
+                       "stand_in_centi\n"
+                       + "".join(f"2026-06-01T00:0{m}:00Z,5000,0,0,student,running,"
+                                 f"2026-06-01T00:0{m}:00Z,5000,2,idle,ok,1,327680000,none,0,0,0\n"
+                                 for m in (0, 2)),
             "steps.toml": "[battery]\ndelay_s = 2\n",
             "few.csv": head + "".join(rows[: 15 * 1440]),
             "hour.csv": head + "".join(rows[:60]),
