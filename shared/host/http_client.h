@@ -20,7 +20,6 @@ struct HttpOutcome {
     kUnreachable,  ///< no such host, nobody listens: worth few tries
     kRefused,      ///< anything that another try cannot mend
     kSlow,         ///< it came, and too slowly: worth few tries
-    kWrongClock,   ///< rows of the future: a caller's finding
     kInterrupted,  ///< the caller stopped it
   };
   Kind kind = Kind::kRefused;

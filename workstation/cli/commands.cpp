@@ -15,7 +15,6 @@ void add_commands(ProgramCommand& app) {
   add_backtest_command(app);
   add_size_command(app);
   add_impact_command(app);
-  add_delays_command(app);
   add_omega_sweep_command(app);
   add_export_command(app);
   add_report_command(app);

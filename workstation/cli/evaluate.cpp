@@ -75,21 +75,20 @@ struct Records {
 using Rows = std::vector<ComparisonRow>;
 
 Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows& rows,
-                     const Rows& carried, const std::string& first,
-                     const EvaluateArguments& options) {
+                     const Rows& carried, const EvaluateArguments& options) {
   Json json = answer("evaluation");
   json.set("policy", named.name);
   json.set("split", options.split);
   json.set("date", text_or_null(options.date));
   json.set(key::kCarrySoc, options.carry_soc);
-  add_figures(rows[index], first, json);
+  add_figures(rows[index], json);
   json.set("description", text_or_null(named.description));
   if (carried.empty()) {
     json.set(key::kCarriedOver, Json::null());
     return json;
   }
   Json other = Json::object({{key::kCarrySoc, true}});
-  add_figures(carried[index], first, other);
+  add_figures(carried[index], other);
   json.set(key::kCarriedOver, std::move(other));
   return json;
 }
@@ -100,10 +99,9 @@ void print_json(const std::vector<NamedEvaluation>& results, const NamedEvaluati
   const Rows reset = comparison_rows(results, &NamedEvaluation::day_reset, &foresight);
   const Rows carried = comparison_rows(results, &NamedEvaluation::carried_over, &foresight);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    fmt::print("{}\n",
-               evaluation_json(results[i], i, options.carry_soc ? carried : reset,
-                               options.carry_soc ? Rows{} : carried, results.front().name, options)
-                   .line());
+    fmt::print("{}\n", evaluation_json(results[i], i, options.carry_soc ? carried : reset,
+                                       options.carry_soc ? Rows{} : carried, options)
+                           .line());
   }
 }
 

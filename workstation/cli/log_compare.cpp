@@ -32,7 +32,7 @@ void print_json(const std::vector<NamedEvaluation>& all) {
     json.set("policy", all[i].name);
     json.set("paid_eur", Decimals{paid.paid_eur, 4});
     json.set("charge_eur", Decimals{paid.charge_eur, 4});
-    add_figures(rows[i], kThisBattery, json);
+    add_figures(rows[i], json);
     fmt::print("{}\n", json.line());
   }
 }

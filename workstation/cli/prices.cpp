@@ -10,7 +10,6 @@ void add_prices_commands(ProgramCommand& app) {
   add_prices_reconstruct(prices);
   add_prices_import(prices);
   add_prices_fetch(prices);
-  add_prices_record(prices);
   add_prices_stats(prices);
 }
 

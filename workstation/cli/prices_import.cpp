@@ -58,7 +58,7 @@ void add_prices_import(ProgramCommand& prices) {
   command
       .option("files", options->files,
               "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
-              "days of 'prices record', minute files, or CSV of your own; plain or .gz")
+              "minute files, or CSV of your own; plain or .gz")
       .required();
   command.flag("--day-ahead", options->day_ahead,
                "The files hold day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
@@ -77,10 +77,8 @@ void add_prices_import(ProgramCommand& prices) {
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
       "Of downloads, later files win where two have the same minute; minute files must agree there "
-      "(--accept overlap: later files win). Of a recorded day the first price of a minute counts, "
-      "the one that could be acted on. Semicolons with decimal commas are read too. ENTSO-E sends "
-      "a "
-      "ZIP archive: unzip it first. Your own CSV needs a header with a time and a price "
+      "(--accept overlap: later files win). Semicolons with decimal commas are read too. ENTSO-E "
+      "sends a ZIP archive: unzip it first. Your own CSV needs a header with a time and a price "
       "(datetime_utc,price_eur_mwh); commas, semicolons or tabs, and all else by the options.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
@@ -88,9 +86,7 @@ void add_prices_import(ProgramCommand& prices) {
       "  bess-train prices import 2023.csv.gz 2024.csv.gz --out both.csv.gz\n"
       "  bess-train prices import --day-ahead a44_2024.xml a44_2025.xml --out day_ahead.csv.gz\n"
       "  bess-train prices import own.csv --date-format dd/mm/yyyy --time-zone local --out "
-      "own.csv.gz"
-      "\n"
-      "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
+      "own.csv.gz");
   command.runs([options] { run_prices_import(*options); });
 }
 

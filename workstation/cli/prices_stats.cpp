@@ -7,7 +7,6 @@
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/market/feed/market_text.h"
-#include "workstation/market/feed/recorded_day.h"
 #include "workstation/market/series/day_ahead_plausibility.h"
 #include "workstation/market/series/judged_prices.h"
 #include "workstation/market/statistics/statistics_report.h"
@@ -66,9 +65,6 @@ void run_prices_stats(const PricesStatsArguments& options) {
   } else {
     fmt::print("{}", format_statistics_text(described.statistics, described.what));
   }
-  if (!options.json && is_recorded_csv(text)) {
-    fmt::print("{}", describe_lateness(lateness_of(parse_recorded_day(text, options.file))));
-  }
 }
 
 }  // namespace
@@ -79,8 +75,7 @@ void add_prices_stats(ProgramCommand& prices) {
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
   command
       .option("file", options->file,
-              "Minute file, day-ahead file, a download of Elia (CSV, JSON), or a recorded day; "
-              "plain or .gz")
+              "Minute file, day-ahead file, or a download of Elia (CSV, JSON); plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
   command.footer(

@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-constexpr int kObservationDelayMaxMin = 6;
+constexpr int kObservationDelayMaxMin = 5;
 constexpr int kTrainDayLast = 20;  // [SPEC 4]: 1-20 train, 21-25 validation, 26-end test
 constexpr int kValidationDayLast = 25;
 

@@ -20,31 +20,29 @@ namespace {
 
 constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark, &kIdle};
 
-/// A figure of a fleet, in CSV, JSON and on the page.
-struct Column {
-  const char* key;
-  const char* head;
-  int decimals;  ///< on the page
-  double (*value)(const ImpactRow& row);
-};
-
-constexpr Column kColumns[] = {
-    {"eur_per_mw_day", "EUR a MW and day", 1,
-     [](const ImpactRow& row) { return row.mean.eur_per_mw_day; }},
-    {"eur_per_mw_day_standard_error", "s.e. over seeds", 1,
-     [](const ImpactRow& row) { return row.standard_error; }},
-    {"overshoot_share", "Overshoot", 3,
-     [](const ImpactRow& row) { return row.mean.overshoot_share; }},
-    {"imbalance_mw", "Mean |SI|, MW", 1,
-     [](const ImpactRow& row) { return row.mean.imbalance_mw; }},
-    {"imbalance_alone_mw", "Without, MW", 1,
-     [](const ImpactRow& row) { return row.mean.imbalance_alone_mw; }},
-    {"switches_per_day", "Switches a day", 1,
-     [](const ImpactRow& row) { return row.mean.switches_per_day; }},
-};
-
 std::string formula_name(PriceFormula formula) {
   return std::string(kFormulaNames[static_cast<std::size_t>(formula)]);
+}
+
+Table table_of(const std::vector<ImpactRow>& rows) {
+  using R = ImpactRow;
+  static const std::vector<Column<R>> kColumns{
+      {{"formula", "", "", 0, "Formula"}, [](const R& r) { return formula_name(r.formula); }},
+      {{"fleet_mw", "", "", kAllDecimals, "MW"}, &R::fleet_mw},
+      {{"variant", "", "", 0, "Variant"}, &R::variant},
+      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR a MW and day"},
+       [](const R& r) { return r.mean.eur_per_mw_day; }},
+      {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds"}, &R::standard_error},
+      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot"},
+       [](const R& r) { return r.mean.overshoot_share; }},
+      {{"imbalance_mw", "", "{:.1f}", 4, "Mean |SI|, MW"},
+       [](const R& r) { return r.mean.imbalance_mw; }},
+      {{"imbalance_alone_mw", "", "{:.1f}", 4, "Without, MW"},
+       [](const R& r) { return r.mean.imbalance_alone_mw; }},
+      {{"switches_per_day", "", "{:.1f}", 4, "Switches a day"},
+       [](const R& r) { return r.mean.switches_per_day; }},
+  };
+  return {kColumns, rows};
 }
 
 const ImpactRow& row_at(const std::vector<ImpactRow>& rows, PriceFormula formula, double mw,
@@ -95,20 +93,6 @@ Json lines_chart(const std::string& id, const ImpactPlan& plan,
   return chart;
 }
 
-SortTable row_table(const std::vector<ImpactRow>& rows) {
-  SortTable table{"rows", "Every fleet", {"Formula", "MW", "Variant"}, {}};
-  for (const Column& column : kColumns) table.header.emplace_back(column.head);
-  for (const ImpactRow& row : rows) {
-    std::vector<Cell> cells{text_cell(formula_name(row.formula)), number_cell(row.fleet_mw, 0),
-                            text_cell(row.variant)};
-    for (const Column& column : kColumns) {
-      cells.push_back(number_cell(column.value(row), column.decimals));
-    }
-    table.rows.push_back(std::move(cells));
-  }
-  return table;
-}
-
 std::string with_error(const ImpactRow& row) {
   const std::string error =
       std::isnan(row.standard_error) ? "" : fmt::format(" ({:.0f})", row.standard_error);
@@ -152,35 +136,17 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
   return text + "overshoot, |SI| and switches: of the fleet as it is\n";
 }
 
-std::string impact_csv(const std::vector<ImpactRow>& rows) {
-  std::string text = "formula,fleet_mw,variant";
-  for (const Column& column : kColumns) text.append(",").append(column.key);
-  for (const ImpactRow& row : rows) {
-    text += fmt::format("\n{},{:g},{}", formula_name(row.formula), row.fleet_mw, row.variant);
-    for (const Column& column : kColumns) {
-      const double value = column.value(row);
-      text += std::isnan(value) ? "," : fmt::format(",{:.4f}", value);
-    }
-  }
-  return text + "\n";
-}
+std::string impact_csv(const std::vector<ImpactRow>& rows) { return table_of(rows).csv(); }
 
 Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
-  Json policies = Json::list(), list = Json::list();
+  Json policies = Json::list();
   for (const std::string& policy : plan.policies) policies.add(policy);
-  for (const ImpactRow& row : rows) {
-    Json fleet = Json::object({{"formula", formula_name(row.formula)},
-                               {"fleet_mw", row.fleet_mw},
-                               {"variant", row.variant}});
-    for (const Column& column : kColumns) fleet.set(column.key, Decimals{column.value(row), 4});
-    list.add(std::move(fleet));
-  }
   Json json = answer("impact");
   json.set("policies", std::move(policies));
   json.set("seeds", plan.seeds);
   json.set("train_days", plan.train_days);
   json.set("test_days", plan.test_days);
-  json.set("fleets", std::move(list));
+  json.set("fleets", table_of(rows).json());
   return json;
 }
 
@@ -220,7 +186,8 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
                        }),
            turning_points(plan, rows, formula) + ".");
   }
-  body += fmt::format("{}<script>\n{}</script>\n", sort_table_html(row_table(rows)),
+  body += fmt::format("{}<script>\n{}</script>\n",
+                      sort_table_html(sort_table("rows", "Every fleet", table_of(rows))),
                       page_file("sort.js"));
   write_file(folder / "impact.html",
              format_chart_page("A fleet that moves its own price", body, std::move(charts)));

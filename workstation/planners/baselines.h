@@ -21,7 +21,7 @@ inline constexpr const char* kProgramName = "sdp";          ///< what a teacher 
 enum BaselineUse : unsigned {
   kFitted = 1,           ///< on the training days
   kInRuns = 2,           ///< in the table of each run, as in that of the walk-forward's page
-  kUnlessToldOther = 4,  ///< what `delays` and `backtest` compare
+  kUnlessToldOther = 4,  ///< what `backtest` compares
   kNeedsDayAhead = 8     ///< plans on day-ahead prices, which must be given
 };
 

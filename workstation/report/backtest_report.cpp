@@ -25,40 +25,47 @@ namespace {
 constexpr const char* kAllMonths = "all";
 constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk};
 
-/// One policy in one month, or in all of them.
-struct Row {
-  std::string month;
-  std::size_t days;
-  double profit;
-  DayErrors errors;
-  PairedDifference gain;  ///< to the first policy; both 0 for itself
-  double cycles_per_day;
-  double at_reference_wear;  ///< of the same decisions
-};
+constexpr const char* kBacktestShownKeys =
+    "policy,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
+    "gain_eur_per_day_per_mwh,gain_standard_error,gain_standard_error_by_month,"
+    "profit_at_wear_10_eur_per_day_per_mwh,cycles_per_day,drawdown_eur_per_mwh";
+constexpr const char* kBacktestAnswerKeys =
+    "policy,days,profit_eur_per_day_per_mwh,profit_at_wear_10_eur_per_day_per_mwh,"
+    "profit_standard_error,profit_standard_error_by_month,gain_over,gain_eur_per_day_per_mwh,"
+    "gain_standard_error,gain_standard_error_by_month,cycles_per_day,drawdown_eur_per_mwh,"
+    "charge_price_eur_per_mwh,charge_value_eur_per_day_per_mwh";
+constexpr const char* kDayResetKeys =
+    "profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
+    "gain_eur_per_day_per_mwh,gain_standard_error,gain_standard_error_by_month";
+constexpr const char* kBacktestCsvKeys =
+    "month,policy,days,profit_eur_per_day_per_mwh,gain_eur_per_day_per_mwh,gain_standard_error,"
+    "profit_at_wear_10_eur_per_day_per_mwh,fitted_days,profit_standard_error,"
+    "profit_standard_error_by_month,gain_standard_error_by_month,cycles_per_day";
 
-Row make_row(const std::string& month, const Evaluation& e, const Evaluation& first) {
-  return {.month = month,
-          .days = e.days.size(),
-          .profit = e.profit_eur_per_day_per_mwh(),
-          .errors = e.errors(),
-          .gain = paired_difference(e, first),
-          .cycles_per_day = e.cycles_per_day(),
-          .at_reference_wear = e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
-}
-
-std::vector<Row> rows_of(const WalkForward& policy, const WalkForward& first) {
-  std::vector<Row> rows;
-  for (std::size_t m = 0; m < policy.months.size(); ++m) {
-    rows.push_back(make_row(policy.months[m], policy.by_month[m], first.by_month[m]));
+/// Gains are over the first policy; its own is 0.
+Table rows_of(const BacktestResults& results, Evaluation WalkForward::*days) {
+  const WalkForward& first = results.policies.front();
+  std::vector<ComparisonRow> rows;
+  for (const WalkForward& policy : results.policies) {
+    rows.push_back(comparison_row(policy.name, policy.*days, &(first.*days)));
+    rows.back().gain_over = first.name;
   }
-  rows.push_back(make_row(kAllMonths, policy.total, first.total));
-  return rows;
+  return figures_table(rows);
 }
 
-std::size_t name_width(const BacktestResults& results) {
-  std::size_t width = std::string("policy").size();
-  for (const WalkForward& policy : results.policies) width = std::max(width, policy.name.size());
-  return width;
+/// All months.
+Table total_table(const BacktestResults& results) {
+  Table table = rows_of(results, &WalkForward::total);
+  table.add<WalkForward>({{"drawdown_eur_per_mwh", "drawdown", "{:.0f}", 2, "Drawdown"},
+                          &WalkForward::drawdown_eur_per_mwh},
+                         results.policies);
+  return table;
+}
+
+/// The same days, each from the same SoC; empty unless that was asked for.
+Table day_reset_table(const BacktestResults& results) {
+  if (results.policies.front().day_reset.days.empty()) return {};
+  return rows_of(results, &WalkForward::day_reset);
 }
 
 /// "the 90 to 120 days before it, of 120 that were asked for": a fold takes what is there.
@@ -140,69 +147,32 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   return chart;
 }
 
-HtmlTable total_table(const BacktestResults& results) {
-  HtmlTable table;
-  table.caption = "EUR per day per MWh of capacity, all traded days";
-  table.header = {"Policy",   "Profit",        "s.e. over days", "By month",     "Gain",
-                  "Its s.e.", "Gain by month", "At wear 10",     "Cycles a day", "Drawdown"};
+/// Profit by month, and the gain over the first; below it, on how many days it was fitted.
+Table month_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
-  const std::string nothing = "\u2013";
-  for (const WalkForward& policy : results.policies) {
-    const Row row = rows_of(policy, first).back();
-    const PairedDifference& gain = row.gain;
-    const bool is_first = &policy == &first;
-    table.rows.push_back(
-        {policy.name, fmt::format("{:.1f}", row.profit), error_text(row.errors.plain, 1, nothing),
-         error_text(row.errors.by_month, 1, nothing),
-         is_first ? nothing : fmt::format("{:+.1f}", gain.mean),
-         is_first ? nothing : error_text(gain.standard_error, 1, nothing),
-         is_first ? nothing : error_text(gain.standard_error_by_month, 1, nothing),
-         fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.cycles_per_day),
-         fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
-  }
-  return table;
-}
-
-/// The same days, each from the same SoC; empty unless that was asked for.
-std::string day_reset_html(const BacktestResults& results) {
-  const Evaluation& first = results.policies.front().day_reset;
-  if (first.days.empty()) return {};
-  HtmlTable table;
-  table.caption = "EUR per day per MWh, each day from the same SoC, its end given away";
-  table.header = {"Policy", "Profit",   "s.e. over days", "By month",
-                  "Gain",   "Its s.e.", "Gain by month"};
-  for (const WalkForward& policy : results.policies) {
-    const DayErrors errors = policy.day_reset.errors();
-    const PairedDifference gain = paired_difference(policy.day_reset, first);
-    table.rows.push_back({policy.name,
-                          fmt::format("{:.1f}", policy.day_reset.profit_eur_per_day_per_mwh()),
-                          error_text(errors.plain, 1), error_text(errors.by_month, 1),
-                          fmt::format("{:+.1f}", gain.mean), error_text(gain.standard_error, 1),
-                          error_text(gain.standard_error_by_month, 1)});
-  }
-  return format_table(table);
-}
-
-HtmlTable month_table(const BacktestResults& results) {
-  const WalkForward& first = results.policies.front();
-  HtmlTable table;
-  table.caption = fmt::format("Profit by month, and the gain over {}", first.name);
-  table.header = {"Policy"};
-  for (const std::string& month : first.months) table.header.push_back(month);
-  for (const WalkForward& policy : results.policies) {
-    std::vector<std::string> cells{policy.name};
-    for (const Row& row : rows_of(policy, first)) {
-      if (row.month == kAllMonths) continue;
-      const std::string gain =
-          &policy == &first ? std::string() : fmt::format(" ({:+.0f})", row.gain.mean);
-      cells.push_back(fmt::format("{:.0f}{}", row.profit, gain));
+  Table table;
+  std::vector<std::string> cells;
+  for (const WalkForward& policy : results.policies) cells.push_back(policy.name);
+  cells.emplace_back("fitted on days");
+  table.add<std::string>({{"", "policy", "", 0, "Policy"}, std::identity{}}, cells);
+  for (std::size_t m = 0; m < first.months.size(); ++m) {
+    cells.clear();
+    for (const WalkForward& policy : results.policies) {
+      const Evaluation& month = policy.by_month[m];
+      cells.push_back(fmt::format("{:.0f} ({:+.0f})", month.profit_eur_per_day_per_mwh(),
+                                  paired_difference(month, first.by_month[m]).mean));
     }
-    table.rows.push_back(std::move(cells));
+    cells.push_back(fmt::format("{}", results.fitted_days[m]));
+    table.add<std::string>({{"", first.months[m], "", 0, first.months[m]}, std::identity{}}, cells);
   }
-  std::vector<std::string> fitted{"fitted on days"};
-  for (const std::size_t days : results.fitted_days) fitted.push_back(fmt::format("{}", days));
-  table.rows.push_back(std::move(fitted));
   return table;
+}
+
+std::string day_reset_html(const BacktestResults& results) {
+  const Table table = day_reset_table(results);
+  if (table.size() == 0) return {};
+  return format_table("EUR per day per MWh, each day from the same SoC, its end given away",
+                      table.only(std::string("policy,") + kDayResetKeys));
 }
 
 /// What is to be known of single months: those that cross, those that are not traded.
@@ -218,95 +188,26 @@ std::string months_html(const BacktestResults& results) {
   return text.empty() ? text : fmt::format("<ul class=\"note\">\n{}</ul>\n", text);
 }
 
-/// The same days, each from the same SoC; null unless that was asked for.
-Json day_reset_json(const WalkForward& policy, const WalkForward& first) {
-  if (policy.day_reset.days.empty()) return Json::null();
-  const DayErrors errors = policy.day_reset.errors();
-  const PairedDifference gain = paired_difference(policy.day_reset, first.day_reset);
-  return Json::object({{key::kProfit, Decimals{policy.day_reset.profit_eur_per_day_per_mwh(), 4}},
-                       {key::kProfitError, Decimals{errors.plain, 4}},
-                       {key::kProfitErrorByMonth, Decimals{errors.by_month, 4}},
-                       {key::kGain, Decimals{gain.mean, 4}},
-                       {key::kGainError, Decimals{gain.standard_error, 4}},
-                       {key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4}}});
-}
-
-Json policy_json(const WalkForward& policy, const WalkForward& first) {
-  const Row row = rows_of(policy, first).back();
-  Json json = Json::object({{"policy", policy.name},
-                            {"days", row.days},
-                            {"months", policy.months.size()},
-                            {key::kProfit, Decimals{row.profit, 4}},
-                            {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
-                            {key::kProfitError, Decimals{row.errors.plain, 4}},
-                            {key::kProfitErrorByMonth, Decimals{row.errors.by_month, 4}},
-                            {key::kGainOver, first.name},
-                            {key::kGain, Decimals{row.gain.mean, 4}},
-                            {key::kGainError, Decimals{row.gain.standard_error, 4}},
-                            {key::kGainErrorByMonth, Decimals{row.gain.standard_error_by_month, 4}},
-                            {"cycles_per_day", Decimals{row.cycles_per_day, 4}},
-                            {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}});
-  add_charge_left(policy.total.charge_left(), json);
-  json.set("day_reset", day_reset_json(policy, first));
-  return json;
-}
-
-/// The same days, each from the same SoC; empty unless that was asked for.
-std::string day_reset_table(const BacktestResults& results, std::size_t width) {
-  const Evaluation& first = results.policies.front().day_reset;
-  if (first.days.empty()) return {};
-  std::string text = fmt::format(
-      "\nEach day starts at the same SoC and its end is given away\n"
-      "{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
-      "policy", width, "profit", "s.e.", "by month", "gain", "s.e.", "by month");
-  for (const WalkForward& policy : results.policies) {
-    const DayErrors errors = policy.day_reset.errors();
-    const PairedDifference gain = paired_difference(policy.day_reset, first);
-    text +=
-        fmt::format("{:<{}}  {:>8.1f} {:>6} {:>8}  {:>+8.1f} {:>6} {:>8}\n", policy.name, width,
-                    policy.day_reset.profit_eur_per_day_per_mwh(), error_text(errors.plain, 1),
-                    error_text(errors.by_month, 1), gain.mean, error_text(gain.standard_error, 1),
-                    error_text(gain.standard_error_by_month, 1));
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string format_backtest_table(const BacktestResults& results) {
-  const std::size_t width = name_width(results);
   const WalkForward& first = results.policies.front();
   std::string text = fmt::format(
       "{} months, {} days, each month by what was fitted on {}; SoC carried over;\nEUR per day per "
-      "MWh of capacity\n{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}  {:>10}  {:>8}  {:>8}\n",
-      first.months.size(), first.total.days.size(), window_text(results), "policy", width, "profit",
-      "s.e.", "by month", "gain", "s.e.", "by month", wear_column(), "cycles", "drawdown");
-  for (const WalkForward& policy : results.policies) {
-    const Row row = rows_of(policy, first).back();
-    text += fmt::format(
-        "{:<{}}  {:>8.1f} {:>6} {:>8}  {:>+8.1f} {:>6} {:>8}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
-        policy.name, width, row.profit, error_text(row.errors.plain, 1),
-        error_text(row.errors.by_month, 1), row.gain.mean, error_text(row.gain.standard_error, 1),
-        error_text(row.gain.standard_error_by_month, 1), row.at_reference_wear, row.cycles_per_day,
-        policy.drawdown_eur_per_mwh());
+      "MWh of capacity\n{}",
+      first.months.size(), first.total.days.size(), window_text(results),
+      total_table(results).only(kBacktestShownKeys).text());
+  if (const Table reset = day_reset_table(results); reset.size() > 0) {
+    text += "\nEach day starts at the same SoC and its end is given away\n" +
+            reset.only(std::string("policy,") + kDayResetKeys).text();
   }
-  text += day_reset_table(results, width);
-  text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
-  for (const std::string& month : first.months) text += fmt::format("  {:>8}", month);
-  text += "\n";
-  for (const WalkForward& policy : results.policies) {
-    text += fmt::format("{:<{}}", policy.name, width);
-    for (const Evaluation& month : policy.by_month) {
-      text += fmt::format("  {:>8.1f}", month.profit_eur_per_day_per_mwh());
-    }
-    text += "\n";
-  }
+  text += fmt::format("\nprofit by month (gain)\n{}", month_table(results).text());
   text += fmt::format(
       "\ngain: day-by-day difference to {}; by month: {}\n{}\n{}: {}\n"
       "cycles: equivalent full cycles a day; drawdown: deepest fall from the end of a "
       "day to that\nof a later one, EUR per MWh\n",
       first.name, by_month_meaning(first.total.errors().months),
-      charge_left_meaning(first.total.charge_price_eur_per_mwh), wear_column(),
+      charge_left_meaning(first.total.charge_price_eur_per_mwh), kReferenceWearHead,
       reference_wear_meaning(first.total.wear_eur_per_mwh));
   for (const std::string& line : crossing_lines(results)) text += line + "\n";
   for (const SkippedMonth& month : results.skipped) {
@@ -316,25 +217,24 @@ std::string format_backtest_table(const BacktestResults& results) {
 }
 
 std::string backtest_csv(const BacktestResults& results) {
-  std::string text =
-      "month,policy,days,profit_eur_per_day_per_mwh,gain_eur_per_day_per_mwh,"
-      "gain_standard_error,profit_at_wear_10_eur_per_day_per_mwh,fitted_days,"
-      "profit_standard_error,profit_standard_error_by_month,gain_standard_error_by_month,"
-      "cycles_per_day\n";
+  const WalkForward& first = results.policies.front();
+  std::vector<ComparisonRow> rows;
+  std::vector<std::string> months;
+  std::vector<double> fitted;
   for (const WalkForward& policy : results.policies) {
-    std::size_t month = 0;
-    for (const Row& row : rows_of(policy, results.policies.front())) {
-      const std::string fitted =
-          row.month == kAllMonths ? "" : fmt::format("{}", results.fitted_days[month++]);
-      text +=
-          fmt::format("{},{},{},{:.4f},{:.4f},{},{:.4f},{},{},{},{},{:.4f}\n", row.month,
-                      csv_field(policy.name), row.days, row.profit, row.gain.mean,
-                      error_text(row.gain.standard_error, 4, ""), row.at_reference_wear, fitted,
-                      error_text(row.errors.plain, 4, ""), error_text(row.errors.by_month, 4, ""),
-                      error_text(row.gain.standard_error_by_month, 4, ""), row.cycles_per_day);
+    for (std::size_t m = 0; m < policy.months.size(); ++m) {
+      rows.push_back(comparison_row(policy.name, policy.by_month[m], &first.by_month[m]));
+      months.push_back(policy.months[m]);
+      fitted.push_back(static_cast<double>(results.fitted_days[m]));
     }
+    rows.push_back(comparison_row(policy.name, policy.total, &first.total));
+    months.emplace_back(kAllMonths);
+    fitted.push_back(NAN);
   }
-  return text;
+  Table table = figures_table(rows);
+  table.add<std::string>({{"month"}, std::identity{}}, months);
+  table.add<double>({{"fitted_days"}, std::identity{}}, fitted);
+  return table.only(kBacktestCsvKeys).csv();
 }
 
 std::string backtest_days_csv(const BacktestResults& results) {
@@ -350,8 +250,15 @@ std::string backtest_days_csv(const BacktestResults& results) {
 
 Json backtest_json(const BacktestResults& results) {
   Json policies = Json::list();
-  for (const WalkForward& policy : results.policies) {
-    policies.add(policy_json(policy, results.policies.front()));
+  const Table total = total_table(results).only(kBacktestAnswerKeys);
+  const Table reset = day_reset_table(results);
+  for (std::size_t p = 0; p < results.policies.size(); ++p) {
+    Json policy = Json::object({{"months", results.policies[p].months.size()}});
+    total.add_row(p, policy);
+    Json day_reset = reset.size() == 0 ? Json::null() : Json::object();
+    if (reset.size() > 0) reset.only(kDayResetKeys).add_row(p, day_reset);
+    policy.set("day_reset", std::move(day_reset));
+    policies.add(std::move(policy));
   }
   Json json = answer("backtest");
   json.set("window_days", results.window_days);
@@ -398,12 +305,16 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       "EUR per MWh.</p>\n<figure>\n<h2>Profit month after month, EUR per MWh</h2>\n{}"
       "<figcaption>{} {}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance),
-      format_table(total_table(results)) + day_reset_html(results), html_escaped(first.name),
-      html_escaped(by_month_meaning(first.total.errors().months)),
+      format_table("EUR per day per MWh of capacity, all traded days",
+                   total_table(results).only(kBacktestShownKeys)) +
+          day_reset_html(results),
+      html_escaped(first.name), html_escaped(by_month_meaning(first.total.errors().months)),
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
       html_escaped(with_true_minus(chart_caption(results))), csv_link("backtest_days.csv"),
-      format_table(month_table(results)), months_html(results));
+      format_table(fmt::format("Profit by month, and the gain over {}", first.name),
+                   month_table(results)),
+      months_html(results));
   write_file(folder / "backtest.html",
              format_chart_page("Walk-forward backtest", body, std::move(charts)));
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/host/json.h"
+#include "workstation/base/table.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/planners/baselines.h"
 
@@ -28,12 +28,14 @@ inline constexpr const char* kReferenceWearKey = "profit_at_wear_10_eur_per_day_
 /// One line of a table. Money in EUR per day per MWh of capacity.
 struct ComparisonRow {
   std::string name;
+  bool carry_soc;
   std::size_t days;
   double profit;
   DayErrors errors;                            ///< of the profit
   ChargeLeft charge_left;                      ///< of the profit
   double profit_at_reference_wear;             ///< of the same decisions
   std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
+  std::string gain_over{};                     ///< whose the difference is to
   double worst_day;
   double cycles_per_day;
   double switches_per_day;
@@ -50,10 +52,14 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
                                            EvaluationField field,
                                            const NamedEvaluation* given = nullptr);
 
-/// What the charge left is valued at, and what it comes to: null where it is not valued.
-void add_charge_left(const ChargeLeft& charge, Json& json);
-/// The figures of `row`, which answers share (base/answer.h); gains are over `first`.
-void add_figures(const ComparisonRow& row, const std::string& first, Json& json);
+/// The row of one evaluation; `first` null: without a gain.
+ComparisonRow comparison_row(const std::string& name, const Evaluation& evaluation,
+                             const Evaluation* first, const Evaluation* foresight = nullptr);
+
+/// Every figure of the rows; its keys are those that answers and tables share (base/answer.h).
+Table figures_table(const std::vector<ComparisonRow>& rows);
+/// The figures of `row` that every answer has.
+void add_figures(const ComparisonRow& row, Json& json);
 
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
@@ -67,8 +73,8 @@ std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations);
 /// In how many months the days of these lie; all have the same.
 int months_of(const std::vector<NamedEvaluation>& evaluations);
 
-/// "at wear 10", the head of its column.
-std::string wear_column();
+/// The head of its column.
+inline constexpr const char* kReferenceWearHead = "at wear 10";
 /// What the profit at the reference wear is, for people, where `wear_eur_per_mwh` is configured.
 std::string reference_wear_meaning(double wear_eur_per_mwh);
 /// The wear that the profits of these are net of.

@@ -198,7 +198,9 @@ Json headline_json(const Headline& headline) {
                             {key::kProfit, Decimals{headline.profit, 4}},
                             {key::kProfitError, Decimals{headline.errors.plain, 4}},
                             {key::kProfitErrorByMonth, Decimals{headline.errors.by_month, 4}}});
-  add_charge_left(headline.charge_left, json);
+  json.set("charge_price_eur_per_mwh", Decimals{headline.charge_left.price_eur_per_mwh, 4});
+  json.set("charge_value_eur_per_day_per_mwh",
+           Decimals{headline.charge_left.value_eur_per_day_per_mwh, 4});
   json.set("profit_from_same_soc_eur_per_day_per_mwh",
            Decimals{headline.reset_profit.value_or(std::nan("")), 4});
   return json;

@@ -20,33 +20,10 @@ std::string text_or_dash(bool present, const std::string& text) {
   return present ? text : kNotThere;
 }
 
-std::vector<std::string> comparison_cells(const ComparisonRow& row) {
-  const PairedDifference d = row.difference.value_or(PairedDifference{0, std::nan("")});
-  return {row.name,
-          fmt::format("{:.1f}", row.profit),
-          error_text(row.errors.plain, 1, kNotThere),
-          error_text(row.errors.by_month, 1, kNotThere),
-          text_or_dash(row.difference.has_value(), fmt::format("{:+.1f}", d.mean)),
-          error_text(d.standard_error, 1, kNotThere),
-          error_text(d.standard_error_by_month, 1, kNotThere),
-          fmt::format("{:.1f}", row.worst_day),
-          fmt::format("{:.2f}", row.cycles_per_day),
-          fmt::format("{:.1f}", row.switches_per_day),
-          text_or_dash(row.foresight_share.has_value(),
-                       fmt::format("{:.1f}", 100 * row.foresight_share.value_or(0))),
-          fmt::format("{:.1f}", row.profit_at_reference_wear)};
-}
-
 std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
   std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
-  HtmlTable table{fmt::format("{}, {} days", caption, rows.front().days),
-                  {"Policy", "EUR/day/MWh", "s.e.", "By month", "Gain", "Its s.e.", "Gain by month",
-                   "Worst day", "Cycles/day", "Switches/day", "% of foresight",
-                   fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
-                  {}};
-  for (const ComparisonRow& row : rows) table.rows.push_back(comparison_cells(row));
-  return format_table(table);
+  return format_table(fmt::format("{}, {} days", caption, rows.front().days), figures_table(rows));
 }
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
@@ -82,23 +59,6 @@ std::string rules_table(const Certificate* uncorrected, const Certificate& corre
                           text_or_dash(is_bound, grouped(after[d].states)),
                           d < before.size() ? percent_broken(before[d]) : kNotThere,
                           text_or_dash(is_bound, grouped(after[d].violations))});
-  }
-  return format_table(table);
-}
-
-std::string rule_prices_table(const RulePrices& prices) {
-  HtmlTable table{
-      "What they change",
-      {"Of what the plain student earns", "No wear", fmt::format("Wear {:g}", kHeadlineWears[1])},
-      {}};
-  const auto add = [&table](const std::string& name, const HeadlineGain& gain) {
-    std::vector<std::string> cells{name};
-    for (const PairedDifference& d : gain.difference) cells.push_back(difference_text(d));
-    table.rows.push_back(std::move(cells));
-  };
-  for (const HeadlineGain& rule : prices.rules) add(rule.meaning + ", alone", rule);
-  for (const HeadlineGain* part : {&prices.together, &prices.correction, &prices.total}) {
-    add(part->meaning, *part);
   }
   return format_table(table);
 }
@@ -159,7 +119,7 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
   std::string note = fmt::format("The plain student is looked at in part, the {} everywhere.",
                                  own_student_name(*corrected));
   if (prices != nullptr) {
-    text += rule_prices_table(*prices);
+    text += format_table("What they change", rule_prices_table(*prices));
     note += fmt::format(
         " Money in EUR per day per MWh of capacity, \u00b1 standard error, the charge carried "
         "over. "

@@ -9,14 +9,12 @@ namespace {
 
 constexpr std::string_view kUnder = "plain student under ";
 
-std::string price_line(const std::string& name, const HeadlineGain& gain) {
-  std::string line = fmt::format("  {:<44}", name);
-  for (const PairedDifference& d : gain.difference) {
-    line += fmt::format("  {:>+8.1f} {:>6} {:>8}", d.mean, error_text(d.standard_error, 1),
-                        error_text(d.standard_error_by_month, 1));
-  }
-  return line + "\n";
-}
+/// A rule alone, all together, the correction or both.
+struct Part {
+  const char* kind;
+  const HeadlineGain* gain;
+  [[nodiscard]] bool is_rule() const { return kind == std::string_view("rule"); }
+};
 
 }  // namespace
 
@@ -53,40 +51,42 @@ std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& eva
   return prices;
 }
 
-std::string rule_prices_text(const RulePrices& prices) {
-  std::string text = fmt::format(
-      "What the rules change, in EUR per day per MWh of capacity: the plain student's decisions "
-      "moved to the\nnearest that they leave; what is left between that and the {} is {}\n"
-      "  {:<44}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
-      prices.student, prices.correction.meaning, "", "wear 0", "s.e.", "by month",
-      fmt::format("wear {:g}", kHeadlineWears[1]), "s.e.", "by month");
-  for (const HeadlineGain& rule : prices.rules) {
-    text += price_line(fmt::format("rule \"{}\" alone", rule.meaning), rule);
+Table rule_prices_table(const RulePrices& prices) {
+  using P = Part;
+  std::vector<P> parts;
+  for (const HeadlineGain& rule : prices.rules) parts.push_back({"rule", &rule});
+  parts.push_back({"all rules", &prices.together});
+  parts.push_back({"correction", &prices.correction});
+  parts.push_back({"both", &prices.total});
+  Table table{{Column<P>{{"part"}, &P::kind},
+               {{"rule"}, [](const P& p) { return p.is_rule() ? p.gain->meaning : ""; }},
+               {{"", "of what the plain student earns", "", 0, "Of what the plain student earns"},
+                [](const P& p) { return p.gain->meaning + (p.is_rule() ? ", alone" : ""); }}},
+              parts};
+  for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
+    const std::string key = fmt::format("at_wear_{:g}", kHeadlineWears[w]);
+    const std::string wear = fmt::format("wear {:g}", kHeadlineWears[w]);
+    table.add<P>({{key + "_eur_per_day_per_mwh", wear, "{:+.1f}", 4},
+                  [w](const P& p) { return p.gain->difference[w].mean; }},
+                 parts);
+    table.add<P>({{key + "_standard_error", "s.e.", "{:.1f}", 4},
+                  [w](const P& p) { return p.gain->difference[w].standard_error; }},
+                 parts);
+    table.add<P>({{key + "_standard_error_by_month", "by month", "{:.1f}", 4},
+                  [w](const P& p) { return p.gain->difference[w].standard_error_by_month; }},
+                 parts);
+    table.add<P>({{"", "", "", 0, "W" + wear.substr(1)},
+                  [w](const P& p) { return difference_text(p.gain->difference[w]); }},
+                 parts);
   }
-  return text + price_line("all rules together", prices.together) +
-         price_line(prices.correction.meaning, prices.correction) +
-         price_line("both", prices.total);
+  return table;
 }
 
-Json rule_prices_json(const RulePrices& prices) {
-  Json list = Json::list();
-  const auto add = [&](const char* part, const HeadlineGain& gain) {
-    Json json = Json::object({{"part", part}});
-    json.set("rule", part == std::string_view("rule") ? Json(gain.meaning) : Json::null());
-    for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
-      const std::string key = fmt::format("at_wear_{:g}", kHeadlineWears[w]);
-      json.set((key + "_eur_per_day_per_mwh").c_str(), Decimals{gain.difference[w].mean, 4});
-      json.set((key + "_standard_error").c_str(), Decimals{gain.difference[w].standard_error, 4});
-      json.set((key + "_standard_error_by_month").c_str(),
-               Decimals{gain.difference[w].standard_error_by_month, 4});
-    }
-    list.add(std::move(json));
-  };
-  for (const HeadlineGain& rule : prices.rules) add("rule", rule);
-  add("all rules", prices.together);
-  add("correction", prices.correction);
-  add("both", prices.total);
-  return list;
+std::string rule_prices_text(const RulePrices& prices) {
+  return fmt::format(
+      "What the rules change, in EUR per day per MWh of capacity: the plain student's decisions "
+      "moved to the\nnearest that they leave; what is left between that and the {} is {}\n{}",
+      prices.student, prices.correction.meaning, rule_prices_table(prices).text());
 }
 
 }  // namespace bess

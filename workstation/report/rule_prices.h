@@ -37,7 +37,7 @@ std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& eva
 
 /// Lines for the terminal.
 std::string rule_prices_text(const RulePrices& prices);
-/// A list of objects: "part" and the difference at each of kHeadlineWears with its standard error.
-Json rule_prices_json(const RulePrices& prices);
+/// A row a part: the difference at each of kHeadlineWears with its standard error.
+Table rule_prices_table(const RulePrices& prices);
 
 }  // namespace bess

@@ -20,10 +20,6 @@
 namespace bess {
 namespace {
 
-constexpr std::string_view kCarried = "carried";
-constexpr std::pair<const char*, EvaluationField> kWays[] = {
-    {"reset", &NamedEvaluation::day_reset}, {kCarried.data(), &NamedEvaluation::carried_over}};
-
 const NamedEvaluation& exported(const RunSummary& run) {
   const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
   if (found == run.evaluations.end()) {
@@ -33,9 +29,9 @@ const NamedEvaluation& exported(const RunSummary& run) {
   return *found;
 }
 
-Json row_json(const ComparisonRow& row, const std::string& first, const char* soc) {
-  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, soc == kCarried}});
-  add_figures(row, first, json);
+Json row_json(const ComparisonRow& row) {
+  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, row.carry_soc}});
+  add_figures(row, json);
   return json;
 }
 
@@ -176,16 +172,16 @@ Json summary_json(const RunSummary& run) {
   json.set("violations_corrected", figures.violations_corrected);
   json.set("demands", demands_json(figures.demands));
   const auto prices = rule_prices_of(run.evaluations);
-  json.set("price_of_correction", prices ? rule_prices_json(*prices) : Json::null());
+  json.set("price_of_correction", prices ? rule_prices_table(*prices).json() : Json::null());
   const auto headline = headline_of(run.evaluations);
   json.set("headline", headline ? headline_json(*headline) : Json::null());
   json.set("judged_days", judged_days_json(judged_days_of(run)));
   const WalkForwardOfRun walk = walk_forward_of(run.folder, record);
   json.set("walk_forward", walk.figure ? walk_forward_json(*walk.figure) : Json::null());
   Json policies = Json::list();
-  for (const auto& [soc, field] : kWays) {
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
     for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
-      policies.add(row_json(row, run.evaluations.front().name, soc));
+      policies.add(row_json(row));
     }
   }
   json.set("policies", std::move(policies));
@@ -199,7 +195,7 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
       "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
       "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
       kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
-      "s.e.", "by month", wear_column(), "foresight", "reset", "weights");
+      "s.e.", "by month", kReferenceWearHead, "foresight", "reset", "weights");
   const Evaluation& first = exported(runs.front()).carried_over;
   for (const RunSummary& run : runs) {
     const NamedEvaluation& student = exported(run);

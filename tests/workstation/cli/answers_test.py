@@ -6,17 +6,13 @@ answers_test.py PROGRAM --full   and those that prove or distil a student: every
 """
 
 import csv
-import datetime
-import http.server
 import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
-import urllib.parse
 
 import jsonschema  # Debian's python3-jsonschema: tools/setup --test
 
@@ -26,34 +22,6 @@ SLOW_ANSWERS = {"proof", "omega", "run"}
 SLOW_COMMANDS = {"verify", "omega-sweep", "run", "runs compare"}
 SLOW_TABLES = {"evaluation_days.csv", "omega_sweep.csv", "proof_rounds.csv", "violations.csv",
                "student_checkpoints.csv", "lost_days.csv", "lost_causes.csv", "lost_hours.csv"}
-
-
-class Minutes(http.server.BaseHTTPRequestHandler):
-    """The live minutes of Elia: the last five that are over."""
-
-    def do_GET(self):
-        dataset = self.path.split("/datasets/")[1].split("/")[0]
-        query = urllib.parse.parse_qs(urllib.parse.urlparse(self.path).query)
-        now = datetime.datetime.now(datetime.timezone.utc).replace(second=0, microsecond=0)
-        rows = [] if query.get("offset",
-                               ["0"])[0] != "0" else [self.row(dataset, now, m)
-                                                      for m in range(2, 7)]
-        body = json.dumps({"total_count": 5, "results": rows}).encode()
-        self.send_response(200)
-        self.send_header("Content-Type", "application/json")
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    @staticmethod
-    def row(dataset, now, minutes_ago):
-        at = now - datetime.timedelta(minutes=minutes_ago)
-        name = "imbalanceprice" if dataset == "ods161" else "systemimbalance"
-        return {"datetime": at.strftime("%Y-%m-%dT%H:%M:%S+00:00"), "resolutioncode": "PT1M",
-                "qualitystatus": "DataIssue", name: 50.5}
-
-    def log_message(self, *_):
-        pass
 
 
 class Answers(unittest.TestCase):
@@ -143,15 +111,6 @@ class Answers(unittest.TestCase):
         self.assertIsNone(self.answers("prices", "stats", "@quarter.csv")[0]["convergence"])
         self.table(self.file("market.csv"), "minutes.csv")
 
-    def test_2_record(self):
-        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Minutes)
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        url = f"http://127.0.0.1:{server.server_port}/api/explore/v2.1"
-        lines = self.answers("prices", "record", "--out", "@recorded", "--url", url, "--for", "1s")
-        server.shutdown()
-        server.server_close()
-        self.assertEqual(lines[-1]["prices"], 5)
-
     def test_3_teacher_and_plain_student(self):
         self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--steps", "20",
                      "--curve-out", "@curve.csv")
@@ -180,16 +139,6 @@ class Answers(unittest.TestCase):
                          several[1]["carried_over"]["gain_eur_per_day_per_mwh"])
         day = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--date", "widest")[1]
         self.assertIsNone(day["gain_standard_error"])
-        self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular",
-                     "--carry-soc")
-        ramps = self.answers("delays", "--prices", "@market.csv", "--policy", "rbc",
-                             "--ramps", "0", "20", "--html", "@delays.html")
-        self.assertEqual([r["run_delay_min"] for r in ramps], [0, 1, 2, 3, 4, 5, 6] * 2)
-        self.assertEqual([r["ramp_percent_per_min"] for r in ramps], [0] * 7 + [20] * 7)
-        at_once, slowly = (ramps[i]["profit_eur_per_day_per_mwh"] for i in (0, 7))
-        self.assertLess(slowly, at_once)
-        with open(self.file("delays.html")) as page:
-            self.assertIn("ramp, % a minute", page.read())
         for name in ("evaluation.csv", "days.csv", "steps.csv"):
             self.table(self.file(name))
 

@@ -32,7 +32,6 @@ constexpr BadCommandLine kCases[] = {
     {"impact", 2, "--out bess-train impact --help"},
     {"impact --fleet-mw many --out OUT", 1, "--fleet-mw many"},
     {"impact --policy foresight --out OUT", 1, "--policy foresight"},
-    {"delays", 2, "bess-train delays --help"},
     {"export", 2, "--student bess-train export --help"},
     {"report", 2, "--run bess-train report --help"},
     {"runs compare", 2, "bess-train runs compare --help"},
@@ -40,7 +39,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices simulate", 2, "bess-train prices simulate --help"},
     {"prices import", 2, "bess-train prices import --help"},
     {"prices reconstruct", 2, "bess-train prices reconstruct --help"},
-    {"prices record", 2, "bess-train prices record --help"},
     {"prices stats", 2, "bess-train prices stats --help"},
     {"sweep task NONE", 2, "bess-train sweep task --help"},
     {"sweep task NONE 1", 1, "NONE bess-train sweep plan"},
@@ -89,9 +87,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices fetch --from 2023-02-01 --to 2023-01-01 --out OUT", 1, "--to"},
     {"prices fetch --from 2023-01-01 --to 2023-01-02 --out OUT --base-url elia.be", 1,
      "--base-url elia.be"},
-    {"prices record --out OUT --poll-s 1", 2, "--poll-s"},
-    {"prices record --out OUT --for soon", 1, "soon"},
-    {"prices record --out OUT --until 24:00", 1, "24:00"},
     // Files.
     {"run --out OUT --prices NONE", 1, "NONE"},
     {"run --out OUT --prices FOLDER", 1, "FOLDER"},
@@ -110,7 +105,6 @@ constexpr BadCommandLine kCases[] = {
     {"distil --prices GOOD --teacher STUDENT --out OUT", 1, "STUDENT"},
     {"evaluate --prices GOOD --policy rbc --csv -", 1, "./-"},
     {"evaluate --prices GOOD --policy rbc --csv FOLDER", 1, "FOLDER"},
-    {"delays --prices NONE", 1, "NONE"},
     {"verify --student GARBAGE", 1, "GARBAGE"},
     {"export --student NONE --out OUT", 1, "NONE"},
     {"export --student GARBAGE --out OUT", 1, "GARBAGE"},
@@ -119,7 +113,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices import GARBAGE --out OUT", 1, "GARBAGE"},
     {"prices import GOOD --out FOLDER", 1, "FOLDER"},
     {"prices reconstruct --quarter-hours NONE --out OUT", 1, "NONE"},
-    {"prices record --out EMPTY", 1, "EMPTY"},
 };
 
 class BadTrainCommandLine : public testing::Test {

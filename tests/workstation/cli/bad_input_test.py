@@ -48,19 +48,16 @@ CASES = [
     # Another end of lines, times that are over, addresses that are none.
     ("evaluate --policy rbc --prices cr.csv", 1, "cr.csv CR"),
     ("prices stats cr.csv", 1, "cr.csv CR"),
-    ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "2020-01-01T00:00:00Z"),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
      '--base-url "http://"'),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url "
      "http://127.0.0.1:99999/a", 1,
      "http://127.0.0.1:99999/a"),
-    ("prices record --out new --for 1s --url http://:80/", 1, "http://:80/"),
     # Told before the work, and by name.
     ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1,
      "--policy nope"),
     ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
      "scalar.toml"),
-    ("delays --prices market.csv --policy rbc nope", 1, "--policy nope"),
     ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW HIGH"),
     ("run --prices few.csv --out new", 1, "few.csv 26"),
     ("evaluate --policy rbc --prices hour.csv", 1, "hour.csv"),

@@ -78,7 +78,6 @@ TEST_F(BadPrices, EveryCommandLooks) {
   const std::vector<std::vector<std::string>> commands{
       {"train", "--prices", bad, "--out", out},
       {"run", "--prices", bad, "--out", out},
-      {"delays", "--prices", bad},
       {"backtest", "--prices", bad, "--out", out},
       {"evaluate", "--prices", written("good.csv", ordinary_text()), "--fit", bad, "--split", "all",
        "--policy", "rbc-tuned"},

@@ -1,4 +1,4 @@
-// What evaluate and delays print and write, as a user calls them.
+// What evaluate prints and writes, as a user calls them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,6 @@ class EvaluateCli : public testing::Test {
     CommandLine command_line("bess-train", "", "");
     ProgramCommand root = command_line.root();
     add_evaluate_command(root);
-    add_delays_command(root);
     testing::internal::CaptureStdout();
     command_line.parse(command + " --prices " + prices_.string() + " " + arguments);
     return testing::internal::GetCapturedStdout();
@@ -59,12 +58,6 @@ TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
        {std::string(), config("b", "[battery]\nwear_eur_per_mwh = 25\n")}) {
     EXPECT_NEAR(number(output("evaluate", "--policy rbc --json" + other), "\"profit_at_wear_10"),
                 expected, 1e-3);
-    EXPECT_NEAR(number(output("delays", "--policy rbc --json" + other).substr(0, 400),
-                       "\"profit_at_wear_10"),
-                number(output("delays", "--policy rbc --json" +
-                                            config("c", "[battery]\nwear_eur_per_mwh = 10\n")),
-                       "\"profit_eur_per_day_per_mwh\""),
-                1e-3);
   }
 }
 
@@ -87,16 +80,6 @@ TEST_F(EvaluateCli, FitDelayChangesWhatIsFittedAndNothingElse) {
             output("evaluate", "--policy rbc --json"));
   EXPECT_NE(output("evaluate", "--policy tabular --json --fit-delay 3"),
             output("evaluate", "--policy tabular --json"));
-}
-
-TEST_F(EvaluateCli, DelaysAgreesWithEvaluate) {
-  const auto table = lines(output("delays", "--policy tabular --json"));
-  ASSERT_EQ(table.size(), 16U);
-  const std::string one = output("evaluate", "--policy tabular --json --fit-delay 0 --delay 2");
-  const std::string figure =
-      one.substr(one.find("\"profit"), one.find(",\"profit_standard") - one.find("\"profit"));
-  EXPECT_THAT(table[2], HasSubstr("\"fit_delay_min\":0,\"run_delay_min\":2"));
-  EXPECT_THAT(table[2], HasSubstr(figure));
 }
 
 TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {

@@ -70,47 +70,6 @@ TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
   EXPECT_THAT(unsettled.output, Names("m.csv ods047 ods134"));
 }
 
-constexpr const char* kRecordedDay =
-    "# Recorded by bess-train\n"
-    "minute_utc,price_eur_mwh,system_imbalance_mw,price_arrived_utc,imbalance_arrived_utc,"
-    "quality_status,arrival\n"
-    "2023-01-01T00:15:00Z,10,-5,2023-01-01T00:17:00Z,2023-01-01T00:17:00Z,DataIssue,found\n"
-    "2023-01-01T00:16:00Z,20,,2023-01-01T00:18:05Z,,DataIssue,seen\n"
-    "2023-01-01T00:17:00Z,,7,2023-01-01T00:19:05Z,2023-01-01T00:19:05Z,DataIssue,seen\n"
-    "2023-01-01T00:16:00Z,25,,2023-01-01T00:20:05Z,,NotValidated,seen\n"
-    "2023-01-01T00:17:00Z,30,,2023-01-01T00:20:05Z,,Data";  // torn
-
-TEST_F(PricesCli, ARecordedDayIsImportedAndDescribed) {
-  const std::string day = written("2023-01-01.csv", kRecordedDay);
-  const std::string elia = written("ods134.csv", kEliaQuarterHour);
-  const Result import = run({"import", day, elia, "--out", path("m.csv")});
-  EXPECT_EQ(import.exit_code, 0) << import.output;
-  EXPECT_THAT(read_file(path("m.csv")),
-              Names("2023-01-01T00:15:00Z,10,-30.258 2023-01-01T00:16:00Z,20,-30.258 "
-                    "2023-01-01T00:17:00Z,,-30.258"));
-  EXPECT_THAT(run({"stats", day}).output, Names("65 s 95 %"));
-  const Result mended =
-      run({"import", written("bad.csv", std::string(kRecordedDay) + "\n"), "--out", path("n.csv")});
-  EXPECT_EQ(mended.exit_code, 1);
-}
-
-TEST_F(PricesCli, RecordRefusesWhatItCannotMean) {
-  EXPECT_EQ(run({"record"}).exit_code, 2);
-  EXPECT_EQ(run({"record", "--out", path("r"), "--poll-s", "5"}).exit_code, 2);
-  EXPECT_EQ(run({"record", "--out", path("r"), "--for", "1h", "--until", "x"}).exit_code, 2);
-  const Result duration = run({"record", "--out", path("r"), "--for", "5 weeks"});
-  EXPECT_EQ(duration.exit_code, 1);
-  EXPECT_THAT(duration.output, Names("--for \"5 weeks\" 90s"));
-  EXPECT_THAT(run({"record", "--out", path("r"), "--until", "tomorrow"}).output,
-              Names("--until \"tomorrow\" 2025-06-15T22:00:00Z"));
-  EXPECT_THAT(run({"record", "--out", path("r"), "--url", "elia"}).output, Names("--url \"elia\""));
-  EXPECT_FALSE(std::filesystem::exists(path("r")));
-  const Result silent =
-      run({"record", "--out", path("r"), "--url", "http://127.0.0.1:9", "--for", "1s"});
-  EXPECT_EQ(silent.exit_code, 1);
-  EXPECT_THAT(silent.output, Names("http://127.0.0.1:9 --url"));
-}
-
 TEST_F(PricesCli, SimulateSaysItsSeedAndSpan) {
   EXPECT_THAT(run({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}).output,
               Names("s.csv 1 2023-01-01 2 1440"));

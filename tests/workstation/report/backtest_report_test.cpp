@@ -73,7 +73,7 @@ TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
     sdp.by_month[d / 3].days[d % 3].profit_eur = profit_eur;
   }
   EXPECT_THAT(format_backtest_table(fitted),
-              AllOf(HasSubstr("   +15.0    2.2      5.0"), Names("2 71 %")));
+              AllOf(HasSubstr("  +15.0   2.2       5.0"), Names("2 71 %")));
   EXPECT_THAT(backtest_csv(fitted), HasSubstr("all,sdp,6,25.0000,15.0000,2.2361,"));
   EXPECT_THAT(backtest_csv(fitted), HasSubstr(",,2.2361,5.0000,5.0000,1.0000\n"));
   EXPECT_THAT(backtest_json(fitted).line(), HasSubstr("\"gain_standard_error_by_month\":5.0000"));

@@ -99,7 +99,7 @@ TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
     rule.day_reset.days[d].date = student.day_reset.days[d].date = dates[d];
   }
   const std::string table = format_comparison_table({rule, student});
-  EXPECT_NE(table.find("     5.0    2.0      3.0      +5.0    2.0      3.0  "), std::string::npos)
+  EXPECT_NE(table.find("   5.0   2.0       3.0  +5.0   2.0       3.0  "), std::string::npos)
       << table;
   EXPECT_NE(table.find("71 %"), std::string::npos) << table;
   const std::string csv = comparison_csv({rule, student});

@@ -43,7 +43,7 @@ void parse_record(JsonValue record, std::string_view place, MarketRows& rows) {
     const std::optional<MarketField> field = market_field_of(item.key());
     if (!field) continue;
     const bool is_text = *field == MarketField::kTime || *field == MarketField::kResolution ||
-                         *field == MarketField::kQuarterHour || *field == MarketField::kQuality;
+                         *field == MarketField::kQuarterHour;
     if (const char* text = item.text()) {
       builder.set_text(*field, text);
     } else if (const auto number = item.number(); number && !is_text) {

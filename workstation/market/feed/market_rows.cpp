@@ -17,13 +17,12 @@ namespace {
 using enum MarketField;
 
 /// Names without case and punctuation.
-constexpr std::array<std::pair<std::string_view, MarketField>, 18> kFieldNames{{
+constexpr std::array<std::pair<std::string_view, MarketField>, 17> kFieldNames{{
     {"datetime", kTime},
     {"datetimeutc", kTime},
     {"resolutioncode", kResolution},
     {"quarterhour", kQuarterHour},
     {"quarterhourutc", kQuarterHour},
-    {"qualitystatus", kQuality},
     {"systemimbalance", kSystemImbalance},
     {"systemimbalancemw", kSystemImbalance},
     {"alpha", kAlpha},
@@ -96,8 +95,6 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     resolution_ = text;
   } else if (field == kQuarterHour) {
     has_quarter_hour_ = true;
-  } else if (field == kQuality) {
-    quality_ = QualityStatus(std::string_view(one_line(text)));
   } else if (field == kTime) {
     std::int64_t utc_s = 0;
     if (!parse_utc(text, utc_s, kAlsoBlank)) {
@@ -161,7 +158,7 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
          minute ? "minute" : "quarter-hour");
   }
   if (minute) {
-    rows.minutes.push_back({*utc_s_, single_price(), values_.system_imbalance_mw, quality_});
+    rows.minutes.push_back({*utc_s_, single_price()});
   } else {
     rows.quarter_hours.push_back(values_);
     rows.quarter_hours.back().utc_s = *utc_s_;

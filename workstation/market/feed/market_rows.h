@@ -1,6 +1,6 @@
 // Rows of downloaded market files, whatever their form: Elia's CSV and JSON exports of ods046,
 // ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, tidy CSV, and
-// the minute files and recorded days that this program writes.
+// the minute files that this program writes.
 // Names are compared without case, spaces and punctuation, so "Marginal incremental price" and
 // "marginalincrementalprice" are one.
 // No row is refused for its quality flag: Elia says itself that DataIssue is set on far too many
@@ -14,23 +14,16 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/fixed_text.h"
 #include "shared/host/user_error.h"
 #include "workstation/market/series/plausibility.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
 
-/// A quality flag: "Validated", "NotValidated", "DataIssue" and their spellings; longer ones are
-/// cut.
-using QualityStatus = FixedText<15>;
-
 /// Indicative price computed at the END of the minute that starts at `utc_s`.
 struct MinuteRow {
   std::int64_t utc_s;
   double indicative_eur_per_mwh;  ///< NaN = the TSO published the row without a price
-  double system_imbalance_mw = kNotPublished;
-  QualityStatus quality{};
 };
 
 enum class MarketSource {
@@ -63,7 +56,6 @@ enum class MarketField {
   kTime,
   kResolution,
   kQuarterHour,  ///< only minute rows have one
-  kQuality,
   kSystemImbalance,
   kAlpha,
   kMarginalIncremental,
@@ -105,7 +97,6 @@ class MarketRowBuilder {
   double positive_eur_per_mwh_ = kNotPublished, negative_eur_per_mwh_ = kNotPublished;
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
-  QualityStatus quality_;
   bool has_quarter_hour_ = false;
   bool has_decimal_commas_;
 };

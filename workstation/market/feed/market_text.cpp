@@ -6,12 +6,10 @@
 #include "workstation/market/feed/entsoe_xml.h"
 #include "workstation/market/feed/market_json.h"
 #include "workstation/market/feed/market_minutes.h"
-#include "workstation/market/feed/recorded_day.h"
 
 namespace bess {
 
 MarketRows parse_market_text(std::string_view text, std::string_view name, const OwnForm& own) {
-  if (is_recorded_csv(text)) return parse_recorded_rows(text, name);  // also with a torn end
   text = plain_text(text, name);
   if (text.find_first_not_of(" \t\r\n") == text.npos)
     fail("{}: the file is empty; download it again", name);

@@ -51,6 +51,18 @@ std::string format_table(const HtmlTable& table) {
   return text + "</tbody></table></div>\n";
 }
 
+std::string format_table(const std::string& caption, const Table& table) {
+  HtmlTable shown{caption, {}, std::vector<std::vector<std::string>>(table.size())};
+  for (const auto& [name, values] : table.columns()) {
+    if (name.title.empty()) continue;
+    shown.header.push_back(name.title);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      shown.rows[row].push_back(shown_value(values[row], name, kNoValue));
+    }
+  }
+  return format_table(shown);
+}
+
 std::string style_sheet() {
   return colour_scheme() + "\n" + std::string(page_file("document.css"));
 }

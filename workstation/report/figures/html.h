@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "shared/host/html_text.h"
+#include "workstation/base/table.h"
 
 namespace bess {
+
+/// What a cell shows that has nothing to say.
+inline constexpr const char* kNoValue = "\u2013";
 
 /// A table whose first column names the row and whose other columns are numbers. Each number bears
 /// the head of its column: a narrow screen shows every row as a list.
@@ -18,6 +22,8 @@ struct HtmlTable {
   std::vector<std::string> links{};  ///< of the first cells; none, or one a row
 };
 std::string format_table(const HtmlTable& table);
+/// The columns that have a title.
+std::string format_table(const std::string& caption, const Table& table);
 
 /// The colours, light and dark, as variables, and page/document.css.
 std::string style_sheet();

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/report/figures/html.h"
-
 namespace bess {
 
 Cell text_cell(const std::string& text) {
@@ -21,6 +19,21 @@ Cell number_cell(const std::string& text, double value) {
 
 Cell number_cell(double value, int decimals) {
   return number_cell(fmt::format("{:.{}f}", value, decimals), value);
+}
+
+SortTable sort_table(const std::string& id, const std::string& caption, const Table& table) {
+  SortTable shown{id, caption, {}, std::vector<std::vector<Cell>>(table.size())};
+  for (const auto& [name, values] : table.columns()) {
+    if (name.title.empty()) continue;
+    shown.header.push_back(name.title);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      const TableValue& value = values[row];
+      shown.rows[row].push_back(value.is_text
+                                    ? text_cell(value.text)
+                                    : number_cell(shown_value(value, name), value.number));
+    }
+  }
+  return shown;
 }
 
 std::string sort_table_html(const SortTable& table) {

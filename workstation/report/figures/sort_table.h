@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace bess {
+#include "workstation/report/figures/html.h"
 
-/// What a cell shows that has nothing to say.
-inline constexpr const char* kNoValue = "\u2013";
+namespace bess {
 
 /// What a cell shows, and what it is sorted by; what is not known comes last.
 struct Cell {
@@ -29,6 +28,8 @@ struct SortTable {
   std::vector<std::vector<Cell>> rows;
 };
 
+/// The columns that have a title.
+SortTable sort_table(const std::string& id, const std::string& caption, const Table& table);
 std::string sort_table_html(const SortTable& table);
 
 }  // namespace bess
