@@ -141,9 +141,22 @@ TEST_F(EliaFetch, AServerThatIsNotThereIsNotAskedForLong) {
   EXPECT_THAT(waits_, ElementsAre(1, 2));
 }
 
-/// Cut, or empty, as an earlier version kept them.
+void leave_out(Rows& rows, const char* from, const char* until) {
+  std::erase_if(rows, [=](const EliaRow& row) {
+    return row.utc_s >= utc_of(from) && row.utc_s < utc_of(until);
+  });
+}
+/// The hour from ten to eleven of the first day.
+void without_ten(Rows& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }
+
+/// Cut; empty, as an earlier version kept them; or with a gap that was allowed before.
 TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
-  for (const bool is_cut : {true, false}) {
+  Rows rows = elia_rows({.dataset = "ods046"}, utc_of("2023-03-24T23:00:00Z"),
+                        utc_of("2023-03-26T22:00:00Z"));
+  const std::string kept = elia_csv({.dataset = "ods046"}, rows);
+  without_ten(rows);
+  for (const std::string& damaged :
+       {kept, elia_csv({}, {}), elia_csv({.dataset = "ods046"}, rows)}) {
     std::atomic<bool> broken{true};
     FakeElia elia([&broken](const Ask& ask, Answer& answer) {
       if (broken && ask.dataset == "ods047") answer.status = "404 Not Found";
@@ -153,8 +166,9 @@ TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
     EXPECT_TRUE(waits_.empty());  // another try cannot mend a 404
     EXPECT_EQ(windows_kept(wanted), 1u);
     for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
-      if (!is_cut) write_file(entry.path(), elia_csv({}, {}));
-      if (is_cut) {
+      EXPECT_EQ(read_file(entry.path()), kept);
+      write_file(entry.path(), damaged);
+      if (damaged == kept) {
         std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
       }
     }
@@ -164,14 +178,6 @@ TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
     remove(wanted);
   }
 }
-
-void leave_out(Rows& rows, const char* from, const char* until) {
-  std::erase_if(rows, [=](const EliaRow& row) {
-    return row.utc_s >= utc_of(from) && row.utc_s < utc_of(until);
-  });
-}
-/// The hour from ten to eleven of the first day.
-void without_ten(Rows& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }
 
 TEST_F(EliaFetch, AWindowThatLacksSomethingIsAskedForAgain) {
   const std::pair<Quirk, const char*> cases[] = {{[](const Ask& ask, Answer& a) {
