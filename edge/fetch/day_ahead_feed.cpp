@@ -158,12 +158,12 @@ DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_ut
     if (fetched.status != Status::kOk) return {fetched.status, std::move(fetched.reason)};
     return read_day_ahead(fetched.body, settings.fields);
   }
-  constexpr std::size_t kFileBytesMax = 256 * 1024;
-  std::string answer(kFileBytesMax, 0);
+  constexpr std::size_t kAnswerBytesMax = 256 * 1024;
+  std::string answer(kAnswerBytesMax, 0);
   const ssize_t size = read_beginning(settings.file.c_str(), answer, Links::kFollowed);
   if (size < 0) return {.status = Status::kNotConnected};
   answer.resize(static_cast<std::size_t>(size));
-  if (answer.size() == kFileBytesMax) return {.status = Status::kTooLarge};
+  if (answer.size() == kAnswerBytesMax) return {.status = Status::kTooLarge};
   return read_day_ahead(answer, settings.fields);
 }
 
