@@ -20,7 +20,7 @@ namespace bess {
 // How a battery came to the power that it was ordered: readings since the order, of which follow
 // when it was there for good and until when it was not. A reading takes a while, and the program
 // may have been held up within it: what is said to be slow was slow however the reading lay within
-// its time. What the shape tells of it: step_fit.h.
+// its time.
 
 struct AnswerReading {
   std::int64_t begin_ms = 0;  ///< since the order was in force

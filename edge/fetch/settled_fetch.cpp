@@ -12,6 +12,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
 #include "edge/prices/http_trust.h"
+#include "edge/settings/retired_keys.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
 #include "shared/scaled_clock.h"
@@ -67,7 +68,6 @@ bool is_safe_url(const std::string& url) {
 
 void read_settled(TomlTable table, SettledSource& source) {
   table.line("url", source.url);
-  static_cast<void>(table.take_retired("days"));  // of earlier versions
   table.line("ca_file", source.ca_file);
   table.finish();
   if (source.url.empty() || !table.ok()) return;
@@ -121,7 +121,7 @@ bool load_settled_source(const std::string& path, SettledSource& source, std::st
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   source.file = read_money_settings(root).settled_file;
-  read_settled(TomlTable(root.table("settled"), path, "[settled]", error), source);
+  read_settled(section(root, "settled"), source);
   return error.empty();
 }
 

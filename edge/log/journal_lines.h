@@ -1,5 +1,5 @@
-// What the journal says of an operator's hold: a line when it begins, when it changes, when it is
-// over, and once when its file cannot be read. Written by the log thread; nothing allocates.
+// Lines of the journal on holds, on a meter and on readings of the battery, one for each change.
+// Written by the log thread; nothing allocates.
 #pragma once
 
 #include "edge/control/control_types.h"
@@ -8,6 +8,8 @@
 
 namespace bess {
 
+// An operator's hold: a line when it begins, when it changes, when it is over, and once when its
+// file cannot be read.
 class HoldLines {
  public:
   /// Appends the line that this cycle is worth; false when it is worth none.
@@ -17,10 +19,8 @@ class HoldLines {
   HoldReport before_{};
 };
 
-// What the journal says of a meter that is not to be believed: a line when it is found, and when
-// it agrees again; the same of a house load that cannot be. Written by the log thread; nothing
-// allocates.
-
+// A meter that is not to be believed: a line when it is found, and when it agrees again; the same
+// of a house load that cannot be.
 class MeterLines {
  public:
   /// Appends the line that this cycle is worth; false when it is worth none.
@@ -32,9 +32,7 @@ class MeterLines {
   bool was_implausible_ = false;
 };
 
-// What the journal says of a reading that is missing or beyond its range: a line when it begins and
-// when it is over. Written by the log thread; nothing allocates.
-
+// A reading that is missing or beyond its range: a line when it begins and when it is over.
 class ReadingLines {
  public:
   /// Appends the line that this cycle is worth; false when it is worth none.

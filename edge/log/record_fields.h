@@ -326,7 +326,7 @@ consteval auto make_record_fields() {
 
 inline constexpr auto kRecordFields = make_record_fields();
 
-// The table of what a run counts, beside that of a cycle (record_fields.h): status.json and metrics
+// The table of what a run counts, beside that of a cycle: status.json and metrics
 // hold both.
 
 consteval auto make_run_fields() {

@@ -8,6 +8,7 @@
 
 #include "edge/companion/numeric_address.h"
 #include "edge/log/battery_name.h"
+#include "edge/settings/retired_keys.h"
 
 namespace bess {
 namespace {
@@ -36,9 +37,6 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   table.line("mqtt_ca_file", mqtt.ca_file);
   table.line("mqtt_user", mqtt.user);
   table.line("mqtt_password_file", password_file);
-  for (const char* const old : {"mqtt_discovery_prefix", "mqtt_hold_minutes"}) {
-    static_cast<void>(table.take_retired(old));
-  }
   table.boolean("mqtt_orders", mqtt.orders);
   if (mqtt.host.empty() || !table.ok()) return;
   const bool is_here = mqtt.host == "localhost" || is_loopback_address(mqtt.host);
@@ -92,7 +90,7 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   battery.integer("power_w", settings.power_w, 1, 1'000'000'000);
   TomlTable settled(root.table("settled"), path, "[settled]", error);
   if (settled.has("url")) settings.settled_file = settings.state_folder + "/settled.csv";
-  read_notify(TomlTable(root.table("notify"), path, "[notify]", error), settings);
+  read_notify(section(root, "notify"), settings);
   return error.empty();
 }
 

@@ -1,6 +1,7 @@
 #include "edge/page/page_settings.h"
 
 #include "edge/companion/numeric_address.h"
+#include "edge/settings/retired_keys.h"
 
 namespace bess {
 namespace {
@@ -20,9 +21,6 @@ void read_hosts(TomlTable& table, std::vector<std::string>& hosts) {
 void read_page(TomlTable table, PageSettings& settings) {
   table.line("host", settings.host);
   table.integer("port", settings.port, 1, 65'535);
-  for (const char* const old : {"program", "refresh_s", "token_file"}) {
-    static_cast<void>(table.take_retired(old));
-  }
   read_hosts(table, settings.hosts);
   if (!is_numeric_address(settings.host)) {
     table.fail("host", "must be a numeric address: 127.0.0.1, ::1, or one of this machine");
@@ -37,7 +35,7 @@ bool load_page_settings(const std::string& path, PageSettings& settings, std::st
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   static_cast<ControllerPlaces&>(settings) = controller_places(root);
-  read_page(TomlTable(root.table("page"), path, "[page]", error), settings);
+  read_page(section(root, "page"), settings);
   return error.empty();
 }
 

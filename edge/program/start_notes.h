@@ -1,5 +1,5 @@
-// What a person is told of the student's context: what it is, and how its price level was come by
-// at the start.
+// Notes of --check and of the start: the student's context and price level, what the operator asks,
+// the thresholds of guard and student.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// [battery], [guard], [[reserve]] and [outlook]: what the controller drives and its bounds.
 // [battery]: which one it is, where it is reached, and what may be done with it.
 #pragma once
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "edge/base/static_vector.h"
 #include "edge/log/event_log.h"
 #include "edge/settings/control_config.h"
 #include "edge/settings/price_config.h"
+#include "edge/settings/retired_keys.h"
 #include "edge/settings/site_config.h"
 #include "shared/fixed_text.h"
 #include "shared/host/toml_reader.h"
@@ -32,13 +32,6 @@ struct KeptFiles {
 void read_state(TomlTable table, KeptFiles kept);
 void read_log(TomlTable table, EventLogSettings& log);
 void read_metrics(TomlTable table, EventLogSettings& log);
-
-/// A key of earlier versions that the file still has; it does nothing.
-struct RetiredKey {
-  std::string_view section;
-  std::string_view key;
-};
-using RetiredKeys = StaticVector<RetiredKey, 40>;
 
 struct EdgeConfig {
   ControlSettings control;

@@ -25,7 +25,7 @@
 // each step has shown. Six steps that agree, alone and in sum, end it; a contradiction is the
 // next pause. The pause keeps its length until a day without a finding: it cannot flap.
 //
-// What it cannot see: an offset (steps are right: meter_witness.h looks at the level), a meter that
+// What it cannot see: an offset (steps are right: HouseWatch looks at the level), a meter that
 // lies while the battery rests. Something else that holds the grid at a value (a second battery,
 // curtailed sun) takes the steps away: `judged = false`. A battery whose measured power is not
 // true looks the same: one of the two is wrong, and neither may be relied on.

@@ -1,3 +1,4 @@
+// Files by which others limit the controller: `hold` of an operator, the limit of another program.
 // The file through which `bess-edge hold` tells the running controller: one line of fixed length in
 // the state folder and in its run_folder, replaced at once. It outlives restarts; when its end has
 // passed it means nothing. The younger file is the newer word: a disk that dies may have kept an

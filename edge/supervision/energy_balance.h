@@ -224,7 +224,7 @@ class EnergyBalance {
 //     narrower one;
 //   - it stands still only if energy has flowed whichever instants the readings are of;
 //   - readings are put together until that is three quarters of what has flowed, most of it one
-//     way: then they are one interval of energy_balance.h. Where orders turn more often than that,
+//     way: then they are one interval of EnergyBalance. Where orders turn more often than that,
 //     nothing is said.
 
 class SeldomSoc {

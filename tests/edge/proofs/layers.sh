@@ -54,8 +54,9 @@ layer edge/account                  edge/account edge/log edge/control edge/base
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/companion                edge/companion edge/log edge/control edge/base shared
 layer edge/notify                   edge/notify edge/companion edge/account/settled_prices.h \
-  edge/log edge/storage/instance_lock.h shared
-layer edge/page                     edge/page edge/companion edge/why edge/control edge/base shared
+  edge/log edge/storage/instance_lock.h edge/settings/retired_keys.h shared
+layer edge/page                     edge/page edge/companion edge/why edge/settings/retired_keys.h \
+  edge/control edge/base shared
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
   grep -vE '^edge/(why/|companion/|notify/|page/|fetch/)')" \
