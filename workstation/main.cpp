@@ -7,7 +7,7 @@
 #include "shared/host/command_line.h"
 #include "shared/host/made/build_info.h"
 #include "shared/local_time.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 #include "workstation/cli/commands.h"
 
 int main(int argc, char** argv) {

@@ -11,7 +11,7 @@
 #include "edge/account/settled_prices.h"
 #include "edge/log/log_reader.h"
 #include "shared/host/exchange.h"
-#include "shared/host/quarter_prices.h"
+#include "shared/host/exchanged_days.h"
 
 namespace bess {
 

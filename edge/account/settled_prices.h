@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/host/quarter_prices.h"
+#include "shared/host/exchanged_days.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {

@@ -8,18 +8,105 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <climits>
 #include <cstring>
 #include <optional>
 #include <utility>
 
 #include "shared/file_descriptor.h"
 #include "shared/host/errno_text.h"
-#include "shared/host/unfinished_files.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a name leads to, whether there is a file or not.
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  const fs::path place = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? fs::absolute(path).lexically_normal() : place;
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  if (a.empty() || b.empty() || is_special_file(a) || is_special_file(b)) return false;
+  std::error_code error;
+  return fs::equivalent(a, b, error) || place_of(a) == place_of(b);
+}
+
+}  // namespace
+
+void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<GivenPath>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    for (const GivenPath& input : inputs) {
+      if (!is_same_file(output->path, input.path)) continue;
+      fail("{} {}: would replace the input {} {}; write to another name", output->option,
+           output->path.string(), input.option, input.path.string());
+    }
+    for (auto other = outputs.begin(); other != output; ++other) {
+      if (!is_same_file(output->path, other->path)) continue;
+      fail("{} {}: would replace what {} writes; give each a name of its own", output->option,
+           output->path.string(), other->option);
+    }
+  }
+}
+
+std::vector<GivenPath> given_paths(const std::string& option,
+                                   const std::vector<std::string>& paths) {
+  std::vector<GivenPath> given;
+  for (const std::string& path : paths) given.push_back({option, path});
+  return given;
+}
+
+namespace {
+
+struct Slot {
+  std::atomic<bool> is_taken{false};
+  std::atomic<bool> is_named{false};
+  char path[PATH_MAX];
+};
+std::array<Slot, 16> slots;  // more threads than this hardly ever write at once
+std::atomic<bool> is_ending{false};
+
+}  // namespace
+
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path) {
+  if (path.empty() || path.size() >= PATH_MAX) return;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].is_taken.exchange(true)) continue;
+    std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
+    slots[i].is_named = true;
+    slot_ = static_cast<int>(i);
+    return;
+  }
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (slot_ < 0) return;
+  Slot& slot = slots[static_cast<std::size_t>(slot_)];
+  slot.is_named = false;
+  slot.is_taken = false;
+}
+
+void UnfinishedFile::made() const {
+  if (!is_ending) return;
+  unlink(path_.c_str());
+  for (;;) pause();
+}
+
+void remove_unfinished_files() {
+  is_ending = true;
+  for (const Slot& slot : slots) {
+    if (slot.is_named) unlink(slot.path);
+  }
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,8 +6,49 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bess {
+
+// No command writes over what it reads: asked before any of it is read.
+
+/// A file as the command line names it: the option, for messages, and its path; an empty path names
+/// none.
+struct GivenPath {
+  std::string option;
+  std::filesystem::path path;
+};
+
+/// Throws UserError when one of `outputs` is one of `inputs` or another output, also by a link or
+/// under another spelling. Devices and pipes may serve for several.
+void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<GivenPath>& inputs);
+
+/// The same option given several times.
+std::vector<GivenPath> given_paths(const std::string& option,
+                                   const std::vector<std::string>& paths);
+
+// Files that are being written under a temporary name: a signal that ends the program takes them
+// along.
+
+/// Names one such file, from before it is made until it is complete or gone. Of many at once, some
+/// are not remembered: the next writer of the same name finds those.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::string& path);
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile();
+  /// Once the file is made: when the program is ending already, removes it and never returns.
+  void made() const;
+
+ private:
+  int slot_ = -1;
+  std::string path_;
+};
+
+/// Removes all of them, and whoever makes another waits for the end. For a signal's handler that
+/// ends the program: calls nothing that such a handler may not.
+void remove_unfinished_files();
 
 /// More than any file that is read here has: a year of an exporter's minutes is 60 MB of CSV.
 inline constexpr std::size_t kFileBytesMax = std::size_t{512} << 20;

@@ -3,7 +3,7 @@
 #include "tests/bench/simulated_year.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/env/outlook_book.h"
-#include "workstation/market/model/simulated_day_ahead.h"
+#include "workstation/market/model/simulated_market.h"
 #include "workstation/planners/foresight.h"
 #include "workstation/planners/outlook_integers.h"
 #include "workstation/planners/outlook_program.h"

@@ -1,7 +1,6 @@
 #include "tests/bench/simulated_year.h"
 
 #include "shared/local_time.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
 
 namespace bess {

@@ -1,6 +1,6 @@
 // Elia's CSV downloads, of any portal's and year's spelling, and CSV of one's own by local clocks.
 #include "tests/fuzz/market_promises.h"
-#include "workstation/market/feed/market_csv.h"
+#include "workstation/market/feed/market_files.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const char* format : {"yyyy-mm-dd", "dd/mm/yyyy"}) {

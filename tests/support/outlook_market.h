@@ -4,8 +4,6 @@
 #include <memory>
 
 #include "workstation/env/market_steps.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "edge/registers/map_file.h"
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"

@@ -5,10 +5,16 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "shared/host/json.h"
 
 namespace bess {
+
+// Names and values in order: what a run is made of, what a model was learnt for.
+
+using Entries = std::vector<std::pair<std::string, std::string>>;
 
 /// Grows when a name goes or changes its meaning; a new name alone leaves it.
 inline constexpr int kSchemaVersion = 1;

@@ -6,7 +6,7 @@
 
 #include "shared/crc32.h"
 #include "shared/utc_text.h"
-#include "workstation/student/failed_proof.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 

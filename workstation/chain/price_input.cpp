@@ -1,13 +1,80 @@
 #include "workstation/chain/price_input.h"
 
+#include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/market/model/simulated_market.h"
+#include "workstation/market/series/local_date.h"
+#include "workstation/market/series/plausibility.h"
 
 namespace bess {
+
+namespace {
+
+constexpr LocalDate kStart{2023, 1, 1};
+constexpr int kDays = 365;
+constexpr std::uint64_t kSeed = 1;
+
+}  // namespace
+
+MinuteSeries built_in_market() {
+  const SimulationPeriod period{local_midnight_utc_s(kStart),
+                                local_midnight_utc_s(add_days(kStart, kDays))};
+  return minutes_on_quarter_hours(simulate_quarter_hours(period, kSeed), kSeed);
+}
+
+std::string built_in_market_provenance() {
+  return fmt::format("{}: {}, seed {}", kSimulatedProvenance, kBuiltInMarketName, kSeed);
+}
+
+void DayAheadInput::add(ProgramCommand& command) {
+  command.option("--day-ahead", path_,
+                 "Day-ahead prices to plan on: a file of 'prices fetch --day-ahead', "
+                 "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
+}
+
+std::shared_ptr<const DayAheadPublication> DayAheadInput::read(const MinuteSeries& settled,
+                                                               const AcceptedFindings& accepted,
+                                                               int published_min) const {
+  return path_.empty() ? nullptr : read_day_ahead(path_, settled, accepted, published_min);
+}
+
+std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& path,
+                                                          const MinuteSeries& settled,
+                                                          const AcceptedFindings& accepted,
+                                                          int published_min) {
+  const std::string text = read_file(path);
+  DayAheadSeries series = parse_day_ahead_csv(text, path);
+  std::vector<Finding> found = implausible_day_ahead(series);
+  for (Finding& finding : shifted_day_ahead(series, settled)) found.push_back(std::move(finding));
+  judge(found, accepted, {{path, text}});
+  return std::make_shared<DayAheadPublication>(std::move(series), published_min);
+}
+
+void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings& accepted,
+                            const std::vector<std::string>& files, const std::string& provenance,
+                            const std::string& out) {
+  std::vector<Finding> found = joined.findings;
+  for (Finding& finding : implausible_day_ahead(joined.series)) found.push_back(std::move(finding));
+  std::vector<std::string> contents;
+  contents.reserve(files.size());  // the texts are views of them
+  std::vector<PriceText> texts;
+  for (const std::string& file : files) {
+    contents.push_back(!found.empty() && std::filesystem::is_regular_file(file) ? read_file(file)
+                                                                                : std::string());
+    texts.push_back({file, contents.back()});
+  }
+  judge(found, accepted, texts);
+  const std::string description = describe_day_ahead(joined);
+  write_day_ahead_file(out, joined.series, provenance + "\n" + description);
+  fmt::print("{}written to {}\n", description, out);
+}
+
 namespace {
 
 /// Fewer days of a month say nothing of how it was meant to be split.

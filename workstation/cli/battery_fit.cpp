@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "shared/battery_keys.h"
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/toml_reader.h"

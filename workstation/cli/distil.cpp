@@ -4,23 +4,20 @@
 #include <filesystem>
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/day_ahead_input.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
-#include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/student/correct_and_prove.h"
-#include "workstation/student/failed_proof.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 namespace {

@@ -7,21 +7,19 @@
 #include <optional>
 
 #include "shared/host/csv.h"
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/env/charge_left.h"
 #include "workstation/planners/baselines.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/judged_days.h"
+#include "workstation/report/evaluation_days.h"
 #include "workstation/run/learnt_for.h"
 
 namespace bess {

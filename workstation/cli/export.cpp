@@ -6,13 +6,12 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/common_options.h"
 #include "workstation/chain/source_tree.h"
 #include "workstation/cli/commands.h"
-#include "workstation/student/demand_counts.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 namespace {

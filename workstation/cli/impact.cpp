@@ -5,12 +5,11 @@
 #include <charconv>
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/cli/commands.h"
 #include "workstation/impact/impact_report.h"

@@ -6,8 +6,7 @@
 
 #include "shared/host/file.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/day_ahead_input.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/market/feed/day_ahead_fetch.h"

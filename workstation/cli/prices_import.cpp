@@ -3,9 +3,7 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
-#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 

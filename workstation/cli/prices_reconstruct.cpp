@@ -3,13 +3,12 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/market/feed/market_files.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/gaps.h"
 
 namespace bess {

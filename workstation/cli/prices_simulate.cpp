@@ -3,15 +3,12 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/built_in_market.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 

@@ -6,9 +6,9 @@
 #include "shared/host/file.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/feed/market_text.h"
-#include "workstation/market/series/day_ahead_plausibility.h"
+#include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/judged_prices.h"
+#include "workstation/market/series/plausibility.h"
 #include "workstation/market/statistics/statistics_report.h"
 
 namespace bess {

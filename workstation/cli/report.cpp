@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/folder_lock.h"

@@ -18,7 +18,7 @@
 #include "workstation/rl/teacher.h"
 #include "workstation/rules/properties.h"
 #include "workstation/rules/rule_conflicts.h"
-#include "workstation/rules/rule_watch.h"
+#include "workstation/rules/ruled_policy.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/run/run_summary.h"
+#include "workstation/run/run_report.h"
 #include "workstation/run/runs_page.h"
 
 namespace bess {

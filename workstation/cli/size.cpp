@@ -5,12 +5,10 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/day_ahead_input.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"

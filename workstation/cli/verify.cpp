@@ -9,10 +9,9 @@
 #include "workstation/chain/common_options.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
-#include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
 #include "workstation/rules/rule_conflicts.h"
-#include "workstation/student/demand_counts.h"
+#include "workstation/student/certificate.h"
 #include "workstation/student/prove.h"
 
 namespace bess {

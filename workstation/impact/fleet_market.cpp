@@ -6,7 +6,7 @@
 #include "shared/exchange_cost.h"
 #include "shared/local_time.h"
 #include "shared/price_level.h"
-#include "workstation/market/model/price_rounding.h"
+#include "workstation/market/model/minute_path.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/imbalance_price.h"
 #include "workstation/market/series/local_date.h"

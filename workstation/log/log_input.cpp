@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/run_config.h"

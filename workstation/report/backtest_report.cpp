@@ -16,7 +16,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"
-#include "workstation/report/figures/regime_marks.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/report_page.h"
 
 namespace bess {

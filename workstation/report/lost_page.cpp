@@ -8,7 +8,7 @@
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/shown_policies.h"
+#include "workstation/report/page_data.h"
 #include "workstation/rules/ruled_policy.h"
 #include "workstation/student/student_policy.h"
 

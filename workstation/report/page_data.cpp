@@ -1,5 +1,7 @@
 #include "workstation/report/page_data.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,16 +9,187 @@
 #include <numeric>
 #include <string_view>
 
+#include "shared/utc_text.h"
 #include "workstation/env/context_fit.h"
-#include "workstation/report/figures/price_histogram.h"
-#include "workstation/report/figures/regime_marks.h"
+#include "workstation/report/figures/curves.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/page_rules.h"
 #include "workstation/report/rule_prices.h"
-#include "workstation/report/shown_policies.h"
 #include "workstation/report/step_archive.h"
+#include "workstation/student/exported_policy.h"
+#include "workstation/student/student_policy.h"
 
 namespace bess {
+
+namespace {
+
+constexpr std::array<const char*, kRuleInputCount> kInputNames{"minute", "quarterHour",
+                                                               "contextClass", "soc", "price"};
+
+Json pair(int first, int second) {
+  Json list = Json::list();
+  list.add(first);
+  list.add(second);
+  return list;
+}
+
+Json forbidden_actions(const Rule& rule) {
+  Json list = Json::list();
+  for (int a = 0; a < kActionCount; ++a) {
+    if (!allows(rule.actions(), static_cast<Action>(a))) list.add(a);
+  }
+  return list;
+}
+
+Json rule_json(const Rule& rule, ContextKind kind) {
+  Json json = Json::object({{"name", rule.name},
+                            {"text", rule.text()},
+                            {"held_by", held_by(rule, kind)},
+                            {"binds_student", binds_student(rule, kind)}});
+  if (const Direction direction = rule.demand->direction(); direction.sign != 0) {
+    json.set("direction",
+             Json::object({{"input", kInputNames[static_cast<std::size_t>(direction.input)]},
+                           {"sign", direction.sign}}));
+    return json;
+  }
+  const LatticeBox box = lattice_box_of(rule.box, kind);
+  json.set("hours", pair(rule.box.quarter_hour_first, rule.box.quarter_hour_count));
+  json.set("classes", box.classes);
+  json.set("soc", pair(box.soc_first, box.soc_last));
+  if (overlaps_lattice(rule.box)) {
+    json.set("price", pair(kLatticePriceMinEurPerMwh + box.price_first,
+                           kLatticePriceMinEurPerMwh + box.price_last));
+  }
+  if (rule.restricts_actions() && !rule.is_threshold) {
+    json.set("forbidden", forbidden_actions(rule));
+  }
+  return json;
+}
+
+}  // namespace
+
+Json rules_json(const RuleSet& rules, ContextKind kind) {
+  Json list = Json::list();
+  for (const Rule& rule : rules.rules) list.add(rule_json(rule, kind));
+  return list;
+}
+
+namespace {
+
+/// Calls `look` with each step of the days that the page holds and its index among all records.
+template <typename Look>
+void for_each_step(const ReportInputs& in, const PageSteps& steps, Look look) {
+  std::size_t first = 0;
+  for (std::size_t d = 0; d < steps.days.size(); ++d) {
+    const auto of_day = in.market.of(steps.days[d]);
+    if (std::ranges::binary_search(steps.kept, d)) {
+      for (std::size_t s = 0; s < of_day.size(); ++s) look(of_day[s], first + s);
+    }
+    first += of_day.size();
+  }
+}
+
+PictureTable step_table(const ReportInputs& in, const PageSteps& steps) {
+  PictureTable table{
+      "steps", {"utc", "observed_eur_per_mwh", "paid_eur_per_mwh"}, {}, /*packed=*/true};
+  for (const PolicySteps& policy : steps.policies) {
+    for (const char* what : {"soc_frac", "action", "power_w", "profit_eur"}) {
+      table.columns.push_back(fmt::format("{} {}", policy.name, what));
+    }
+  }
+  for_each_step(in, steps, [&](const MarketStep& step, std::size_t i) {
+    std::vector<std::string> row{std::string(utc_text(step.utc_s).view()),
+                                 fmt::format("{:.2f}", step.observed_eur_per_mwh),
+                                 fmt::format("{:.3f}", step.paid_eur_per_mwh)};
+    for (const PolicySteps& policy : steps.policies) {
+      const StepRecord& r = policy.records[i];
+      row.push_back(fmt::format("{:.4f}", r.soc_frac));
+      row.emplace_back(action_name(r.action));
+      row.push_back(fmt::format("{:.1f}", r.power_w + 0.0));
+      row.push_back(fmt::format("{:.4f}", r.profit_eur + 0.0));
+    }
+    table.rows.push_back(std::move(row));
+  });
+  return table;
+}
+
+/// A row a run of prices with the same action, at each SoC.
+PictureTable map_table(const ReportInputs& in) {
+  PictureTable table{"policy_map",
+                     {"student", "context_class", "quarter_hour", "minute", "soc_frac",
+                      "price_from_eur_per_mwh", "price_to_eur_per_mwh", "action"},
+                     {}};
+  const PolicyContext context = first_map(in);
+  const auto add = [&](const char* name, const StudentFile* student) {
+    if (student == nullptr) return;
+    const ActionGrid grid = student_grid(student->net, context);
+    const auto prices = static_cast<int>(grid.size()) / kSocCount;
+    for (int soc = 0; soc < kSocCount; ++soc) {
+      const std::int8_t* row = &grid[static_cast<std::size_t>(soc) * prices];
+      for (int from = 0, p = 1; p <= prices; ++p) {
+        if (p < prices && row[p] == row[from]) continue;
+        table.rows.push_back({name, fmt::format("{}", context.context_class),
+                              fmt::format("{}", context.quarter_hour),
+                              fmt::format("{}", context.minute_of_quarter_hour),
+                              fmt::format("{:.3f}", static_cast<double>(soc) / (kSocCount - 1)),
+                              fmt::format("{}", kLatticePriceMinEurPerMwh + from),
+                              fmt::format("{}", kLatticePriceMinEurPerMwh + p - 1),
+                              std::string(action_name(static_cast<Action>(row[from])))});
+        from = p;
+      }
+    }
+  };
+  if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
+  add(kPlainName, in.uncorrected);
+  return table;
+}
+
+PictureTable price_table(const ReportInputs& in) {
+  return histogram_table("prices_seen", price_histogram(in.market));
+}
+
+}  // namespace
+
+std::vector<PictureTable> page_pictures(const ReportInputs& in, const PageSteps& steps) {
+  return {step_table(in, steps), map_table(in), price_table(in)};
+}
+
+std::string teacher_name(const Teacher& teacher) {
+  return fmt::format("{} teacher", method_name(teacher.method));
+}
+
+const char* own_student_name(const Certificate& certificate) {
+  return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;
+}
+
+std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
+  std::vector<ShownPolicy> policies;
+  if (in.corrected) {
+    policies.push_back(
+        {own_student_name(in.corrected->certificate), exported_policy(*in.corrected)});
+  }
+  if (in.uncorrected) {
+    policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net,
+                                                                    in.uncorrected->outlook)});
+  }
+  if (in.teacher) policies.push_back({"teacher", std::make_unique<TeacherPolicy>(*in.teacher)});
+  if (policies.empty()) {
+    policies.push_back(
+        {"rule-based controller",
+         std::make_unique<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh)});
+  }
+  return policies;
+}
+
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  EvaluationOptions options;
+  options.battery = battery;
+  options.carry_soc = true;
+  return evaluate(market, market.days_of(Split::kValidation), rule, options)
+      .profit_eur_per_day_per_mwh();
+}
+
 namespace {
 
 constexpr double kWattHoursPerMegawattHour = 1e6;

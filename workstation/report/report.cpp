@@ -11,15 +11,13 @@
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "workstation/report/comparison_notes.h"
+#include "workstation/report/evaluation_days.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/judged_days.h"
 #include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
-#include "workstation/report/page_pictures.h"
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
-#include "workstation/report/shown_policies.h"
 
 namespace bess {
 namespace {

@@ -13,7 +13,7 @@
 #include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/report/provenance.h"
 #include "workstation/rl/train.h"
-#include "workstation/student/failed_proof.h"
+#include "workstation/student/prove.h"
 #include "workstation/student/student_checkpoints.h"
 #include "workstation/student/student_file.h"
 

@@ -8,8 +8,8 @@
 
 #include "shared/host/text.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/shown_policies.h"
-#include "workstation/student/demand_counts.h"
+#include "workstation/report/page_data.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,7 @@
 #include "workstation/report/provenance.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/student/certificate.h"
-#include "workstation/student/failed_proof.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 

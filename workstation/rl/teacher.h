@@ -8,16 +8,16 @@
 #include <optional>
 #include <string>
 
-#include "workstation/base/entries.h"
+#include "workstation/base/answer.h"
 #include "workstation/env/outlook_book.h"
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
 #include "workstation/planners/outlook_program.h"
 #include "workstation/planners/stochastic_program.h"
+#include "workstation/rl/c51.h"
 #include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/program_residual.h"
-#include "workstation/rl/support.h"
 
 namespace bess {
 

@@ -8,7 +8,7 @@
 #include "shared/training_period.h"
 #include "shared/utc_text.h"
 #include "workstation/chain/chain_steps.h"
-#include "workstation/market/series/price_regime.h"
+#include "workstation/market/series/imbalance_price.h"
 #include "workstation/rl/teacher.h"
 #include "workstation/student/student_file.h"
 

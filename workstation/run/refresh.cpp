@@ -10,12 +10,11 @@
 #include "shared/host/user_error.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/folder_lock.h"
-#include "workstation/chain/interruption.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/run/proposal.h"
-#include "workstation/run/run_fold.h"
+#include "workstation/run/run_backtest.h"
+#include "workstation/run/run_report.h"
 #include "workstation/run/run_stages.h"
-#include "workstation/run/run_summary.h"
 
 namespace bess {
 namespace {

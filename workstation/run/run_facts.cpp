@@ -15,7 +15,7 @@
 #include "shared/host/made/build_info.h"
 #include "shared/host/shell_word.h"
 #include "shared/utc_text.h"
-#include "workstation/chain/changed_keys.h"
+#include "workstation/chain/learning_class.h"
 
 namespace bess {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/built_in_market.h"
 #include "workstation/chain/chain_steps.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/run/run_report.h"
 #include "workstation/run/stage_table.h"
 

@@ -7,7 +7,6 @@
 
 #include "shared/host/minute_file.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
 #include "workstation/run/run_record.h"

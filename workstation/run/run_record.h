@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/base/entries.h"
+#include "workstation/base/answer.h"
 #include "workstation/chain/run_config.h"
 #include "workstation/run/run_folder.h"
 
@@ -56,7 +56,7 @@ struct RunFigures {
 inline constexpr const char* kRulesKey = "rules";
 /// In `identity` where there are day-ahead prices: their file's mark.
 inline constexpr const char* kDayAheadKey = "day-ahead";
-/// In `identity` of a run on one fold of a walk-forward alone (run_fold.h): its month or days.
+/// In `identity` of a run on one fold of a walk-forward alone (run_backtest.h): its month or days.
 inline constexpr const char* kFoldKey = "fold";
 /// In `identity` of a lean run, which makes no plain student, no figures and no page: "lean".
 inline constexpr const char* kStagesKey = "stages";

@@ -2,22 +2,239 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/env/charge_left.h"
 #include "workstation/report/comparison_notes.h"
+#include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/judged_days.h"
+#include "workstation/report/page_data.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/report/rule_prices.h"
-#include "workstation/report/shown_policies.h"
+#include "workstation/rules/rule_file.h"
 #include "workstation/rules/ruled_policy.h"
+#include "workstation/run/run_backtest.h"
 #include "workstation/run/run_facts.h"
-#include "workstation/student/demand_counts.h"
+#include "workstation/student/certificate.h"
 #include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
+
+namespace {
+
+const NamedEvaluation& exported(const RunSummary& run) {
+  const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
+  if (found == run.evaluations.end()) {
+    fail("{}: has no \"{}\"; make the run again", run.folder.file(run_file::kDays).string(),
+         kExportedPolicy);
+  }
+  return *found;
+}
+
+Json row_json(const ComparisonRow& row) {
+  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, row.carry_soc}});
+  add_figures(row, json);
+  return json;
+}
+
+/// The gain over another run, when both saw the same days.
+std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
+  if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
+  return paired_difference(run, first);
+}
+
+/// "KEY: A | B | C" for each of them.
+std::string what_differs(const std::vector<RunSummary>& runs) {
+  std::vector<const RunRecord*> records;
+  for (const RunSummary& run : runs) records.push_back(&run.record);
+  std::string text;
+  for (const std::string& key : differing_keys(records)) {
+    std::string line;
+    for (const RunRecord* record : records) {
+      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(*record, key));
+    }
+    text += fmt::format("{}: {}\n", key, line);
+  }
+  return text;
+}
+
+/// Numbers that are compared are those that the run wrote.
+void require_unchanged(const RunRecord& record, const RunFolder& folder) {
+  for (const StageRecord& stage : record.stages) {
+    for (const auto& [file, mark] : stage.outputs) {
+      if (file != run_file::kDays) continue;
+      const std::string now = file_mark(folder.file(run_file::kDays));
+      if (now == mark) return;
+      fail(
+          "{}: is not what the run wrote ({} in {}, now {}); 'bess-train report --run {}' makes it "
+          "again",
+          folder.file(run_file::kDays).string(), mark, run_file::kRecord,
+          now.empty() ? "missing" : now, folder.path.string());
+    }
+  }
+}
+
+/// What the figures are of, and the walk-forward one of each run that has it.
+std::string standing_text(const std::vector<RunSummary>& runs) {
+  std::string text = "\n";
+  std::string last;
+  for (const RunSummary& run : runs) {
+    const std::string judged = judged_days_text(judged_days_of(run));
+    if (judged != last) text += judged + "\n";
+    last = judged;
+  }
+  bool any = false;
+  for (const RunSummary& run : runs) {
+    const WalkForwardOfRun walk = walk_forward_of(run.folder, run.record);
+    if (!walk.figure) continue;
+    text += fmt::format("{}: {}\n", run.folder.path.string(), walk_forward_text(walk));
+    any = true;
+  }
+  const RunSummary& first = runs.front();
+  if (any) return text;
+  return with_run_folder(
+      text + walk_forward_text(walk_forward_of(first.folder, first.record)) + "\n",
+      first.folder.path);
+}
+
+std::size_t rules_of(const RunSummary& run) {
+  const std::string rules = run.record.value(kRulesKey);
+  return rules.empty() ? 0 : parse_rules(rules, "run.json: rules").rules.size();
+}
+
+}  // namespace
+
+std::string value_text(const RunRecord& record, const std::string& key) {
+  const std::string value = record.value(key);
+  if (key != kRulesKey) return value.empty() ? "unknown" : one_line(value);
+  if (value.empty()) return "none";
+  std::string text;
+  for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
+    text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
+                        rule.enforce ? "; the guard's too" : "");
+  }
+  return text;
+}
+
+std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs) {
+  std::vector<std::string> keys;
+  for (const RunRecord* run : runs) {
+    for (const auto& entry : run->identity) {
+      const std::string& key = entry.first;
+      const bool is_same = std::ranges::all_of(
+          runs, [&](const RunRecord* other) { return other->value(key) == entry.second; });
+      if (!is_same && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+JudgedDays judged_days_of(const RunSummary& run) {
+  JudgedDays judged{Split::kTest, {}, run.record.figures->last_learnt_day};
+  for (const DayResult& day : exported(run).carried_over.days) judged.dates.push_back(day.date);
+  return judged;
+}
+
+RunSummary load_run_summary(const RunFolder& folder) {
+  std::optional<RunRecord> record = load_run_record(folder);
+  const std::string name = folder.path.string();
+  if (!record) {
+    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", name,
+         run_file::kRecord, name);
+  }
+  if (!record->figures && record->has_failed()) {
+    fail(
+        "{}: ended without a proof, {} shows where; 'bess-train run --from-teacher {} --config NEW "
+        "--out ANOTHER' starts at its correction",
+        name, folder.file(run_file::kReport).string(), name);
+  }
+  if (!record->figures) {
+    fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
+         record->state(), name);
+  }
+  require_unchanged(*record, folder);
+  const std::string days = folder.file(run_file::kDays).string();
+  const RunConfig config = record->config(folder);
+  return {folder, std::move(*record),
+          parse_evaluation_days_csv(read_file(days), days, config.battery)};
+}
+
+Json summary_json(const RunSummary& run) {
+  const RunRecord& record = run.record;
+  const RunFigures& figures = *record.figures;
+  Json json = answer("run");
+  json.set("run", run.folder.path.string());
+  json.set("prices", record.prices);
+  json.set("seed", record.config(run.folder).train.seed);
+  json.set("provenance", figures.provenance);
+  json.set("weights_hash", figures.weights_hash);
+  json.set("states_checked", figures.states_checked);
+  json.set("states_checked_plain", figures.states_checked_plain);
+  json.set("violations_plain", figures.violations_plain);
+  json.set("violations_corrected", figures.violations_corrected);
+  json.set("demands", demands_json(figures.demands));
+  const auto prices = rule_prices_of(run.evaluations);
+  json.set("price_of_correction", prices ? rule_prices_table(*prices).json() : Json::null());
+  const auto headline = headline_of(run.evaluations);
+  json.set("headline", headline ? headline_json(*headline) : Json::null());
+  json.set("judged_days", judged_days_json(judged_days_of(run)));
+  const WalkForwardOfRun walk = walk_forward_of(run.folder, record);
+  json.set("walk_forward", walk.figure ? walk_forward_json(*walk.figure) : Json::null());
+  Json policies = Json::list();
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
+    for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
+      policies.add(row_json(row));
+    }
+  }
+  json.set("policies", std::move(policies));
+  return json;
+}
+
+std::string format_runs_table(const std::vector<RunSummary>& runs) {
+  std::size_t width = 3;
+  for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
+  std::string text = fmt::format(
+      "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
+      "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
+      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
+      "s.e.", "by month", kReferenceWearHead, "foresight", "reset", "weights");
+  const Evaluation& first = exported(runs.front()).carried_over;
+  for (const RunSummary& run : runs) {
+    const NamedEvaluation& student = exported(run);
+    const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
+    const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+    const auto over_first =
+        &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
+    text += fmt::format(
+        "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11.1f} {:>9} {:>8.1f} "
+        "{:>9}\n",
+        run.folder.path.string(), width, run.record.value("seed"), rules_of(run), row->days,
+        row->profit, error_text(row->errors.plain, 1), error_text(row->errors.by_month, 1),
+        over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
+        over_first ? error_text(over_first->standard_error, 1) : "-",
+        over_first ? error_text(over_first->standard_error_by_month, 1) : "-",
+        row->profit_at_reference_wear,
+        row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",
+        student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);
+  }
+  text += fmt::format(
+      "\ncarried, reset: SoC carried over from day to day, or the same at the start of each;\n"
+      "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
+      "standard error;\nby month: {}\n",
+      by_month_meaning(first.errors().months));
+  text += standing_text(runs);
+  const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
+  if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
+  return text;
+}
+
 namespace {
 
 NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {

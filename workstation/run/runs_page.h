@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "workstation/run/run_summary.h"
+#include "workstation/run/run_report.h"
 
 namespace bess {
 

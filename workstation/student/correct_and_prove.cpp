@@ -10,7 +10,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/rules/outlook_rule.h"
+#include "workstation/rules/properties.h"
 #include "workstation/student/quantise.h"
 #include "workstation/student/student_policy.h"
 #include "workstation/student/verify.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/student/demand_counts.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 

@@ -3,11 +3,49 @@
 // wrote it. What a student's file says about itself is not believed.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
+#include "shared/features.h"
+#include "workstation/correction/distil.h"
+#include "workstation/student/proof_rounds.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
+
+// Why a proof failed, for whoever has to do something about it: each demand that is broken with its
+// count, a state, what the student does there, and what to change.
+
+struct BrokenDemand {
+  DemandCount count;
+  std::string example;  ///< the state and what is done there; empty when none is known
+  std::string advice;   ///< what to change
+  std::optional<LatticeState> state{};  ///< that of the example
+};
+
+/// Of a student with the certificate of its proof. Counterexamples help; without them the states
+/// that decide a monotone student are searched.
+std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionMethod method);
+
+/// One line, and one below it for each broken demand, with its advice. `where` in front, `note`
+/// behind the count.
+std::string describe_failed_proof(const StudentFile& student, const std::vector<ProofRound>& rounds,
+                                  CorrectionMethod method, const std::string& where = "",
+                                  const std::string& note = "");
+
+/// "context class 3, 22:15, minute 0, SoC 50 %, 1500 EUR/MWh".
+std::string state_text(const LatticeState& state, ContextKind kind);
+
+// States in which a student violates a property, as CSV: where a report looks, without another
+// proof.
+
+/// Header `minute_of_quarter_hour,quarter_hour,context_class,soc_index,price_eur_per_mwh`.
+std::string counterexamples_csv(const std::vector<LatticeState>& states);
+/// Reads it back; throws UserError naming `name` and the line.
+std::vector<LatticeState> parse_counterexamples_csv(std::string_view text, const std::string& name);
 
 class ProvedStudent;
 

@@ -9,7 +9,7 @@
 
 #include "shared/host/json.h"
 #include "shared/nn/student_net.h"
-#include "workstation/base/entries.h"
+#include "workstation/base/answer.h"
 #include "workstation/env/outlook_book.h"
 #include "workstation/student/certificate.h"
 

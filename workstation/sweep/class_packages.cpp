@@ -8,7 +8,7 @@
 #include "shared/host/child_process.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/base/fnv1a.h"
+#include "workstation/base/binary_file.h"
 #include "workstation/run/run_folder.h"
 #include "workstation/student/export.h"
 

@@ -15,7 +15,7 @@
 #include "workstation/env/day_errors.h"
 #include "workstation/run/run_folder.h"
 #include "workstation/run/run_record.h"
-#include "workstation/run/run_summary.h"
+#include "workstation/run/run_report.h"
 #include "workstation/sweep/run_task.h"
 
 namespace bess {

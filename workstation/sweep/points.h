@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "workstation/base/entries.h"
+#include "workstation/base/answer.h"
 
 namespace bess {
 

@@ -9,7 +9,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/base/fnv1a.h"
+#include "workstation/base/binary_file.h"
 #include "workstation/chain/learning_class.h"
 #include "workstation/chain/rule_files.h"
 #include "workstation/rules/rule_file.h"

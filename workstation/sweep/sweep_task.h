@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/base/entries.h"
+#include "workstation/base/answer.h"
 
 namespace bess {
 
 /// Names among a task's settings that are no keys of the configuration.
 namespace setting {
 inline constexpr const char* kSeed = "seed";
-inline constexpr const char* kFold = "fold";    ///< a month (run/run_fold.h)
+inline constexpr const char* kFold = "fold";    ///< a month (run/run_backtest.h)
 inline constexpr const char* kRules = "rules";  ///< the stem of a file in the sweep's rules/
 inline constexpr const char* kClass = "class";  ///< of sites that share the student (sites.h)
 }  // namespace setting

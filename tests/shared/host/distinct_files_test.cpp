@@ -1,5 +1,5 @@
 // What counts as the same file, under whatever name.
-#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a quarter-hour is paid at, by hand: settled, else the newest of its own minutes.
-#include "shared/host/quarter_prices.h"
+#include "shared/host/exchanged_days.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workstation/market/model/unit_autoregression.h"
+#include "workstation/market/model/minute_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workstation/chain/changed_keys.h"
+#include "workstation/chain/learning_class.h"
 
 #include <gmock/gmock.h>
 

@@ -1,12 +1,12 @@
 // How signals end the program: each handler in a process of its own.
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>
 
 #include <filesystem>
 
-#include "shared/host/unfinished_files.h"
+#include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

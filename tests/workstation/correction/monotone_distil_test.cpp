@@ -10,8 +10,8 @@
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "workstation/env/context_fit.h"
+#include "workstation/student/certificate.h"
 #include "workstation/student/correct_and_prove.h"
-#include "workstation/student/demand_counts.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {

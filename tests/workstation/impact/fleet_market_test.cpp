@@ -11,7 +11,6 @@
 #include "shared/local_time.h"
 #include "workstation/env/market_steps.h"
 #include "workstation/impact/impact_study.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 

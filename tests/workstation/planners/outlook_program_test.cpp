@@ -8,8 +8,6 @@
 #include "tests/support/market_series.h"
 #include "tests/support/outlook_market.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/planners/stochastic_program.h"

@@ -8,7 +8,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/report/figures/regime_marks.h"
+#include "workstation/report/figures/policy_map.h"
 
 namespace bess {
 namespace {

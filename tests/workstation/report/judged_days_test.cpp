@@ -1,5 +1,5 @@
 // Which days a figure is about, and what learning saw of later ones.
-#include "workstation/report/judged_days.h"
+#include "workstation/report/evaluation_days.h"
 
 #include <gmock/gmock.h>
 

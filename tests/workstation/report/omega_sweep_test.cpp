@@ -1,5 +1,5 @@
-#include "workstation/report/figures/omega_sweep.h"
 #include "tests/support/tokens.h"
+#include "workstation/report/figures/walk_forward_figure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

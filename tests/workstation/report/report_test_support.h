@@ -9,7 +9,6 @@
 #include "shared/local_time.h"
 #include "workstation/correction/distil.h"
 #include "workstation/env/charge_left.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/report/report.h"

@@ -10,7 +10,6 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "workstation/env/market_steps.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/rl/price_map.h"

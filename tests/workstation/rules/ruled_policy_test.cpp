@@ -7,7 +7,6 @@
 
 #include "tests/support/rule_sets.h"
 #include "tests/support/small_market.h"
-#include "workstation/rules/rule_watch.h"
 
 namespace bess {
 namespace {

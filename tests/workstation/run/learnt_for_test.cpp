@@ -12,10 +12,10 @@
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/chain/built_in_market.h"
-#include "workstation/chain/interruption.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/market/series/imbalance_price.h"
 #include "workstation/market/series/local_date.h"
-#include "workstation/market/series/price_regime.h"
 #include "workstation/rl/teacher.h"
 #include "workstation/student/student_file.h"
 

@@ -8,7 +8,7 @@
 #include "tests/support/integer_nets.h"
 #include "tests/support/small_market.h"
 #include "tests/support/tokens.h"
-#include "workstation/run/run_fold.h"
+#include "workstation/run/run_backtest.h"
 
 namespace bess {
 namespace {

@@ -1,6 +1,6 @@
 // Finished runs as figures: the table of runs, and the days that it is made
 // of.
-#include "workstation/run/run_summary.h"
+#include "workstation/run/run_report.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

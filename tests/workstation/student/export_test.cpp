@@ -15,7 +15,6 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "workstation/rules/rule_file.h"
-#include "workstation/student/rule_header.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // A proof that failed names what is broken, where, and what to change.
-#include "workstation/student/failed_proof.h"
+#include "workstation/student/prove.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

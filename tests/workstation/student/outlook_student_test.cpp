@@ -12,7 +12,7 @@
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rl/train.h"
-#include "workstation/rules/outlook_rule.h"
+#include "workstation/rules/properties.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/exported_policy.h"

@@ -15,7 +15,7 @@
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/student/demand_counts.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 namespace {

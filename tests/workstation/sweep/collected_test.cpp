@@ -8,7 +8,7 @@
 #include "tests/support/temporary_folder.h"
 #include "workstation/report/comparison.h"
 #include "workstation/run/run_folder.h"
-#include "workstation/run/run_summary.h"
+#include "workstation/run/run_report.h"
 
 namespace bess {
 namespace {

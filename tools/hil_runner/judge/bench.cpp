@@ -6,7 +6,7 @@
 #include "edge/control/quarter_hour_energy.h"
 #include "shared/features.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
-#include "tools/hil_runner/scenario/scenario_house.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
 
 namespace bess {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "shared/scaled_clock.h"
 #include "tools/battery_sim/house_load.h"
-#include "tools/hil_runner/evidence/command_timeline.h"
+#include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/judge/judge.h"
 #include "tools/hil_runner/scenario/rules.h"
 

@@ -2,13 +2,72 @@
 
 #include <fmt/core.h>
 
+#include <cstring>
 #include <fstream>
 
+#include "edge/log/record_codec.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "tools/hil_runner/run/run_signature.h"
+#include "shared/signature.h"
 
 namespace bess {
+
+namespace {
+
+std::int64_t bits(double value) {
+  std::int64_t out = 0;
+  std::memcpy(&out, &value, sizeof out);
+  return out;
+}
+
+void add(const CycleRecord& c, Signature& signature) {
+  const BatteryMeasurement& m = c.measurement;
+  for (const std::int64_t part :
+       {c.utc_s, std::int64_t{c.has_measurement}, std::int64_t{m.soc_e4}, std::int64_t{m.power_w},
+        std::int64_t{c.price.has_row}, c.price.minute_utc_s,
+        std::int64_t{c.price.price_centi_eur_per_mwh}, std::int64_t{c.context_class},
+        std::int64_t{c.has_student_action}, static_cast<std::int64_t>(c.student_action),
+        std::int64_t{c.ordered_power_w}, static_cast<std::int64_t>(c.mode),
+        std::int64_t{c.written}}) {
+    signature.add(part);
+  }
+  if (c.outlook.source != OutlookSource::kNone) {
+    signature.add(static_cast<std::int64_t>(c.outlook.source));
+    signature.add(c.outlook.break_even_centi);
+  }
+  for (const char letter : reason_name(c.reason)) signature.add(letter);
+}
+
+}  // namespace
+
+std::uint64_t signature_of(const Evidence& evidence) {
+  Signature signature;
+  for (const DispatchEvent& e : evidence.orders) {
+    for (const std::int64_t part : {e.utc_ns, static_cast<std::int64_t>(e.kind), bits(e.power_w),
+                                    e.duration_s, bits(e.soc_frac)}) {
+      signature.add(part);
+    }
+  }
+  for (const MinuteRecord& m : evidence.minutes) {
+    for (const std::int64_t part : {m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)}) {
+      signature.add(part);
+    }
+  }
+  for (const CycleRecord& cycle : evidence.log) add(cycle, signature);
+  return signature.value();
+}
+
+std::uint64_t pinned_number_of(const Evidence& evidence) {
+  Signature signature;
+  RecordBytes bytes;
+  for (const CycleRecord& cycle : evidence.log) {
+    encode_record(cycle, 0, bytes);
+    for (const std::uint8_t byte : bytes) signature.add(byte);
+  }
+  signature.add(static_cast<std::int64_t>(evidence.sent));
+  signature.add(evidence.edge_exit_code);
+  return signature.value();
+}
 
 PinnedRuns::PinnedRuns(const std::string& path, bool renews) : path_(path), renews_(renews) {
   std::ifstream file(path);

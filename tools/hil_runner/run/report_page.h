@@ -8,6 +8,12 @@
 
 namespace bess {
 
+// One run as a picture: price, orders and measured power, SoC, the edge's modes; faults as named
+// bands. Axes are UTC.
+
+/// An SVG element. `span`: of the scenario's minutes. Throws UserError without gnuplot.
+std::string run_picture(const Outcome& outcome, const MinuteSpan& span);
+
 /// A page without scripts and without anything from elsewhere. Throws UserError without gnuplot.
 std::string report_page(const std::vector<Outcome>& outcomes);
 

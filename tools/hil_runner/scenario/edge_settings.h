@@ -1,18 +1,38 @@
 // The edge's configuration of a scenario: a file for the real reader, in both times.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "edge/loop/control_settings.h"
 #include "edge/settings/edge_config.h"
+#include "edge/site/connection_guard.h"
 #include "shared/host/minute_file.h"
 #include "shared/price_level.h"
+#include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/site/site_clock.h"
 
 namespace bess {
+
+// The line by which a scenario's other program limits the battery (edge/site/connection_guard.h).
+
+/// As a scenario says it and as the line and the command line have it: watts, or any.
+inline std::string limit_power_text(std::int32_t power_w) {
+  return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w);
+}
+
+/// Of an event that limits; one that tears leaves what a program writes that is interrupted: half
+/// of it.
+inline std::string limit_line(const ScenarioEvent& event, std::int64_t now_utc_s) {
+  const std::string line =
+      fmt::format("{} {} {}\n", limit_power_text(event.charge_w),
+                  limit_power_text(event.discharge_w), utc_text(now_utc_s + event.for_s).view());
+  return event.does == ScenarioEvent::Does::kLimitTorn ? line.substr(0, line.size() / 2) : line;
+}
 
 /// Where battery and market are, and the clock; as it stands: virtual time.
 struct EdgePlaces {

@@ -11,11 +11,8 @@
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/rules.h"
-#include "tools/hil_runner/scenario/scenario_event.h"
-#include "tools/hil_runner/scenario/scenario_expectation.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/scenario/scenario_reader.h"
-#include "tools/hil_runner/scenario/scenario_site.h"
 
 namespace bess {
 namespace {

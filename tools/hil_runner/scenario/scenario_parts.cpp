@@ -3,9 +3,378 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <sstream>
 
+#include "edge/control/control_types.h"
+#include "edge/control/hold.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "tools/hil_runner/scenario/scenario_reader.h"
+
 namespace bess {
+
+std::string house_csv(const Scenario& scenario) {
+  constexpr int kMinutesAround = 60;
+  const auto& steps = scenario.house.steps;
+  std::string text = "minute_utc,house_w\n";
+  const int end = static_cast<int>(std::ceil(scenario.minutes)) + kMinutesAround;
+  for (int minute = -kMinutesAround; minute < end; ++minute) {
+    double power_w = steps.front().power_w;
+    for (const ScenarioHouse::Step& step : steps) {
+      if (step.from_min <= minute) power_w = step.power_w;
+    }
+    text += fmt::format("{},{}\n", utc_text(scenario.start_utc_s + 60 * minute).view(), power_w);
+  }
+  return text;
+}
+
+HouseLoad house_load(const Scenario& scenario) {
+  if (scenario.house.seed) return HouseLoad::daily(*scenario.house.seed);
+  return HouseLoad::from_csv(house_csv(scenario), scenario.name);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kHouseWMax = 1e7;
+
+/// What a meter can do wrong: on the bus, as long as it is read, and in what it shows of the grid.
+bool is_of_meter(const BatteryFaultInfo& info) {
+  using enum BatteryFault;
+  const bool is_read = (info.chances & ~static_cast<unsigned>(FaultChance::kWrite)) != 0;
+  const bool is_of_bus = info.fault <= kBadCrc && info.tcp && is_read;
+  return is_of_bus || is_of_grid(info.fault) || info.fault == kFrozen || info.fault == kWrongSign;
+}
+
+}  // namespace
+
+void read_house(TomlTable table, Scenario& scenario) {
+  ScenarioHouse& house = scenario.house;
+  if (table.value() == nullptr) return;
+  const int ways = int{table.has("power_w")} + int{table.has("steps")} + int{table.has("seed")};
+  if (ways != 1) table.fail("power_w", "or steps or seed: exactly one of them is needed");
+  double power_w = 0;
+  read_decimal(table, "power_w", power_w, -kHouseWMax, kHouseWMax);
+  if (table.has("power_w")) house.steps = {{.from_min = 0, .power_w = power_w}};
+  read_steps(table, scenario.minutes, house.steps, [](double from_min, double step_w) {
+    return ScenarioHouse::Step{.from_min = from_min, .power_w = step_w};
+  });
+  if (table.has("seed")) {
+    std::int64_t seed = 1;
+    table.integer("seed", seed, 0, INT64_MAX);
+    house.seed = static_cast<std::uint64_t>(seed);
+  }
+  table.finish();
+}
+
+void read_meter(TomlTable table, const fs::path& folder, ScenarioMeter& meter) {
+  if (table.value() == nullptr) return;
+  std::string map;
+  table.require("map");
+  read_text(table, "map", map);
+  read_text(table, "variant", meter.variant);
+  table.finish();
+  if (!table.ok()) return;
+  meter.source = map == "battery" ? ScenarioMeter::Source::kBattery : ScenarioMeter::Source::kMap;
+  if (meter.source == ScenarioMeter::Source::kBattery) {
+    if (!meter.variant.empty()) table.fail("variant", "is of a meter with a map of its own");
+    return;
+  }
+  const bool is_name = map.find('/') == std::string::npos && !map.ends_with(".toml");
+  meter.map = is_name ? std::string(BESS_METER_DIR) + "/" + map + ".toml"
+                      : (folder / map).lexically_normal().string();
+  if (!fs::exists(meter.map)) table.fail("map", "names no register map: " + meter.map);
+}
+
+void read_meter_fault(TomlTable table, Scenario& scenario) {
+  ScenarioMeter& meter = scenario.meter;
+  if (table.value() == nullptr) return;
+  if (meter.source != ScenarioMeter::Source::kMap) {
+    table.fail("kinds", meter.source == ScenarioMeter::Source::kNone
+                            ? "need [meter], which is to be wrong"
+                            : "are of a meter's own map: a battery's grid point is wrong by "
+                              "[battery_fault]");
+  }
+  MinuteSpan window;
+  read_span(table, scenario.minutes, window);
+  FaultSchedule& schedule = meter.fault.schedule;
+  schedule.every = 1;
+  schedule.from_s = 60 * window.from_min;
+  schedule.to_s = 60 * window.to_min;
+  read_decimal(table, "on_s", schedule.on_s, 1, 86'400);
+  read_decimal(table, "off_s", schedule.off_s, 1, 86'400);
+  if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {
+    table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "comes with the other of on_s and off_s");
+  }
+  read_fault_kinds(table, schedule.faults, [](const BatteryFaultInfo& info) -> std::string {
+    return is_of_meter(info) ? "" : "is of a battery, not of a meter";
+  });
+  table.finish();
+}
+
+void check_site(TomlTable& root, const Scenario& scenario) {
+  using enum ScenarioMeter::Source;
+  const bool has_meter = scenario.meter.source != kNone;
+  if (has_meter != scenario.house.exists()) {
+    return root.fail(has_meter ? "meter" : "house",
+                     has_meter ? "needs [house], whose load it shows"
+                               : "needs [meter]: else nobody would see it");
+  }
+  if (!scenario.edge_meter.empty() && !has_meter) {
+    return root.fail("edge", "meter: needs [meter], which is read");
+  }
+  for (const char* const table : {"[meter]", "[limits]"}) {
+    if (scenario.edge_other.find(table) == std::string::npos) continue;
+    return root.fail("edge", fmt::format("other: lines of {} go into the key {}", table,
+                                         table[1] == 'm' ? "meter" : "limits"));
+  }
+  if (scenario.meter.source != kBattery && scenario.has_battery_fault(is_of_grid)) {
+    root.fail("battery_fault",
+              "kinds: grid-... need [meter] map = \"battery\"; a meter's own are [meter_fault]");
+  }
+}
+
+namespace {
+
+constexpr std::string_view kEventNames[] = {
+    "edge_kill",    "edge_stop",       "edge_hand_over", "edge_start",
+    "edge_pause",   "edge_continue",   "battery_pause",  "battery_continue",
+    "market_pause", "market_continue", "market_kill",    "market_start",
+    "clock_step",   "clock_lost",      "clock_back",     "hold",
+    "hold_release", "limit",           "limit_clear",    "limit_torn",
+    "clear",        "state_lost",      "disk_full"};
+
+/// How long it holds, in whole seconds, as the command lines take it.
+void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
+  constexpr double kWeekMin = 7 * 24 * 60;
+  double minutes = 0;
+  table.require("for_min");
+  read_decimal(table, "for_min", minutes, minutes_min, kWeekMin);
+  for_s = std::llround(60 * minutes);
+}
+
+/// What belongs to one kind of event alone.
+void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
+  using enum ScenarioEvent::Does;
+  constexpr std::int64_t kPowerWMax = 100'000'000;
+  if (event.does == kClockStep) {
+    table.require("seconds");
+    read_decimal(table, "seconds", event.seconds, -86'400, 86'400);
+    if (table.ok() && event.seconds == 0) table.fail("seconds", "must not be 0");
+  } else if (event.does == kHold) {
+    table.require("power_w");
+    table.integer("power_w", event.power_w, -kPowerWMax, kPowerWMax);
+    read_for_min(table, kHoldSecondsMin / 60.0, event.for_s);
+  } else if (event.does == kLimit || event.does == kLimitTorn) {
+    if (!table.has("charge_w") && !table.has("discharge_w")) table.require("charge_w");
+    table.integer("charge_w", event.charge_w, 0, kPowerWMax);
+    table.integer("discharge_w", event.discharge_w, 0, kPowerWMax);
+    read_for_min(table, 0.1, event.for_s);
+  }
+}
+
+/// Events that find nothing to do: what is to end has not begun, or what is to begin has.
+void check_order_of_events(TomlTable& table, const Scenario& scenario) {
+  using enum ScenarioEvent::Does;
+  enum Thing : std::uint8_t {
+    kEdgeRuns,
+    kEdgeStands,
+    kBatteryStands,
+    kMarketStands,
+    kMarketIsDead,
+    kClockIsLost,
+    kIsHeld,
+    kIsLimited,
+    kThingCount
+  };
+  struct Turn {
+    ScenarioEvent::Does does;
+    Thing thing;
+    bool turns_to;
+    const char* in_vain;  ///< why, where it is so already; null: it may be
+  };
+  constexpr Turn kTurns[] = {
+      {kEdgeKill, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeStart, kEdgeRuns, true, "the edge runs"},
+      {kStateLost, kEdgeRuns, true, "the edge runs, and keeps it open"},
+      {kEdgePause, kEdgeStands, true, "the edge stands still"},
+      {kEdgeContinue, kEdgeStands, false, "the edge does not stand still"},
+      {kBatteryPause, kBatteryStands, true, "the battery stands still"},
+      {kBatteryContinue, kBatteryStands, false, "the battery does not stand still"},
+      {kMarketPause, kMarketStands, true, "the market stands still"},
+      {kMarketContinue, kMarketStands, false, "the market does not stand still"},
+      {kMarketKill, kMarketIsDead, true, "the market does not run"},
+      {kMarketStart, kMarketIsDead, false, "the market runs"},
+      {kClockUnsynchronised, kClockIsLost, true, "the clock is lost"},
+      {kClockSynchronised, kClockIsLost, false, "the clock is not lost"},
+      {kHold, kIsHeld, true, nullptr},
+      {kHoldRelease, kIsHeld, false, "nobody holds the battery"},
+      {kLimit, kIsLimited, true, nullptr},
+      {kLimitTorn, kIsLimited, true, nullptr},
+      {kLimitClear, kIsLimited, false, "nobody limits the battery"}};
+  bool is[kThingCount] = {};
+  is[kEdgeRuns] = true;
+  for (const ScenarioEvent& event : scenario.events) {
+    const auto* const turn = std::ranges::find(kTurns, event.does, &Turn::does);
+    if (turn == std::end(kTurns)) continue;
+    if (is[turn->thing] == turn->turns_to && turn->in_vain != nullptr && table.ok()) {
+      table.error() = fmt::format("{}:{}: [[event]] {} at minute {:g} is in vain: {}", table.file(),
+                                  event.line, event_name(event.does), event.at_min, turn->in_vain);
+    }
+    if (event.does != kStateLost) is[turn->thing] = turn->turns_to;
+  }
+}
+
+/// What only one of the two times can do, and what the edge would refuse.
+void check_times(TomlTable& table, const Scenario& scenario) {
+  using enum ScenarioEvent::Does;
+  for (const ScenarioEvent& event : scenario.events) {
+    if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
+      table.fail("event", fmt::format("hold: {} W is more than the battery's {:g}", event.power_w,
+                                      scenario.battery.physics.power_w_max));
+    }
+    const bool of_clock = event.does == kClockStep || event.does == kClockUnsynchronised ||
+                          event.does == kClockSynchronised;
+    if (of_clock && scenario.runs_wall) {
+      table.fail("time", "must be \"virtual\": the clock of this machine is not stepped");
+    }
+    if (event.does == kDiskFull && scenario.runs_virtual) {
+      table.fail("time", "must be \"wall\": in virtual time there is no disk");
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view event_name(ScenarioEvent::Does does) {
+  return kEventNames[static_cast<std::size_t>(does)];
+}
+
+void read_event(TomlTable table, Scenario& scenario) {
+  ScenarioEvent event;
+  table.require("at_min");
+  read_decimal(table, "at_min", event.at_min, 0, kScenarioMinutesMax);
+  if (table.ok() && event.at_min >= scenario.minutes) {
+    table.fail("at_min", after_the_end(scenario.minutes));
+  }
+  if (table.value() != nullptr) event.line = table.value()->line;
+  table.require("does");
+  const std::string* const does = table.text("does");
+  const auto* const found = std::ranges::find(kEventNames, does == nullptr ? "" : *does);
+  if (table.ok() && found == std::end(kEventNames)) {
+    std::string names;
+    for (const std::string_view name : kEventNames) names += ' ' + std::string(name);
+    return table.fail("does", "must be one of:" + names);
+  }
+  event.does = static_cast<ScenarioEvent::Does>(found - std::begin(kEventNames));
+  read_what_is_said(table, event);
+  table.finish();
+  scenario.events.push_back(event);
+}
+
+void check_events(TomlTable& root, const Scenario& scenario) {
+  check_times(root, scenario);
+  check_order_of_events(root, scenario);
+}
+
+namespace {
+
+bool is_reason(std::string_view name) {
+  for (int i = 0; i < kReasonCount; ++i) {
+    if (reason_name(static_cast<Reason>(i)) == name) return true;
+  }
+  return false;
+}
+
+/// key = [least, most]
+void read_range(TomlTable& table, std::string_view key, const char* unit, double& range_min,
+                double& range_max) {
+  const TomlArray* const range = table.array(key);
+  if (range == nullptr) return;
+  const auto least = range->size() == 2 ? (*range)[0].number() : std::nullopt;
+  const auto most = least ? (*range)[1].number() : std::nullopt;
+  if (!most || *least > *most) return table.fail(key, fmt::format("must be [least, most]{}", unit));
+  range_min = *least;
+  range_max = *most;
+}
+
+/// A command that its own range of power rules out.
+bool is_ruled_out(const Expectation& expectation) {
+  using enum Expectation::Command;
+  const bool may_be_zero = expectation.power_w_min <= 0 && expectation.power_w_max >= 0;
+  switch (expectation.command) {
+    case kAny:
+    case kDriven:
+      return false;
+    case kCharge:
+      return expectation.power_w_max <= 0;
+    case kDischarge:
+      return expectation.power_w_min >= 0;
+    case kZero:
+    case kNone:
+    case kNotDriven:
+      return !may_be_zero;
+  }
+  return false;
+}
+
+/// What no run could break, and what none could keep.
+void check_expectation(TomlTable& table, const Scenario& scenario, const Expectation& e) {
+  if (!table.ok()) return;
+  constexpr double kStepMin = kSecondsPerStep / 60.0;
+  const double first_tick_min = std::ceil(e.span.from_min / kStepMin) * kStepMin;
+  if (first_tick_min >= std::min(e.span.to_min, scenario.minutes)) {
+    table.fail(table.has("to_min") ? "to_min" : "from_min",
+               fmt::format("leaves no tick: they are {:g} minutes apart from 0 on", kStepMin));
+  }
+  const double power_w = scenario.battery.physics.power_w_max;
+  if (table.has("power_w") && e.power_w_min <= -power_w && e.power_w_max >= power_w) {
+    table.fail("power_w", fmt::format("leaves nothing out: the battery has {:g} W", power_w));
+  }
+  if (e.command == Expectation::Command::kAny && !table.has("power_w") && e.reason.empty() &&
+      e.no_reason.empty() && e.outlook == OutlookSource::kNone) {
+    table.fail("command", "or power_w, reason, no_reason or outlook: else nothing is expected");
+  }
+  if (table.has("quarter_hours") && e.outlook == OutlookSource::kNone)
+    table.fail("quarter_hours", "comes with an outlook");
+  if (is_ruled_out(e)) table.fail("power_w", "rules out its command");
+  if (!e.reason.empty() && e.reason == e.no_reason) table.fail("no_reason", "rules out its reason");
+}
+
+}  // namespace
+
+void read_expectation(TomlTable table, Scenario& scenario) {
+  Expectation expectation;
+  read_span(table, scenario.minutes, expectation.span);
+  int command = 0;
+  table.choice("command", command,
+               {"any", "charge", "discharge", "zero", "none", "driven", "not_driven"});
+  expectation.command = static_cast<Expectation::Command>(command);
+  read_range(table, "power_w", ", in W", expectation.power_w_min, expectation.power_w_max);
+  int outlook = 0;
+  table.choice("outlook", outlook, {"any", "planned", "usual", "late", "missing"});
+  expectation.outlook = static_cast<OutlookSource>(outlook);
+  read_range(table, "quarter_hours", "", expectation.quarter_hours_min,
+             expectation.quarter_hours_max);
+  read_text(table, "reason", expectation.reason);
+  read_text(table, "no_reason", expectation.no_reason);
+  const std::pair<const char*, const std::string*> reasons[] = {
+      {"reason", &expectation.reason}, {"no_reason", &expectation.no_reason}};
+  for (const auto& [key, name] : reasons) {
+    if (table.ok() && !name->empty() && !is_reason(*name)) {
+      table.fail(key, "is no reason of the guard (edge/README.md lists them)");
+    }
+  }
+  check_expectation(table, scenario, expectation);
+  table.finish();
+  scenario.expectations.push_back(std::move(expectation));
+}
+
 namespace {
 
 class Parts {

@@ -1,6 +1,6 @@
 #include "tools/hil_runner/virtual/virtual_operator.h"
 
-#include "tools/hil_runner/scenario/limit_line.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
 
 namespace bess {
 

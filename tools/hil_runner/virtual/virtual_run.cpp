@@ -9,7 +9,7 @@
 #include "edge/program/controller.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
-#include "tools/hil_runner/scenario/scenario_house.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/virtual/virtual_bus.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_time.h"

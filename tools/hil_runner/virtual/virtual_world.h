@@ -13,7 +13,6 @@
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
 #include "tools/hil_runner/virtual/virtual_operator.h"
-#include "tools/hil_runner/virtual/virtual_outlook.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_run.h"
 

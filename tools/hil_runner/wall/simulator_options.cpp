@@ -4,7 +4,7 @@
 
 #include "shared/host/file.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
-#include "tools/hil_runner/scenario/scenario_house.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
 
 namespace bess {
 namespace {

@@ -16,12 +16,10 @@
 #include "tools/battery_sim/battery_record.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
-#include "tools/hil_runner/scenario/limit_line.h"
 #include "tools/hil_runner/wall/edge_process.h"
 #include "tools/hil_runner/wall/lateness.h"
 #include "tools/hil_runner/wall/real_visit.h"
 #include "tools/hil_runner/wall/simulator_options.h"
-#include "tools/hil_runner/wall/small_disk.h"
 #include "tools/site/site_programs.h"
 
 namespace bess {

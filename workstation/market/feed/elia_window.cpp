@@ -11,7 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/elia_fetch.h"
-#include "workstation/market/feed/market_text.h"
+#include "workstation/market/feed/market_files.h"
 
 namespace bess {
 namespace {

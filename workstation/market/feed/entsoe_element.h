@@ -15,7 +15,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/market/series/quarter_hour.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 

@@ -4,10 +4,46 @@
 #include <string>
 #include <vector>
 
-#include "workstation/market/feed/market_csv.h"
 #include "workstation/market/feed/market_join.h"
+#include "workstation/market/feed/market_rows.h"
+#include "workstation/market/feed/own_times.h"
 
 namespace bess {
+
+// JSON downloads: the API's records (`results`), exports (a bare array) and version 1
+// (`records[].fields`).
+
+/// `name` is used in messages.
+MarketRows parse_market_json(std::string_view text, std::string_view name);
+
+// CSV: downloads and files of one's own, `;` `,` or tabs, optional quotes, any column order.
+
+/// How a file of one's own is read: names of columns, empty where they are to be found.
+struct OwnForm {
+  std::string time_column, price_column;
+  OwnTimes times;
+};
+
+/// Without a resolution code the rows are minutes or quarter-hours by how far apart they are, and
+/// contradictions of one time are an error. `name` is used in messages.
+MarketRows parse_market_csv(std::string_view text, std::string_view name, const OwnForm& own = {});
+
+// Prices in any form that is read: told apart by content, parsed by the reader of that form.
+
+/// Elia's CSV or JSON, CSV of one's own, ENTSO-E's XML, minute files and recorded days. `name` is
+/// used in messages.
+MarketRows parse_market_text(std::string_view text, std::string_view name, const OwnForm& own = {});
+
+// Minute files as rows, so that what `prices import` wrote can be joined with more, or its settled
+// prices be the ground of a reconstruction.
+
+/// Indicative prices as minutes, settled ones as quarter-hours; its sources are those that its
+/// comments name.
+MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
+/// True of a minute file that a spreadsheet saved with semicolons, and that file with commas and
+/// decimal points again, row by row.
+bool is_spreadsheet_minute_csv(std::string_view text);
+std::string from_spreadsheet(std::string_view text);
 
 /// All rows of all files, in their order; `own` is how CSV of one's own is read.
 MarketRows read_market_files(const std::vector<std::string>& paths, const OwnForm& own = {});

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "shared/host/user_error.h"
+#include "workstation/market/series/local_date.h"
 #include "workstation/market/series/plausibility.h"
-#include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
 

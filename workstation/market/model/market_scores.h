@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "workstation/market/model/market_parameters.h"
-#include "workstation/market/model/unit_autoregression.h"
+#include "workstation/market/model/minute_path.h"
 
 namespace bess {
 

@@ -1,13 +1,21 @@
 #include "workstation/market/model/minute_path.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "workstation/market/model/market_parameters.h"
-#include "workstation/market/model/price_rounding.h"
 #include "workstation/market/series/imbalance_price.h"
 
 namespace bess {
+
+double UnitAutoregression::next(Random& random) {
+  const double shock = random.normal();
+  value_ = started_ ? correlation_ * value_ + std::sqrt(1 - correlation_ * correlation_) * shock
+                    : shock;  // starts in the stationary distribution: no warm-up days
+  started_ = true;
+  return value_;
+}
 
 MinutePathGenerator::MinutePathGenerator(std::uint64_t seed)
     : random_(seed), deviation_(kMinutePath.imbalance_correlation) {}

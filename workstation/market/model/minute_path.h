@@ -11,12 +11,33 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "shared/units_and_limits.h"
-#include "workstation/market/model/unit_autoregression.h"
-#include "workstation/market/series/quarter_hour.h"
+#include "workstation/base/random.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
+
+// Drawn prices are made in whole cents, as the settled ones of 2023 are published.
+
+inline double in_cents(double eur_per_mwh) {
+  return std::round(100 * eur_per_mwh) / 100 + 0.0;  // + 0.0: no negative zero
+}
+
+// First-order autoregressive process with unit variance: the memory of the simulated market.
+
+class UnitAutoregression {
+ public:
+  /// `correlation` between neighbours, -1 .. 1.
+  explicit UnitAutoregression(double correlation) : correlation_(correlation) {}
+  double next(Random& random);
+
+ private:
+  double correlation_;
+  double value_ = 0;
+  bool started_ = false;
+};
 
 using MinutePrices = std::array<double, kMinutesPerQuarterHour>;
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/market/series/quarter_hour.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 

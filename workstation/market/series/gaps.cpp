@@ -7,7 +7,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/utc_text.h"
-#include "workstation/market/series/quarter_hour.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 namespace {

@@ -10,6 +10,13 @@
 // within 0.015 EUR/MWh in all, alpha within 0.02 in all but one of those that have a predecessor.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/price_regime.h"
+
 namespace bess {
 
 struct ImbalanceState {
@@ -31,5 +38,24 @@ inline double imbalance_price_eur_per_mwh(const ImbalanceState& state, double al
              : state.marginal_decremental_eur_per_mwh - alpha_eur_per_mwh;
 }
 double imbalance_price_eur_per_mwh(const ImbalanceState& state);
+
+// Which of the price regimes (shared/price_regime.h) prices lie in.
+
+/// The end is excluded.
+struct UtcSpan {
+  std::int64_t from_s, until_s;
+};
+
+/// Ascending; every moment belongs to one.
+std::span<const PriceRegime> price_regimes();
+
+/// Those that the span meets, in order.
+std::vector<const PriceRegime*> regimes_met(const UtcSpan& span);
+
+/// Names of the regimes that `traded` meets and `learnt` does not, or empty.
+std::string regimes_not_learnt(const UtcSpan& learnt, const UtcSpan& traded);
+
+/// Names, a comma between.
+std::string regime_names(const std::vector<const PriceRegime*>& regimes);
 
 }  // namespace bess

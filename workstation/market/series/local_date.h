@@ -1,9 +1,13 @@
 // Calendar days of the market's local time: what users write on the command line.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
+
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -20,5 +24,21 @@ LocalDate local_date_of(std::int64_t utc_s);
 
 /// UTC instant at which the local day begins. Needs the market's time zone.
 std::int64_t local_midnight_utc_s(const LocalDate& date);
+
+// One settled quarter-hour of the imbalance market: what the TSO publishes after it ended, what the
+// simulator draws, and what the minute path is built on.
+
+inline constexpr double kNotPublished = std::numeric_limits<double>::quiet_NaN();
+
+inline bool is_published(double value) { return !std::isnan(value); }
+
+struct QuarterHour {
+  std::int64_t utc_s = 0;                      ///< start of the interval
+  double price_eur_per_mwh = kNotPublished;    ///< settled, the same for both directions
+  double system_imbalance_mw = kNotPublished;  ///< mean over the quarter-hour, negative = short
+  double alpha_eur_per_mwh = kNotPublished;
+  double marginal_incremental_eur_per_mwh = kNotPublished;
+  double marginal_decremental_eur_per_mwh = kNotPublished;
+};
 
 }  // namespace bess

@@ -12,8 +12,8 @@
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
 #include "workstation/market/series/gaps.h"
-#include "workstation/market/series/price_regime.h"
-#include "workstation/market/series/quarter_hour.h"
+#include "workstation/market/series/imbalance_price.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 

@@ -1,8 +1,110 @@
 #include "workstation/report/figures/policy_map.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "workstation/market/series/imbalance_price.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/sort_table.h"
 #include "workstation/student/verify.h"
 
 namespace bess {
+
+namespace {
+
+/// Numbers as numbers, other values as texts.
+bool comes_before(const std::string& a, const std::string& b) {
+  char* end_a = nullptr;
+  char* end_b = nullptr;
+  const double x = std::strtod(a.c_str(), &end_a);
+  const double y = std::strtod(b.c_str(), &end_b);
+  const bool are_numbers = !a.empty() && !b.empty() && *end_a == 0 && *end_b == 0;
+  return are_numbers ? x < y : a < b;
+}
+
+std::vector<std::string> values_of(const std::vector<HeatPoint>& points,
+                                   std::string HeatPoint::*setting) {
+  std::vector<std::string> values;
+  for (const HeatPoint& point : points) {
+    if (std::ranges::find(values, point.*setting) == values.end()) values.push_back(point.*setting);
+  }
+  std::ranges::sort(values, comes_before);
+  return values;
+}
+
+struct Mean {
+  double sum = 0;
+  int count = 0;
+  [[nodiscard]] double value() const { return sum / count; }
+};
+
+/// Faint for the lowest, strong for the highest: both leave the number legible, light and dark.
+std::string cell_html(const Mean& mean, double low, double high, const std::string& label) {
+  const double share = high > low ? (mean.value() - low) / (high - low) : 0.5;
+  return fmt::format(
+      "<td data-label=\"{}\" style=\"background:color-mix(in srgb, var(--charge) {:.0f}%, "
+      "var(--paper))\"><span>{}</span></td>",
+      html_escaped(label), 4 + 38 * share,
+      html_escaped(with_true_minus(fmt::format("{:.1f}", mean.value()))));
+}
+
+std::string shown(const std::string& value) { return value.empty() ? "as configured" : value; }
+
+}  // namespace
+
+std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text) {
+  std::map<std::pair<std::string, std::string>, Mean> means;  // by down, then across
+  for (const HeatPoint& point : points) {
+    if (std::isnan(point.value)) continue;
+    Mean& mean = means[{point.down, point.across}];
+    mean.sum += point.value;
+    ++mean.count;
+  }
+  double low = 0, high = 0;
+  for (bool is_first = true; const auto& [at, mean] : means) {
+    low = is_first ? mean.value() : std::min(low, mean.value());
+    high = is_first ? mean.value() : std::max(high, mean.value());
+    is_first = false;
+  }
+  const std::vector<std::string> columns = values_of(points, &HeatPoint::across);
+  std::string html = fmt::format(
+      "<div class=\"wide\"><table id=\"{}\">\n<caption style=\"white-space:nowrap\">{}: "
+      "{} across, {} down</caption>\n"
+      "<thead><tr><th scope=\"col\">{}</th>",
+      html_escaped(text.id), html_escaped(text.what), html_escaped(text.across),
+      html_escaped(text.down), html_escaped(text.down));
+  for (const std::string& column : columns) {
+    html += fmt::format("<th scope=\"col\">{}</th>", html_escaped(shown(column)));
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const std::string& row : values_of(points, &HeatPoint::down)) {
+    html += fmt::format("<tr><th scope=\"row\">{}</th>", html_escaped(shown(row)));
+    for (const std::string& column : columns) {
+      const auto found = means.find({row, column});
+      html += found == means.end() ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>",
+                                                 html_escaped(shown(column)), kNoValue)
+                                   : cell_html(found->second, low, high, shown(column));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+Json regime_marks(const std::vector<std::string>& dates) {
+  Json marks = Json::list();
+  for (const PriceRegime& regime : price_regimes()) {
+    const auto from = std::lower_bound(dates.begin(), dates.end(), regime.from_date);
+    if (from == dates.begin() || from == dates.end()) continue;
+    Json mark = Json::list();
+    mark.add(static_cast<std::size_t>(from - dates.begin()));
+    mark.add(regime.change);
+    marks.add(std::move(mark));
+  }
+  return marks;
+}
 
 ActionGrid student_grid(const StudentNet& net, const PolicyContext& context) {
   ActionGrid grid;

@@ -3,11 +3,34 @@
 
 #include <compare>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "shared/nn/student_net.h"
 
 namespace bess {
+
+// Heat map: means over two settings as a table whose cells are coloured, which can be read aloud,
+// copied and printed.
+
+struct HeatPoint {
+  std::string across, down;  ///< the values of the two settings; empty: as configured
+  double value;              ///< NaN: not known, its place stays empty
+};
+
+/// The names of the two settings; `what` is the caption, `id` the table's, once on a page.
+struct HeatMapText {
+  std::string across, down, what, id;
+};
+
+/// Points at the same place become their mean.
+std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text);
+
+// Where a price regime begins among the days that a picture shows.
+
+/// [place, what changed] of each boundary between two of `dates`, which are ascending.
+Json regime_marks(const std::vector<std::string>& dates);
 
 /// The part of a state that stays fixed over one map.
 struct PolicyContext {

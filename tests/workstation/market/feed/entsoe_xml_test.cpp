@@ -8,8 +8,8 @@
 
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
-#include "workstation/market/feed/market_text.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/feed/market_files.h"
+#include "workstation/market/model/simulated_market.h"
 
 namespace bess {
 namespace {

@@ -10,7 +10,6 @@
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
 #include "workstation/market/feed/market_files.h"
-#include "workstation/market/feed/market_text.h"
 
 namespace bess {
 namespace {

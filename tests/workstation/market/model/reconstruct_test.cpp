@@ -5,7 +5,7 @@
 
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/market_files.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
 #include "workstation/market/statistics/market_statistics.h"
 
 namespace bess {

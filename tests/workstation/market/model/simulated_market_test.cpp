@@ -9,8 +9,7 @@
 #include <cmath>
 
 #include "shared/local_time.h"
-#include "workstation/market/model/price_rounding.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/minute_path.h"
 #include "workstation/market/series/imbalance_price.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/market/statistics/market_statistics.h"

@@ -6,12 +6,10 @@
 #include "tests/support/market_series.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/day_ahead_plausibility.h"
 #include "workstation/market/series/day_ahead_publication.h"
 #include "workstation/market/series/local_date.h"
+#include "workstation/market/series/plausibility.h"
 
 namespace bess {
 namespace {

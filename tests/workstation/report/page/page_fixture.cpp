@@ -8,7 +8,7 @@
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/shown_policies.h"
+#include "workstation/report/page_data.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"

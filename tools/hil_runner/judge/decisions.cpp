@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "edge/control/cycle_budget.h"
+#include "edge/control/policy.h"
+#include "edge/control/reserve.h"
+#include "shared/features.h"
+#include "shared/local_time.h"
+#include "shared/outlook/outlook_plan.h"
+#include "shared/utc_text.h"
+#include "tools/hil_runner/judge/bench.h"
+#include "tools/hil_runner/scenario/day_ahead.h"
+
+namespace bess {
+
+namespace {
+
+/// An exponential towards the level, with a time constant of an hour.
+void judge_stand_in(const CycleRecord& cycle, const PriceLevel& level, Bench& bench) {
+  if (!cycle.price_stands_in) return;
+  const double level_centi = level.centi_eur_per_mwh();
+  const double age_s = static_cast<double>(price_age_s(cycle.utc_s, cycle.price.minute_utc_s));
+  const double distance_centi = cycle.price.price_centi_eur_per_mwh - level_centi;
+  const double expected_centi = level_centi + distance_centi * std::exp(-age_s / 3'600);
+  const double off_centi = std::abs(expected_centi - cycle.stand_in_centi_eur_per_mwh);
+  if (off_centi <= 100 + 0.05 * std::abs(distance_centi)) return;
+  bench.find(cycle.utc_s * kSecondNs, fmt::format("{:.2f} EUR/MWh stands in", expected_centi / 100),
+             fmt::format("{:.2f}", cycle.stand_in_centi_eur_per_mwh / 100.0));
+}
+
+}  // namespace
+
+/// The student of this build, asked again with the logged price and SoC, the level counted anew.
+void judge_decision(Bench& bench) {
+  PriceLevel level = bench.level;
+  for (const CycleRecord& cycle : bench.evidence.log) {
+    if (cycle.mode == Mode::kStopping) continue;
+    if (cycle.price.has_row)
+      level.observe(cycle.price.minute_utc_s, cycle.price.price_centi_eur_per_mwh);
+    if (!cycle.has_student_action) continue;
+    judge_stand_in(cycle, level, bench);
+    const LocalMinute now = local_minute_of(cycle.utc_s);
+    const std::int32_t context_centi =
+        student_outlook() != nullptr ? context_centi_of(cycle) : level.centi_eur_per_mwh();
+    const std::int16_t context = student_context_class(now, context_centi);
+    const Action action = decide_with_student(
+        make_lattice_state(now, context, cycle.measurement.soc_e4, decided_price_centi(cycle)));
+    if (action != cycle.student_action || context != cycle.context_class) {
+      bench.find(
+          cycle.utc_s * kSecondNs, fmt::format("{} in class {}", action_name(action), context),
+          fmt::format("{} in class {}", action_name(cycle.student_action), cycle.context_class));
+    }
+    const std::int32_t power_w = power_sign(action) * bench.config.control.guard.power_w;
+    const bool is_students = cycle.reason == Reason::kStudent || cycle.reason == Reason::kStandIn;
+    if (!is_students || cycle.ordered_power_w == power_w) continue;
+    bench.find(cycle.utc_s * kSecondNs, fmt::format("the student's {} W", power_w),
+               fmt::format("{} W", cycle.ordered_power_w));
+  }
+}
+
+void judge_inputs(Bench& bench) {
+  constexpr double kSocToleranceE4 =
+      100;  // a percent: resolution of registers, and what has flowed
+  for (const CycleRecord& cycle : bench.evidence.log) {
+    if (cycle.mode == Mode::kStopping) continue;
+    const std::int64_t tick_ns = cycle.utc_s * kSecondNs;
+    if (cycle.price.has_row) {
+      const auto price = bench.publication.price_of(cycle.price.minute_utc_s);
+      const double seen = cycle.price.price_centi_eur_per_mwh / 100.0;
+      if (!price || std::abs(*price - seen) > 0.0051) {
+        bench.find(
+            tick_ns,
+            fmt::format("{} for {}", price ? fmt::format("{:.2f} EUR/MWh", *price) : "no price",
+                        utc_text(cycle.price.minute_utc_s).view()),
+            fmt::format("{:.2f}", seen));
+      }
+    }
+    if (!cycle.has_measurement || bench.is_disturbed(tick_ns)) continue;
+    const double soc_e4 = 1e4 * bench.soc_at(tick_ns);
+    const double flow_e4 = 1e4 * bench.scenario.battery.physics.power_w_max *
+                           (60 + bench.evidence.slack_s) / 3'600 /
+                           bench.scenario.battery.physics.capacity_wh;
+    if (std::abs(soc_e4 - cycle.measurement.soc_e4) <= kSocToleranceE4 + flow_e4) continue;
+    bench.find(tick_ns, fmt::format("a SoC near {:.4f}", soc_e4 / 1e4),
+               fmt::format("{:.4f}", cycle.measurement.soc_e4 / 1e4));
+  }
+}
+
+void judge_fresh_price(Bench& bench) {
+  bench.each_tick([&](std::int64_t tick_ns) {
+    const auto fresh = bench.fresh_row(tick_ns);
+    if ((fresh && !bench.must_be_frozen(*fresh)) || bench.is_disturbed_in_cycle(tick_ns)) return;
+    if (!fresh && bench.may_stand_in(tick_ns)) return;
+    const CommandInForce command = bench.commands.at(bench.settled_ns(tick_ns));
+    if (command.power_w == 0) return;
+    const auto row = bench.publication.newest(tick_ns);
+    bench.find(
+        bench.settled_ns(tick_ns),
+        row ? fmt::format("0 W, the newest price being of {}", utc_text(row->minute_utc_s).view())
+            : "0 W, there being no price",
+        watts(command));
+  });
+}
+
+namespace {
+
+struct MadePlan {
+  OutlookPlan plan;
+  OutlookDays days;
+  std::int32_t level_centi = INT32_MIN;
+
+  std::int32_t break_even_centi(const CycleRecord& cycle, const OutlookDays& known) {
+    const std::int32_t now_centi = cycle.price_level.centi_eur_per_mwh();
+    const std::int32_t planned_centi = planned_level_centi(now_centi);
+    if (planned_centi != level_centi || !(known == days)) {
+      plan.make(*student_outlook(), known, planned_centi);
+      level_centi = planned_centi;
+      days = known;
+    }
+    return plan.break_even_centi(*student_outlook(), cycle.utc_s, cycle.measurement.soc_e4,
+                                 now_centi);
+  }
+};
+
+void add_known(const std::vector<AuctionRow>& rows, std::int64_t from, std::int64_t until,
+               OutlookDays& days) {
+  for (const AuctionRow& row : rows) {
+    if (row.utc_s < from || row.utc_s >= until) continue;
+    days.day_ahead_centi[days.index_of(row.utc_s)] =
+        static_cast<std::int32_t>(std::lround(100 * row.eur_per_mwh));
+  }
+}
+
+}  // namespace
+
+/// The plan of each decision again, by the auction's true rows, of which so many ahead were known
+/// as the log says, without a hole: of tomorrow none before 13:00 local time.
+void judge_outlook(Bench& bench) {
+  if (student_outlook() == nullptr) return;
+  const std::vector<AuctionRow> rows = day_ahead_rows(bench.scenario);
+  const auto made = std::make_unique<MadePlan>();
+  std::int64_t planned_day_utc_s = 0;  ///< midnight of the last day that was known
+  for (const CycleRecord& cycle : bench.evidence.log) {
+    const OutlookReport& seen = cycle.outlook;
+    const bool is_planned = seen.source == OutlookSource::kPlanned;
+    if (!is_planned && seen.source != OutlookSource::kUsual) continue;
+    OutlookDays days = outlook_days_around(cycle.utc_s);
+    if (is_planned) planned_day_utc_s = days.today_utc_s;
+    const std::int64_t first =
+        is_planned ? cycle.utc_s - cycle.utc_s % kSecondsPerQuarterHour : days.tomorrow_utc_s;
+    const std::int64_t until = first + kSecondsPerQuarterHour * seen.known_quarter_hours;
+    if (until > days.tomorrow_utc_s && local_minute_of(cycle.utc_s).minute_of_day < 13 * 60)
+      bench.find(cycle.utc_s * kSecondNs, "nothing of tomorrow known before 13:00", "some of it");
+    if (planned_day_utc_s == days.yesterday_utc_s)
+      add_known(rows, days.yesterday_utc_s, days.today_utc_s, days);
+    add_known(rows, is_planned ? days.today_utc_s : first, until, days);
+    const std::int32_t centi = made->break_even_centi(cycle, days);
+    if (centi == seen.break_even_centi) continue;
+    bench.find(cycle.utc_s * kSecondNs, fmt::format("break-even at {:.2f} EUR/MWh", centi / 100.0),
+               fmt::format("{:.2f}", seen.break_even_centi / 100.0));
+  }
+}
+
+namespace {
+
+/// What the operator or another program asks for stands above the thresholds: what of it is in
+/// force at a tick.
+struct Said {
+  bool is_held = false;
+  bool is_limited = false;  ///< or was: an unreadable limit leaves the one before in doubt
+};
+
+Said said_at(const Bench& bench, std::int64_t tick_ns) {
+  using enum ScenarioEvent::Does;
+  Said said;
+  for (const ScenarioEvent& event : bench.scenario.events) {
+    const std::int64_t at_ns = bench.scenario.utc_ns_at(event.at_min);
+    if (at_ns > tick_ns + bench.slack_ns()) break;
+    const bool is_on = tick_ns < at_ns + event.for_s * kSecondNs + bench.slack_ns();
+    if (event.does == kHold) said.is_held = is_on;
+    if (event.does == kHoldRelease) said.is_held = false;
+    if (event.does == kLimit || event.does == kLimitTorn) said.is_limited = is_on;
+    if (event.does == kLimitClear) said.is_limited = false;
+  }
+  const bool needs_limit = bench.config.site.settings.idle_after_timeout;
+  said.is_limited = said.is_limited || (needs_limit && bench.scenario.has_limits());
+  return said;
+}
+
+/// By the battery's own record: what was moved on the local day of a tick reaches the budget, but
+/// for what its display rounds.
+bool may_be_spent(const Bench& bench, std::int64_t tick_ns) {
+  const std::int32_t budget_e4 = bench.config.control.cycles_per_day_max_e4;
+  if (budget_e4 == 0) return false;
+  const std::int64_t tick_utc_s = tick_ns / kSecondNs;
+  const std::int32_t day = local_day_of(local_minute_of(tick_utc_s));
+  double moved_frac = 0;
+  double before_frac = bench.scenario.battery.soc_frac;
+  for (const MinuteRecord& minute : bench.evidence.minutes) {
+    if (minute.minute_utc_s >= tick_utc_s) break;
+    if (local_day_of(local_minute_of(minute.minute_utc_s)) == day) {
+      moved_frac += std::abs(minute.soc_frac - before_frac);
+    }
+    before_frac = minute.soc_frac;
+  }
+  return 1e4 * (moved_frac / 2 + bench.soc_margin_frac()) >= budget_e4;
+}
+
+/// As many orders of the last hour as the cap allows went the other way than the one before.
+bool may_be_barred(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
+  const std::int32_t most = bench.config.control.reversals_per_hour_max;
+  if (most == 0) return false;
+  std::int32_t reversals = 0;
+  double last_w = 0;
+  for (const DispatchEvent& e : bench.evidence.orders) {
+    if (e.utc_ns >= tick_ns) break;
+    if (e.kind != DispatchEvent::Kind::kOrder || e.power_w == 0) continue;
+    const bool is_in_hour = e.utc_ns >= tick_ns - 3'600 * kSecondNs;
+    if (is_in_hour && e.power_w * last_w < 0) ++reversals;
+    last_w = e.power_w;
+  }
+  return reversals >= most && wanted_w * last_w < 0;
+}
+
+/// As far towards it as the ramp lets one order go.
+double ramped_w(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
+  const double ramp_w = bench.config.control.guard.ramp_w_max;
+  if (ramp_w == 0) return wanted_w;
+  const double from_w = bench.commands.at(tick_ns).power_w;
+  return std::clamp(wanted_w, from_w - ramp_w, from_w + ramp_w);
+}
+
+/// The state of charge forbids it: of the window, or of what is kept for a black-out.
+bool is_full_or_empty(const Bench& bench, std::int64_t tick_ns, bool charges) {
+  const GuardSettings& guard = bench.config.control.guard;
+  const double soc_e4 = 1e4 * bench.soc_at(tick_ns);
+  const double margin_e4 = guard.soc_hysteresis_e4 + 1e4 * bench.soc_margin_frac();
+  if (charges) return soc_e4 > guard.soc_max_e4 - margin_e4;
+  const LocalMinute now = local_minute_of(tick_ns / kSecondNs);
+  const std::int32_t reserve_e4 = reserve_soc_e4_at(bench.config.control.reserve, now);
+  return soc_e4 < std::max(guard.soc_min_e4, reserve_e4) + margin_e4;
+}
+
+/// What the house's connection allows, or a meter that is wrong about it, may cut an order.
+bool has_connection(const Bench& bench) {
+  const Scenario& scenario = bench.scenario;
+  return bench.house.has_value() &&
+         (!scenario.edge_meter.empty() || !scenario.meter.fault.schedule.faults.empty());
+}
+
+}  // namespace
+
+void judge_thresholds(Bench& bench) {
+  const GuardSettings& guard = bench.config.control.guard;
+  bench.each_tick([&](std::int64_t tick_ns) {
+    const auto row = bench.fresh_row(tick_ns);
+    if (!row || bench.may_be_frozen(*row) || bench.is_disturbed_in_cycle(tick_ns)) return;
+    const double price = row->eur_per_mwh;
+    const bool is_low = price <= guard.thresholds.low_eur_per_mwh;
+    const bool is_high = price >= guard.thresholds.high_eur_per_mwh;
+    if ((!is_low && !is_high) || is_full_or_empty(bench, tick_ns, is_low)) return;
+    const Said said = said_at(bench, tick_ns);
+    if (said.is_held || may_be_spent(bench, tick_ns)) return;
+    const double extreme_w = is_low ? guard.power_w : -guard.power_w;
+    if (may_be_barred(bench, tick_ns, extreme_w)) return;
+    const double wanted_w = ramped_w(bench, tick_ns, extreme_w);
+    const CommandInForce command = bench.commands.at(bench.settled_ns(tick_ns));
+    if (std::abs(command.power_w - wanted_w) <= 0.01 * guard.power_w) return;
+    const bool is_cut = said.is_limited || has_connection(bench);
+    if (is_cut && bench.may_be_cut(wanted_w, command.power_w)) return;
+    bench.find(bench.settled_ns(tick_ns),
+               fmt::format("{:.0f} W at {:.2f} EUR/MWh", wanted_w, price), watts(command));
+  });
+}
+
+}  // namespace bess

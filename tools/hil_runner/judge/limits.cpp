@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+
+#include "edge/control/quarter_hour_energy.h"
+#include "tools/hil_runner/judge/bench.h"
+
+namespace bess {
+
+void judge_power_limit(Bench& bench) {
+  const double most_w = bench.config.control.guard.power_w * 1.001 + 1;
+  for (const DispatchEvent& e : bench.evidence.orders) {
+    if (std::abs(e.power_w) <= most_w) continue;
+    return bench.find(e.utc_ns, fmt::format("at most {} W", bench.config.control.guard.power_w),
+                      fmt::format("an order of {:.0f} W", e.power_w));
+  }
+}
+
+void judge_soc_window(Bench& bench) {
+  const GuardSettings& guard = bench.config.control.guard;
+  const double low = guard.soc_min_e4 / 1e4 - bench.soc_margin_frac();
+  const double high = guard.soc_max_e4 / 1e4 + bench.soc_margin_frac();
+  for (const MinuteRecord& m : bench.evidence.minutes) {
+    if (m.soc_frac >= low && m.soc_frac <= high) continue;
+    return bench.find((m.minute_utc_s + 60) * kSecondNs,
+                      fmt::format("a SoC from {:.4f} to {:.4f}", low, high),
+                      fmt::format("{:.4f}", m.soc_frac));
+  }
+}
+
+void judge_flash(Bench& bench) {
+  const std::int32_t most = bench.config.battery.map.writes.eeprom_writes_per_day;
+  if (most == 0) return;
+  for (const CycleRecord& cycle : bench.evidence.log) {
+    const std::int32_t writes = cycle.counters.flash_writes_today;
+    if (writes > most) {
+      bench.find(cycle.utc_s * kSecondNs, fmt::format("{} writes of its flash a day at most", most),
+                 fmt::format("{}", writes));
+    }
+  }
+}
+
+namespace {
+
+void judge_peaks(Bench& bench, double peak_w_max) {
+  constexpr double kHours = 0.25;
+  constexpr double kRoundTripWh = 10;  // of what it takes and gives back
+  double import_wh = 0, battery_wh = 0;
+  for (const MinuteRecord& m : bench.evidence.minutes) {
+    if (m.minute_utc_s % kQuarterHourS == 0) import_wh = battery_wh = 0;
+    import_wh += std::max(0.0, bench.house->power_w(m.minute_utc_s) / 60 + m.energy_wh);
+    battery_wh += m.energy_wh;
+    const bool is_over = m.minute_utc_s % kQuarterHourS == kQuarterHourS - 60;
+    const bool is_above = import_wh > peak_w_max * kHours;
+    if (!is_over || !is_above || battery_wh <= kRoundTripWh) continue;
+    bench.find(
+        m.minute_utc_s * kSecondNs,
+        fmt::format("at most {:.0f} W in the mean of a quarter-hour", peak_w_max),
+        fmt::format("{:.0f} W, {:.0f} Wh of it the battery's", import_wh / kHours, battery_wh));
+  }
+}
+
+}  // namespace
+
+/// By the house's load and what the battery recorded of itself, and not by what any meter showed.
+void judge_connection(Bench& bench) {
+  if (!bench.house) return;
+  const ConnectionSettings& limits = bench.config.site.settings.connection;
+  // Of the one in which the house rose, the edge's next look cuts what is too much.
+  const int minutes_max = 1 + static_cast<int>(std::ceil((bench.evidence.slack_s) / 60));
+  int minutes_over = 0;
+  for (const MinuteRecord& m : bench.evidence.minutes) {
+    const double battery_w = 60 * m.energy_wh;
+    const double grid_w = bench.house->power_w(m.minute_utc_s) + battery_w;
+    const bool is_over = (battery_w > 0 && grid_w > limits.import_w_max) ||
+                         (battery_w < 0 && -grid_w > limits.export_w_max);
+    minutes_over = is_over ? minutes_over + 1 : 0;
+    if (minutes_over <= minutes_max) continue;
+    bench.find(m.minute_utc_s * kSecondNs,
+               battery_w > 0 ? fmt::format("at most {} W taken from the grid", limits.import_w_max)
+                             : fmt::format("at most {} W given to the grid", limits.export_w_max),
+               fmt::format("{:.0f} W, of which the battery {:.0f} W", grid_w, battery_w));
+  }
+  if (limits.peak_w_max != kAnyPowerW) judge_peaks(bench, limits.peak_w_max);
+}
+
+void judge_energy(Bench& bench) {
+  const BatteryParameters& p = bench.scenario.battery.physics;
+  double stored_wh = 0;
+  double moved_wh = 0;
+  double unknown_wh = 0.5;
+  double before_wh = 0;
+  const double lost_wh_max = p.full_power_loss_frac * p.power_w_max / 60;  // of a minute
+  for (const MinuteRecord& m : bench.evidence.minutes) {
+    const double flow_wh = m.energy_wh - p.standby_w / 60;
+    // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery
+    // that is simulated turns 5 s after its order. Nor does it know the squares of what changed.
+    if (flow_wh * before_wh < 0) {
+      unknown_wh += p.power_w_max * (6 + bench.evidence.slack_s) / 3'600 *
+                    (1 / p.discharge_efficiency - p.charge_efficiency);
+    }
+    if (std::abs(flow_wh - before_wh) > 0.01 * p.power_w_max / 60) unknown_wh += lost_wh_max;
+    before_wh = flow_wh;
+    stored_wh += stored_power_w(p, 60 * flow_wh) / 60;
+    moved_wh += std::abs(m.energy_wh);
+  }
+  if (bench.evidence.minutes.empty()) return;
+  const MinuteRecord& last = bench.evidence.minutes.back();
+  const double by_soc_wh = (last.soc_frac - bench.scenario.battery.soc_frac) * p.capacity_wh;
+  if (std::abs(stored_wh - by_soc_wh) <= 0.001 * moved_wh + unknown_wh) return;
+  bench.find((last.minute_utc_s + 60) * kSecondNs,
+             fmt::format("{:.1f} Wh stored, by the energy", stored_wh),
+             fmt::format("{:.1f} Wh by the SoC", by_soc_wh));
+}
+
+}  // namespace bess
