@@ -1,6 +1,4 @@
 // bess-edge: one of its commands (edge/commands/), or the controller itself (run_command.cpp).
 #include "edge/commands/command_line.h"
 
-int main(int argc, char** argv) {
-  return bess::run_command_line(bess::Words(argv + (argc > 0 ? 1 : 0), argv + argc));
-}
+int main(int argc, char** argv) { return bess::run_command_line(argc, argv); }

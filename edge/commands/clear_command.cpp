@@ -16,28 +16,16 @@ struct ClearGiven {
   bool yes = false;
 };
 
-using O = OptionsOf<ClearGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&ClearGiven::yes>("--yes"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge clear: a person has looked why the battery did not do what it was told
-
-  bess-edge clear [--config FILE] --yes
-
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --yes          let it be driven again; without it only the trip is told
-
-After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its own
-mode until this is said, over restarts too. A running controller goes on at its next cycle.
+constexpr const char* kFooter =
+    R"(After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its
+own mode until this command is given, over restarts too. A running controller goes on at its next
+cycle.
 Exit codes:
   0 cleared, or nothing to clear
   1 log or state cannot be accessed
-  2 the command line is bad, or --yes is missing
-
-  bess-edge log --last 10; bess-edge clear --yes
-)";
+  2 the command line is wrong, or --yes is missing
+Examples:
+  bess-edge log --last 10; bess-edge clear --yes)";
 
 /// False with one line where the word cannot be left.
 bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
@@ -96,11 +84,13 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kClearCommand = {.name = "clear",
-                                   .usage = "clear [--config FILE] --yes",
-                                   .does = "drive again after the supervision tripped",
-                                   .help = kHelp,
-                                   .options = kOptions,
-                                   .run = run_with<ClearGiven, run_clear>};
+void add_clear(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("clear", "drive again after the supervision tripped and the cause is found");
+  const auto given = std::make_shared<ClearGiven>();
+  command.flag("--yes", given->yes, "clear the trip; otherwise it is only shown");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_clear(*given, settings); });
+}
 
 }  // namespace bess

@@ -1,34 +1,23 @@
-// The commands of bess-edge, in the order of its help. A row is a command: NAME_command.cpp defines
-// it: kNAMECommand.
+// The commands of bess-edge, in the order of its help. NAME_command.cpp declares each.
 #pragma once
 
 #include "edge/commands/command.h"
 
 namespace bess {
 
-#define BESS_COMMANDS(ROW) \
-  ROW(Run)                 \
-  ROW(Commission)          \
-  ROW(Release)             \
-  ROW(Clear)               \
-  ROW(Status)              \
-  ROW(Log)                 \
-  ROW(Why)                 \
-  ROW(Earned)              \
-  ROW(Hold)                \
-  ROW(Limit)               \
-  ROW(Record)              \
-  ROW(MapCheck)            \
-  ROW(Signature)
-
-#define BESS_ROW(name) extern const EdgeCommand k##name##Command;
-BESS_COMMANDS(BESS_ROW)
-#undef BESS_ROW
-
-inline constexpr const EdgeCommand* kCommands[] = {
-#define BESS_ROW(name) &k##name##Command,
-    BESS_COMMANDS(BESS_ROW)
-#undef BESS_ROW
-};
+void add_commission(EdgeCommand root);
+void add_release(EdgeCommand root);
+void add_clear(EdgeCommand root);
+void add_status(EdgeCommand root);
+void add_log(EdgeCommand root);
+void add_why(EdgeCommand root);
+void add_earned(EdgeCommand root);
+void add_hold(EdgeCommand root);
+void add_limit(EdgeCommand root);
+void add_record(EdgeCommand root);
+void add_map_check(EdgeCommand root);
+void add_signature(EdgeCommand root);
+/// What bess-edge does without a command. Last: commands declared later would have its footer.
+void add_run(EdgeCommand root);
 
 }  // namespace bess

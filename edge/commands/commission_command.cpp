@@ -21,38 +21,23 @@ struct CommissionGiven {
   std::string record_path;
 };
 
-using O = OptionsOf<CommissionGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&CommissionGiven::yes>("--yes"),
-    O::text<&CommissionGiven::record_path>("--record"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge commission: checks once that a battery goes the way it is told
-
-  bess-edge commission [--config FILE] [--record FILE] --yes
-
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --record FILE  what went over the bus: map check --steps reads delay, ramp and lag from it
-  --yes          really order it: without it only what would be ordered is said
-
-The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
+constexpr const char* kFooter =
+    R"(The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
 [commissioning] may say otherwise). Its measured power must follow each way, no less and no more
 than [response] of its map allows, and so must the meter of [meter]. Then, where SoC, limits and
 connection leave room, it follows half the largest step that the controller may order, for some
 seconds each way: a lag takes as long for any step, a ramp does not. A battery whose largest step
-surely takes longer than settle_s is refused with the lines to set; what one step alone leaves
-open is a warning with its figures. A direction that its SoC leaves no room for is not tested, and
-said. At the end the battery is released. The result is kept in the [state] folder and holds for
-this map, variant and address; bess-edge refuses to control a battery without it.
+surely takes longer than settle_s is refused with the lines to set; what one step alone leaves open
+is a warning with its figures. A direction that its SoC leaves no room for is reported, not tested.
+At the end the battery is released. The result is kept in the [state] folder and holds for this map,
+variant and address; bess-edge refuses to control a battery without it.
 Exit codes:
   0 passed
   1 refused: the line says why
-  2 the command line is bad, or --yes is missing
-
+  2 the command line is wrong, or --yes is missing
+Examples:
   bess-edge commission --config /etc/bess/edge.toml --yes
-  bess-edge commission --record steps.jsonl --yes
-)";
+  bess-edge commission --record steps.jsonl --yes)";
 
 /// The meter of [meter], a device of its own or the battery's grid point.
 class SiteMeter {
@@ -291,11 +276,17 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kCommissionCommand = {.name = "commission",
-                                        .usage = "commission [--config FILE] --yes",
-                                        .does = "check the sign of a new battery, once",
-                                        .help = kHelp,
-                                        .options = kOptions,
-                                        .run = run_with<CommissionGiven, run_commission>};
+void add_commission(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("commission", "check once that a battery follows the sign of its orders");
+  const auto given = std::make_shared<CommissionGiven>();
+  command
+      .option("--record", given->record_path,
+              "Modbus exchanges to a file: map check --steps reads delay, ramp and lag from it")
+      .value_name("FILE");
+  command.flag("--yes", given->yes, "give the orders; otherwise they are only listed");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_commission(*given, settings); });
+}
 
 }  // namespace bess

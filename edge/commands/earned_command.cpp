@@ -16,43 +16,28 @@ struct EarnedGiven {
   bool json = false;
 };
 
-using O = OptionsOf<EarnedGiven>;
-constexpr CommandOption kOptions[] = {O::word<&EarnedGiven::period>(),
-                                      O::flag<&EarnedGiven::csv>("--csv"),
-                                      O::flag<&EarnedGiven::json>("--json")};
-
-constexpr const char* kHelp =
-    R"(bess-edge earned: what the battery earned in some days
-
-  bess-edge earned [PERIOD] [--config FILE] [--csv | --json]
-
-  PERIOD         today, yesterday, week, month, last-month, a month as 2026-10, a day as
-                 2026-11-23, or 2026-11-01..2026-11-23; local days, default today; week and month
-                 are those that today lies in
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --csv          one line a day, with a header
-  --json         one JSON object: the days, and all of them together
-
-Earned is what flowed, by quarter-hours: at the settled price where bess-prices has fetched it
-([settled]), else at the last of the minutes, an estimate. Fees, taxes and wear are not taken off.
-Then what is stored more or less at the end than at the beginning, and where the student did not
-decide, by reasons.
-Read from the log in [state] folder: days that it no longer holds are not counted.
-A statement to hold beside the bill, what other policies would have earned, and what another
-student would have decided: bess-train log, from what bess-edge log --csv prints.
-Exit codes: 0 done   1 the log cannot be read, or has nothing of these days   2 bad command line
-
+constexpr const char* kFooter =
+    R"(Earned is what flowed, by quarter-hours: at the settled price where bess-prices has fetched
+it ([settled]), else at the last of the minutes, an estimate. Fees, taxes and wear are not
+subtracted. Then what is stored more or less at the end than at the beginning, and where the student
+did not decide, by reasons. Read from the log in [state] folder: days that it no longer holds are
+missing. bess-train log makes a statement to compare with the bill from bess-edge log --csv, and
+what other policies would have earned.
+Exit codes:
+  0 done
+  1 the log cannot be read, or has nothing of these days
+  2 the command line is wrong
+Examples:
   bess-edge earned
   bess-edge earned week
-  bess-edge earned month --csv > november.csv
-)";
+  bess-edge earned month --csv > november.csv)";
 
-const char* complaint(const EarnedGiven& given) {
-  if (given.csv && given.json) return "--csv or --json, not both";
+std::string complaint(const std::string& text) {
   Period period;
-  if (given.period.empty() || parse_period(given.period, 19'700'101, period)) return nullptr;
-  return "the period must be today, yesterday, week, month, last-month, a month as 2026-10, a day "
-         "as 2026-11-23, or two with .. between";
+  if (parse_period(text, 19'700'101, period)) return "";
+  return "must be today, yesterday, week, month, last-month, a month as 2026-10, a day as "
+         "2026-11-23, or two with .. between, not " +
+         text;
 }
 
 std::string span_text(std::int32_t first_day, std::int32_t last_day) {
@@ -96,11 +81,19 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kEarnedCommand = {.name = "earned",
-                                    .usage = "earned [PERIOD] [--config FILE] ...",
-                                    .does = "what it earned, by days",
-                                    .help = kHelp,
-                                    .options = kOptions,
-                                    .run = run_with<EarnedGiven, run_earned, complaint>};
+void add_earned(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("earned", "what the battery earned, by days");
+  const auto given = std::make_shared<EarnedGiven>();
+  command
+      .option("period", given->period,
+              "today (default), yesterday, week, month, last-month, 2026-10, 2026-11-23 or "
+              "2026-11-01..2026-11-23; local days")
+      .value_name("PERIOD")
+      .check(complaint);
+  command.flag("--csv", given->csv, "one line a day, with a header");
+  command.flag("--json", given->json, "one JSON object: each day, and their sum").excludes("--csv");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_earned(*given, settings); });
+}
 
 }  // namespace bess

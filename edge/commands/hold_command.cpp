@@ -2,7 +2,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "edge/commands/command_list.h"
 #include "edge/control/hold.h"
@@ -25,44 +28,40 @@ struct HoldGiven {
   std::int64_t for_s = 0;  ///< 0 = not given
 };
 
-using O = OptionsOf<HoldGiven>;
-constexpr CommandOption kOptions[] = {
-    O::power<&HoldGiven::power_w>(),
-    O::duration<&HoldGiven::for_s, 120>("--for"),
-    O::flag<&HoldGiven::release>("--release"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge hold: so many watts until an end, whatever the price
-
-  bess-edge hold [--config FILE] WATTS --for DURATION
-  bess-edge hold [--config FILE] --release
-
-  WATTS           power to hold, as 2000, 2000W or 2kW: positive charges, negative discharges, 0
-                  rests; up to [battery] power_w
-  --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
-  --release       end the hold before its time
-  --config FILE   the controller's settings; default /etc/bess/edge.toml
-
-The running controller follows from its next cycle on, restarts included, and trades again when
-the end has passed. A hold stands for the student and the price thresholds, and needs no price.
+constexpr const char* kFooter =
+    R"(The running controller follows from its next cycle on, restarts included, and trades again
+when the end has passed. A hold stands for the student and the price thresholds, and needs no price.
 Everything else of the guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals,
-power and connection limits, ramp. While the supervision has tripped nothing is driven, and so no
-hold is followed: that is said, see bess-edge clear. A new hold replaces the one before. It lies
-in the [state] folder: run it as the controller's user, or as root.
-Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
-
+power and connection limits, ramp. A hold is not followed while the supervision has tripped: that is
+said, see bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it
+as the controller's user, or as root.
+Exit codes:
+  0 done
+  1 refused: the line says why
+  2 the command line is wrong
+Examples:
   bess-edge hold 0 --for 30m
   bess-edge hold -2kW --for 2h
-  bess-edge hold --release
-)";
+  bess-edge hold --release)";
 
-/// Either a power and how long, or the end of what is held.
-const char* complaint(const HoldGiven& given) {
-  const bool is_order = given.power_w.has_value() && given.for_s > 0;
-  const bool is_partial = given.power_w.has_value() || given.for_s > 0;
-  const bool is_complete = given.release ? !is_partial : is_order;
-  return is_complete ? nullptr : "hold needs a power in W and --for DURATION, or --release alone";
+/// Whole watts, as 2000, 2000W or 2kW. What is wrong with them, or nothing.
+std::string take_power(std::string_view text, std::optional<std::int64_t>& power_w) {
+  constexpr double kLargest = 1e9;
+  std::string_view digits = text;
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.ends_with('W')) digits.remove_suffix(1);
+  const bool is_kilo = digits.ends_with('k');
+  if (is_kilo) digits.remove_suffix(1);
+  double number = 0;
+  const char* const last = digits.data() + digits.size();
+  const auto [end, error] = std::from_chars(digits.data(), last, number);
+  const double watts = is_kilo ? 1e3 * number : number;
+  const bool is_whole = std::abs(watts) <= kLargest && watts == std::nearbyint(watts);
+  if (error != std::errc{} || end != last || !is_whole) {
+    return "must be a whole number of watts such as 2000, 2000W or -2kW, not " + std::string(text);
+  }
+  power_w = static_cast<std::int64_t>(watts);
+  return "";
 }
 
 /// Nothing is ordered while the supervision has tripped, whoever wants it.
@@ -187,11 +186,28 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kHoldCommand = {.name = "hold",
-                                  .usage = "hold WATTS --for TIME [--config FILE]",
-                                  .does = "a power until an end, whatever the price",
-                                  .help = kHelp,
-                                  .options = kOptions,
-                                  .run = run_with<HoldGiven, run_hold, complaint>};
+void add_hold(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("hold", "hold a power until an end, whatever the price");
+  const auto given = std::make_shared<HoldGiven>();
+  command
+      .parsed(
+          "watts", [given](const std::string& text) { return take_power(text, given->power_w); },
+          "power to hold, as 2000, 2000W or 2kW: positive charges, negative discharges, 0 "
+          "rests; up to [battery] power_w")
+      .value_name("WATTS");
+  command.duration("--for", given->for_s, 120, "how long, 2m to 7d: 90m, 2h, 1d12h");
+  command.flag("--release", given->release, "end the hold before its time")
+      .excludes("--for")
+      .excludes("watts");
+  command.footer(kFooter);
+  command.does(
+      [given](SettingsFile& settings) { return run_hold(*given, settings); },
+      [given] {
+        const bool is_order = given->power_w.has_value() && given->for_s > 0;
+        return std::string(given->release || is_order
+                               ? ""
+                               : "a power in W and --for DURATION, or --release, is missing");
+      });
+}
 
 }  // namespace bess

@@ -20,41 +20,19 @@ struct LimitGiven {
   std::int64_t for_s = 0;  ///< 0 = not given
 };
 
-using O = OptionsOf<LimitGiven>;
-constexpr CommandOption kOptions[] = {
-    O::text<&LimitGiven::charge_w>("--charge"),
-    O::text<&LimitGiven::discharge_w>("--discharge"),
-    O::duration<&LimitGiven::for_s, 1>("--for"),
-    O::flag<&LimitGiven::clear>("--clear"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge limit: caps the battery's power for a while, whatever prices and student say
-
-  bess-edge limit [--config FILE] [--charge W] [--discharge W] --for DURATION
-  bess-edge limit [--config FILE] --clear
-
-  --config FILE   the controller's settings, with [limits] file; default /etc/bess/edge.toml
-  --charge W      no order charges with more; 0 or more; default: any
-  --discharge W   no order discharges with more
-  --for DURATION  then the limit has lapsed: 90s, 15m, 1h30m, up to 7d
-  --clear         takes the limit away
-
-Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the one
-before; any program may write it itself, beside and renamed. A running controller looks every few
-seconds and cuts an order that is too large at once. After its time the limit is gone, or with
+constexpr const char* kFooter =
+    R"(Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the
+one before; any program may write it itself, beside and renamed. A running controller looks every
+few seconds and cuts an order that is too large at once. After its time the limit is gone, or with
 on_timeout = "idle" the battery is left at 0 W until a new one comes: then --clear does that too.
-Exit codes: 0 done   1 no [limits], or the file cannot be written   2 the command line is bad
-
+Exit codes:
+  0 done
+  1 no [limits], or the file cannot be written
+  2 the command line is wrong
+Examples:
   bess-edge limit --charge 0 --for 15m
   bess-edge limit --charge 2000 --discharge 1000 --for 2h
-  bess-edge limit --clear
-)";
-
-const char* complaint(const LimitGiven& given) {
-  return given.clear == (given.for_s == 0) ? nullptr
-                                           : "limit needs either --for DURATION or --clear";
-}
+  bess-edge limit --clear)";
 
 int refuse(const std::string& message) {
   report(JournalLevel::kError, "limit: %s", message.c_str());
@@ -103,11 +81,23 @@ int run_limit(const LimitGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kLimitCommand = {.name = "limit",
-                                   .usage = "limit [--config FILE] ...",
-                                   .does = "caps the power for a while",
-                                   .help = kHelp,
-                                   .options = kOptions,
-                                   .run = run_with<LimitGiven, run_limit, complaint>};
+void add_limit(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("limit", "limit charging or discharging power for a while");
+  const auto given = std::make_shared<LimitGiven>();
+  command.option("--charge", given->charge_w, "charging power, 0 or more; default: no limit")
+      .value_name("W");
+  command
+      .option("--discharge", given->discharge_w, "discharging power, 0 or more; default: no limit")
+      .value_name("W");
+  command.duration("--for", given->for_s, 1,
+                   "then the limit has lapsed: 90s, 15m, 1h30m, up to 7d");
+  command.flag("--clear", given->clear, "remove the limit").excludes("--for");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_limit(*given, settings); },
+               [given] {
+                 const bool is_complete = given->clear || given->for_s > 0;
+                 return std::string(is_complete ? "" : "--for DURATION or --clear is missing");
+               });
+}
 
 }  // namespace bess

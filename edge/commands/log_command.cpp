@@ -7,6 +7,7 @@
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
 #include "edge/why/explanation.h"
+#include "edge/why/local_moment.h"
 #include "shared/local_text.h"
 
 namespace bess {
@@ -22,50 +23,20 @@ struct LogGiven {
   std::string at;
 };
 
-using O = OptionsOf<LogGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&LogGiven::csv>("--csv"),         O::flag<&LogGiven::local>("--local"),
-    O::flag<&LogGiven::explain>("--explain"), O::count<&LogGiven::last>("--last"),
-    O::moment<&LogGiven::since>("--since"),   O::moment<&LogGiven::until>("--until"),
-    O::moment<&LogGiven::at>("--at"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge log: what was decided in each cycle, and why
-
-  bess-edge log [--config FILE] [--csv] [--local] [--explain] [--last N] [--since MOMENT]
-                [--until MOMENT]
-  bess-edge log --at MOMENT ...
-
-  --config FILE   the controller's settings; default /etc/bess/edge.toml
-  --csv           comma-separated with a header; otherwise one key=value line a cycle
-  --local         and local time, energy in Wh (charged is positive) and money in EUR of each
-                  cycle
-  --explain       and the price up to which the student would have charged in each cycle, and that
-                  from which it would have discharged (bess-edge why tells more of one cycle)
-  --last N        only the newest N cycles
-  --since MOMENT  only from then on
-  --until MOMENT  only up to then
-  --at MOMENT     only the cycle whose order was in force then
-
-A moment is the market's wall clock, 14:32 (the newest that has been), yesterday, "yesterday 14:32"
-or "2026-11-23 14:32"; so long ago, 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are
-estimates, as bess-edge earned has them: the power measured at the tick, for two minutes, at the
-price decided on. Read from the ring in [state] folder, oldest first, while the controller runs or
-not.
-Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
-
+constexpr const char* kFooter =
+    R"(A moment is local time, 14:32 (the latest), yesterday, "yesterday 14:32" or "2026-11-23
+14:32"; an age, 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are estimates, as those of
+bess-edge earned: the power measured at the tick, for two minutes, at the price decided on. Read
+from the ring in [state] folder, oldest first, whether the controller runs or not.
+Exit codes:
+  0 done
+  1 the log cannot be read
+  2 the command line is wrong
+Examples:
   bess-edge log --last 10
   bess-edge log --local --since 14:00 --until 15:00
   bess-edge log --explain --last 30
-  bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv
-)";
-
-const char* complaint(const LogGiven& given) {
-  const bool has_span = given.last > 0 || !given.since.empty() || !given.until.empty();
-  return !given.at.empty() && has_span ? "--at is one cycle: without --last, --since and --until"
-                                       : nullptr;
-}
+  bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv)";
 
 /// Which records, by number and by time.
 struct LogSpan {
@@ -154,11 +125,25 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kLogCommand = {.name = "log",
-                                 .usage = "log [--config FILE] ...",
-                                 .does = "what was decided, and why",
-                                 .help = kHelp,
-                                 .options = kOptions,
-                                 .run = run_with<LogGiven, run_log, complaint>};
+void add_log(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("log", "what was decided in each cycle, and why");
+  const auto given = std::make_shared<LogGiven>();
+  command.flag("--csv", given->csv,
+               "comma-separated with a header; otherwise one key=value line a cycle");
+  command.flag("--local", given->local,
+               "also local time, energy in Wh (charging is positive) and money in EUR");
+  command.flag("--explain", given->explain,
+               "also the price up to which the student would have charged, and that from which it "
+               "would have discharged (bess-edge why tells more of one cycle)");
+  command.option("--last", given->last, "only the newest N cycles").value_name("N").positive();
+  command.moment("--since", given->since, "only from then on");
+  command.moment("--until", given->until, "only up to then");
+  command.moment("--at", given->at, "only the cycle whose order was in force then")
+      .excludes("--last")
+      .excludes("--since")
+      .excludes("--until");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_log(*given, settings); });
+}
 
 }  // namespace bess

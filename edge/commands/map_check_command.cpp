@@ -24,44 +24,18 @@ struct MapCheckGiven {
   bool json = false;
 };
 
-using O = OptionsOf<MapCheckGiven>;
-constexpr CommandOption kOptions[] = {
-    O::text<&MapCheckGiven::map_path>("--map"),
-    O::text<&MapCheckGiven::variant>("--variant"),
-    O::text<&MapCheckGiven::against_path>("--against"),
-    O::flag<&MapCheckGiven::accept_cut>("--accept-cut"),
-    O::flag<&MapCheckGiven::steps>("--steps"),
-    O::flag<&MapCheckGiven::json>("--json"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
-
-  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE]
-                      [--json | --steps] [--accept-cut]
-
-  --against FILE  a recording: bess-edge record, or bess-edge run --record
-  --map FILE      the register map; default: that of the configuration
-  --variant NAME  of the map; default: its first
-  --config FILE   the controller's settings; default /etc/bess/edge.toml
-  --json          one JSON object
-  --steps         delay, ramp and lag instead, of the orders that were recorded: [battery] as TOML
-                  for bess-train and bess-sim. bess-edge commission --record FILE records such
-                  steps
-  --accept-cut    take a recording without its last line up to where it was cut
-
-Names every point whose values cannot be true, with what would fit: never answered, outside its
-range, another scale, word order or type; a state of charge that stands still or does not follow
+constexpr const char* kFooter =
+    R"(Names every point whose values cannot be true, with what would fit: never answered, outside
+its range, another scale, word order or type; a state of charge that stands still or does not follow
 the measured power; power that flows against the order. For the last three the battery must have
 moved energy while it was recorded.
 Exit codes:
   0 all points are plausible
   1 not all, or a file cannot be read
-  2 the command line is bad
-
+  2 the command line is wrong
+Examples:
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
-  bess-edge map check --against steps.jsonl --steps > steps.toml
-)";
+  bess-edge map check --against steps.jsonl --steps > steps.toml)";
 
 /// Unit ids are the recorded device's, not the map's: they are settings of an installation.
 void take_units(const RecordingHead& head, RegisterMap& map) {
@@ -121,20 +95,12 @@ void print_text(const RegisterMap& map, const Result& result) {
               result.points.size(), result.exchanges);
 }
 
-/// A map that is named needs no configuration.
-std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) {
-  const auto complain = [](const char* why) { return usage_error(kMapCheckCommand, why); };
-  if (given.against_path.empty()) return complain("map check needs --against FILE");
-  if (given.json && given.steps) return complain("--steps is TOML: leave --json out");
-  if (given.map_path.empty()) {
-    if (given.variant.empty()) return load_settings(kMapCheckCommand, settings);
-    return complain("--variant needs --map: a configuration says it itself");
-  }
-  if (!settings.path.empty()) return complain("--map and --config exclude each other");
+/// A map that is named needs no configuration. The exit code.
+int find_map(const MapCheckGiven& given, SettingsFile& settings) {
+  if (given.map_path.empty()) return load_settings(settings);
   std::string error;
   RegisterMap& map = settings.config.battery.map;
-  if (load_register_map(given.map_path, given.variant, map, error)) return std::nullopt;
-  return failed(error);
+  return load_register_map(given.map_path, given.variant, map, error) ? 0 : failed(error);
 }
 
 /// Readings are a second apart: what is shorter has no shape and delays, a lag by all of itself,
@@ -170,10 +136,8 @@ int print_steps(const MapCheckGiven& given, const RegisterMap& map, const Record
   return 0;
 }
 
-}  // namespace
-
 int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
-  if (const auto code = find_map(given, settings)) return *code;
+  if (const int code = find_map(given, settings)) return code;
   RegisterMap& map = settings.config.battery.map;
   std::string error;
   BusRecordingReader recording;
@@ -200,13 +164,34 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
   return result.findings == 0 ? 0 : 1;
 }
 
-const EdgeCommand kMapCheckCommand = {.name = "map",
-                                      .verb = "check --against FILE",
-                                      .usage = "map check --against FILE [--map FILE]",
-                                      .does = "does a register map fit a recorded battery?",
-                                      .help = kHelp,
-                                      .options = kOptions,
-                                      .settings = EdgeCommand::Settings::kIfAsked,
-                                      .run = run_with<MapCheckGiven, run_map_check>};
+}  // namespace
+
+void add_map_check(EdgeCommand root) {
+  EdgeCommand map = root.subcommand("map", "check a register map");
+  map.requires_subcommand();
+  EdgeCommand command =
+      map.subcommand("check", "compare a register map with a recording of a battery");
+  const auto given = std::make_shared<MapCheckGiven>();
+  command.option("--against", given->against_path, "recording of bess-edge record or --record")
+      .value_name("FILE")
+      .required();
+  command.option("--map", given->map_path, "register map; default: that of the configuration")
+      .value_name("FILE");
+  command.option("--variant", given->variant, "variant of the map; default: its first")
+      .value_name("NAME")
+      .needs("--map");
+  command.config().excludes("--map");
+  command.flag("--accept-cut", given->accept_cut,
+               "accept a recording whose last line is incomplete");
+  command.flag("--json", given->json, "one JSON object");
+  command
+      .flag("--steps", given->steps,
+            "delay, ramp and lag of the recorded orders instead, as [battery] in TOML for "
+            "bess-train and bess-sim")
+      .excludes("--json");
+  command.footer(kFooter);
+  command.does_without_settings(
+      [given](SettingsFile& settings) { return run_map_check(*given, settings); });
+}
 
 }  // namespace bess

@@ -1,5 +1,5 @@
 // bess-edge record: reads what the register map names, again and again, and writes every request
-// and reply to a file that can be given away. Writes nothing to the device. `bess-edge run
+// and reply to a file that can be given away. Writes nothing to the device. `bess-edge
 // --record` records a controller at work.
 #include <unistd.h>
 
@@ -24,43 +24,19 @@ struct RecordGiven {
   std::int64_t every_s = 0;  ///< 0 = not given
 };
 
-using O = OptionsOf<RecordGiven>;
-constexpr CommandOption kOptions[] = {
-    O::duration<&RecordGiven::for_s, 1>("--for"),
-    O::duration<&RecordGiven::every_s, 1>("--every"),
-    O::text<&RecordGiven::out_path>("--out"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge record: what a battery answers, written to a file; writes nothing to the battery
-
-  bess-edge record --for DURATION [--every DURATION] [--out FILE] [--config FILE]
-
-  --for DURATION    how long, 1s to 7d: 90s, 1h, 1d12h; Ctrl-C ends it before, and the file is
-                    whole
-  --every DURATION  between two readings of what is measured; default 10s. Everything else that
-                    the register map names, and what it would write, is read every 10 minutes
-  --out FILE        default: bess-TIME.jsonl in the current folder
-  --config FILE     the controller's settings; default /etc/bess/edge.toml
-
-One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what the map
-marks as private, texts beyond what the map's identity check asks for, and every register that the
-map does not name: the file can be given away. It holds neither addresses of the network nor
-prices. Refused while another bess-edge has the battery: record that one with bess-edge run
---record FILE, which has the orders too. What is made of it: bess-sim battery --replay FILE, and
-bess-edge map check --against FILE.
+constexpr const char* kFooter =
+    R"(One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what
+the map marks as private, texts beyond what the map's identity check asks for, and every register
+that the map does not name: the file can be given away. It holds neither network addresses nor
+prices. Refused while another bess-edge has the battery: record that one with bess-edge --record
+FILE, which has the orders too. bess-sim battery --replay FILE and bess-edge map check read it.
 Exit codes:
   0 recorded
-  1 the file cannot be written, nobody answered, or the battery is in use
-  2 the command line is bad
-
+  1 the file cannot be written, the battery did not answer, or it is in use
+  2 the command line is wrong
+Examples:
   bess-edge record --for 1h
-  bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml
-)";
-
-const char* complaint(const RecordGiven& given) {
-  return given.for_s == 0 ? "record needs --for DURATION" : nullptr;
-}
+  bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml)";
 
 constexpr std::int64_t kEveryDefaultS = 10;
 constexpr std::int64_t kAllEveryS =
@@ -177,11 +153,19 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kRecordCommand = {.name = "record",
-                                    .usage = "record --for TIME [--config FILE]",
-                                    .does = "what the battery answers, to a file",
-                                    .help = kHelp,
-                                    .options = kOptions,
-                                    .run = run_with<RecordGiven, run_record, complaint>};
+void add_record(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("record", "record what a battery answers, without writing to it");
+  const auto given = std::make_shared<RecordGiven>();
+  command.duration("--for", given->for_s, 1, "how long, 1s to 7d; Ctrl-C ends it before")
+      .required();
+  command.duration("--every", given->every_s, 1,
+                   "between two readings of measured values; default 10s. All other registers of "
+                   "the map are read every 10 minutes");
+  command.option("--out", given->out_path, "default: bess-TIME.jsonl in the current folder")
+      .value_name("FILE");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_record(*given, settings); });
+}
 
 }  // namespace bess

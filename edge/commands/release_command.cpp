@@ -14,27 +14,15 @@ struct ReleaseGiven {
   bool force = false;
 };
 
-using O = OptionsOf<ReleaseGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&ReleaseGiven::yes>("--yes"),
-    O::flag<&ReleaseGiven::force>("--force"),
-};
-
-constexpr const char* kHelp = R"(bess-edge release: gives a battery back to its own mode,)"
-                              R"( when a controller that is gone left an order
-
-  bess-edge release [--config FILE] --yes [--force]
-
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --yes          really write it
-  --force        also to a device that does not answer as its register map says
-
-Needs no sign check. Refused while a bess-edge controls the battery: stop that instead.
-Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad,)"
-                              R"( or --yes is missing
-
-  systemctl stop bess-edge; bess-edge release --yes
-)";
+constexpr const char* kFooter =
+    R"(For an order that a controller left behind. Needs no sign check. Refused while a bess-edge
+controls the battery: stop that instead.
+Exit codes:
+  0 released
+  1 refused or failed: the line says why
+  2 the command line is wrong, or --yes is missing
+Examples:
+  systemctl stop bess-edge; bess-edge release --yes)";
 
 int run_release(const ReleaseGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
@@ -64,11 +52,14 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kReleaseCommand = {.name = "release",
-                                     .usage = "release [--config FILE] --yes",
-                                     .does = "end an order that nobody ends any more",
-                                     .help = kHelp,
-                                     .options = kOptions,
-                                     .run = run_with<ReleaseGiven, run_release>};
+void add_release(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("release", "return a battery to its own mode");
+  const auto given = std::make_shared<ReleaseGiven>();
+  command.flag("--yes", given->yes, "write it to the battery");
+  command.flag("--force", given->force,
+               "also to a device whose answers do not match its register map");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_release(*given, settings); });
+}
 
 }  // namespace bess

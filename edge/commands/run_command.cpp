@@ -23,49 +23,21 @@ struct RunGiven {
   std::string record_path;   ///< empty = nothing is recorded
 };
 
-using O = OptionsOf<RunGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&RunGiven::check>("--check"), O::flag<&RunGiven::self_test>("--self-test"),
-    O::flag<&RunGiven::dry_run>("--dry-run"), O::count<&RunGiven::cycles>("--cycles"),
-    O::text<&RunGiven::record_path>("--record")};
-
-constexpr const char* kHelp =
-    R"(bess-edge: drives a battery on the imbalance price, every two minutes
-
-  bess-edge [--config FILE] [--dry-run] [--cycles N] [--record FILE]    run
-  bess-edge [--config FILE] --check                     what would be done; writes nothing
-  bess-edge [--config FILE] --self-test                 can this machine run the controller here?
-(commands)
-
-  --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default
-                 /etc/bess/edge.toml
-  --check        check settings, map, student and sign check, print the registers that would be
-                 written, read the battery and the newest price once, write nothing, exit
-  --self-test    try student, signature, seal, clock, certificates, price server, storage
-                 and battery once; a table, nothing is written to the battery
-  --dry-run      run, but write nothing, whatever the file says (control = false does the same)
-  --cycles N     stop cleanly after N cycles
-  --record FILE  besides, write every request to the battery and its reply to FILE (see bess-edge
-                 record --help): what bess-sim battery --replay plays again
-  --help         this text; behind a command, more on that one
-  --version      version and the student that is built in
-
-Options may stand before the command or behind it. A run writes nothing to the battery unless the
-file says control = true and `bess-edge commission` has found its sign right. One controller to
-one battery: a second one is refused, also one that only reads (--check too), because many
-batteries serve one connection. SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit
-0. SIGHUP: exit 0 and leave the order in force for the next start, which takes over; the battery's
-own timer ends it if there is none.
+constexpr const char* kFooter =
+    R"(A run writes nothing to the battery unless control = true and `bess-edge commission` has
+found its sign right. One controller to one battery: a second one is refused, also one that only
+reads (--check too), because many batteries serve one connection. SIGTERM or Ctrl-C: 0 W is ordered,
+the battery is released, exit 0. SIGHUP: exit 0 and leave the order in force for the next start,
+which takes over; the battery's own timer ends it if there is none.
 Exit codes:
   0 done
-  1 settings or battery are bad, the sign is not checked, the battery is in use, or was not
+  1 settings or battery are wrong, the sign is not checked, the battery is in use, or was not
     released at the end; with --check also: no price, clock not set by NTP; with --self-test: a
     part fails
-  2 the command line is bad
-
+  2 the command line is wrong
+Examples:
   bess-edge --config /etc/bess/edge.toml --check
-  bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5
-)";
+  bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5)";
 
 int fail(const FileMessage& error) {
   report(JournalLevel::kError, "%s", error.c_str());
@@ -101,12 +73,23 @@ int run(const RunGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kRunCommand = {
-    .name = "run",
-    .usage = "[--config FILE] [--dry-run] [--cycles N] [--record FILE]",
-    .does = "run",
-    .help = kHelp,
-    .options = kOptions,
-    .run = run_with<RunGiven, run>};
+void add_run(EdgeCommand root) {
+  const auto given = std::make_shared<RunGiven>();
+  root.flag("--check", given->check,
+            "check settings, map, student and sign check, print the registers that would be "
+            "written, read battery and newest price once, write nothing, exit");
+  root.flag("--self-test", given->self_test,
+            "try student, signature, seal, clock, certificates, price server, storage and battery "
+            "once; a table, nothing is written to the battery");
+  root.flag("--dry-run", given->dry_run,
+            "run, but write nothing to the battery, as control = false does");
+  root.option("--cycles", given->cycles, "stop cleanly after N cycles").value_name("N").positive();
+  root.option("--record", given->record_path,
+              "also write every request to the battery and its reply to FILE (bess-edge record): "
+              "bess-sim battery --replay plays it again")
+      .value_name("FILE");
+  root.footer(kFooter);
+  root.does([given](SettingsFile& settings) { return run(*given, settings); });
+}
 
 }  // namespace bess

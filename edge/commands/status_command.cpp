@@ -31,44 +31,21 @@ struct StatusGiven {
   bool no_lock = false;
 };
 
-using O = OptionsOf<StatusGiven>;
-constexpr CommandOption kOptions[] = {
-    O::flag<&StatusGiven::json>("--json"),
-    O::flag<&StatusGiven::prometheus>("--prometheus"),
-    O::flag<&StatusGiven::follow>("--follow"),
-    O::flag<&StatusGiven::no_lock>("--no-lock"),
-};
-
-constexpr const char* kHelp =
-    R"(bess-edge status: how the running controller is; touches neither battery nor controller
-
-  bess-edge status [--config FILE] [--json | --prometheus] [--follow] [--no-lock]
-
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --json         one JSON object with "health"
-  --prometheus   the metrics as the node exporter's textfile collector takes them
-  --follow       again every two seconds, until Ctrl-C
-  --no-lock      whether it runs is told by its process number alone: its lock is not even tried
-
-What comes next is told while it runs: the next decision if price and SoC stay, reserves and full
-charges of the plan, and keys of the settings that have no effect. Health is ok, degraded (with
-the reasons) or not running. A status older than two cycles is a WARN, older than four CRITICAL.
-Of a controller that has ended, what it was last and when that was. Training days that are old or
-of another price regime are a WARN to retrain, and no matter of health.
+constexpr const char* kFooter =
+    R"(Touches neither battery nor controller. While it runs also: the next decision if price and
+SoC stay, reserves and full charges of the plan, and settings that have no effect. Health is ok,
+degraded (with the reasons) or not running. A status older than two cycles is a WARN, older than
+four CRITICAL. Training days that are old or of another price regime are a WARN to retrain, and do
+not affect health.
 Exit codes:
   0 ok
   1 degraded, or the files cannot be read
-  2 the command line is bad
+  2 the command line is wrong
   3 not running
-
+Examples:
   bess-edge status
   bess-edge status --json | jq .health
-  watch -n 60 bess-edge status --config /etc/bess/edge.toml
-)";
-
-const char* complaint(const StatusGiven& given) {
-  return given.json && given.prometheus ? "--json and --prometheus exclude each other" : nullptr;
-}
+  watch -n 60 bess-edge status --config /etc/bess/edge.toml)";
 
 using R = CycleRecord;
 using B = BatteryMeasurement;
@@ -487,11 +464,19 @@ int run_status(const StatusGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kStatusCommand = {.name = "status",
-                                    .usage = "status [--config FILE] ...",
-                                    .does = "how the running controller is",
-                                    .help = kHelp,
-                                    .options = kOptions,
-                                    .run = run_with<StatusGiven, run_status, complaint>};
+void add_status(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("status", "state and health of the running controller");
+  const auto given = std::make_shared<StatusGiven>();
+  command.flag("--json", given->json, "one JSON object with \"health\"");
+  command
+      .flag("--prometheus", given->prometheus,
+            "metrics in the format of the node exporter's textfile collector")
+      .excludes("--json");
+  command.flag("--follow", given->follow, "again every two seconds, until Ctrl-C");
+  command.flag("--no-lock", given->no_lock,
+               "judge by the process number whether it runs: the lock is not even tried");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_status(*given, settings); });
+}
 
 }  // namespace bess

@@ -4,6 +4,7 @@
 
 #include "edge/commands/command_list.h"
 #include "edge/why/explanation.h"
+#include "edge/why/local_moment.h"
 #include "shared/local_text.h"
 
 namespace bess {
@@ -14,38 +15,20 @@ struct WhyGiven {
   bool json = false;
 };
 
-using O = OptionsOf<WhyGiven>;
-constexpr CommandOption kOptions[] = {O::moment<&WhyGiven::at>("--at"),
-                                      O::flag<&WhyGiven::json>("--json")};
-
-constexpr const char* kHelp = R"(bess-edge why: why the battery does what it does,)"
-                              R"( and at which price it would do something else
-
-  bess-edge why [--config FILE] [--at MOMENT] [--json]
-
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --at MOMENT    the cycle whose order was in force then, by the clock on the wall:)"
-                              R"( 14:32 (the newest that has
-                 been), "2026-11-23 14:32", or in UTC 2026-11-23T13:32:00Z; default:)"
-                              R"( the newest cycle
-  --json         one JSON object with the same numbers
-
-Who decided, since when, what ends it; price and state of charge,)"
-                              R"( each with the exact values up to which this
-cycle would have charged and from which it would have discharged.)"
-                              R"( The student is proved to be monotone in
-both, so that no price or SoC between them decides otherwise. Limits,)"
-                              R"( rules of your own and stop reasons stand
-above it, and are named where they decided. Read from the log in [state] folder,)"
-                              R"( while the controller runs or
-not.
-Exit codes: 0 done   1 the log cannot be read, or nothing was decided then)"
-                              R"(   2 the command line is bad
-
+constexpr const char* kFooter =
+    R"(What decided, since when, and what ends it; price and state of charge, each with the exact
+values up to which this cycle would have charged and from which it would have discharged. The
+student is proved to be monotone in both, so that no price or SoC between them decides otherwise.
+Limits, your own rules and stop reasons come first, and are named where they decided. Read from the
+log in [state] folder, whether the controller runs or not.
+Exit codes:
+  0 done
+  1 the log cannot be read, or nothing was decided then
+  2 the command line is wrong
+Examples:
   bess-edge why
   bess-edge why --at 14:32
-  bess-edge why --json | jq .margins
-)";
+  bess-edge why --json | jq .margins)";
 
 /// Of the cycle that was asked for; otherwise `trouble` says why there is none.
 std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const LogReader& log,
@@ -86,11 +69,16 @@ int run_why(const WhyGiven& given, SettingsFile& settings) {
 
 }  // namespace
 
-const EdgeCommand kWhyCommand = {.name = "why",
-                                 .usage = "why [--config FILE] [--at MOMENT] ...",
-                                 .does = "why it did that, and at which price it would not",
-                                 .help = kHelp,
-                                 .options = kOptions,
-                                 .run = run_with<WhyGiven, run_why>};
+void add_why(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("why", "why it decided that, and at which price it would not have");
+  const auto given = std::make_shared<WhyGiven>();
+  command.moment("--at", given->at,
+                 "the cycle whose order was in force then, by the local clock: 14:32 (the latest), "
+                 "\"2026-11-23 14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest cycle");
+  command.flag("--json", given->json, "one JSON object with the same numbers");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_why(*given, settings); });
+}
 
 }  // namespace bess

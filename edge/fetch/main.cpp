@@ -1,7 +1,6 @@
 // bess-prices: fetches what the controller decides on, and publishes it. A program of its own,
 // beside the control process, where heap and libraries may do as they like: killed, stuck or
 // absent, it costs a price and never a cycle.
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,7 +8,6 @@
 #include <cstring>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <thread>
 
 #include "edge/companion/stop_signals.h"
@@ -22,35 +20,24 @@
 #include "edge/log/log_reader.h"
 #include "edge/prices/http_trust.h"
 #include "edge/storage/instance_lock.h"
+#include "shared/host/command_line.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
 
-constexpr const char* kHelp =
-    R"(bess-prices: fetches imbalance and day-ahead prices for bess-edge
-
-  bess-prices [--config FILE]            publishes them, until SIGTERM
-  bess-prices [--config FILE] --check    asks each server once and says what came
-  bess-prices [--config FILE] --settle   fetches the settled prices of past days now
-
-  --config FILE  the controller's settings; sections [price], [outlook] and
-                 [settled]; default /etc/bess/edge.toml
-  --help         this text
-  --version      the version
-
-The newest price, the price level of the last hours and, for a student by outlook, the plan on
-day-ahead prices go to one file in [state] run_folder (or folder), which bess-edge reads. It may be
-started before bess-edge and after it, and restarted at any time. One bess-prices to one file.
-Once a day it fetches what past quarter-hours are billed at, where [settled] url is given, for
-bess-edge earned.
+constexpr const char* kFooter =
+    R"(The newest price, the price level of the last hours and, for a student by outlook, the plan
+on day-ahead prices go to one file in [state] run_folder (or folder), which bess-edge reads. It may
+be started before or after bess-edge and restarted at any time. One bess-prices to one file. Once a
+day it fetches the settled prices of past quarter-hours for bess-edge earned, where [settled] url is
+given.
 Exit codes:
   0 done
-  1 the settings are bad, another bess-prices runs; with --check also: no usable price came; with
+  1 the settings are wrong, another bess-prices runs; with --check also: no usable price came; with
     --settle: no settled price came
-  2 the command line is bad
-)";
+  2 the command line is wrong)";
 
 struct Options {
   std::string config_path = "/etc/bess/edge.toml";
@@ -58,28 +45,6 @@ struct Options {
   bool settle = false;
   const char* started_as = "";
 };
-
-/// -1 to go on; else the exit code.
-int parse(int argc, char** argv, Options& options) {
-  if (argc > 0) options.started_as = argv[0];
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    if (argument == "--help" || argument == "-h") return std::fputs(kHelp, stdout), 0;
-    if (argument == "--version") return std::printf("bess-prices %s\n", BESS_VERSION), 0;
-    if (argument == "--check") {
-      options.check = true;
-    } else if (argument == "--settle") {
-      options.settle = true;
-    } else if (argument == "--config" && i + 1 < argc) {
-      options.config_path = argv[++i];
-    } else {
-      std::fprintf(stderr, "bess-prices: unknown option or missing value: %s (see --help)\n",
-                   argv[i]);
-      return 2;
-    }
-  }
-  return -1;
-}
 
 void complain(const std::string& text) { std::fprintf(stderr, "bess-prices: %s\n", text.c_str()); }
 
@@ -180,13 +145,8 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   if (!lock.take((path + ".lock").c_str(), "bess-prices", error)) {
     return complain(error.c_str()), 1;
   }
-  const sigset_t stop_signals = block_stop_signals();
   std::stop_source stop;
-  std::thread signals([&] {
-    int ignored = 0;
-    sigwait(&stop_signals, &ignored);
-    stop.request_stop();
-  });
+  const StopSignals stop_signals([&] { stop.request_stop(); });
   write_journal_line(JournalLevel::kNotice, "bess-prices: started");
   PricePublisher publisher(path);
   std::jthread beside([&] { run_beside(config, publisher, stop.get_token()); });
@@ -195,8 +155,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
     settling = std::jthread([&] { fetch_settled_daily(settled, config.clock, stop.get_token()); });
   }
   PriceFetcher(config, publisher, stop.get_token()).run([&] { return is_replaced(started_as); });
-  if (!stop.stop_requested()) kill(getpid(), SIGTERM);
-  signals.join();
+  stop.request_stop();
   beside.join();
   if (settling.joinable()) settling.join();
   static_cast<void>(unlink(path.c_str()));  // it would only grow old
@@ -230,7 +189,21 @@ int run(const Options& options) {
 }  // namespace bess
 
 int main(int argc, char** argv) {
+  bess::CommandLine line("bess-prices", "fetches imbalance and day-ahead prices for bess-edge",
+                         "bess-prices " BESS_VERSION);
   bess::Options options;
-  const int exit_code = bess::parse(argc, argv, options);
-  return exit_code >= 0 ? exit_code : bess::run(options);
+  if (argc > 0) options.started_as = argv[0];
+  int exit_code = 0;
+  bess::ProgramCommand root = line.root();
+  root.option("--config", options.config_path,
+              "the controller's settings; sections [price], [outlook] and [settled]")
+      .with_default()
+      .value_name("FILE");
+  root.flag("--check", options.check, "ask each server once and report the answers");
+  root.flag("--settle", options.settle, "fetch the settled prices of past days now")
+      .excludes("--check");
+  root.footer(bess::kFooter);
+  root.runs([&] { exit_code = bess::run(options); });
+  const int parse_code = line.run(argc, argv);
+  return parse_code != 0 ? parse_code : exit_code;
 }

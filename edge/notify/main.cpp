@@ -1,45 +1,37 @@
 // bess-notify: calls for help. A program of its own, outside the control process: it asks bess-edge
 // and reports what is wrong by a command and MQTT. Killed, stuck or absent, it changes nothing for
 // the controller.
-#include <signal.h>
-
 #include <chrono>
 #include <cstdio>
 #include <string>
-#include <string_view>
-#include <thread>
 
 #include "edge/companion/stop_signals.h"
 #include "edge/notify/notifier.h"
 #include "edge/notify/notify_settings.h"
 #include "edge/notify/topics.h"
 #include "edge/storage/instance_lock.h"
+#include "shared/host/command_line.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
 namespace {
 
-constexpr const char* kHelp =
-    R"(bess-notify: reports by a command and MQTT when a battery controller needs help
-
-  bess-notify [--config FILE]            every [notify] every_s, until SIGTERM
-  bess-notify [--config FILE] --once     one round, for a timer
-  bess-notify [--config FILE] --test     one message to every channel that is configured
-  bess-notify [--config FILE] --check    is [notify] right? Sends nothing
-
-  --config FILE  the controller's settings; section [notify]; default /etc/bess/edge.toml
-  --help         this text
-  --version      the version
-
-Each alarm is reported once, and its end once, also over restarts; what the command does not take is
-tried again every round. It asks bess-edge and takes no lock of it: the controller does not know
-that it exists. One bess-notify to one [notify] folder: a second one is refused; --test and --check
-may run beside it.
+constexpr const char* kFooter =
+    R"(Each alarm is reported once, and its end once, also over restarts; what the command does not
+take is repeated every round. It asks bess-edge and takes no lock of it: the controller does not
+know that it exists. One bess-notify to one [notify] folder: a second one is refused; --test and
+--check may run beside it.
 Exit codes:
   0 done
-  1 the settings are bad, another bess-notify runs, a test message was not taken
-  2 the command line is bad
-)";
+  1 the settings are wrong, another bess-notify runs, a test message was not taken
+  2 the command line is wrong)";
+
+struct Options {
+  std::string config_path = "/etc/bess/edge.toml";
+  bool once = false;
+  bool test = false;
+  bool check = false;
+};
 
 std::int64_t now_utc_s() { return clock_ns(CLOCK_REALTIME) / kNanosecondsPerSecond; }
 
@@ -77,26 +69,21 @@ bool is_alone(const NotifySettings& settings, InstanceLock& lock) {
   return holder_of(settings.lock.c_str()) == 0;
 }
 
-int run(std::string_view task, const std::string& config_path) {
+int run(const Options& options) {
   NotifySettings settings;
   std::string error;
-  if (!load_notify_settings(config_path, settings, error)) {
+  if (!load_notify_settings(options.config_path, settings, error)) {
     std::fprintf(stderr, "bess-notify: %s\n", error.c_str());
     return 1;
   }
-  if (task == "--check") return print_check(settings);
-  const sigset_t stop_signals = block_stop_signals();
-  if (task == "--test") return send_test(settings, now_utc_s()) ? 0 : 1;
+  if (options.check) return print_check(settings);
+  std::stop_source stop;
+  const StopSignals stop_signals([&] { stop.request_stop(); });
+  if (options.test) return send_test(settings, now_utc_s()) ? 0 : 1;
   InstanceLock lock;
   if (!is_alone(settings, lock)) return 1;
-  std::stop_source stop;
-  std::thread([stop, stop_signals]() mutable {
-    int ignored = 0;
-    sigwait(&stop_signals, &ignored);
-    stop.request_stop();
-  }).detach();
   Notifier notifier(settings, stop.get_token());
-  if (task == "--once") {
+  if (options.once) {
     notifier.run_round(now_utc_s());
     notifier.finish(std::chrono::minutes(2));  // a command's time, and as much again
     return 0;
@@ -109,27 +96,23 @@ int run(std::string_view task, const std::string& config_path) {
 }  // namespace bess
 
 int main(int argc, char** argv) {
-  std::string config_path = "/etc/bess/edge.toml";
-  std::string_view task;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    if (argument == "--help" || argument == "-h") {
-      std::fputs(bess::kHelp, stdout);
-      return 0;
-    }
-    if (argument == "--version") {
-      std::puts("bess-notify " BESS_VERSION);
-      return 0;
-    }
-    if (argument == "--once" || argument == "--test" || argument == "--check") {
-      task = argument;
-    } else if (argument == "--config" && i + 1 < argc) {
-      config_path = argv[++i];
-    } else {
-      std::fprintf(stderr, "bess-notify: unknown option or missing value: %s (see --help)\n",
-                   argv[i]);
-      return 2;
-    }
-  }
-  return bess::run(task, config_path);
+  bess::CommandLine line("bess-notify",
+                         "reports by a command and MQTT when a battery controller needs help",
+                         "bess-notify " BESS_VERSION);
+  bess::Options options;
+  int exit_code = 0;
+  bess::ProgramCommand root = line.root();
+  root.option("--config", options.config_path, "the controller's settings; section [notify]")
+      .with_default()
+      .value_name("FILE");
+  root.flag("--once", options.once, "one round, for a timer; default: every [notify] every_s");
+  root.flag("--test", options.test, "one message to every channel that is configured")
+      .excludes("--once");
+  root.flag("--check", options.check, "check [notify], send nothing")
+      .excludes("--once")
+      .excludes("--test");
+  root.footer(bess::kFooter);
+  root.runs([&] { exit_code = bess::run(options); });
+  const int parse_code = line.run(argc, argv);
+  return parse_code != 0 ? parse_code : exit_code;
 }

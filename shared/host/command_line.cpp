@@ -55,27 +55,6 @@ const CLI::App& asked_command(const CLI::App& root) {
   return *command;
 }
 
-struct UnknownSubcommand {
-  const CLI::App* command;  ///< whose subcommand it should be
-  std::string word;
-};
-
-/// The first word that names no subcommand where one is due. CLI11 would only say that a subcommand
-/// is missing.
-std::optional<UnknownSubcommand> unknown_subcommand(const CLI::App& root, int argc,
-                                                    const char* const* argv) {
-  const CLI::App* command = &root;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto subcommands = command->get_subcommands([](const CLI::App*) { return true; });
-    if (subcommands.empty() || word.starts_with('-')) break;
-    const auto found = std::ranges::find(subcommands, word, &CLI::App::get_name);
-    if (found == subcommands.end()) return UnknownSubcommand{command, word};
-    command = *found;
-  }
-  return std::nullopt;
-}
-
 /// What CLI11 says of values, as the rest of the program would.
 std::string in_our_words(const std::string& what) {
   constexpr std::string_view kNoNumber = "Could not convert: ";
@@ -93,14 +72,23 @@ std::string in_our_words(const std::string& what) {
          " times; give it once (a list with commas, where it takes one)";
 }
 
-/// What is wrong with the command line. A word that nobody takes comes first: it may be the slip of
-/// the finger for which CLI11 calls another option missing.
+/// What is wrong with the command line. A word that no command takes comes first: it may be the
+/// typing error for which CLI11 calls another option or a subcommand missing.
 std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
   const CLI::App& command = asked_command(root);
   const std::vector<std::string> left = root.remaining(true);
-  const auto option = std::ranges::find_if(left, [](const auto& w) { return w.starts_with('-'); });
+  const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
+  std::vector<std::string> known = subcommand_names(command);
+  const bool is_subcommand = !known.empty() && !left.empty() && !is_option(left.front());
+  if (is_subcommand) {
+    std::string meant = did_you_mean(left.front(), known);
+    if (meant.empty()) meant = did_you_mean("--" + left.front(), option_names(command));
+    return "unknown subcommand \"" + left.front() + "\"" + meant;
+  }
+  const auto option = std::ranges::find_if(left, is_option);
   if (option != left.end()) {
-    return "unknown option " + *option + did_you_mean(*option, option_names(command));
+    const std::string name = option->substr(0, option->find('='));
+    return "unknown option " + *option + did_you_mean(name, option_names(command));
   }
   if (!left.empty()) return "\"" + left.front() + "\" is one word too many";
   return in_our_words(error.what());
@@ -199,6 +187,18 @@ std::string refuse_empty(const std::string& given) {
   return given.empty() ? "needs a value, not an empty text" : "";
 }
 
+/// In lines that fit a terminal beside the names; CLI11 indents them.
+std::string wrapped(std::string help) {
+  constexpr std::size_t kWidth = 70;
+  for (std::size_t line = 0; line + kWidth < help.size();) {
+    const std::size_t end = help.find_last_of(" \n", line + kWidth);
+    if (end == help.npos || end < line) break;  // a word as long as that
+    help[end] = '\n';
+    line = end + 1;
+  }
+  return help;
+}
+
 /// CLI11 takes what is too large for the largest number that there is.
 template <typename Number>
 std::string refuse_overflow(const std::string& given) {
@@ -221,7 +221,7 @@ struct ValueOf<std::optional<T>> {
 
 template <typename T>
 ProgramOption ProgramCommand::option(const std::string& name, T& value, const std::string& help) {
-  CLI::Option* option = app_->add_option(name, value, help);
+  CLI::Option* option = app_->add_option(name, value, wrapped(help));
   option->check(CLI::Validator(refuse_empty, ""));
   using Value = typename ValueOf<T>::type;
   if constexpr (std::is_integral_v<Value>) {
@@ -248,7 +248,19 @@ BESS_OPTION_TYPE(std::optional<std::uint64_t>);
 #undef BESS_OPTION_TYPE
 
 ProgramOption ProgramCommand::flag(const std::string& name, bool& value, const std::string& help) {
-  return ProgramOption(app_->add_flag(name, value, help));
+  return ProgramOption(app_->add_flag(name, value, wrapped(help)));
+}
+
+ProgramOption ProgramCommand::parsed(const std::string& name,
+                                     std::function<std::string(const std::string&)> take,
+                                     const std::string& help) {
+  const auto parse = [name, take = std::move(take)](const std::string& given) {
+    const std::string complaint = take(given);
+    if (!complaint.empty()) throw CLI::ValidationError(name, complaint);
+  };
+  CLI::Option* option = app_->add_option_function<std::string>(name, parse, wrapped(help));
+  option->check(CLI::Validator(refuse_empty, ""));
+  return ProgramOption(option);
 }
 
 ProgramOption ProgramCommand::named_choice(const std::string& name,
@@ -258,13 +270,42 @@ ProgramOption ProgramCommand::named_choice(const std::string& name,
   const auto take = [names, chosen = std::move(chosen)](const std::string& given) {
     chosen(static_cast<std::size_t>(std::ranges::find(names, given) - names.begin()));
   };
-  CLI::Option* option = app_->add_option_function<std::string>(name, take, help);
+  CLI::Option* option = app_->add_option_function<std::string>(name, take, wrapped(help));
   option->transform(CLI::IsMember(names, CLI::ignore_case));
   return ProgramOption(option);
 }
 
 void ProgramCommand::footer(const std::string& text) { app_->footer(text); }
-void ProgramCommand::runs(std::function<void()> action) { app_->callback(std::move(action)); }
+
+namespace {
+
+/// Options of the root that are none of the subcommand's would be ignored.
+void refuse_options_of_root(const CLI::App& root, const CLI::App& subcommand) {
+  const std::vector<std::string> known = option_names(subcommand);
+  for (const CLI::Option* option : root.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(known, name) != known.end()) continue;
+    throw CLI::ParseError(name + " does not go with " + subcommand.get_name(), 2);
+  }
+}
+
+}  // namespace
+
+void ProgramCommand::runs(std::function<void()> action, std::function<std::string()> complaint) {
+  if (app_->get_parent() == nullptr) {
+    app_->require_subcommand(0, 1);
+    app_->parse_complete_callback([app = app_] {
+      const CLI::App& asked = asked_command(*app);
+      if (&asked != app) refuse_options_of_root(*app, asked);
+    });
+  }
+  app_->callback([app = app_, action = std::move(action), complaint = std::move(complaint)] {
+    if (&asked_command(*app) != app) return;
+    const std::string wrong = complaint ? complaint() : "";
+    if (!wrong.empty()) throw CLI::ParseError(wrong, 2);
+    action();
+  });
+}
 
 CommandLine::CommandLine(const std::string& program, const std::string& description,
                          const std::string& version)
@@ -302,11 +343,6 @@ int CommandLine::run(int argc, const char* const* argv) {
         *app_,
         std::string("\"") + argv[i] +
             "\" holds a line end or another control character: leave it out, or rename the file");
-  }
-  if (const auto unknown = unknown_subcommand(*app_, argc, argv)) {
-    return refuse(*unknown->command,
-                  "unknown subcommand \"" + unknown->word + "\"" +
-                      did_you_mean(unknown->word, subcommand_names(*unknown->command)));
   }
   try {
     app_->parse(argc, argv);

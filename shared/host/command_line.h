@@ -1,7 +1,7 @@
-// The command line of a program with subcommands: options into variables, help, errors, exit codes.
-// CLI11 does the work; only command_line.cpp includes it, because its header takes a compiler
-// longer than all else in a command. Declare in this order: program, subcommands, their options;
-// then run().
+// The command line of a program, with or without subcommands: options into variables, help, errors,
+// exit codes. CLI11 does the work; only command_line.cpp includes it, because its header takes a
+// compiler longer than all else in a command. Declare in this order: program, subcommands, their
+// options; then run().
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
 #pragma once
 
@@ -60,6 +60,10 @@ class ProgramCommand {
   template <typename T>
   ProgramOption option(const std::string& name, T& value, const std::string& help);
   ProgramOption flag(const std::string& name, bool& value, const std::string& help);
+  /// A value with a syntax of its own: `take` stores it and returns what is wrong with it, or
+  /// nothing.
+  ProgramOption parsed(const std::string& name, std::function<std::string(const std::string&)> take,
+                       const std::string& help);
   /// A name for each value; upper and lower case are one.
   template <typename T>
   ProgramOption choice(const std::string& name, T& value,
@@ -72,8 +76,10 @@ class ProgramCommand {
   }
   /// Text behind the options: examples.
   void footer(const std::string& text);
-  /// What the command does, once everything is parsed.
-  void runs(std::function<void()> action);
+  /// What the command does, once everything is parsed. `complaint` returns what is wrong with
+  /// options that are right each by itself, or nothing; the command is then not run. A program
+  /// whose root runs needs no subcommand.
+  void runs(std::function<void()> action, std::function<std::string()> complaint = nullptr);
 
  private:
   ProgramOption named_choice(const std::string& name, const std::vector<std::string>& names,

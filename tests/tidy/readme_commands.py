@@ -47,15 +47,10 @@ class Readmes:
 
     @functools.cache
     def subcommands(self, *command):
-        """Of CLI11's list, or of the usage lines that bess-edge begins with."""
+        """Of CLI11's list."""
         text = self.help(*command)
         listed = re.search(r"^subcommands:\s*\n((?:  .*\n)+)", text, re.M | re.I)
-        if listed:
-            return set(re.findall(r"^  ([a-z][a-z-]*)", listed[1], re.M))
-        if command[0] != "bess-edge" or command[1:] not in ((), ("map",)):
-            return set()
-        usage = self.help(*command[:1] if command[1:] == ("map",) else command)
-        return set(re.findall(r"^  %s ([a-z][a-z-]*)" % " ".join(command), usage, re.M))
+        return set(re.findall(r"^  ([a-z][a-z-]*)", listed[1], re.M)) if listed else set()
 
     @functools.cache
     def script_text(self, script):

@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/commands/command_line.h"
-#include "edge/commands/command_list.h"
+#include <sstream>
+
+#include "tests/support/edge_words.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 
@@ -23,53 +24,47 @@ struct Said {
 Said said_to(const std::vector<std::string>& words) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const int exit_code = run_command_line({words.begin(), words.end()});
+  const int exit_code = run_edge_words(words);
   std::string text = testing::internal::GetCapturedStdout();
   return {exit_code, text + testing::internal::GetCapturedStderr()};
 }
 
-TEST(EdgeWords, HelpAndVersionAreWordsToo) {
+TEST(EdgeWords, EveryCommandHasHelpWithExitCodes) {
   const std::string general = said_to({"--help"}).text;
-  for (const auto& words :
-       {std::vector<std::string>{"help"}, {"-h"}, {"help", "run"}, {"help", "--help"}}) {
+  std::istringstream commands(general.substr(general.find("Subcommands:\n")));
+  std::string line;
+  int count = 0;
+  for (std::getline(commands, line); std::getline(commands, line) && !line.empty(); ++count) {
+    std::vector<std::string> words = {line.substr(2, line.find(' ', 2) - 2)};
+    if (words.front() == "map") words.emplace_back("check");
+    words.emplace_back("--help");
     const Said said = said_to(words);
-    EXPECT_EQ(said.exit_code, 0);
-    EXPECT_EQ(said.text, general);
+    EXPECT_EQ(said.exit_code, 0) << line;
+    EXPECT_THAT(said.text, ::testing::ContainsRegex("Exit codes:\n  0 ")) << line;
   }
-  for (const EdgeCommand* const known : kCommands) {
-    const std::string command(known->name);
-    const Said said = said_to({"help", command});
-    EXPECT_EQ(said.exit_code, 0) << command;
-    EXPECT_EQ(said.text, said_to({command, "--help"}).text);
-    EXPECT_EQ(said.text, said_to({"--help", command}).text);
-    EXPECT_THAT(said.text, ::testing::ContainsRegex("Exit codes:[ \n]+0 ")) << command;
-    const bool is_row = general.find("bess-edge " + command) != general.npos;
-    EXPECT_TRUE(is_row || command == "run") << command;
-  }
-  EXPECT_EQ(said_to({"version"}).exit_code, 0);
-  EXPECT_EQ(said_to({"version"}).text, said_to({"--version"}).text);
-  EXPECT_THAT(said_to({"version"}).text, StartsWith("bess-edge "));
+  EXPECT_EQ(count, 12);
+  EXPECT_EQ(said_to({"--version"}).exit_code, 0);
+  EXPECT_THAT(said_to({"--version"}).text, StartsWith("bess-edge "));
 }
 
 TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
   const std::pair<std::vector<std::string>, const char*> slips[] = {
       {{"stat"}, "stat status --help bess-edge"},
       {{"stauts"}, "stauts status"},
+      {{"--config", "x", "stauts"}, "stauts status"},
       {{"relase", "--yes"}, "relase release"},
-      {{"hlep"}, "hlep help"},
       {{"check"}, "check --check"},
       {{"selftest"}, "selftest --self-test"},
-      {{"help", "stauts"}, "stauts status"},
       {{"plutonium"}, "plutonium --help bess-edge"},
       {{"--confg", "x"}, "--confg --config --help bess-edge"},
-      {{"--config=x", "--check"}, "--config=x --config"},
+      {{"--confg=x", "--check"}, "--confg=x --config"},
       {{"status", "--jsno"}, "--jsno --json --help bess-edge status"},
       {{"status", "--follw"}, "--follow"},
       {{"log", "--lst", "3"}, "--last"},
       {{"hold", "100", "--fro", "2h"}, "--for --help bess-edge hold"},
       {{"status", "--cycles", "3"}, "--cycles --help bess-edge status"},
-      {{"--json", "--cycles", "3", "status"}, "--cycles --help bess-edge status"},
-      {{"map", "chek"}, "--against bess-edge map check"},
+      {{"--cycles", "3", "status"}, "--cycles --help bess-edge status"},
+      {{"map", "chek"}, "chek check bess-edge map"},
       {{"log", "--last"}, "--last --help bess-edge log"},
       {{"--config"}, "--config --help bess-edge"},
   };
@@ -95,7 +90,7 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
       {{"map", "check"}, "--against --help bess-edge map check"},
       {{"map", "check", "--against", "a", "--map", "m", "--config", "c"}, "--map --config"},
       {{"map", "check", "--against", "a", "--variant", "v"}, "--variant --map"},
-      {{"map", "check", "--against", "a", "--map", "m", "--steps", "--json"}, "--json"},
+      {{"map", "check", "--against", "a", "--map", "m", "--steps", "--json"}, "--json --steps"},
       {{"log", "--last", "0"}, "--last 0"},
       {{"log", "--since", "now"}, "--since 14:32"},
       {{"log", "--at", "14:32", "--last", "3"}, "--at"},
@@ -105,7 +100,7 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
   for (const auto& [words, complaint] : incomplete) {
     const Said said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), Names(complaint)));
+    EXPECT_THAT(said.text.substr(said.text.find("bess-edge: ")), Names(complaint));
   }
 }
 

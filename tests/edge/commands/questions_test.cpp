@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "edge/account/settled_prices.h"
-#include "edge/commands/command_line.h"
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
@@ -16,6 +15,7 @@
 #include "shared/host/text.h"
 #include "shared/local_text.h"
 #include "shared/training_period.h"
+#include "tests/support/edge_words.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 
@@ -87,7 +87,7 @@ url = "http://127.0.0.1:1/prices"
     words.insert(words.end(), {"--config", config_});
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
-    const int exit_code = run_command_line({words.begin(), words.end()});
+    const int exit_code = run_edge_words(words);
     std::string out = testing::internal::GetCapturedStdout();
     return {exit_code, out, testing::internal::GetCapturedStderr()};
   }
@@ -125,7 +125,7 @@ TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
   EXPECT_THAT(early.error,
               Names("2020-01-01 12:00 " +
                     std::string(local_text(newest_utc_s_ - 4 * kSecondsPerStep).view())));
-  for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", ""}) {
+  for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", "x"}) {
     const Said said = ask({"why", "--at", at});
     EXPECT_EQ(said.exit_code, 2) << at;
     EXPECT_THAT(said.error, Names("--at 14:32"));
