@@ -1,6 +1,6 @@
-// Energy and money by local days, of what flowed (exchange.h): each quarter-hour at its price
-// (exchanged_days.h). What is taken in and what is given out cost by themselves, beside the price
-// and by the terms of a contract (exchange_cost.h).
+// Settled prices by quarter-hour, and the energy and money of what flowed (exchange.h) by local
+// days at these prices. Energy charged and discharged has its own cost beside the price, by the
+// terms of a contract (exchange_cost.h).
 #pragma once
 
 #include <cstdint>

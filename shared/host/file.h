@@ -1,5 +1,6 @@
 // Whole files in and out. Reading understands gzip; writing is beside-and-rename, so that a file
-// under its final name is always complete.
+// under its final name is always complete. Output is refused where it would overwrite an input, and
+// unfinished files are removed at a signal.
 #pragma once
 
 #include <cstddef>

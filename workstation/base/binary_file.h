@@ -1,5 +1,6 @@
-// Fixed-width little-endian files of ours: magic, version, fields, CRC-32 of all before it. Written
-// beside and renamed; whatever is not whole and ours is named before any of it is used.
+// Fixed-width little-endian files of this project: magic, version, fields, CRC-32 of all before it.
+// Written beside and renamed; a file that is not whole is named before any of it is used. And the
+// FNV-1a hash of a text.
 #pragma once
 
 #include <bit>

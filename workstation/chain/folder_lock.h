@@ -1,5 +1,5 @@
-// One program at a time works in a folder. The lock is the folder's own: it leaves no file, and
-// ends with the program however that ends.
+// Locks on a folder or a file, released with the program however it ends and without a file left
+// behind; and interruption by a signal.
 #pragma once
 
 #include <atomic>

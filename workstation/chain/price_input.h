@@ -1,4 +1,5 @@
-// Prices as the commands take them: read, judged, and with --accept for what is meant.
+// Prices as commands take them, minutes and day-ahead: built-in or from files, checked, with
+// --accept for findings that are intended.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The option --rules, as several commands have it.
+// The option --rules of several commands, and what a certificate and a student say about rules.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Every day of every policy's evaluation as CSV, each number in the shortest form that reads back
-// to it: tables and paired differences are made again from it, to the bit.
+// The days an evaluation judges, and every day of every policy as CSV, each number in the shortest
+// form that reads back exactly: tables and paired differences can be made again from it.
 #pragma once
 
 #include <string>

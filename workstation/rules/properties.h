@@ -1,7 +1,6 @@
-// The paper's three properties [SPEC 5] as rules like an operator's, built in: charge at or below
-// the low price, discharge at or above the high one, and two directions, since property 3 speaks of
-// price and SoC. Whatever counts, teaches, draws or tells of a rule does so of these four by the
-// same code.
+// The three properties [SPEC 5] as built-in rules, in the form of an operator's rule: charge at or
+// below the low price, discharge at or above the high one, and two directions, since property 3
+// speaks of price and SoC.
 #pragma once
 
 #include <string>

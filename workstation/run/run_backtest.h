@@ -1,5 +1,5 @@
-// The backtest that belongs to a run: the folder "backtest" in the run's own, made of the same
-// prices, seed and configuration.
+// The backtest of a run: the folder "backtest" in the run's own, made of the same prices, seed and
+// configuration; and the runs that learn one fold each.
 #pragma once
 
 #include <filesystem>

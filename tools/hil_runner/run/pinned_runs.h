@@ -1,6 +1,5 @@
-// What every scenario did when somebody last looked, in one number each: every record of the edge,
-// and every byte that it sent with its time. Expectations say what is right; this says what has
-// changed, where nobody has an expectation.
+// Signatures of runs, and the file that pins one for each scenario: every record of the edge, and
+// every byte that it sent with its time. They show a change that no expectation covers.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The report of a run as one HTML page, pictures inside.
+// The report of runs as one HTML page with a picture of each run as inline SVG.
 #pragma once
 
 #include <string>

@@ -1,6 +1,5 @@
-// What a scenario is about, part by part: its faults, each of its events, each row that never
-// comes, each step of a price or of the house, each line for the edge, its map and its transport.
-// A part without which the run is the same to the bit tests nothing.
+// The parts of a scenario: house, meter, events, expectations, as read from its file and checked.
+// Removing one of them must change the run; otherwise it tests nothing.
 #pragma once
 
 #include <string>

@@ -1,6 +1,5 @@
-// bess-edge and bess-prices as processes of a run in wall time: started again and again on one
-// configuration,
-// spoken to by its own commands, read by its own log.
+// bess-edge and bess-prices as processes of a run in wall time, started on one configuration, asked
+// by their commands, read by their log; and a small file system that fills up.
 #pragma once
 
 #include <fmt/core.h>

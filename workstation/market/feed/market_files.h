@@ -1,4 +1,5 @@
-// Market files by name: downloads in any mixture, and settled quarter-hours for reconstruction.
+// Market files by format and name: downloads in any mixture to rows, and settled quarter-hours for
+// reconstruction.
 #pragma once
 
 #include <string>

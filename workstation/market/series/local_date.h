@@ -1,4 +1,5 @@
-// Calendar days of the market's local time: what users write on the command line.
+// Local days of the market as users write them on the command line, and the quarter-hour of the
+// imbalance market.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Learning and distillation curves as CSV, out and back in, and the smoothing that their figures
-// show.
+// Curves of the report: learning and distillation as CSV, written and read back, their smoothing,
+// and the histogram of prices.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// A student seen as a map: its action at every lattice price and SoC of one month and time of day.
+// Heat maps: a student as its action at every lattice price and SoC of one month and time of day,
+// and a figure over two settings.
 #pragma once
 
 #include <compare>

@@ -1,5 +1,6 @@
-// The walk-forward figure beside that of a run: what its chain would have earned had it been learnt
-// anew before each month that it traded, so that it saw no later one (backtest/walk_forward.h).
+// The walk-forward figure beside that of a run: what its chain would have earned had it been
+// retrained before each month it traded, so that it saw no later one (backtest/walk_forward.h). And
+// the table of students over omega.
 #pragma once
 
 #include <optional>

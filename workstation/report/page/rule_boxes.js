@@ -1,5 +1,5 @@
 // The operator's rules on the maps: where each holds, what breaks it, and its entry in the legend
-// below. As rules_json() of page_rules.h has them.
+// below. As rules_json() of page_data.h has them.
 "use strict";
 
 const kRuleBadgePx = 16;
