@@ -5,7 +5,7 @@
 
 #include "shared/fixed_point.h"
 #include "shared/local_time.h"
-#include "shared/outlook/outlook_check.h"
+#include "shared/outlook/outlook_plan.h"
 #include "shared/price_level.h"
 #include "shared/recorded_prices.h"
 #include "shared/signature.h"

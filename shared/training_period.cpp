@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "shared/local_text.h"
-#include "shared/price_regime.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,7 @@
 //           way, which is the largest -> and back -> rest                              -> release
 //
 // The small steps say whether the way is right, and nothing larger is ordered before; the larger
-// ones, of a few seconds, tell a battery that lags from one that ramps (answer_speed.h).
+// ones, of a few seconds, tell a battery that lags from one that ramps (commission_types.h).
 // A direction that the SoC, or the battery's own limit, does not leave is not tested, and said.
 // Power beyond the order ends it at once. A template over battery, clock and meter like the
 // control loop (control_loop.h names what the first two offer).
@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "edge/battery/answer_speed.h"
 #include "edge/battery/commission_types.h"
 #include "edge/battery/meter_proof.h"
 #include "edge/battery/step_fit.h"

@@ -1,18 +1,43 @@
 // Registers as last read -> BatteryMeasurement: which points mean what to the controller, which of
-// them must be plausible, and whether the device still lives. Nothing implausible passes.
+// them must be plausible, and whether the device still lives (its values change). Nothing
+// implausible passes.
 #pragma once
 
 #include <cstdint>
 
 #include "edge/base/static_vector.h"
 #include "edge/base/status.h"
-#include "edge/battery/alive_watch.h"
 #include "edge/battery/modbus_link.h"
 #include "edge/control/control_types.h"
 #include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
+#include "shared/scaled_clock.h"
 
 namespace bess {
+
+// A device whose counter stands still shows frozen values as if they were new: the map's `alive`.
+
+class AliveWatch {
+ public:
+  /// `map` must outlive this object.
+  explicit AliveWatch(const RegisterMap& map) : map_(map) {}
+
+  /// To be called after each reading; true as well where the map names no counter. `now_ns` is the
+  /// device's time.
+  bool is_alive(const LivePoints& live, std::int64_t now_ns) {
+    if (map_.alive.point < 0) return true;
+    std::int64_t counter = 0;
+    if (!live_value(map_, live, map_.alive.point, counter)) return false;
+    if (moved_ns_ == 0 || counter != counter_) moved_ns_ = now_ns;
+    counter_ = counter;
+    return now_ns - moved_ns_ <= map_.alive.max_age_s * kNanosecondsPerSecond;
+  }
+
+ private:
+  const RegisterMap& map_;
+  std::int64_t moved_ns_ = 0;  ///< when the counter last moved; 0 = it was never read
+  std::int64_t counter_ = 0;
+};
 
 // Which registers to ask for in one request: points that lie close together are read as one span.
 

@@ -9,7 +9,7 @@
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/program/find_battery.h"
-#include "edge/program/start_notes.h"
+#include "edge/program/startup.h"
 #include "edge/registers/codec.h"
 #include "edge/settings/idle_keys.h"
 #include "edge/settings/price_config.h"

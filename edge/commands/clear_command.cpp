@@ -1,7 +1,7 @@
 // `bess-edge clear`: a person has looked at why the supervision gave the battery back.
 #include <cstdio>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/whole_file.h"

@@ -1,5 +1,5 @@
-// A command of bess-edge while it is declared: each NAME_command.cpp declares one, its options into
-// a struct of its own, and command_list.h names it.
+// A command of bess-edge while it is declared, and the list of all: each NAME_command.cpp declares
+// one, its options into a struct of its own.
 #pragma once
 
 #include <cstdint>
@@ -59,5 +59,22 @@ int load_settings(SettingsFile& settings);
 
 /// One line on stderr, or in the journal; the exit code.
 int failed(const std::string& message);
+
+// The commands of bess-edge, in the order of its help. NAME_command.cpp declares each.
+
+void add_commission(EdgeCommand root);
+void add_release(EdgeCommand root);
+void add_clear(EdgeCommand root);
+void add_status(EdgeCommand root);
+void add_log(EdgeCommand root);
+void add_why(EdgeCommand root);
+void add_earned(EdgeCommand root);
+void add_hold(EdgeCommand root);
+void add_limit(EdgeCommand root);
+void add_record(EdgeCommand root);
+void add_map_check(EdgeCommand root);
+void add_signature(EdgeCommand root);
+/// What bess-edge does without a command. Last: commands declared later would have its footer.
+void add_run(EdgeCommand root);
 
 }  // namespace bess

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/why/explanation.h"

@@ -4,7 +4,7 @@
 
 #include "edge/battery/commission.h"
 #include "edge/battery/modbus_battery.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "edge/program/find_battery.h"
 #include "edge/program/startup.h"

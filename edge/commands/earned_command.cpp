@@ -3,7 +3,7 @@
 
 #include "edge/account/account_days.h"
 #include "edge/account/earnings.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "shared/local_day.h"
 

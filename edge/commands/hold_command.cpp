@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/control/hold.h"
 #include "edge/control/tick.h"
 #include "edge/log/journal.h"

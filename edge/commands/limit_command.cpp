@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
 

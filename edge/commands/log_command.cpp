@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "edge/account/day_account.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
 #include "edge/why/explanation.h"

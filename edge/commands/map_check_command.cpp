@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "edge/battery/step_fit.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/recording/energy_evidence.h"
 #include "edge/recording/map_check.h"
 #include "edge/registers/map_file.h"

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "edge/battery/modbus_battery.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "edge/program/find_battery.h"
 #include "edge/recording/exchange_recorder.h"

@@ -1,7 +1,7 @@
 // bess-edge release: ends an order that a controller which is gone has left in force.
 #include <cstdio>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/journal.h"
 #include "edge/program/find_battery.h"
 #include "edge/program/startup.h"

@@ -4,7 +4,7 @@
 //   meter, limits -> SiteLimits ------------+         |                        +-> ModbusBattery
 //                                                     +-> EventLog (own thread), ServiceNotify
 #include "edge/commands/check.h"
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/commands/self_test.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"

@@ -14,7 +14,6 @@
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
-#include "edge/memory/seccomp_filter.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/startup.h"
 #include "edge/storage/instance_lock.h"

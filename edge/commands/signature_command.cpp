@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/program/startup.h"
 
 namespace bess {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/log/health.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"

@@ -2,7 +2,7 @@
 // charge it would have been decided otherwise.
 #include <cstdio>
 
-#include "edge/commands/command_list.h"
+#include "edge/commands/command.h"
 #include "edge/why/explanation.h"
 #include "edge/why/local_moment.h"
 #include "shared/local_text.h"

@@ -1,6 +1,6 @@
 // The day-ahead prices that this machine has been told, by quarter-hour, and when it was told them:
 // what is known at an instant is what had come by then, and of tomorrow nothing before 13:00 local
-// time, as on the workstation (market/series/day_ahead_publication.h). An earlier price is not
+// time, as on the workstation (market/series/day_ahead.h). An earlier price is not
 // believed there, and would be another plan here.
 //
 // Answers are judged against what is kept, of a whole day the first that came:

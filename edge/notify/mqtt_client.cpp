@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "edge/notify/topics.h"
-#include "shared/host/transfer_trouble.h"
+#include "shared/host/http_client.h"
 
 namespace bess {
 namespace {

@@ -16,7 +16,7 @@
 #include "edge/loop/control_loop.h"
 #include "edge/prices/http_trust.h"
 #include "edge/program/find_battery.h"
-#include "edge/program/starting_level.h"
+#include "edge/program/startup.h"
 #include "edge/program/take_over.h"
 #include "edge/storage/commission_file.h"
 #include "edge/storage/recall.h"

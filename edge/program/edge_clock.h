@@ -35,11 +35,11 @@ class EdgeClock {
   /// clock may be stepped while waiting. Stepped back, the instant may lie hours ahead: then the
   /// wait is over, and whoever waited finds out what the time is.
   bool sleep_until_utc_ns(std::int64_t utc_ns) {
-    constexpr std::int64_t kStepNs = 5 * kNanosecondsPerSecond;
-    std::int64_t left_before_ns = INT64_MAX - kStepNs;
+    constexpr std::int64_t kPollNs = 5 * kNanosecondsPerSecond;
+    std::int64_t left_before_ns = INT64_MAX - kPollNs;
     while (!stop_requested()) {
       const std::int64_t left_ns = monotonic_ns_at(utc_ns) - monotonic_ns();
-      if (left_ns <= 0 || left_ns > left_before_ns + kStepNs) return true;
+      if (left_ns <= 0 || left_ns > left_before_ns + kPollNs) return true;
       left_before_ns = left_ns;
       take_stop_signal(left_ns < kNanosecondsPerSecond ? left_ns : kNanosecondsPerSecond);
     }

@@ -6,7 +6,6 @@
 #include "edge/storage/commission_file.h"
 #include "edge/storage/operator_files.h"
 #include "edge/storage/published_status.h"
-#include "edge/storage/run_identity.h"
 
 namespace bess {
 namespace {

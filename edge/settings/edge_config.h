@@ -9,7 +9,6 @@
 #include "edge/settings/control_config.h"
 #include "edge/settings/price_config.h"
 #include "edge/settings/retired_keys.h"
-#include "edge/settings/site_config.h"
 #include "shared/fixed_text.h"
 #include "shared/host/toml_reader.h"
 #include "shared/scaled_clock.h"

@@ -7,10 +7,15 @@
 #include <string>
 
 #include "edge/log/record_fields.h"
+#include "edge/log/run_status.h"
 #include "edge/settings/edge_config.h"
 #include "shared/host/json.h"
 
 namespace bess {
+
+// Who a run is, for the status that it publishes: this build, this configuration, this process.
+
+RunIdentity identity_of_run(const EdgeConfig& config);
 
 struct PublishedStatus {
   Json status;  ///< as status.json has it; does not exist when nothing is known

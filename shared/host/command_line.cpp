@@ -14,8 +14,6 @@
 #include <system_error>
 #include <type_traits>
 
-#include "shared/host/errno_text.h"
-#include "shared/host/nearest_word.h"
 #include "shared/host/text.h"
 
 namespace bess {

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "shared/file_descriptor.h"
-#include "shared/host/errno_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 
 namespace bess {

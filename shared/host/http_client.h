@@ -70,4 +70,18 @@ std::string describe_wait(double wait_s);
 /// time or an HTTP date; nothing when it is none of them. From 0 to kWaitMax_s.
 std::optional<double> wait_seconds(const std::string& header_value, double now_utc_s);
 
+// Why a transfer did not come to its end, in words that say what to look at, and what a caller does
+// about it: the one table for every program. Nothing in it names the address, which may hold a
+// secret.
+
+struct TransferTrouble {
+  HttpOutcome::Kind kind;
+  std::string reason;  ///< one line
+};
+
+/// Of the CURLcode that a CURL* ended with, not CURLE_OK; `detail` is what libcurl had to say,
+/// perhaps nothing; `authorities` as in HttpRequest.
+TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail,
+                                 const std::string& authorities);
+
 }  // namespace bess

@@ -1,5 +1,5 @@
-// Another program, run to its end or to its time: given a text, what it says taken. Needs poll and
-// posix_spawn alone, so that the judge of an upgrade can rely on it when little else works.
+// Another program, run to its end or to its time: given a text, its output taken; and words quoted
+// for a shell. Needs poll and posix_spawn alone.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,18 @@
 #include <vector>
 
 namespace bess {
+
+// A word of a command line, quoted where a shell needs it.
+
+inline std::string shell_word(const std::string& word) {
+  const bool is_plain = !word.empty() && word.find_first_not_of(
+                                             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                             "0123456789_-./:,=+@%") == word.npos;
+  if (is_plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
 
 struct ProgramResult {
   /// Empty when it ran to its end; else why not, for a message.

@@ -1,9 +1,93 @@
 #include "shared/host/text.h"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <numeric>
 
 namespace bess {
+
+namespace {
+
+constexpr std::size_t kLettersMax = 40;  // longer words are no slips of the finger
+
+/// Letters to insert, remove, replace or swap with their neighbour (the restricted distance of
+/// Damerau).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
+      const bool is_swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (is_swap) row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+    before_last.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view given, const std::vector<std::string>& known) {
+  if (given.size() < 2 || given.size() > kLettersMax) return {};
+  std::string best;
+  std::size_t best_distance = given.size() / 3 + 1;
+  for (const std::string& word : known) {
+    const std::size_t far = word.starts_with(given) ? 0 : distance(given, word);
+    if (far >= best_distance) continue;
+    best = word;
+    best_distance = far;
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view given, const std::vector<std::string>& known) {
+  const std::string word = nearest_word(given, known);
+  return word.empty() ? word : "; did you mean " + word + "?";
+}
+
+std::string html_escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string with_true_minus(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(';
+    const bool is_minus = text[i] == '-' && begins && i + 1 < text.size() &&
+                          kDigits.find(text[i + 1]) != kDigits.npos;
+    out += is_minus ? std::string("\u2212") : std::string(1, text[i]);
+  }
+  return out;
+}
+
 namespace {
 
 /// The C0 characters and DEL, and in UTF-8 the C1 ones: a terminal takes U+009B for ESC [.

@@ -1,10 +1,39 @@
-// Lines out of a text, and text that is made fit for a message.
+// Text: lines, text made fit for a message or for HTML, an errno in words, the nearest known word.
 #pragma once
 
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bess {
+
+// What an errno says of a file, for people: the common slips in plain words, the rest in the
+// system's.
+
+inline std::string errno_text(int error) {
+  if (error == ELOOP) return "it is a link that leads back to itself; name the file itself";
+  if (error == ENAMETOOLONG) return "the name is too long for a file; check it";
+  return std::strerror(error);
+}
+
+// "Did you mean": of the words that would have been understood, the one that was probably meant.
+
+/// Empty when none of `known` is near: more than a third of the letters would have to change, or it
+/// does not begin with `given`. Of several equally near the first one is taken.
+std::string nearest_word(std::string_view given, const std::vector<std::string>& known);
+
+/// "; did you mean WORD?", or nothing.
+std::string did_you_mean(std::string_view given, const std::vector<std::string>& known);
+
+// Text into HTML.
+
+/// & < > " ' become entities.
+std::string html_escaped(std::string_view text);
+
+/// A number's hyphen becomes a minus sign: at the start, behind a space or a bracket.
+std::string with_true_minus(std::string_view text);
 
 /// Spreadsheets and editors of Windows begin a text with U+FEFF; no reader needs it.
 inline std::string_view without_byte_order_mark(std::string_view text) {

@@ -6,8 +6,6 @@
 
 #include "shared/host/text.h"
 
-#include "shared/host/nearest_word.h"
-
 namespace bess {
 namespace {
 

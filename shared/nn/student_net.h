@@ -15,10 +15,43 @@
 #include "shared/context_classes.h"
 #include "shared/crc32.h"
 #include "shared/features.h"
-#include "shared/nn/affine.h"
-#include "shared/nn/clipped_relu.h"
+#include "shared/fixed_point.h"
 
 namespace bess {
+
+/// One affine layer: y = W^T x + b with int16 weights and activations, int32 sums. Weights are
+/// stored input-major, so the inner loop runs over outputs without a horizontal sum. The exporter
+/// proves that no accumulator can overflow (student/student_file.h), so there is no check.
+template <int kInputs, int kOutputs>
+struct Affine {
+  static constexpr int kInputCount = kInputs;
+  static constexpr int kOutputCount = kOutputs;
+
+  std::int16_t weight[kInputs][kOutputs];
+  std::int32_t bias[kOutputs];
+
+  constexpr void propagate(const std::int16_t (&x)[kInputs], std::int32_t (&y)[kOutputs]) const {
+    for (int o = 0; o < kOutputs; ++o) y[o] = bias[o];
+    for (int i = 0; i < kInputs; ++i) {
+      for (int o = 0; o < kOutputs; ++o) y[o] += std::int32_t{weight[i][o]} * x[i];
+    }
+  }
+};
+
+/// ReLU with rescaling from the int32 accumulator to the next layer's int16 activation:
+/// y = clamp(round(x / 2^shift), 0, 32767). Monotone, which the proof's interval bounds rely on.
+template <int kCount>
+struct ClippedRelu {
+  std::int32_t shift;  ///< 0..30; differs by net, because each net uses the full range of int16
+
+  constexpr std::int16_t rescale(std::int32_t x) const {
+    return static_cast<std::int16_t>(
+        clamp_to<std::int32_t>(rounding_shift_right(x, shift), 0, INT16_MAX));
+  }
+  constexpr void propagate(const std::int32_t (&x)[kCount], std::int16_t (&y)[kCount]) const {
+    for (int i = 0; i < kCount; ++i) y[i] = rescale(x[i]);
+  }
+};
 
 inline constexpr int kStudentInputs = 5;
 inline constexpr int kStudentHidden1 = 64;

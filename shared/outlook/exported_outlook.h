@@ -6,8 +6,8 @@
 #include <student_weights.h>
 
 #include "shared/crc32.h"
-#include "shared/outlook/outlook_check.h"
 #include "shared/outlook/outlook_model.h"
+#include "shared/outlook/outlook_plan.h"
 
 namespace bess {
 

@@ -4,10 +4,10 @@
 #include "workstation/env/evaluate.h"
 #include "workstation/env/outlook_book.h"
 #include "workstation/market/model/simulated_market.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/planners/foresight.h"
 #include "workstation/planners/outlook_integers.h"
 #include "workstation/planners/outlook_program.h"
-#include "workstation/planners/tabular.h"
 
 namespace bess {
 namespace {

@@ -5,7 +5,7 @@
 #include "shared/local_time.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "workstation/market/feed/day_ahead_rows.h"
-#include "workstation/market/series/day_ahead_publication.h"
+#include "workstation/market/series/day_ahead.h"
 
 namespace bess {
 namespace {

@@ -1,7 +1,7 @@
 // Register maps: whatever is accepted keeps its promises about the power it can express, and the
 // driver can run it against a device that answers anything.
 #include "edge/battery/battery_driver.h"
-#include "edge/battery/grid_meter.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "tests/fuzz/fuzz_target.h"

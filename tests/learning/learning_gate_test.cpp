@@ -8,8 +8,8 @@
 #include "shared/local_time.h"
 #include "tests/support/market_series.h"
 #include "workstation/chain/run_config.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/planners/stochastic_program.h"
-#include "workstation/planners/tabular.h"
 #include "workstation/rl/train.h"
 
 namespace bess {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "shared/nn/clipped_relu.h"
+#include "shared/nn/student_net.h"
 #include "workstation/base/random.h"
 
 namespace bess {

@@ -9,7 +9,7 @@
 #include "workstation/base/random.h"
 #include "workstation/correction/distil.h"
 #include "workstation/rl/price_map.h"
-#include "workstation/student/quantise.h"
+#include "workstation/student/student_file.h"
 
 namespace bess {
 

@@ -1,5 +1,5 @@
 // [battery] of a configuration, as the simulator takes it.
-#include "tools/battery_sim/battery_file.h"
+#include "tools/battery_sim/battery_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

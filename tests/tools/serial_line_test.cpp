@@ -9,7 +9,7 @@
 #include "edge/battery/modbus_battery.h"
 #include "tests/support/peer_programs.h"
 #include "tests/tools/loopback_battery.h"
-#include "tools/battery_sim/serial_request.h"
+#include "tools/battery_sim/battery_server.h"
 
 namespace bess {
 namespace {

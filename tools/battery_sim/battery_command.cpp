@@ -1,5 +1,8 @@
 // bess-sim battery: options and composition.
+#include "tools/battery_sim/battery_command.h"
+
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -8,19 +11,72 @@
 #include <thread>
 
 #include "edge/registers/map_file.h"
+#include "shared/battery_keys.h"
 #include "shared/host/file.h"
+#include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/battery_sim/battery_faults.h"
-#include "tools/battery_sim/battery_file.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/battery_sim/battery_server.h"
-#include "tools/battery_sim/replay_command.h"
 #include "tools/sim/clock_options.h"
 #include "tools/sim/commands.h"
 #include "tools/sim/stop_signal.h"
 
 namespace bess {
+
+void read_battery_file(const std::string& path, BatteryParameters& battery) {
+  std::string error;
+  TomlValue document;
+  if (!parse_toml_file(path, document, error)) throw UserError(error);
+  TomlTable table(document.find("battery"), path, "[battery]", error);
+  if (document.find("battery") == nullptr) fail("{}: has no [battery]", path);
+  for (const BatteryKey& key : kBatteryKeys) {
+    table.number(key.name, key.of(battery), key.low, key.high);
+  }
+  for (const char* of_workstation : {"wear_eur_per_mwh", "cycles_per_day_max", "initial_soc",
+                                     "fade_percent_per_1000_cycles", "minimum_run_min"}) {
+    double ignored = 0;  // a simulator has none of it, and the workstation's file may
+    table.number(of_workstation, ignored, 0, 1'000);
+  }
+  table.finish();
+  if (!error.empty()) throw UserError(error);
+  if (const char* wrong = battery_contradiction(battery)) fail("{}: [battery] {}", path, wrong);
+}
+
+namespace {
+
+UtcText time_text(std::int64_t utc_ns) { return utc_text(utc_ns / kNanosecondsPerSecond); }
+
+}  // namespace
+
+void run_replay(const ReplayOptions& options, const BatteryServerSettings& server,
+                const ClockOptions& clock_options) {
+  const StopSignal stop;
+  const ScaledClock clock = clock_options.clock();
+  RecordedDevice device(options.path,
+                        options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused);
+  ReplayedBus replayed(device, clock);
+  static RegisterMap no_points;  // the recording answers
+  no_points.unit = device.head().unit;
+  SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
+  BatteryServer battery(server, no_points, unused, clock);
+  battery.replay(replayed);
+  const std::string place = server.serial_device.empty()
+                                ? fmt::format("{}:{}", server.host, battery.port())
+                                : server.serial_device;
+  std::printf(
+      "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "
+      "%s%s\n",
+      place.c_str(), device.head().unit, options.path.c_str(), device.head().map.c_str(),
+      static_cast<long long>(device.exchanges()), time_text(device.first_utc_ns()).c_str(),
+      time_text(device.last_utc_ns()).c_str(),
+      clock.is_real_time() ? ", which begins at the first request" : "");
+  std::fflush(stdout);
+  battery.run(stop.fd());
+  std::printf("bess-sim battery: stopped\n");
+}
+
 namespace {
 
 /// Any free port; meters serve several; a fault lasts from its begin to its end.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shared/host/child_process.h"
-#include "tools/site/site_clock.h"
+#include "tools/site/controller_settings.h"
 
 namespace bess {
 

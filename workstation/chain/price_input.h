@@ -12,7 +12,7 @@
 #include "workstation/env/market_steps.h"
 #include "workstation/market/feed/day_ahead_rows.h"
 #include "workstation/market/feed/market_files.h"
-#include "workstation/market/series/day_ahead_publication.h"
+#include "workstation/market/series/day_ahead.h"
 #include "workstation/market/series/judged_prices.h"
 
 namespace bess {

@@ -8,7 +8,6 @@
 
 #include "shared/battery_keys.h"
 #include "shared/host/file.h"
-#include "shared/host/nearest_word.h"
 #include "shared/host/text.h"
 #include "shared/host/toml_document.h"
 #include "shared/host/user_error.h"

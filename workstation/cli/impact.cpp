@@ -12,7 +12,7 @@
 #include "workstation/chain/folder_lock.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/cli/commands.h"
-#include "workstation/impact/impact_report.h"
+#include "workstation/impact/impact_study.h"
 #include "workstation/planners/baselines.h"
 
 namespace bess {

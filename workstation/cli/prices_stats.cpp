@@ -9,7 +9,7 @@
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/judged_prices.h"
 #include "workstation/market/series/plausibility.h"
-#include "workstation/market/statistics/statistics_report.h"
+#include "workstation/market/statistics/market_statistics.h"
 
 namespace bess {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/run_task.h"
+#include "workstation/sweep/collected.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "shared/host/user_error.h"
-#include "workstation/correction/logit_differences.h"
 
 namespace bess {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "workstation/correction/logit_differences.h"
+#include "workstation/correction/constraint_layer.h"
 
 namespace bess {
 

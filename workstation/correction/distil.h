@@ -1,9 +1,11 @@
 // Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq.
-// 11, 12]. An epoch is 64 context lattices of 32 prices x 16 SoCs, on which the layer corrects, and
-// 32,768 states that the teacher visits, which only follow the teacher; it is taken in small steps
-// of Adam. The layer is dropped afterwards: the student alone decides.
+// 11, 12]: losses, lessons and loop. An epoch is 64 context lattices of 32 prices x 16 SoCs, on
+// which the layer corrects, and 32,768 states that the teacher visits, which only follow the
+// teacher; it is taken in small steps of Adam. The layer is dropped afterwards: the student alone
+// decides.
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <optional>
 #include <string>
@@ -131,5 +133,30 @@ class Distiller {
   std::vector<Worker> workers_;
   std::vector<DistilPoint> curve_;
 };
+
+// What a student by outlook learns from: steps of the training days with what the teacher, the
+// program that plans on day-ahead prices and what a network adds to it, would do there. Its values
+// are no function of the student's five inputs, so they stand below them.
+
+/// [5 inputs and 3 action values x states], as Teacher::action_values() reads them. Of states that
+/// the teacher's policy meets on the training days, and some at another price and SoC. All but the
+/// first pass move each day's prices and its break-even prices alike: what to do stays the same.
+Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
+                       const BatteryParameters& battery, const DistilOptions& options);
+
+// The loss of the distillation and its gradients, per state [Paper, Eq. 12]:
+//   L = omega KL(pi || mu) + KL(pi' || pi)
+// pi' student, pi corrected student, mu teacher = softmax(action values / temperature).
+
+/// log softmax of each column.
+Eigen::MatrixXd log_softmax(const Eigen::MatrixXd& logits);
+
+/// Sum over columns of KL(p || q), from log probabilities.
+double kl_divergence(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
+
+/// Gradient of KL(p || q) with respect to the logits of p:  p_k (log p_k - log q_k - KL).
+Eigen::MatrixXd kl_gradient_first(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
+/// Gradient of KL(p || q) with respect to the logits of q:  q_k - p_k.
+Eigen::MatrixXd kl_gradient_second(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
 
 }  // namespace bess

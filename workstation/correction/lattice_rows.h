@@ -7,8 +7,8 @@
 
 #include <vector>
 
+#include "workstation/correction/constraint_layer.h"
 #include "workstation/correction/correction_layer.h"
-#include "workstation/correction/difference_row.h"
 #include "workstation/rules/rule.h"
 
 namespace bess {

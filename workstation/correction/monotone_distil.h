@@ -1,5 +1,5 @@
-// Distillation into a student that is monotone by construction (sign_bounds.h). Nothing of property
-// 3 is left to training, so training has one aim, what the student earns:
+// Distillation into a student that is monotone by construction: its weights keep sign bounds. No
+// part of property 3 is left to training, so training has one aim, what the student earns:
 //
 //   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature   mu = softmax(values / temperature)
 //
@@ -12,11 +12,103 @@
 #include <functional>
 #include <vector>
 
+#include "workstation/base/random.h"
 #include "workstation/correction/distil.h"
-#include "workstation/correction/rule_lessons.h"
-#include "workstation/correction/sign_bounds.h"
+#include "workstation/nn/mlp.h"
+#include "workstation/rl/network_input.h"
+#include "workstation/rl/price_map.h"
+#include "workstation/rules/rule.h"
+#include "workstation/rules/rule_conflicts.h"
 
 namespace bess {
+
+// A student that is monotone by construction [SPEC 5, property 3]: which weights may have which
+// sign, in the student's own 5-64-32-3. Monotone networks are Sill (1998) and Daniels and Velikova
+// (2010); units that fall and units that rise side by side, and free ones for the inputs without an
+// order, are what Runje and Shankaranarayana (2023) call a constrained monotone network.
+//
+//   hidden 1   20 units fall with price and SoC (weights <= 0), 20 rise (>= 0), 24 do not see them;
+//              time and context enter all of them freely
+//   hidden 2   16 falling units: weights >= 0 from falling, <= 0 from rising, free from the others;
+//              16 rising units: the other way round
+//   logits     idle is the origin; charge takes falling units >= 0 and rising ones <= 0, discharge
+//              the other way round
+//
+// So neither charge - idle nor idle - discharge can rise with price or SoC, whatever the weights
+// are inside these bounds. Rounding to integers keeps every sign, and the integer activations rise
+// with their sums: the exported student has the property too.
+
+/// Bounds of every parameter of a student, in the layout of mlp.h.
+class SignBounds {
+ public:
+  /// No bound at all.
+  static SignBounds none();
+  /// The bounds above, and the same for other inputs: where the action never falls with one,
+  /// falling units rise with it. Free units see no input that has a direction.
+  static SignBounds monotone(const std::vector<Direction>& directions = RuleSet{}.directions());
+
+  /// Turns the sign of what lies outside: a start inside with as many weights that matter.
+  void reflect(Parameters& parameters) const;
+  /// To the nearest parameters inside.
+  void clamp(Parameters& parameters) const {
+    parameters = parameters.cwiseMax(lower_).cwiseMin(upper_);
+  }
+  [[nodiscard]] bool contain(const Parameters& parameters) const {
+    return (parameters.array() >= lower_.array()).all() &&
+           (parameters.array() <= upper_.array()).all();
+  }
+
+ private:
+  Parameters lower_, upper_;
+};
+
+// How a student learns rules while it is distilled, the teacher untouched: what the teacher would
+// do against an operator's rule is taken out of the lessons, and some states of every batch are
+// held to every rule, the built-in ones too, by hinges. Of a monotone student one or two corners of
+// a rule's box tell for all of it, in each context.
+
+/// A state that decides a rule in its context, and what is allowed there.
+struct HardState {
+  LatticeState state;
+  ActionSet actions;
+  std::size_t rule = 0;  ///< index in the set
+};
+
+/// Which states of a rule decide it, for the hinges and for a quick look before a proof. Rules that
+/// do not bind the student's states are left out; a direction is the signs' (monotone_distil.h).
+class RuleLessons {
+ public:
+  RuleLessons(const RuleSet& rules, ContextKind kind);
+
+  [[nodiscard]] bool empty() const { return asked_.empty(); }
+  [[nodiscard]] std::size_t count() const { return asked_.size(); }
+
+  /// A hard state of rule `index` < count(), in a context of its box: half of them in one of
+  /// `counterexamples`, where there are some.
+  HardState draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
+                 Random& random) const;
+
+  /// What a monotone student is held to in this context; rules without corners are left out.
+  void corners(const LatticeState& context, std::vector<HardState>& states) const;
+
+  /// The actions that the operator's rules leave at a network input.
+  [[nodiscard]] ActionSet actions_at(const float* x, const PriceMap& price_map) const;
+
+ private:
+  struct Asked {
+    std::size_t index;  ///< in the set
+    Rule rule;
+    LatticeBox box;
+    bool has_corners;  ///< else any state of the box may be the worst
+  };
+  [[nodiscard]] bool holds(const Asked& asked, const LatticeState& context) const;
+  [[nodiscard]] LatticeState draw_context(const Asked& asked, Random& random) const;
+  static HardState corner(const Asked& asked, LatticeState context, bool at_least);
+
+  ContextKind kind_;
+  std::vector<Asked> asked_;
+  ImpliedRanges implied_;
+};
 
 /// Where a hidden unit saturates; quantise_student() must know it.
 inline constexpr double kSaturation = 1;

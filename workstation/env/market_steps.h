@@ -16,7 +16,7 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
-#include "workstation/market/series/day_ahead_publication.h"
+#include "workstation/market/series/day_ahead.h"
 #include "workstation/market/series/imbalance_price.h"
 
 namespace bess {

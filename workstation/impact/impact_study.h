@@ -1,10 +1,13 @@
-// What a fleet earns a MW as it grows, by price formula: as its policy is, spread in time, with
-// smaller steps, shy of trades that earn little, and learnt anew on the prices that it made itself.
+// Earnings of a fleet per MW as it grows, by price formula: with its policy unchanged, spread in
+// time, with smaller steps, with a higher threshold for trades, and retrained on the prices that it
+// made itself; and their report.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "workstation/impact/fleet_market.h"
 
 namespace bess {
@@ -55,5 +58,16 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
 /// Fitted on all days of `prices`.
 std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
                                       const FleetOptions& options);
+
+// What came of a fleet's own impact: a table for the terminal, CSV, JSON, and a page with the money
+// a MW over the fleet's size.
+
+std::string format_impact_table(const ImpactPlan& plan, const std::vector<ImpactRow>& rows);
+/// Header `formula,fleet_mw,variant,...`.
+std::string impact_csv(const std::vector<ImpactRow>& rows);
+Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows);
+/// Writes impact.html into `folder`.
+void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& rows,
+                       const std::filesystem::path& folder);
 
 }  // namespace bess

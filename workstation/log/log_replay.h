@@ -13,7 +13,7 @@
 
 #include "shared/host/json.h"
 #include "shared/nn/student_net.h"
-#include "workstation/log/logged_days.h"
+#include "workstation/log/log_input.h"
 
 namespace bess {
 

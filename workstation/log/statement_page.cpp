@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "shared/host/html_text.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {

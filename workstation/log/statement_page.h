@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "workstation/log/logged_days.h"
+#include "workstation/log/log_input.h"
 
 namespace bess {
 

@@ -1,6 +1,6 @@
-// What a learned policy is held against, one row each: whoever lists baselines, in a command's
-// help, in a table, on the page or in a test, iterates these rows. Adding one is its file beside
-// this one and a row in baselines.cpp.
+// Baselines that a learned policy is compared with, one row each: commands, tables, page and tests
+// iterate these rows. A new one is a row in baselines.cpp. With the tuned rule and the tabular
+// learner.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,50 @@
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "workstation/env/market_steps.h"
 #include "workstation/env/policy.h"
 
 namespace bess {
+
+// Tabular value iteration: the classical baseline that fits in two seconds [SPEC 8].
+// State: phase of the half-hour (15), bin of the observed price (48 quantile bins of the training
+// decisions), SoC (181 points). The price is a Markov chain from (phase, bin) to the next phase's
+// bin, counted on training days; the reward is the mean import or export price in each (phase,
+// bin). gamma 0.999, continuing.
+
+class TabularPolicy final : public Policy {
+ public:
+  /// Fits on `days` of `market`; throws UserError when there are none.
+  TabularPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
+                const BatteryParameters& battery);
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override;
+
+ private:
+  [[nodiscard]] int price_bin(double price_eur_per_mwh) const;
+  void count_market(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void iterate_values();
+
+  BatteryParameters battery_;
+  std::vector<double> bin_edges_;  ///< [47] ascending
+  std::vector<double> import_;  ///< [phase][bin] mean price of a MWh taken, trading costs included
+  std::vector<double> export_;  ///< the same of a MWh given
+  std::vector<float> transition_;  ///< [phase][bin][next bin] probability
+  std::vector<Action> greedy_;     ///< [phase][bin][SoC point]
+};
+
+// The rule-based controller at its best: both thresholds chosen to earn most on the training days,
+// days chained so that the first one's charge is not given away at each midnight [SPEC 4]. What a
+// careful user would get without any learning, and so the fair peer of everything that learns.
+
+struct RuleThresholds {
+  double low_eur_per_mwh;   ///< charge below
+  double high_eur_per_mwh;  ///< discharge above
+};
+
+/// Throws UserError when there are no training days in `days`.
+RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>& days,
+                         const BatteryParameters& battery);
 
 inline constexpr const char* kForesightName = "foresight";  ///< the bound, no policy
 inline constexpr const char* kProgramName = "sdp";          ///< what a teacher begins as

@@ -1,12 +1,12 @@
 // A planner that keeps a limit on daily cycles: fitted for a battery whose wear holds the limit's
-// shadow price (shadow_price.h), so that it keeps the limit on the mean of the days it was fitted
+// shadow price (foresight.h), so that it keeps the limit on the mean of the days it was fitted
 // on. The evaluation enforces it each day.
 #pragma once
 
 #include <vector>
 
 #include "workstation/env/evaluate.h"
-#include "workstation/planners/shadow_price.h"
+#include "workstation/planners/foresight.h"
 
 namespace bess {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "workstation/planners/smoothing_kernel.h"
+#include "workstation/planners/stochastic_program.h"
 
 namespace bess {
 namespace {

@@ -11,7 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "workstation/base/in_parallel.h"
-#include "workstation/planners/smoothing_kernel.h"
+#include "workstation/planners/stochastic_program.h"
 
 namespace bess {
 namespace {

@@ -30,7 +30,7 @@
 #include "workstation/env/policy.h"
 #include "workstation/planners/deviation_chain.h"
 #include "workstation/planners/soc_grid.h"
-#include "workstation/planners/storage_recursion.h"
+#include "workstation/planners/stochastic_program.h"
 
 namespace bess {
 

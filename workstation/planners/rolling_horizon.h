@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "workstation/env/policy.h"
-#include "workstation/planners/bellman_sweep.h"
+#include "workstation/planners/foresight.h"
 
 namespace bess {
 

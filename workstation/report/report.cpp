@@ -10,7 +10,6 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
-#include "workstation/report/comparison_notes.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"

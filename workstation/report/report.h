@@ -11,7 +11,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/walk_forward_figure.h"
-#include "workstation/report/provenance.h"
+#include "workstation/report/report_tables.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/prove.h"
 #include "workstation/student/student_checkpoints.h"

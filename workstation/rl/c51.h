@@ -5,9 +5,28 @@
 
 #include <Eigen/Core>
 
-#include "workstation/rl/gradient_tile.h"
+#include "workstation/nn/packed_mlp.h"
+#include "workstation/rl/transition.h"
 
 namespace bess {
+
+// What the tiles of one gradient step share, whichever the method.
+
+struct GradientStep {
+  const TileKernels& kernels;
+  const PackedMlp& online;  ///< head in one group an action
+  const PackedMlp& target;  ///< head in one group
+  const MiniBatch& batch;
+  float gamma;
+  float mean_weight = 0;  ///< C51 only
+};
+
+/// Samples first .. first+count-1 of the minibatch, all of one action.
+struct TileRange {
+  int action;
+  Eigen::Index first;
+  Eigen::Index count;
+};
 
 // The support of the value distributions: evenly spaced atoms [Paper, Eq. 10], in units of 1e4
 // EUR/h.

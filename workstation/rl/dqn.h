@@ -2,7 +2,7 @@
 // Network output: one value per action, in units of 1e4 EUR/h.
 #pragma once
 
-#include "workstation/rl/gradient_tile.h"
+#include "workstation/rl/c51.h"
 
 namespace bess {
 

@@ -2,7 +2,7 @@
 //   counterfactual  prices do not react to us, so one observed price transition is a valid one for
 //                   EVERY SoC and action: each sample draws a training step, a SoC and an action.
 //   replay          the paper's: epsilon-greedy days from a uniform SoC into a ring of the last 1e6
-//                   transitions (replay.h).
+//                   transitions (train.h).
 #pragma once
 
 #include <optional>

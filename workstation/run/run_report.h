@@ -1,4 +1,5 @@
-// The evaluation and the report of one run, from what its folder holds.
+// Evaluation and report of one run, from the content of its folder, and the facts of the run for
+// its page.
 #pragma once
 
 #include <optional>
@@ -7,14 +8,30 @@
 
 #include "shared/host/json.h"
 #include "workstation/chain/run_config.h"
+#include "workstation/env/market_steps.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/report.h"
+#include "workstation/report/report_tables.h"
 #include "workstation/run/run_folder.h"
 #include "workstation/run/run_record.h"
 
 namespace bess {
+
+// Where a run's page comes from: when, where and by what it was made, and from which prices.
+
+/// When, where, by which command and how long; with SOURCE_DATE_EPOCH set the date alone.
+std::vector<Fact> making_facts(const RunFolder& folder);
+/// "bess-train 0.1.0, BUILD"
+std::string program_text();
+
+/// Reads run.json of `folder` for the prices and, where there is one, times.json for its stages'
+/// times. With SOURCE_DATE_EPOCH in the environment (reproducible-builds.org) that is the date, and
+/// what differs from one making to the next, host, command and times, is left out: the same run
+/// gives the same bytes.
+std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
+                            const RunFolder& folder);
 
 // Finished runs as figures: what `run --json` prints and `runs compare` lines up.
 

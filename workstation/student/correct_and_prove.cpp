@@ -11,7 +11,7 @@
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/properties.h"
-#include "workstation/student/quantise.h"
+#include "workstation/student/student_file.h"
 #include "workstation/student/student_policy.h"
 #include "workstation/student/verify.h"
 

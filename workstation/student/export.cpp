@@ -12,7 +12,7 @@
 
 #include "shared/decision_signature.h"
 #include "shared/host/text.h"
-#include "shared/outlook/outlook_check.h"
+#include "shared/outlook/outlook_plan.h"
 #include "shared/soc_latches.h"
 #include "shared/training_period.h"
 #include "workstation/base/random.h"

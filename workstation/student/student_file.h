@@ -1,8 +1,10 @@
 // The student on disk: a JSON text with every integer of the net, what it was made from, and its
-// certificate with the thresholds it is bound to. Readable by people and by other programs.
+// certificate with the thresholds it is bound to; and quantisation of a trained net into these
+// integers.
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,9 +13,24 @@
 #include "shared/nn/student_net.h"
 #include "workstation/base/answer.h"
 #include "workstation/env/outlook_book.h"
+#include "workstation/nn/mlp.h"
+#include "workstation/rl/price_map.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {
+
+// From the float student to the integer one: the largest power-of-two scale for each layer at which
+// no weight leaves int16, no accumulator can leave int32 and no activation saturates for ANY
+// lattice input.
+
+/// Throws UserError when the weights are so large that no scale fits.
+/// `saturation`: where the float student's hidden activations were cut off, a power of two;
+/// infinite for plain ReLU, whose integer activations never reach their end.
+StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
+                            double saturation = std::numeric_limits<double>::infinity());
+
+/// Largest magnitude that any int32 sum of the net can reach over all inputs, rounding included.
+std::int64_t accumulator_bound(const StudentNet& net);
 
 struct StudentFile {
   StudentNet net;

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "shared/host/shell_word.h"
+#include "shared/host/run_program.h"
 
 namespace bess {
 namespace {

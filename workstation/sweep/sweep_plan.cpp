@@ -3,24 +3,325 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <set>
+#include <sstream>
 #include <unordered_set>
 
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/json_reader.h"
 #include "shared/host/made/build_info.h"
+#include "shared/host/text.h"
+#include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
 #include "workstation/chain/chain_steps.h"
+#include "workstation/chain/learning_class.h"
 #include "workstation/chain/rule_files.h"
+#include "workstation/chain/run_config.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/run/run_backtest.h"
 #include "workstation/run/run_record.h"
 #include "workstation/run/run_report.h"
 #include "workstation/sweep/engines.h"
-#include "workstation/sweep/points.h"
 
 namespace bess {
+
+namespace {
+
+[[noreturn]] void complain(const TomlValue& value, const std::string& what) {
+  fail("{}:{}: {}", *value.file, value.line, what);
+}
+
+/// As the configuration writes it.
+std::string canonical_value(const std::string& key, const TomlValue& value) {
+  RunConfig config;
+  set_config_key(config, key, value);
+  const std::size_t dot = key.find('.');
+  const std::string listed = fmt::format("[{}] {}", key.substr(0, dot), key.substr(dot + 1));
+  const Entries entries = config_entries(config);
+  return std::ranges::find(entries, listed, &Entries::value_type::first)->second;
+}
+
+std::vector<std::string> canonical_values(const std::string& key, const TomlValue& value) {
+  const auto* list = value.as<TomlArray>();
+  if (list == nullptr) return {canonical_value(key, value)};
+  if (list->empty()) complain(value, key + ": the list of values is empty");
+  std::vector<std::string> values;
+  for (const TomlValue& one : *list) {
+    values.push_back(canonical_value(key, one));
+    if (std::ranges::count(values, values.back()) > 1) {
+      complain(one, fmt::format("{}: {} stands there twice", key, values.back()));
+    }
+  }
+  return values;
+}
+
+/// KEY of a plan: written "section.key" in quotes, or as section.key, which TOML makes a table of.
+void for_each_key(const TomlValue& table,
+                  const std::function<void(const std::string&, const TomlValue&)>& take) {
+  const auto* members = table.as<TomlMembers>();
+  if (members == nullptr) complain(table, "expected KEY = VALUE lines");
+  for (const auto& [name, value] : *members) {
+    const auto* section = value.as<TomlMembers>();
+    if (name.find('.') != name.npos || section == nullptr) {
+      take(name, value);
+      continue;
+    }
+    for (const auto& [key, inner] : *section) take(name + "." + key, inner);
+  }
+}
+
+std::vector<Entries> read_list(const TomlArray& list) {
+  std::vector<Entries> points;
+  for (const TomlValue& table : list) {
+    points.emplace_back();
+    for_each_key(table, [&](const std::string& key, const TomlValue& value) {
+      points.back().emplace_back(key, canonical_value(key, value));
+    });
+  }
+  return points;
+}
+
+/// Each of them once for each value.
+void combine(std::vector<Entries>& points, const std::string& key, const TomlValue& values) {
+  std::vector<Entries> more;
+  for (const Entries& point : points) {
+    for (const std::string& value : canonical_values(key, values)) {
+      more.push_back(point);
+      more.back().emplace_back(key, value);
+    }
+  }
+  points = std::move(more);
+}
+
+void combine_with_set(std::vector<Entries>& points, const std::string& set) {
+  const std::size_t equals = set.find('=');
+  const std::string name = "--set " + set;
+  if (equals == set.npos || equals == 0 || equals + 1 == set.size()) {
+    fail("{}: write --set section.key=VALUE[,VALUE], such as --set distil.fidelity=1,2", name);
+  }
+  const std::string values = set.substr(equals + 1);
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text("v = [" + values + "]", name, document, error)) {
+    // Words need no quotes on a command line.
+    std::string quoted = "v = [\"";
+    for (const char c : values) quoted += c == ',' ? std::string("\",\"") : std::string(1, c);
+    error.clear();
+    if (!parse_toml_text(quoted + "\"]", name, document, error)) throw UserError(error);
+  }
+  combine(points, set.substr(0, equals), *document.find("v"));
+}
+
+}  // namespace
+
+std::vector<Entries> read_points(const std::string& plan, const std::vector<std::string>& sets) {
+  std::vector<Entries> points(1);
+  TomlValue document;
+  std::string error;
+  const std::string text = plan.empty() ? "" : read_file(plan, kTomlBytesMax);
+  if (!parse_toml_text(text, plan, document, error)) throw UserError(error);
+  TomlTable root(&document, plan, "", error);
+  if (const TomlArray* list = root.array("list")) points = read_list(*list);
+  if (const TomlValue* grid = root.table("grid")) {
+    for_each_key(*grid, [&](const std::string& key, const TomlValue& values) {
+      combine(points, key, values);
+    });
+  }
+  root.finish();
+  if (!error.empty()) throw UserError(error);
+  for (const std::string& set : sets) combine_with_set(points, set);
+  return points;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSitesHeader = "id,class,power_w,capacity_wh,region";
+
+/// Of the CSV, each by its name.
+using Columns = std::map<std::string, std::size_t>;
+
+Columns columns_of(std::string_view header, const CsvTable& table, const std::string& name) {
+  const std::set<std::string> known{"id", "battery", "contract", "rules", "region"};
+  Columns columns;
+  CsvFields fields(header);
+  for (std::string_view field; fields.take(field);) {
+    const std::string column(field);
+    if (column.find('.') == column.npos && !known.contains(column)) {
+      fail(
+          "{}: unknown column \"{}\"; use id, battery, contract, rules, region, or "
+          "a key such as battery.power_w",
+          name, one_line(column, 40));
+    }
+    columns[column] = table.column(column);
+  }
+  return columns;
+}
+
+/// One line of the CSV.
+struct SiteRow {
+  const CsvTable& table;
+  const Columns& columns;
+  std::size_t row;
+  fs::path folder;  ///< that files are named from
+
+  [[nodiscard]] std::string value(const char* column) const {
+    const auto found = columns.find(column);
+    return found == columns.end() ? std::string() : table.text(row, found->second);
+  }
+};
+
+RuleSet rules_of(const SiteRow& site) {
+  std::vector<std::string> paths;
+  std::istringstream names(site.value("rules"));
+  for (std::string name; names >> name;) paths.push_back((site.folder / name).string());
+  return load_rules(paths);
+}
+
+RunConfig config_of(const SiteRow& site, RunConfig config) {
+  for (const char* column : {"battery", "contract"}) {
+    const std::string file = site.value(column);
+    if (file.empty()) continue;
+    apply_config_text(config, read_file(site.folder / file, kTomlBytesMax), file);
+  }
+  for (const auto& [key, place] : site.columns) {
+    const std::string& value = site.table.text(site.row, place);
+    if (value.empty() || key.find('.') == key.npos) continue;
+    apply_config_text(config, fmt::format("{} = {}\n", key, value), "column " + key);
+  }
+  const RuleSet rules = rules_of(site);
+  if (!rules.empty()) use_rules(config, rules, config.train.context);
+  return config;
+}
+
+}  // namespace
+
+Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_percent) {
+  const std::string text = read_file(csv);
+  const CsvTable table(text, csv.string());
+  const Columns columns = columns_of(csv_header(text), table, csv.string());
+  Sites read;
+  std::map<std::string, std::string> names;  // of keys
+  std::set<std::string> ids, used;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const std::string where = fmt::format("{}:{}", csv.string(), table.line(row));
+    const SiteRow own{table, columns, row, csv.parent_path()};
+    const std::string id = own.value("id");
+    if (id.empty() || id.find_first_of("\t\n,/") != id.npos) {
+      fail("{}: \"{}\" is no id of a site: it may not be empty or hold a comma, slash or tab",
+           where, one_line(id, 40));
+    }
+    if (!ids.insert(id).second) fail("{}: site \"{}\" stands there twice", where, id);
+    try {
+      const RunConfig config = config_of(own, base);
+      require_consistent(config, where);
+      const RuleSet& rules = config.distil.rules;
+      const std::string rules_text = rules.empty() ? "" : format_rules(rules);
+      const RunConfig learnt = canonical(config, rate_step_percent);
+      const std::string key = learning_key(learnt, rules_text);
+      const auto [at, is_new] = names.try_emplace(key, fmt::format("{:016x}", fnv1a(key)));
+      if (is_new && !used.insert(at->second).second) fail("two classes named {}", at->second);
+      if (is_new) read.classes.push_back({at->second, learnt, rules_text});
+      read.sites.push_back({id, own.value("region"), config.battery.power_w_max,
+                            config.battery.capacity_wh, at->second});
+    } catch (const UserError& error) {
+      if (std::string_view(error.what()).starts_with(where)) throw;
+      fail("{}: site \"{}\": {}", where, id, error.what());
+    }
+  }
+  return read;
+}
+
+std::string format_sites(const std::vector<Site>& sites) {
+  std::string text = fmt::format("{}\n", kSitesHeader);
+  for (const Site& site : sites) {
+    text += fmt::format("{},{},{},{},{}\n", csv_field(site.id), site.student, site.power_w,
+                        site.capacity_wh, csv_field(site.region));
+  }
+  return text;
+}
+
+std::vector<Site> parse_sites(const std::string& text, const std::string& name) {
+  const CsvTable table(text, name, kSitesHeader);
+  std::vector<Site> sites;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    sites.push_back({table.text(row, 0), table.text(row, 4), table.number(row, 2),
+                     table.number(row, 3), table.text(row, 1)});
+  }
+  return sites;
+}
+
+namespace {
+
+std::string_view take_field(std::string_view& rest) {
+  const std::size_t end = rest.find('\t');
+  const std::string_view field = rest.substr(0, end);
+  rest.remove_prefix(end == rest.npos ? rest.size() : end + 1);
+  return field;
+}
+
+std::string joined(const Entries& settings, const char* between, const char* equals) {
+  std::string text;
+  for (const auto& [name, value] : settings) {
+    text.append(text.empty() ? "" : between).append(name).append(equals).append(value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string SweepTask::value(std::string_view name) const {
+  const auto found = std::ranges::find(settings, name, &Entries::value_type::first);
+  return found == settings.end() ? std::string() : found->second;
+}
+
+Entries SweepTask::without_seed_and_fold() const {
+  Entries kept = settings;
+  std::erase_if(kept, [](const auto& entry) {
+    return entry.first == setting::kSeed || entry.first == setting::kFold;
+  });
+  return kept;
+}
+
+std::string settings_text(const Entries& settings) { return joined(settings, "\t", "="); }
+
+std::string settings_shown(const Entries& settings) {
+  return settings.empty() ? "as configured" : joined(settings, ", ", " ");
+}
+
+std::string format_tasks(const std::vector<SweepTask>& tasks) {
+  std::string text;
+  for (const SweepTask& task : tasks) {
+    fmt::format_to(std::back_inserter(text), "{}\t{}\n", task.number, settings_text(task.settings));
+  }
+  return text;
+}
+
+std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name) {
+  std::vector<SweepTask> tasks;
+  while (!text.empty()) {
+    std::string_view line = take_line(text);
+    SweepTask task{static_cast<int>(tasks.size()) + 1, {}};
+    if (take_field(line) != std::to_string(task.number)) {
+      fail("{}:{}: does not begin with its number; plan the sweep again in another folder", name,
+           task.number);
+    }
+    while (!line.empty()) {
+      const std::string_view field = take_field(line);
+      const std::size_t equals = field.find('=');
+      if (equals == field.npos) fail("{}:{}: \"{}\" has no value", name, task.number, field);
+      task.settings.emplace_back(field.substr(0, equals), field.substr(equals + 1));
+    }
+    tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -4,17 +4,92 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "workstation/base/answer.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
-#include "workstation/sweep/sites.h"
+#include "workstation/chain/run_config.h"
 #include "workstation/sweep/sweep_folder.h"
-#include "workstation/sweep/sweep_task.h"
 
 namespace bess {
+
+// Points of a sweep: what it varies, each some keys of the configuration with their values. Values
+// are looked at where they are written, by the configuration's own list of keys.
+
+/// Of a plan's file, or none when `plan` is empty: each [[list]] with every combination of [grid]
+/// and of `sets`, KEY=VALUE[,VALUE...], the last of these fastest. One empty point when nothing
+/// varies. Throws UserError naming file and line.
+std::vector<Entries> read_points(const std::string& plan, const std::vector<std::string>& sets);
+
+// The sites of a sweep, and the classes that share a student (chain/learning_class.h). Prices,
+// seed, commit and instruction set are the same in a whole sweep.
+//
+// CSV, one line a site; only `id` must be there:
+//   id,battery,contract,rules,region,SECTION.KEY...
+// battery, contract: configuration files, beside the CSV, with their [battery], [costs] or other
+// keys; rules: rule files, a space between; a column named like a key holds its value. What is
+// empty stays as in the sweep's configuration.
+
+struct Site {
+  std::string id;
+  std::string region;
+  double power_w = 0;
+  double capacity_wh = 0;
+  std::string student;  ///< the class
+};
+
+/// What all sites of a class are learnt by.
+struct SiteClass {
+  std::string name;   ///< 16 hexadecimal digits of its key
+  RunConfig config;   ///< at the canonical size
+  std::string rules;  ///< as one file; empty: none
+};
+
+struct Sites {
+  std::vector<Site> sites;
+  std::vector<SiteClass> classes;  ///< in the order of their first site
+};
+
+/// Throws UserError naming file, line and column.
+Sites read_sites(const std::filesystem::path& csv, const RunConfig& base,
+                 double rate_step_percent = 0);
+
+/// A site a line, with its class; and back.
+std::string format_sites(const std::vector<Site>& sites);
+std::vector<Site> parse_sites(const std::string& text, const std::string& name);
+
+// One task of a sweep: its number and what sets it apart from all others. A line of tasks.tsv holds
+// one, so that a task reads its own line and nobody counts axes twice.
+
+/// Names among a task's settings that are no keys of the configuration.
+namespace setting {
+inline constexpr const char* kSeed = "seed";
+inline constexpr const char* kFold = "fold";    ///< a month (run/run_backtest.h)
+inline constexpr const char* kRules = "rules";  ///< the stem of a file in the sweep's rules/
+inline constexpr const char* kClass = "class";  ///< of sites that share the student (sweep_plan.h)
+}  // namespace setting
+
+struct SweepTask {
+  int number = 0;    ///< from 1
+  Entries settings;  ///< those above, then "section.key" and its value as TOML writes it
+
+  [[nodiscard]] std::string value(std::string_view name) const;  ///< empty: it has none
+  [[nodiscard]] Entries without_seed_and_fold() const;
+};
+
+/// "seed=1 <tab> distil.fidelity=2": the same settings give the same text.
+std::string settings_text(const Entries& settings);
+/// For people: "seed 1, distil.fidelity 2".
+std::string settings_shown(const Entries& settings);
+
+std::string format_tasks(const std::vector<SweepTask>& tasks);
+/// Throws UserError naming `name` and the line.
+std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name);
 
 struct SweepRequest {
   std::string plan;  ///< TOML file with [grid] and [[list]]; or empty

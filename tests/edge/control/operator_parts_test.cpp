@@ -6,7 +6,7 @@
 
 #include "edge/control/full_charge.h"
 #include "edge/control/hold.h"
-#include "edge/control/mailbox.h"
+#include "edge/control/outlook.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/loop/cycle_parts.h"

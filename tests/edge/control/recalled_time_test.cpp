@@ -1,6 +1,6 @@
 // A log whose clock was stepped between its records: how long it really was from one reading to the
 // next.
-#include "edge/loop/recalled_time.h"
+#include "edge/loop/cycle_parts.h"
 
 #include <gtest/gtest.h>
 

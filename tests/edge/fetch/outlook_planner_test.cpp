@@ -8,7 +8,7 @@
 
 #include "edge/control/policy.h"
 #include "shared/local_time.h"
-#include "shared/outlook/outlook_check.h"
+#include "shared/outlook/outlook_plan.h"
 #include "tests/support/market_zone.h"
 
 namespace bess {

@@ -1,5 +1,5 @@
 // What the journal says of a hold, and of a meter that is not to be believed: each turn once.
-#include "edge/log/journal_lines.h"
+#include "edge/log/event_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,8 +13,6 @@
 
 #include <cerrno>
 
-#include "edge/memory/seccomp_filter.h"
-
 namespace bess {
 namespace {
 

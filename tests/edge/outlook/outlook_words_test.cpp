@@ -5,7 +5,7 @@
 #include "edge/control/policy.h"
 #include "edge/log/health.h"
 #include "edge/log/ring_log.h"
-#include "edge/program/start_notes.h"
+#include "edge/program/startup.h"
 #include "edge/why/explanation.h"
 #include "shared/local_time.h"
 #include "tests/support/market_zone.h"

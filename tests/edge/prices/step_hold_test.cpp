@@ -1,5 +1,5 @@
 // What becomes of a row far from the one before: one lie moves nothing, the truth is a row late.
-#include "edge/prices/step_hold.h"
+#include "edge/prices/newest_row.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What the journal says of the price level at the start, and what --check says of the context.
-#include "edge/program/start_notes.h"
+#include "edge/program/startup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

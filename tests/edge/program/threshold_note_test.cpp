@@ -1,5 +1,5 @@
 // The guard's thresholds beside the proved ones: who answers for a price between the two.
-#include "edge/program/start_notes.h"
+#include "edge/program/startup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

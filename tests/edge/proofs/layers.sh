@@ -118,11 +118,11 @@ layer $w/main.cpp                   $w shared
 # begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
-only curl/   'edge/fetch/fetch.cpp:|edge/notify/mqtt_client.cpp:|shared/host/(http_client|transfer_trouble).cpp:'
+only curl/   'edge/fetch/fetch.cpp:|edge/notify/mqtt_client.cpp:|shared/host/http_client.cpp:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-reports='(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp'
+reports='(workstation/report/figures/figure|tools/hil_runner/run/report_page).cpp'
 only pugixml "(workstation/market/feed/entsoe_element.h|$reports):" 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.

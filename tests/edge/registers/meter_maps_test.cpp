@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "edge/battery/grid_meter.h"
+#include "edge/battery/modbus_battery.h"
 #include "tests/support/register_device.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"

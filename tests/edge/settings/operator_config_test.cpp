@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/program/start_notes.h"
+#include "edge/program/startup.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"

@@ -1,5 +1,5 @@
 // [meter] and [limits]: what they mean, and that every mistake is one line with the mend.
-#include "edge/settings/site_config.h"
+#include "edge/settings/control_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Files that a stranger could have put there. Only root can act the stranger: else these are
 // skipped.
-#include "edge/storage/file_owner.h"
+#include "edge/storage/instance_lock.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -10,7 +10,6 @@
 
 #include <fstream>
 
-#include "edge/storage/instance_lock.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

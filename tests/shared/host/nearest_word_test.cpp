@@ -1,4 +1,4 @@
-#include "shared/host/nearest_word.h"
+#include "shared/host/text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // bess-hil run --each-part: a part that changes nothing is found, unless the scenario says why,
 // and an excuse of one that does.
-#include "tools/hil_runner/run/each_part.h"
+#include "tools/hil_runner/run/agreement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A real battery: which scenarios may drive it, what it was told by the bytes on its bus, and when
 // its limits are broken.
-#include "tools/hil_runner/real/real_battery.h"
+#include "tools/hil_runner/real/real_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "workstation/correction/policy_loss.h"
+#include "workstation/correction/distil.h"
 
 #include <gtest/gtest.h>
 

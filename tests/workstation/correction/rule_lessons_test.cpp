@@ -1,6 +1,6 @@
 // Rules in the distillation: rows that imply what is allowed, corners that decide a box, lessons
 // that obey.
-#include "workstation/correction/rule_lessons.h"
+#include "workstation/correction/monotone_distil.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
 // Whatever the weights inside the bounds, the integer student is monotone; without them it is not.
-#include "workstation/correction/sign_bounds.h"
+#include "workstation/correction/monotone_distil.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/student_nets.h"
-#include "workstation/correction/monotone_distil.h"
 #include "workstation/student/verify.h"
 
 namespace bess {

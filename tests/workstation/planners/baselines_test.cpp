@@ -5,9 +5,7 @@
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
 #include "workstation/planners/baselines.h"
-#include "workstation/planners/bellman_sweep.h"
 #include "workstation/planners/foresight.h"
-#include "workstation/planners/tuned_rule.h"
 
 namespace bess {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "tests/support/market_series.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/planners/foresight.h"
-#include "workstation/planners/tabular.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
-#include "workstation/report/comparison_notes.h"
 #include "tests/support/tokens.h"
+#include "workstation/report/report_tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

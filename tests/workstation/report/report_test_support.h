@@ -12,7 +12,7 @@
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/report/report.h"
-#include "workstation/student/quantise.h"
+#include "workstation/student/student_file.h"
 
 namespace bess {
 

@@ -1,4 +1,4 @@
-#include "workstation/rl/kept_step.h"
+#include "workstation/rl/train.h"
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>

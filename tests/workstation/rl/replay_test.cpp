@@ -1,4 +1,4 @@
-#include "workstation/rl/replay.h"
+#include "workstation/rl/train.h"
 
 #include <algorithm>
 #include <array>

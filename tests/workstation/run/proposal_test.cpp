@@ -1,5 +1,5 @@
 // What a proposal says of two students: whose money, which decisions differ, and when it is worse.
-#include "workstation/run/proposal.h"
+#include "workstation/run/refresh.h"
 
 #include <gmock/gmock.h>
 

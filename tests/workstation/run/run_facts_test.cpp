@@ -1,4 +1,4 @@
-#include "workstation/run/run_facts.h"
+#include "workstation/run/run_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -301,8 +301,7 @@ int main() {
   for (const char* const file :
        {"edge/control/policy", "edge/control/decision_signature", "edge/control/safety_guard",
         "shared/decision_signature", "shared/features", "shared/local_time",
-        "shared/outlook/outlook_check", "shared/outlook/outlook_model",
-        "shared/outlook/outlook_plan"}) {
+        "shared/outlook/outlook_model", "shared/outlook/outlook_plan"}) {
     command.push_back(fmt::format("{}/{}.cpp", BESS_SOURCE_DIR, file));
   }
   const Said built = answer_of(command);

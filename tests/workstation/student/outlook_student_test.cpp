@@ -16,7 +16,7 @@
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/exported_policy.h"
-#include "workstation/student/quantise.h"
+#include "workstation/student/student_file.h"
 
 namespace bess {
 namespace {

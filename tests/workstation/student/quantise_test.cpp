@@ -1,4 +1,4 @@
-#include "workstation/student/quantise.h"
+#include "workstation/student/student_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Tasks whose work costs nothing: what is published and when, and what is left when they are killed
 // at any moment, run twice at once, or may not write.
-#include "workstation/sweep/run_task.h"
+#include "workstation/sweep/collected.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

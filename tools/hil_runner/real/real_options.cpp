@@ -1,14 +1,178 @@
 #include "tools/hil_runner/real/real_options.h"
 
 #include <arpa/inet.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
 
 #include "edge/registers/map_file.h"
+#include "shared/host/bus_recording.h"
 #include "shared/host/user_error.h"
+#include "shared/scaled_clock.h"
+#include "tools/battery_sim/register_image.h"
 
 namespace bess {
+
+namespace {
+
+/// What stops a process that is not ours, or leaves an order behind that nobody ends.
+bool is_for_simulators(ScenarioEvent::Does does) {
+  using enum ScenarioEvent::Does;
+  return does == kBatteryPause || does == kBatteryContinue || does == kEdgeKill ||
+         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver ||
+         does == kStateLost || is_of_people(does);
+}
+
+using Registers = std::vector<std::uint16_t>;
+
+/// What the device itself has said, or was told: an order may be in percent of a rating that it
+/// shows.
+class KnownRegisters {
+ public:
+  void learn(const BusExchange& exchange) {
+    int address = exchange.address;
+    for (const std::uint16_t value : exchange.values()) values_[address++] = value;
+  }
+  void show_in(Registers& registers) const {
+    for (const auto& [address, value] : values_) {
+      registers[static_cast<std::size_t>(address)] = value;
+    }
+  }
+
+ private:
+  std::map<int, std::uint16_t> values_;
+};
+
+void read_recording(const std::string& path, std::vector<BusExchange>& exchanges) {
+  BusRecordingReader reader;
+  std::string error;
+  if (!reader.open(path, CutRecording::kAccepted, error)) throw UserError(error);
+  BusExchange exchange;
+  auto next = reader.next(exchange, error);
+  for (; next == BusRecordingReader::Next::kExchange; next = reader.next(exchange, error)) {
+    if (exchange.outcome == BusOutcome::kAnswered) exchanges.push_back(exchange);
+  }
+  if (next == BusRecordingReader::Next::kDamaged) throw UserError(error);
+}
+
+}  // namespace
+
+std::string why_not_real(const Scenario& scenario) {
+  if (!scenario.runs_wall) return "it is for virtual time";
+  if (!scenario.battery_faults.empty()) {
+    const BatteryFault kind = scenario.battery_faults.front().schedule.faults.front();
+    return fmt::format("only a simulated battery has the fault {}",
+                       battery_faults()[static_cast<std::size_t>(kind) - 1].name);
+  }
+  const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::does);
+  if (event != scenario.events.end()) {
+    return fmt::format("{} is for a simulated battery", event_name(event->does));
+  }
+  if (scenario.house.exists()) return "it needs a simulated house and its meter";
+  if (scenario.battery.sets_state) return "it sets the battery's SoC, size or limits";
+  const bool has_settings = !scenario.edge_battery.empty() || !scenario.edge_guard.empty() ||
+                            !scenario.edge_other.empty() || scenario.has_limits();
+  return has_settings ? "it sets limits of the edge" : "";
+}
+
+std::string why_not_real(const Scenario& scenario, const RealBattery& battery) {
+  if (std::string why = why_not_real(scenario); !why.empty()) return why;
+  if (scenario.battery.rtu && !battery.is_serial()) return "it is for a serial line";
+  const bool is_other_map = scenario.battery.names_map && scenario.battery.map != battery.map;
+  if (!is_other_map) return "";
+  return fmt::format("it is for the map {}",
+                     std::filesystem::path(scenario.battery.map).stem().string());
+}
+
+Scenario on_real_battery(Scenario scenario, const RealBattery& battery) {
+  scenario.time_scale = battery.time_scale;
+  scenario.battery.map = battery.map;
+  scenario.battery.variant = battery.variant;
+  scenario.battery.rtu = battery.is_serial();
+  scenario.battery.physics.power_w_max = battery.power_w;
+  scenario.battery.physics.capacity_wh = battery.capacity_wh;
+  scenario.edge_guard =
+      fmt::format("soc_min = {:.4f}\nsoc_max = {:.4f}", battery.soc_min_frac, battery.soc_max_frac);
+  // Its meter is its own: what flows is not known between two readings.
+  std::erase(scenario.invariants, "energy");
+  return scenario;
+}
+
+std::string link_keys(const RealBattery& battery) {
+  std::string text;
+  if (battery.is_serial()) {
+    text = fmt::format("transport = \"rtu\"\ndevice = \"{}\"\n", battery.address);
+    if (battery.baud) text += fmt::format("baud = {}\n", *battery.baud);
+  } else {
+    const std::size_t colon = battery.address.rfind(':');
+    text = fmt::format("host = \"{}\"\n", battery.address.substr(0, colon));
+    if (colon != std::string::npos) {
+      text += fmt::format("port = {}\n", battery.address.substr(colon + 1));
+    }
+  }
+  if (battery.unit) text += fmt::format("unit = {}\n", *battery.unit);
+  return text;
+}
+
+std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
+                                             const RegisterMap& map, std::int64_t end_utc_ns) {
+  std::vector<BusExchange> exchanges;
+  for (const std::string& recording : recordings) read_recording(recording, exchanges);
+  if (exchanges.empty()) return {};
+  // Never full, never empty: only what it is told counts.
+  const BatteryParameters boundless{
+      .power_w_max = 1e6, .capacity_wh = 1e9, .soc_min_frac = 0, .soc_max_frac = 1};
+  SimulatedBattery battery(boundless, 0.5, exchanges.front().utc_ns);
+  Registers image_holding(RegisterImage::kRegisterCount), image_input(image_holding.size());
+  RegisterImage image(map, battery, image_holding, image_input);
+  KnownRegisters holding, input;
+  for (const BusExchange& exchange : exchanges) {
+    (exchange.function == 4 ? input : holding).learn(exchange);
+    if (!exchange.is_write()) continue;
+    image.refresh(exchange.utc_ns);
+    holding.show_in(image_holding);
+    input.show_in(image_input);
+    image.apply_write(exchange.address, exchange.count);
+  }
+  image.refresh(end_utc_ns);
+  return battery.dispatch_events();
+}
+
+std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log) {
+  std::vector<MinuteRecord> minutes;
+  for (const CycleRecord& cycle : log) {
+    if (!cycle.has_measurement) continue;
+    for (std::int64_t before_s = kSecondsPerStep; before_s > 0; before_s -= 60) {
+      minutes.push_back({.minute_utc_s = cycle.utc_s / 60 * 60 - before_s,
+                         .energy_wh = cycle.measurement.power_w / 60.0,
+                         .soc_frac = cycle.measurement.soc_e4 / 1e4,
+                         .commanded_power_w = 0});
+    }
+  }
+  return minutes;
+}
+
+std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery) {
+  constexpr double kSocSlackFrac = 0.01;  // a register may show whole percents
+  const double most_w = 1.2 * battery.power_w + 200;
+  const double soc_frac = cycle.measurement.soc_e4 / 1e4;
+  if (std::abs(cycle.ordered_power_w) > battery.power_w) {
+    return fmt::format("{} W were ordered", cycle.ordered_power_w);
+  }
+  if (!cycle.has_measurement) return "";
+  if (std::abs(cycle.measurement.power_w) > most_w) {
+    return fmt::format("{} W flow", cycle.measurement.power_w);
+  }
+  const bool is_outside = soc_frac < battery.soc_min_frac - kSocSlackFrac ||
+                          soc_frac > battery.soc_max_frac + kSocSlackFrac;
+  return is_outside ? fmt::format("its SoC is {:.1f} %", 100 * soc_frac) : "";
+}
+
 namespace {
 
 constexpr const char* kNoAddress =

@@ -1,5 +1,5 @@
-// What the edge ordered in virtual and in wall time, cycle by cycle, and what it met where it
-// ordered otherwise.
+// Comparisons of runs: the same scenario in virtual and in wall time, cycle by cycle, and the same
+// scenario without each of its parts.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,13 @@
 #include "tools/hil_runner/run/outcome.h"
 
 namespace bess {
+
+// Whether a scenario can fail: it is run without each of its parts, and each time must differ.
+
+/// A finding for each part that changes nothing and is not excused, and for each excuse of one
+/// that does. `outcome` is of the whole scenario in virtual time. Throws Interrupted when a stop
+/// was requested.
+std::vector<Finding> judge_parts(const Outcome& outcome);
 
 /// A cycle that both have logged, and ordered otherwise.
 struct OtherOrder {

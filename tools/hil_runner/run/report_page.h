@@ -1,4 +1,4 @@
-// The report of runs as one HTML page with a picture of each run as inline SVG.
+// The reports of runs: one HTML page with a picture of each run as inline SVG, and JUnit XML.
 #pragma once
 
 #include <string>
@@ -7,6 +7,10 @@
 #include "tools/hil_runner/run/outcome.h"
 
 namespace bess {
+
+// Outcomes as JUnit's XML, which every continuous integration reads.
+
+std::string junit_text(const std::vector<Outcome>& outcomes);
 
 // One run as a picture: price, orders and measured power, SoC, the edge's modes; faults as named
 // bands. Axes are UTC.

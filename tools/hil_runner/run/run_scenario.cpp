@@ -10,7 +10,7 @@
 #include "tools/hil_runner/run/pinned_runs.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/publication.h"
-#include "tools/hil_runner/virtual/virtual_run.h"
+#include "tools/hil_runner/virtual/virtual_world.h"
 
 namespace bess {
 namespace {

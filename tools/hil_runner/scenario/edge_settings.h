@@ -14,7 +14,7 @@
 #include "shared/price_level.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/scenario.h"
-#include "tools/site/site_clock.h"
+#include "tools/site/controller_settings.h"
 
 namespace bess {
 

@@ -1,14 +1,178 @@
 #include "tools/hil_runner/virtual/virtual_world.h"
 
+#include <pthread.h>
+#include <signal.h>
+
 #include <iterator>
 #include <memory>
+#include <optional>
 
+#include "edge/control/policy.h"
 #include "edge/fetch/history_pages.h"
 #include "edge/log/record_codec.h"
+#include "edge/program/controller.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
+#include "tools/hil_runner/virtual/virtual_bus.h"
+#include "tools/hil_runner/virtual/virtual_prices.h"
+#include "tools/hil_runner/virtual/virtual_time.h"
+#include "tools/hil_runner/witness/maker_table.h"
 
 namespace bess {
+
+void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip) {
+  using enum ScenarioEvent::Does;
+  switch (event.does) {
+    case kHold:
+      return holds_.publish({.power_w = event.power_w,
+                             .until_utc_s = static_cast<std::uint32_t>(now_utc_s + event.for_s)});
+    case kHoldRelease:
+      return holds_.publish({});
+    case kLimit:
+    case kLimitTorn:
+      limit_ = limit_line(event, now_utc_s);
+      return;
+    case kLimitClear:
+      limit_.clear();
+      return;
+    case kClear:
+      if (trip.is_set()) cleared_.add(trip.utc_s);
+      return;
+    default:
+      return;
+  }
+}
+
+Status VirtualOperator::read(OutsideLimit& limit, bool& is_set) const {
+  is_set = false;
+  if (limit_.empty()) return Status::kOk;
+  const Status status = parse_outside_limit(limit_, limit);
+  is_set = status == Status::kOk;
+  return status;
+}
+
+namespace {
+
+/// EdgeClock blocks the signals that end a program; this one may still be interrupted.
+class KeptSignalMask {
+ public:
+  KeptSignalMask() { pthread_sigmask(SIG_SETMASK, nullptr, &mask_); }
+  KeptSignalMask(const KeptSignalMask&) = delete;
+  KeptSignalMask& operator=(const KeptSignalMask&) = delete;
+  ~KeptSignalMask() { pthread_sigmask(SIG_SETMASK, &mask_, nullptr); }
+
+ private:
+  sigset_t mask_{};
+};
+
+/// Who reads the wire by the maker's table alone.
+class Witness {
+ public:
+  Witness(const RegisterMap& map, std::vector<WireReading>& readings)
+      : table_(maker_table(map.name.view(), map.variant.view())), readings_(readings) {
+    if (table_ == nullptr) {
+      fail("witness: nobody has written down the maker's table of the map \"{}\"", map.name.view());
+    }
+  }
+
+  void see(WireMemory::Frame request, WireMemory::Frame answer, std::int64_t utc_ns) {
+    if (!wire_.exchanged(request, answer)) return;
+    const WireReading reading{.utc_ns = utc_ns,
+                              .soc_frac = table_->soc_frac(wire_),
+                              .power_w = table_->power_w(wire_),
+                              .ordered_w = table_->ordered_w(wire_)};
+    if (readings_.empty() || !reading.shows_the_same(readings_.back()))
+      readings_.push_back(reading);
+  }
+
+ private:
+  const MakerTable* table_;
+  WireMemory wire_;
+  std::vector<WireReading>& readings_;
+};
+
+/// From its start to its end; the exit code.
+int run_edge(const EdgeConfig& config, VirtualWorld& world) {
+  Controller<VirtualWorld> controller(config, world);
+  if (!controller.reach() || !controller.begin()) return 1;
+  constexpr std::int64_t kEndless = -1;
+  return controller.run(kEndless) ? 0 : 1;
+}
+
+}  // namespace
+
+Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
+                     Weather weather) {
+  const KeptSignalMask mask;
+  VirtualTime time(scenario);
+  SimulatedBattery battery(scenario.battery.physics, scenario.battery.soc_frac, time.utc_ns());
+  std::optional<MeteredHouse> house;
+  if (scenario.house.exists()) house.emplace(house_load(scenario));
+  VirtualBus bus({.port = config.battery.link.port,
+                  .rtu = config.battery.link.rtu,
+                  .response_delay_ms = scenario.battery.response_delay_ms,
+                  .faults = scenario.battery_faults,
+                  .start_utc_ns = scenario.utc_ns_at(0)},
+                 config.battery.map, battery, time, house ? &*house : nullptr);
+  std::optional<VirtualBus> meter;
+  if (scenario.meter.source == ScenarioMeter::Source::kMap) {
+    meter.emplace(VirtualBusSettings{.port = config.site.link.port,
+                                     .response_delay_ms = scenario.battery.response_delay_ms,
+                                     .faults = {scenario.meter.fault},
+                                     .start_utc_ns = scenario.utc_ns_at(0)},
+                  config.site.map, battery, time, &*house);
+  }
+  const MarketView market(prices, scenario.prices.latency_s);
+  MarketFaultPlan faults({.fault = scenario.price_fault.fault,
+                          .every = scenario.price_fault.every,
+                          .from_s = 60 * scenario.price_fault.span.from_min,
+                          .to_s = 60 * scenario.price_fault.span.to_min});
+  Evidence evidence;
+  std::optional<Witness> witness;
+  if (scenario.witness) {
+    witness.emplace(config.battery.map, evidence.wire);
+    bus.show_to([&](auto request, auto answer, std::int64_t utc_ns) {
+      witness->see(request, answer, utc_ns);
+    });
+  }
+  EdgeState state;
+  state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
+  VirtualOperator people;
+  std::optional<VirtualOutlook> outlook;
+  if (const OutlookModel* const model = student_outlook())
+    outlook.emplace(scenario, config.outlook, *model, time);
+  time.on_people([&](const ScenarioEvent& event) {
+    if (event.does == ScenarioEvent::Does::kStateLost) {
+      if (outlook) outlook->lose();
+      return state.lose();
+    }
+    people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
+  });
+  do {
+    try {
+      VirtualWorld world(config, VirtualPrices(config.price.feed, market, faults, scenario, time),
+                         {.time = time,
+                          .physics = battery,
+                          .weather = weather,
+                          .state = state,
+                          .people = people,
+                          .outlook = outlook ? &*outlook : nullptr});
+      evidence.edge_exit_code = run_edge(config, world);
+    } catch (const EdgeKilled&) {
+      evidence.edge_exit_code = 128 + SIGKILL;
+    }
+  } while (time.advance_to_next_start());
+  bus.device().advance(time.utc_ns());
+  evidence.orders = battery.dispatch_events();
+  evidence.minutes = battery.record();
+  evidence.sent = bus.sent() ^ (meter ? 31 * meter->sent() : 0);
+  evidence.log = state.take_records();
+  evidence.is_alive_at_end = true;
+  return evidence;
+}
+
 void EdgeState::add(const CycleRecord& record) {
   RecordBytes bytes{};
   encode_record(record, records_.size() + 1, bytes);

@@ -10,13 +10,47 @@
 #include <vector>
 
 #include "edge/battery/modbus_battery.h"
+#include "edge/control/hold.h"
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
-#include "tools/hil_runner/virtual/virtual_operator.h"
+#include "edge/settings/edge_config.h"
+#include "edge/site/connection_guard.h"
+#include "edge/storage/recall.h"
+#include "shared/host/minute_file.h"
+#include "tools/hil_runner/evidence/evidence.h"
+#include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
-#include "tools/hil_runner/virtual/virtual_run.h"
 
 namespace bess {
+
+// Whoever speaks to the controller in a virtual run: an operator's hold, the limits of another
+// program, and that a trip was cleared. What they say outlives the edge, as their files do; it is
+// formed and read by the edge's own code.
+
+class VirtualOperator {
+ public:
+  /// `now_utc_s` by the edge's clock; `trip` is the one in force, if any.
+  void act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip);
+
+  [[nodiscard]] const HoldMailbox& holds() const { return holds_; }
+  [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const { return cleared_.has(trip_utc_s); }
+  /// As the edge's limit file has it.
+  Status read(OutsideLimit& limit, bool& is_set) const;
+
+ private:
+  HoldMailbox holds_;
+  ClearedTrips cleared_;
+  std::string limit_;  ///< the file's text; empty: there is no file
+};
+
+// A scenario in virtual time: the edge's own loop, driver, link and guard against the simulated
+// battery and market, as quick as the machine, the same to the byte every time.
+
+/// The share of its power that the battery can give at an instant, by the weather; null: all of it.
+using Weather = double (*)(std::int64_t utc_s);
+
+Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
+                     Weather weather = nullptr);
 
 /// What bess-edge keeps on its disk between two runs: its ring.
 class EdgeState {

@@ -1,5 +1,6 @@
 #include "tools/hil_runner/wall/wall_run.h"
 
+#include <fmt/core.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -15,14 +16,192 @@
 #include "shared/scaled_clock.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/hil_runner/base/stop_request.h"
+#include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/wall/edge_process.h"
-#include "tools/hil_runner/wall/lateness.h"
-#include "tools/hil_runner/wall/real_visit.h"
-#include "tools/hil_runner/wall/simulator_options.h"
 #include "tools/site/site_programs.h"
 
 namespace bess {
+
+namespace {
+
+/// A command line that grows.
+class Options {
+ public:
+  template <typename Value>
+  void add(const std::string& name, const Value& value) {
+    words_.insert(words_.end(), {name, fmt::format("{}", value)});
+  }
+  /// Until the end: nothing.
+  void add_span(const std::string& prefix, double from_s, double to_s) {
+    add(prefix + "-from-s", from_s);
+    if (to_s != kNeverMin) add(prefix + "-to-s", to_s);
+  }
+  /// What strikes, from when to when, and whether it comes and goes.
+  void add_faults(const std::string& prefix, const FaultSchedule& schedule) {
+    for (const BatteryFault kind : schedule.faults) {
+      add(prefix, battery_faults()[static_cast<std::size_t>(kind) - 1].name);
+    }
+    add_span(prefix, schedule.from_s, schedule.to_s);
+    if (schedule.off_s == 0) return;
+    add(prefix + "-on-s", schedule.on_s);
+    add(prefix + "-off-s", schedule.off_s);
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(words_); }
+
+ private:
+  std::vector<std::string> words_;
+};
+
+void add_plant(Options& options, const ScenarioBattery& battery) {
+  options.add("--map", battery.map);
+  if (!battery.variant.empty()) options.add("--variant", battery.variant);
+  options.add("--soc", battery.soc_frac);
+  options.add("--power-w", battery.physics.power_w_max);
+  options.add("--capacity-wh", battery.physics.capacity_wh);
+  options.add("--soc-min", battery.physics.soc_min_frac);
+  options.add("--soc-max", battery.physics.soc_max_frac);
+}
+
+void add_battery_faults(Options& options, const BatteryFaultWindow& fault) {
+  const FaultSchedule& schedule = fault.schedule;
+  if (schedule.faults.empty()) return;
+  options.add_faults("--fault", schedule);
+  if (schedule.probability > 0) {
+    options.add("--fault-probability", schedule.probability);
+  } else {
+    options.add("--fault-every", schedule.every);
+  }
+  options.add("--fault-seed", schedule.seed);
+  options.add("--fault-period-s", schedule.period_s);
+  options.add("--late-ms", fault.late_ms);
+  options.add("--drip-ms", fault.drip_ms);
+  options.add("--exception-code", fault.exception_code);
+}
+
+void add_house(Options& options, const Scenario& scenario, const WorkFolder& folder) {
+  if (!scenario.house.exists()) return;
+  if (scenario.house.seed) {
+    options.add("--house", "daily");
+    return options.add("--house-seed", *scenario.house.seed);
+  }
+  write_file(folder.file("house.csv"), house_csv(scenario));
+  options.add("--house", folder.file("house.csv"));
+}
+
+void add_meter(Options& options, const ScenarioMeter& meter) {
+  if (meter.source != ScenarioMeter::Source::kMap) return;
+  options.add("--meter-map", meter.map);
+  if (!meter.variant.empty()) options.add("--meter-variant", meter.variant);
+  options.add("--meter-port", 0);
+  if (!meter.fault.schedule.faults.empty()) {
+    options.add_faults("--meter-fault", meter.fault.schedule);
+  }
+}
+
+void add_day_ahead(Options& options, const Scenario& scenario, const WorkFolder& folder) {
+  if (!scenario.day_ahead) return;
+  write_file(folder.file("day_ahead.csv"), day_ahead_csv(scenario));
+  options.add("--day-ahead", folder.file("day_ahead.csv"));
+  const AuctionSettings& auction = *scenario.day_ahead;
+  if (auction.fault == AuctionFault::kNone) return;
+  options.add("--day-ahead-fault", kAuctionFaultNames[static_cast<int>(auction.fault)]);
+  options.add("--day-ahead-fault-every", auction.every);
+  options.add_span("--day-ahead-fault", auction.from_s, auction.to_s);
+  if (auction.mend_s) options.add("--day-ahead-mend-s", *auction.mend_s);
+}
+
+}  // namespace
+
+std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
+                                         const WorkFolder& folder) {
+  Options options;
+  add_plant(options, scenario.battery);
+  if (!serial_device.empty()) {
+    options.add("--serial", serial_device);
+    options.add("--baud", 115'200);
+  }
+  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
+    add_battery_faults(options, fault);  // one: the reader has refused more
+  }
+  add_house(options, scenario, folder);
+  add_meter(options, scenario.meter);
+  return options.take();
+}
+
+std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
+                                        const WorkFolder& folder) {
+  const PriceFaultWindow& fault = scenario.price_fault;
+  Options options;
+  options.add("--prices", prices);
+  options.add("--latency-s", scenario.prices.latency_s);
+  add_day_ahead(options, scenario, folder);
+  if (fault.fault == MarketFault::kNone) return options.take();
+  options.add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
+  options.add("--fault-every", fault.every);
+  options.add_span("--fault", 60 * fault.span.from_min, 60 * fault.span.to_min);
+  return options.take();
+}
+
+void RealVisit::heed_stop() const {
+  if (key_.is_pressed()) request_stop();
+  throw_if_stopped();
+}
+
+void RealVisit::commission() {
+  constexpr useconds_t kLookUs = 50'000;
+  edge_.start_command({"commission", "--yes"});
+  while (edge_.runs()) {
+    heed_stop();
+    usleep(kLookUs);
+  }
+  if (edge_.wait() != 0) fail("{}", edge_.last_line());
+}
+
+void RealVisit::look() {
+  heed_stop();
+  const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+  CycleRecord cycle;
+  if (now_ns < next_look_ns_) return;
+  next_look_ns_ = now_ns + kNanosecondsPerSecond;
+  if (!edge_.newest(cycle)) return;
+  show(cycle);
+  const std::string broken = beyond_limits(cycle, battery_);
+  if (!broken.empty()) fail("stopped: {}, beyond the limits of --real", broken);
+}
+
+void RealVisit::show(const CycleRecord& cycle) const {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr,
+             "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q ends it  ",
+             scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
+             cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
+}
+
+std::string RealVisit::next_recording() {
+  recordings_.push_back(folder_.file(fmt::format("bus-{}.jsonl", recordings_.size() + 1)));
+  return recordings_.back();
+}
+
+void RealVisit::give_back() {
+  edge_.end(SIGTERM);
+  CycleRecord last;
+  if (edge_.newest(last) && last.mode == Mode::kStopping && last.battery_status == Status::kOk) {
+    return fmt::print(stderr, "{}: mode=stopping battery=ok\n", scenario_.name);
+  }
+  edge_.start_command({"release", "--yes"});
+  const int code = edge_.wait();
+  fmt::print(stderr, "{}: {}\n", scenario_.name, edge_.last_line());
+  if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, look after the battery\n", scenario_.name);
+}
+
+void RealVisit::tell(Evidence& evidence) const {
+  evidence.orders =
+      orders_on_the_bus(recordings_, edge_.config().battery.map, scenario_.end_utc_ns());
+  evidence.minutes = measured_minutes(evidence.log);
+}
+
 namespace {
 
 constexpr double kStartUpS = 1.2;  ///< wall, for all processes to be up

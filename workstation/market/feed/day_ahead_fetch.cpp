@@ -8,7 +8,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/elia_window.h"
-#include "workstation/market/series/day_ahead_publication.h"
+#include "workstation/market/series/day_ahead.h"
 
 namespace bess {
 namespace {

@@ -4,8 +4,8 @@
 //   quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc
 // UTC with Z, strictly ascending; # lines are provenance. `resolution_min` is that of the auction:
 // 60 of an hour that is repeated in its four quarter-hours, as all were until 30 September 2025, 15
-// since. An empty `published_utc` says that nobody noted when the price came;
-// day_ahead_publication.h says what is known when.
+// since. An empty `published_utc` says that the time of publication is unknown; DayAheadPublication
+// says what is known when.
 #pragma once
 
 #include <cstdint>
@@ -57,5 +57,30 @@ struct IncompleteDay {
 };
 /// From the first to the last day of the series.
 std::vector<IncompleteDay> incomplete_days(const DayAheadSeries& series);
+
+// What is known of the day-ahead prices at a moment. The auction's result for a local day comes at
+// noon of the day before; a price counts as known from 13:00 local time of that day on, or later
+// where the file says that it came later. A file that claims an earlier time is not believed: only
+// whoever asked at that time could know, and a price that is known too early is look-ahead.
+
+inline constexpr int kDayAheadPublishedMin = 13 * 60;  ///< local minute of the day before
+
+class DayAheadPublication {
+ public:
+  /// Needs the market's time zone.
+  explicit DayAheadPublication(DayAheadSeries series, int published_min = kDayAheadPublishedMin);
+
+  /// Price of the quarter-hour that holds the instant; NaN when none was published by `now_utc_s`.
+  [[nodiscard]] double known_eur_per_mwh(std::int64_t utc_s, std::int64_t now_utc_s) const;
+  /// When the next price of quarter-hours in [from, until) that is not known yet will be; far away
+  /// if none.
+  [[nodiscard]] std::int64_t next_known_utc_s(std::int64_t from_utc_s, std::int64_t until_utc_s,
+                                              std::int64_t now_utc_s) const;
+  [[nodiscard]] const DayAheadSeries& series() const { return series_; }
+
+ private:
+  DayAheadSeries series_;
+  std::vector<std::int64_t> known_utc_s_;  ///< [quarter-hour]
+};
 
 }  // namespace bess

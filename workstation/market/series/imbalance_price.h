@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/price_regime.h"
+#include "shared/training_period.h"
 
 namespace bess {
 
@@ -39,7 +39,7 @@ inline double imbalance_price_eur_per_mwh(const ImbalanceState& state, double al
 }
 double imbalance_price_eur_per_mwh(const ImbalanceState& state);
 
-// Which of the price regimes (shared/price_regime.h) prices lie in.
+// Which of the price regimes (shared/training_period.h) prices lie in.
 
 /// The end is excluded.
 struct UtcSpan {

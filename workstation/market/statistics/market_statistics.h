@@ -1,12 +1,14 @@
-// What a market looks like in numbers: the figures by which the simulated market is held against
-// the real one, and by which a user judges a downloaded file.
+// Figures of a market, by which the simulated market is compared with the real one and a user
+// judges a downloaded file; and their report.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shared/host/minute_file.h"
@@ -72,5 +74,13 @@ MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& qua
 /// Linear interpolation between order statistics (the usual "type 7"). `sorted` ascending, not
 /// empty.
 double quantile_of_sorted(std::span<const double> sorted, double probability);
+
+// Market statistics as text, JSON and a picture.
+
+/// `what`: the price that is described.
+std::string format_statistics_text(const MarketStatistics& statistics,
+                                   std::string_view what = "settled price");
+/// One JSON object in one line.
+std::string format_statistics_json(const MarketStatistics& statistics);
 
 }  // namespace bess

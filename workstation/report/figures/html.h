@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/host/html_text.h"
+#include "shared/host/text.h"
 #include "workstation/base/table.h"
 
 namespace bess {

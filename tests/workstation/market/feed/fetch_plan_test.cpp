@@ -1,4 +1,4 @@
-#include "workstation/market/feed/fetch_plan.h"
+#include "workstation/market/feed/elia_fetch.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,6 @@
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
 #include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/day_ahead_publication.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/market/series/plausibility.h"
 

@@ -12,7 +12,6 @@
 #include "tests/support/tokens.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/local_date.h"
-#include "workstation/market/statistics/statistics_report.h"
 
 namespace bess {
 namespace {

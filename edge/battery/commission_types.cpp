@@ -1,4 +1,4 @@
-#include "edge/battery/answer_speed.h"
+#include "edge/battery/commission_types.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "edge/battery/step_fit.h"
 
 namespace bess {
+
 namespace {
 
 constexpr double kSettleSMax = 100;  ///< that a map may say
