@@ -24,7 +24,7 @@ cat >"$tree/README.md" <<'END'
 $ seq 3; (sleep 100 &)
 1
 ...
-$ bess-edge none 2>/dev/null || echo "code  is $?"
+$ bess-edge --cycles x 2>/dev/null || echo "code  is $?"
 code is ...
 ```
 END
