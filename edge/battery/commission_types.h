@@ -17,7 +17,7 @@ namespace bess {
 //
 //   both     refused only if the fit over both leaves nothing quicker possible, or the largest step
 //            itself was seen to be late
-//   one      refused only if it was late itself: what a larger one takes is told as a range
+//   one      refused only if it was late itself: the time of a larger one is reported as a range
 
 struct SpeedQuestion {
   ResponseBand response{};       ///< what the map says

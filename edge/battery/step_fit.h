@@ -37,7 +37,7 @@ class AnswerCurve {
   AnswerCurve(std::int32_t ordered_w, std::int32_t band_w, std::int32_t from_w = 0)
       : ordered_w_(ordered_w), band_w_(band_w), from_w_(from_w) {}
 
-  /// More than fit are left out: the first ones tell of the shape.
+  /// Readings beyond the capacity are dropped: the first ones show the shape.
   void add(const AnswerReading& reading) {
     if (!is_within(reading.along_w)) {
       outside_until_ms_ = reading.begin_ms;

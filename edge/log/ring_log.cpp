@@ -24,7 +24,7 @@ void describe_damage(const RingDamage& damage, const char* path, TextBuffer& lin
   if (damage.header == RingDamage::Header::kFromCopy) {
     line.add("; its header was broken, its copy counts");
   } else if (damage.header == RingDamage::Header::kFromRecords) {
-    line.add("; header and copy were broken, and are made anew by the records");
+    line.add("; header and copy were broken; they are rebuilt from the records");
   }
   const auto broken = static_cast<long long>(damage.broken_records);
   if (broken > 0) line.add("; %lld %s lost", broken, broken == 1 ? "record is" : "records are");

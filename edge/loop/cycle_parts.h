@@ -47,7 +47,7 @@ class RecalledTime {
  private:
   static constexpr std::int64_t kDoubtS =
       kSecondsPerStep / 2;                          ///< an order may wait that long for its price
-  static constexpr std::int64_t kTooLongS = 3'600;  ///< nobody judges over such a gap
+  static constexpr std::int64_t kTooLongS = 3'600;  ///< readings further apart are not compared
 
   [[nodiscard]] std::int64_t elapsed_s(const FollowedOrder& now, std::int64_t by_clock_s,
                                        std::int32_t read_lead_s) const {
@@ -260,8 +260,8 @@ struct FrozenPricePart : CyclePart {
   FrozenPrice frozen;
 };
 
-// Does the battery do as it is told? What an earlier run has found by its readings, short of a
-// trip, is found again: who kills the program between two of them hides nothing.
+// Supervision of the battery's answers. Findings of an earlier run, short of a trip, are found
+// again from its logged readings: killing the program between two of them hides nothing.
 
 struct SupervisionPart : CyclePart {
   SupervisionPart(const SupervisionSettings& settings, std::int32_t lead_s)

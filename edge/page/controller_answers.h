@@ -34,8 +34,8 @@ DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds
 
 Json decision_map_json(const DecisionMap& map);
 
-/// Of the cycle that `why --json` tells of; without columns where the student was not asked, or it
-/// was another one than ours.
+/// The map of the cycle in `why --json`; without columns where the student was not asked, or it was
+/// another build's student.
 Json decision_map_of(JsonValue why);
 
 struct Answer {

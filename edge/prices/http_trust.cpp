@@ -103,8 +103,8 @@ bool keep_headers(std::string_view text, FixedText<2047>& headers, int& line_num
   return headers.assign(kept);
 }
 
-/// The names that Elia's Opendatasoft takes, of its versions 1 and 2. Of any other name nobody
-/// knows what it holds: code, sig and appid are secrets as well as apikey and token.
+/// Parameter names of Elia's Opendatasoft, versions 1 and 2. Any other name may hold a secret:
+/// code, sig and appid do, as well as apikey and token.
 bool is_harmless(std::string_view name) {
   constexpr std::string_view kNames[] = {"dataset", "exclude", "format",   "group_by", "lang",
                                          "limit",   "offset",  "order_by", "refine",   "rows",

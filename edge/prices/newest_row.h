@@ -1,6 +1,5 @@
-// The newest usable price row so far, out of all that requests have brought: what the control loop
-// is told; and the steps of 15 minutes in which a price may stand still. No io and no time of its
-// own.
+// The newest usable price row of all requests, as the control loop gets it, and the check that
+// holds a row after a large price step until the next row confirms it. No I/O, no clock.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // One controller to one battery, one to one state folder: an advisory lock (flock) on a file that
-// names the process holding it, with the owner of the folder it lies in. The kernel returns the
-// lock when a process ends, however it ends; a file that is left behind means nothing.
+// names the process holding it. The kernel returns the lock when a process ends, however it ends; a
+// file that is left behind means nothing. Lock and status files of other users are rejected.
 #pragma once
 
 #include <sys/stat.h>
@@ -11,8 +11,8 @@
 
 namespace bess {
 
-// Whose word counts: a lock or a status that anybody could have put there would keep the controller
-// from starting, or tell of one that has long ended.
+// Owners of files: a lock or a status that any user could have put there would keep the controller
+// from starting, or report one that has long ended.
 
 /// Root, and the user of this process.
 bool is_trusted(uid_t owner);
