@@ -193,7 +193,6 @@ int main(int argc, char** argv) {
                          "bess-prices " BESS_VERSION);
   bess::Options options;
   if (argc > 0) options.started_as = argv[0];
-  int exit_code = 0;
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path,
               "the controller's settings; sections [price], [outlook] and [settled]")
@@ -203,7 +202,6 @@ int main(int argc, char** argv) {
   root.flag("--settle", options.settle, "fetch the settled prices of past days now")
       .excludes("--check");
   root.footer(bess::kFooter);
-  root.runs([&] { exit_code = bess::run(options); });
-  const int parse_code = line.run(argc, argv);
-  return parse_code != 0 ? parse_code : exit_code;
+  root.exits_with([&] { return bess::run(options); });
+  return line.run(argc, argv);
 }

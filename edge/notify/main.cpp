@@ -100,7 +100,6 @@ int main(int argc, char** argv) {
                          "reports by a command and MQTT when a battery controller needs help",
                          "bess-notify " BESS_VERSION);
   bess::Options options;
-  int exit_code = 0;
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path, "the controller's settings; section [notify]")
       .with_default()
@@ -112,7 +111,6 @@ int main(int argc, char** argv) {
       .excludes("--once")
       .excludes("--test");
   root.footer(bess::kFooter);
-  root.runs([&] { exit_code = bess::run(options); });
-  const int parse_code = line.run(argc, argv);
-  return parse_code != 0 ? parse_code : exit_code;
+  root.exits_with([&] { return bess::run(options); });
+  return line.run(argc, argv);
 }

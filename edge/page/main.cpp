@@ -69,7 +69,6 @@ int main(int argc, char** argv) {
   bess::CommandLine line("bess-page", "the battery controller as a web page",
                          "bess-page " BESS_VERSION);
   bess::Options options;
-  int exit_code = 0;
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path, "the controller's settings; section [page]")
       .with_default()
@@ -79,7 +78,6 @@ int main(int argc, char** argv) {
       .range(0, 65'535);
   root.flag("--check", options.is_check, "check [page], serve nothing");
   root.footer(bess::kFooter);
-  root.runs([&] { exit_code = bess::run(options); });
-  const int parse_code = line.run(argc, argv);
-  return parse_code != 0 ? parse_code : exit_code;
+  root.exits_with([&] { return bess::run(options); });
+  return line.run(argc, argv);
 }

@@ -305,6 +305,13 @@ void ProgramCommand::runs(std::function<void()> action, std::function<std::strin
   });
 }
 
+void ProgramCommand::exits_with(std::function<int()> action) {
+  runs([action = std::move(action)] {
+    const int exit_code = action();
+    if (exit_code != 0) throw CLI::RuntimeError(exit_code);
+  });
+}
+
 CommandLine::CommandLine(const std::string& program, const std::string& description,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, program)) {
@@ -348,6 +355,8 @@ int CommandLine::run(int argc, const char* const* argv) {
       complain_of_output(program, errno);
       return 1;
     }
+  } catch (const CLI::RuntimeError& error) {  // of an action, which has said why
+    return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     const CLI::App& command = asked_command(*app_);

@@ -80,6 +80,8 @@ class ProgramCommand {
   /// options that are right each by itself, or nothing; the command is then not run. A program
   /// whose root runs needs no subcommand.
   void runs(std::function<void()> action, std::function<std::string()> complaint = nullptr);
+  /// The same, of an action that returns the program's exit code.
+  void exits_with(std::function<int()> action);
 
  private:
   ProgramOption named_choice(const std::string& name, const std::vector<std::string>& names,
