@@ -67,8 +67,8 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
   }
   if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
   const BothPlaces paths = both_places(config, kClearedFileName);
-  const Trip trip = standing_trip(log.ring(), log.run_ring(), paths);
-  if (!trip.is_set()) {
+  const std::optional<Trip> trip = standing_trip(log.ring(), log.run_ring(), paths);
+  if (!trip) {
     std::printf("nothing to clear: the supervision has not tripped\n");
     return 0;
   }

@@ -69,9 +69,9 @@ void print_trip(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
   if (!log.open(config.log, ignored)) return;
-  const Trip trip =
+  const std::optional<Trip> trip =
       standing_trip(log.ring(), log.run_ring(), both_places(config, kClearedFileName));
-  if (!trip.is_set()) return;
+  if (!trip) return;
   std::printf(
       "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
       "clear "

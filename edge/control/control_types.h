@@ -74,9 +74,8 @@ struct PriceReport {
 
 /// Found by the supervision of the battery's answers; in force until a person clears it.
 struct Trip {
-  Reason reason = Reason::kStudent;  ///< kStudent: none
+  Reason reason = Reason::kStudent;
   std::int64_t utc_s = 0;
-  [[nodiscard]] constexpr bool is_set() const { return reason != Reason::kStudent; }
 };
 
 /// The order that the battery followed when it was read, for a later run to judge the reading again
@@ -130,7 +129,7 @@ struct CycleRecord {
   PriceLevel price_level{};        ///< the prices of this cycle included
   std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
   bool is_tripped = false;
-  Trip trip{};
+  Trip trip{};  ///< where is_tripped
   std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
   std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
   ReversalHistory reversals{};       ///< this cycle's order included

@@ -14,80 +14,61 @@ Reason students_reason(const GuardInputs& in) {
 
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
   if (in.link_ok) update_soc(in.measurement.soc_e4, in.reserve_soc_e4);
-  GuardDecision decision;
-  if (find_stop_reason(in, decision.reason)) {
-    decision.power_w = 0;
-    return decision;
-  }
-  decision = find_wish(in);
+  if (const auto reason = stop_reason(in)) return {.power_w = 0, .reason = *reason};
+  GuardDecision decision = find_wish(in);
   apply_ramp(in.previous_power_w, decision);
   apply_relief(in.site, decision);
   apply_limits(in, decision);
   return decision;
 }
 
-GuardDecision SafetyGuard::recheck(const GuardInputs& in) const {
-  GuardDecision decision{.power_w = in.previous_power_w, .reason = Reason::kStudent};
+std::int32_t SafetyGuard::rechecked_power_w(const GuardInputs& in) const {
+  GuardDecision decision{.power_w = in.previous_power_w};
   apply_relief(in.site, decision);
   apply_limits(in, decision);
-  return decision;
+  return decision.power_w;
 }
 
-bool SafetyGuard::find_stop_reason(const GuardInputs& in, Reason& reason) const {
+std::optional<Reason> SafetyGuard::stop_reason(const GuardInputs& in) const {
   const BatteryMeasurement& m = in.measurement;
-  if (!in.clock_ok) {
-    reason = Reason::kClock;
-  } else if (!in.link_ok) {
-    reason = Reason::kLink;
-  } else if (m.alarm) {
-    reason = Reason::kAlarm;
-  } else if (m.temperature_min_deci_c < settings_.temperature_min_deci_c ||
-             m.temperature_max_deci_c > settings_.temperature_max_deci_c) {
-    reason = Reason::kTemperature;
-  } else if (m.off_grid) {
-    reason = Reason::kOffGrid;
-  } else if (m.grid_unknown) {
-    reason = Reason::kGridUnknown;
-  } else if (m.lost_point != 0) {
-    reason = Reason::kProtectionLost;
-  } else if (is_stop_reason(in.supervision)) {
-    reason = in.supervision;
-  } else {
-    return !in.held && find_price_stop_reason(in, reason);
+  if (!in.clock_ok) return Reason::kClock;
+  if (!in.link_ok) return Reason::kLink;
+  if (m.alarm) return Reason::kAlarm;
+  if (m.temperature_min_deci_c < settings_.temperature_min_deci_c ||
+      m.temperature_max_deci_c > settings_.temperature_max_deci_c) {
+    return Reason::kTemperature;
   }
-  return true;
+  if (m.off_grid) return Reason::kOffGrid;
+  if (m.grid_unknown) return Reason::kGridUnknown;
+  if (m.lost_point != 0) return Reason::kProtectionLost;
+  if (in.supervision) return in.supervision;
+  return in.held ? std::nullopt : price_stop_reason(in);
 }
 
-bool SafetyGuard::find_price_stop_reason(const GuardInputs& in, Reason& reason) const {
-  if (!in.has_price) {
-    reason = Reason::kNoPrice;
-    return true;
-  }
-  reason = age_stop_reason(in);
-  if (is_stop_reason(reason) && !(in.price_stands_in && may_stand_in(in))) return true;
-  if (in.price_is_frozen) {
-    reason = Reason::kFrozenPrice;
-    return true;
-  }
-  return false;
+std::optional<Reason> SafetyGuard::price_stop_reason(const GuardInputs& in) const {
+  if (!in.has_price) return Reason::kNoPrice;
+  const std::optional<Reason> age = age_stop_reason(in);
+  if (age && !(in.price_stands_in && may_stand_in(in))) return age;
+  if (in.price_is_frozen) return Reason::kFrozenPrice;
+  return std::nullopt;
 }
 
-/// kStudent: it is young enough.
-Reason SafetyGuard::age_stop_reason(const GuardInputs& in) const {
+std::optional<Reason> SafetyGuard::age_stop_reason(const GuardInputs& in) const {
   const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
   if (age_s > settings_.price_age_s_max || age_s < -60) {  // a row of the future is no price either
     return Reason::kPriceAge;
   }
   const bool is_of_now =
       quarter_hour_of(in.now_utc_s) - quarter_hour_of(in.price_minute_utc_s) <= 1;
-  return is_of_now ? Reason::kStudent : Reason::kPriceQuarterHour;
+  if (is_of_now) return std::nullopt;
+  return Reason::kPriceQuarterHour;
 }
 
 bool SafetyGuard::may_stand_in(const GuardInputs& in) const {
   const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
   return in.has_price && settings_.stand_in_s_max > 0 && age_s >= 0 &&
          age_s <= settings_.price_age_s_max + settings_.stand_in_s_max &&
-         is_stop_reason(age_stop_reason(in));
+         age_stop_reason(in).has_value();
 }
 
 GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "edge/control/control_types.h"
 #include "edge/control/full_charge.h"
@@ -36,8 +37,8 @@ struct GuardInputs {
   bool clock_ok = false;
   bool link_ok = false;
   BatteryMeasurement measurement;  ///< valid when link_ok
-  /// What supervision found in the battery's answers; kStudent: nothing.
-  Reason supervision = Reason::kStudent;
+  /// Why supervision of the battery's answers stops it.
+  std::optional<Reason> supervision{};
   bool cycle_budget_spent = false;
   int barred_direction = 0;           ///< sign of a power that would be a reversal too many
   std::int32_t previous_power_w = 0;  ///< of the order in force until now
@@ -74,12 +75,12 @@ class SafetyGuard {
 
   /// The order in force (`previous_power_w`) held against the limits as they are now, between two
   /// decisions: never more charging or discharging than it was, but for the site's relief.
-  [[nodiscard]] GuardDecision recheck(const GuardInputs& in) const;
+  [[nodiscard]] std::int32_t rechecked_power_w(const GuardInputs& in) const;
 
  private:
-  [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
-  [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
-  [[nodiscard]] Reason age_stop_reason(const GuardInputs& in) const;
+  [[nodiscard]] std::optional<Reason> stop_reason(const GuardInputs& in) const;
+  [[nodiscard]] std::optional<Reason> price_stop_reason(const GuardInputs& in) const;
+  [[nodiscard]] std::optional<Reason> age_stop_reason(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_of_price(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;

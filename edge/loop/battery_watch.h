@@ -119,7 +119,7 @@ class BatteryWatch {
     CycleRecord between;  // of no cycle
     parts_.put({.is_tick = false, .margin = margin, .power_w = settings_.guard.power_w}, between,
                in);
-    return {.power_w = guard_.recheck(in).power_w, .reserve_soc_e4 = in.reserve_soc_e4};
+    return {.power_w = guard_.rechecked_power_w(in), .reserve_soc_e4 = in.reserve_soc_e4};
   }
 
   /// As fresh as the readings that it follows from, and never longer than its cycle's order.

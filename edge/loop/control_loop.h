@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "edge/loop/battery_watch.h"
 #include "edge/loop/control_settings.h"
@@ -49,9 +50,11 @@ class ControlLoop {
     order_.set_ahead(of<SupervisionPart>().time.ahead_s());
   }
 
-  /// What an earlier run left behind, by its newest record; empty where there was none.
-  void take_over(const CycleRecord& before) {
+  /// What an earlier run left behind, by its newest record, empty where there was none, and the
+  /// trip in force.
+  void take_over(const CycleRecord& before, const std::optional<Trip>& trip = std::nullopt) {
     parts_.restore(before);
+    of<SupervisionPart>().take_over(before, trip);
     order_.expect(before);
   }
 
@@ -60,7 +63,7 @@ class ControlLoop {
   /// The plans that give a student by outlook its context; null where it is another.
   void follow_outlook(OutlookBoard* board) { of<OutlookPart>().board = board; }
 
-  [[nodiscard]] const Trip& trip() const {
+  [[nodiscard]] const std::optional<Trip>& trip() const {
     return parts_.template get<SupervisionPart>().supervision.trip();
   }
   /// A person has looked: the battery may be driven again.

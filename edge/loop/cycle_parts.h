@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <tuple>
 
 #include "edge/control/control_types.h"
@@ -267,9 +268,9 @@ struct SupervisionPart : CyclePart {
   SupervisionPart(const SupervisionSettings& settings, std::int32_t lead_s)
       : supervision(settings), read_lead_s(lead_s) {}
 
-  void restore(const CycleRecord& before) {
-    supervision.restore(before.trip);
-    const bool was_cleared = before.is_tripped && !before.trip.is_set();
+  void take_over(const CycleRecord& before, const std::optional<Trip>& trip) {
+    supervision.restore(trip);
+    const bool was_cleared = before.is_tripped && !trip;
     supervision.restore(was_cleared ? ResponseFindings{} : before.findings);
     supervision.restore(before.lost_orders, before.utc_s + time.ahead_s());
   }
@@ -312,8 +313,8 @@ struct SupervisionPart : CyclePart {
     record.replaced_orders = supervision.lost_orders().replaced();
     record.ended_orders = supervision.lost_orders().ended();
     record.lost_orders = supervision.lost_orders().history();
-    record.is_tripped = supervision.trip().is_set();
-    record.trip = supervision.trip();
+    record.is_tripped = supervision.trip().has_value();
+    record.trip = supervision.trip().value_or(Trip{});
   }
 
   Supervision supervision;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "edge/control/level_start.h"
 #include "edge/control/policy.h"
@@ -51,9 +52,10 @@ inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleReco
 
 /// A device that answers, but no longer as the right one, was stopped for what it is, and not
 /// because it could not be read.
-constexpr Reason cause_of(Reason reason, Reason supervision, Status battery_status) {
-  const bool is_known = battery_status == Status::kImplausible && is_stop_reason(supervision);
-  return reason == Reason::kLink && is_known ? supervision : reason;
+constexpr Reason cause_of(Reason reason, std::optional<Reason> supervision,
+                          Status battery_status) {
+  const bool is_implausible = reason == Reason::kLink && battery_status == Status::kImplausible;
+  return is_implausible ? supervision.value_or(reason) : reason;
 }
 
 inline void note_price_age(std::int64_t utc_s, CycleRecord& record) {

@@ -105,7 +105,7 @@ class Controller {
     for (std::int64_t i = 0; i != cycles && loop_.run_cycle(record); ++i) {
       world_.keep(record);
       world_.cycle_done(record);
-      if (loop_.trip().is_set() && world_.is_cleared(loop_.trip().utc_s)) loop_.clear_trip();
+      if (loop_.trip() && world_.is_cleared(loop_.trip()->utc_s)) loop_.clear_trip();
     }
     return end(record);
   }
@@ -142,7 +142,7 @@ class Controller {
     const LevelNews news = starting_level(config_, recalled.before.price_level, greeting, world_);
     if (needs_level) world_.write_line(journal_level_of(news), level_note(news));
     recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
-    loop_.take_over(take_over_of(recalled.before, recalled.trip, news.start.level));
+    loop_.take_over(take_over_of(recalled.before, news.start.level), recalled.trip);
     loop_.follow_outlook(world_.look_out(news.start.level.centi_eur_per_mwh()));
   }
 

@@ -52,7 +52,7 @@ Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
   Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
   if (recalled.unknown.empty()) return recalled;
   const char* const what = recalled.unknown.c_str();
-  if (recalled.trip.is_set()) {
+  if (recalled.trip) {
     report(JournalLevel::kError,
            "state: %s: cycle budget and price level of earlier runs are not known", what);
     return recalled;

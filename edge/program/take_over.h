@@ -5,12 +5,9 @@
 
 namespace bess {
 
-/// The newest record, but for the trip in force, which another log than its own may know, and the
-/// level to start from.
-inline CycleRecord take_over_of(const CycleRecord& newest, const Trip& trip,
-                                const PriceLevel& level) {
+/// The newest record, but for the level to start from.
+inline CycleRecord take_over_of(const CycleRecord& newest, const PriceLevel& level) {
   CycleRecord before = newest;
-  before.trip = trip;
   before.price_level = level;
   return before;
 }

@@ -113,7 +113,7 @@ std::string why_unknown(const RingLog& ring, const RingLog& run_ring,
 
 }  // namespace
 
-Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared) {
+std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared) {
   const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
   const RingLog& newer = run_is_newer ? run_ring : ring;
   const RingLog& other = run_is_newer ? ring : run_ring;
@@ -123,7 +123,7 @@ Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlace
         log->newest(record) && record.is_tripped && !is_trip_cleared(cleared, record.trip.utc_s);
     if (is_tripped) return record.trip;
   }
-  return {};
+  return std::nullopt;
 }
 
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,

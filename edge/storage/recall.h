@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,20 +46,19 @@ bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
 
 struct Recall {
   CycleRecord before{};  ///< the newest record of both logs; empty where there is none
-  Trip trip{};           ///< in force: one of the logs says so, and no person has cleared it
+  std::optional<Trip> trip{};  ///< one of the logs says so, and no person has cleared it
   std::string unknown;   ///< not empty: what earlier runs left cannot be read, why
 };
 
 /// Of a start that cannot read what earlier runs left: the battery may have tripped, and nobody
 /// knows. A trip that is known stays.
-inline Trip trip_without_state(const Recall& recalled, std::int64_t now_utc_s) {
-  if (recalled.unknown.empty() || recalled.trip.is_set()) return recalled.trip;
-  return {.reason = Reason::kStateLost, .utc_s = now_utc_s};
+inline std::optional<Trip> trip_without_state(const Recall& recalled, std::int64_t now_utc_s) {
+  if (recalled.unknown.empty() || recalled.trip) return recalled.trip;
+  return Trip{.reason = Reason::kStateLost, .utc_s = now_utc_s};
 }
 
-/// The trip by the newest records, wherever they are, that nobody has cleared; not set where there
-/// is none.
-Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);
+/// The trip by the newest records, wherever they are, that no person has cleared.
+std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);
 
 /// `published_number`: of the newest record that a status.json knows; 0 = none does.
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,

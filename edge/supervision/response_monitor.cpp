@@ -55,12 +55,16 @@ void ResponseMonitor::count_locked(const BatteryMeasurement& m) {
 }
 
 void ResponseMonitor::trip_if(bool is_found, Reason reason) {
-  if (is_found && trip_ == Reason::kStudent) trip_ = reason;
+  if (is_found && !trip_) trip_ = reason;
+}
+
+void ResponseMonitor::note_energy(const Response& now, std::int64_t wrong_w) {
+  const std::int32_t reported_wh = now.measurement.capacity_wh;
+  wrong_energy_.add(now, wrong_w, reported_wh > 0 ? reported_wh : settings_.capacity_wh);
 }
 
 void ResponseMonitor::note_wrong(const Response& now, std::int64_t wrong_w, Reason reason) {
-  const std::int32_t told_wh = now.measurement.capacity_wh;
-  wrong_energy_.add(now, wrong_w, told_wh > 0 ? told_wh : settings_.capacity_wh);
+  note_energy(now, wrong_w);
   if (wrong_w > 0) trip_if(wrong_energy_.is_found(), reason);
 }
 
@@ -88,7 +92,7 @@ void ResponseMonitor::judge_idle(const Response& now) {
     excessive_idle_.good();
     care_.good();
     needs_no_care_ = true;
-    note_wrong(now, 0, Reason::kStudent);
+    note_energy(now, 0);
   } else if (is_care(now.measurement)) {
     care_.bad();
   } else if (!is_ramp(now)) {
@@ -124,7 +128,7 @@ void ResponseMonitor::judge_driven(const Response& now) {
     return note_wrong(now, std::int64_t{measured_w} - ordered_w, Reason::kUncontrolledPower);
   }
   excessive_driven_.good(is_charging);
-  note_wrong(now, 0, Reason::kStudent);
+  note_energy(now, 0);
   judge_answer(now, measured_w);
 }
 

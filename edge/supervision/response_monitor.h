@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "edge/base/response_band.h"
 #include "edge/control/control_types.h"
@@ -65,8 +66,8 @@ class ResponseMonitor {
   /// Any other between the two: counts what has flowed wrongly, and nothing else.
   void note_between(const Response& now);
 
-  /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
-  [[nodiscard]] Reason trip() const { return trip_; }
+  /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found.
+  [[nodiscard]] std::optional<Reason> trip() const { return trip_; }
   [[nodiscard]] bool gives_no_answer() const { return unexplained_.is_found(); }
   /// It charges although it is nearly empty and was not told to, or balances its full cells.
   [[nodiscard]] bool looks_after_itself() const { return care_.is_found(); }
@@ -100,6 +101,7 @@ class ResponseMonitor {
   void judge_driven(const Response& now);
   void judge_answer(const Response& now, std::int32_t measured_w);
   void trip_if(bool is_found, Reason reason);
+  void note_energy(const Response& now, std::int64_t wrong_w);
   void note_wrong(const Response& now, std::int64_t wrong_w, Reason reason);
   bool note_ramp(const Response& now, std::int32_t from_w);
   bool is_ramp(const Response& now);
@@ -114,7 +116,7 @@ class ResponseMonitor {
 
   ResponseSettings settings_;
   SocMonitor soc_;
-  Reason trip_ = Reason::kStudent;
+  std::optional<Reason> trip_;
   bool answers_ = false;
   bool needs_no_care_ = false;
   bool is_on_its_way_ = false;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "edge/control/control_types.h"
 #include "edge/supervision/lost_orders.h"
@@ -31,14 +32,15 @@ class Pause {
   [[nodiscard]] bool is_over(std::int64_t utc_s) const {
     return utc_s >= end_utc_s_ || utc_s < end_utc_s_ - kLongestS;
   }
-  [[nodiscard]] Reason reason() const { return reason_; }
+  /// While it lasts.
+  [[nodiscard]] std::optional<Reason> reason() const { return reason_; }
   /// What it waits for is still there.
   void prolong(std::int64_t utc_s) { end_utc_s_ = std::max(end_utc_s_, utc_s + kFirstS); }
-  void end() { reason_ = Reason::kStudent; }
+  void end() { reason_.reset(); }
   void on_success() { length_s_ = kFirstS; }
 
  private:
-  Reason reason_ = Reason::kStudent;
+  std::optional<Reason> reason_;
   std::int64_t end_utc_s_ = 0;
   std::int64_t length_s_ = kFirstS;
 };
@@ -65,7 +67,7 @@ class Supervision {
   void observe(const Response& now, bool holds_nothing) {
     note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);
-    if (trip_.is_set()) return;
+    if (trip_) return;
     if (now.is_driven && now.ordered_power_w != 0) unread_ = 0;
     observe_orders(now, holds_nothing);
     judge(now);
@@ -74,7 +76,7 @@ class Supervision {
   /// A reading of an earlier run, by its log, oldest first: what was found by then is found again.
   void recall(const Response& then) {
     end_pause(then.utc_s);
-    if (!trip_.is_set()) judge(then);
+    if (!trip_) judge(then);
   }
 
   /// What a battery reports, also where it could not be read any further; 0 or less: it does not
@@ -85,7 +87,7 @@ class Supervision {
   void note_power(const Response& now) { response_.note_power(now); }
   /// Any other reading in the middle of a step.
   void note_between(const Response& now) {
-    if (trip_.is_set()) return;
+    if (trip_) return;
     response_.note_between(now);
     trip_if_found(now);
   }
@@ -102,22 +104,23 @@ class Supervision {
   /// 0 W is of the orders; one of the link may do so by chance for longer.
   void note_unread(std::int64_t utc_s, bool was_driven, bool is_temporary) {
     unread_ = was_driven ? unread_ + (is_temporary ? 1 : kUnreadToPause / 2) : 0;
-    if (unread_ >= kUnreadToPause && !trip_.is_set()) pause(utc_s, Reason::kOrdersFail);
+    if (unread_ >= kUnreadToPause && !trip_) pause(utc_s, Reason::kOrdersFail);
   }
 
-  /// Why the battery must not be driven now; kStudent: nothing.
-  [[nodiscard]] Reason stop_reason() const {
-    if (trip_.is_set()) return trip_.reason;
-    if (pause_.reason() != Reason::kStudent) return pause_.reason();
+  /// Why the battery must not be driven now.
+  [[nodiscard]] std::optional<Reason> stop_reason() const {
+    if (trip_) return trip_->reason;
+    if (pause_.reason()) return pause_.reason();
     if (!capacity_fits_) return Reason::kCapacity;
-    return response_.has_jumped() ? Reason::kSocJump : Reason::kStudent;
+    if (response_.has_jumped()) return Reason::kSocJump;
+    return std::nullopt;
   }
 
-  [[nodiscard]] const Trip& trip() const { return trip_; }
+  [[nodiscard]] const std::optional<Trip>& trip() const { return trip_; }
   /// Of an earlier run, by its log.
-  void restore(const Trip& trip) { trip_ = trip; }
+  void restore(const std::optional<Trip>& trip) { trip_ = trip; }
   void clear() {
-    trip_ = Trip{};
+    trip_.reset();
     response_.clear();
   }
   [[nodiscard]] const ResponseMonitor& response() const { return response_; }
@@ -132,7 +135,7 @@ class Supervision {
     response_.observe(now);
     if (response_.needs_no_care()) care_since_s_ = 0;
     trip_if_found(now);
-    if (trip_.is_set()) return;
+    if (trip_) return;
     if (response_.gives_no_answer()) {
       pause(now.utc_s, Reason::kNoAnswer);
     } else if (response_.looks_after_itself()) {
@@ -142,9 +145,7 @@ class Supervision {
     }
   }
   void trip_if_found(const Response& now) {
-    if (response_.trip() != Reason::kStudent) {
-      trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
-    }
+    if (const auto found = response_.trip()) trip_ = Trip{.reason = *found, .utc_s = now.utc_s};
   }
   void pause(std::int64_t utc_s, Reason reason) {
     pause_.begin(utc_s, reason);
@@ -159,10 +160,10 @@ class Supervision {
     pause(now.utc_s, Reason::kBatteryCare);
     if (care_since_s_ == 0) care_since_s_ = now.steady_s;
     if (now.steady_s - care_since_s_ < kCareWithoutEndS) return;
-    trip_ = {.reason = Reason::kUncontrolledPower, .utc_s = now.utc_s};
+    trip_ = Trip{.reason = Reason::kUncontrolledPower, .utc_s = now.utc_s};
   }
   void end_pause(std::int64_t utc_s) {
-    if (pause_.reason() != Reason::kStudent && pause_.is_over(utc_s)) pause_.end();
+    if (pause_.reason() && pause_.is_over(utc_s)) pause_.end();
   }
 
   /// Where it insists, what others order while nothing is in force is none of its business.
@@ -183,7 +184,7 @@ class Supervision {
 
   SupervisionSettings settings_;
   ResponseMonitor response_;
-  Trip trip_;
+  std::optional<Trip> trip_;
   Pause pause_;
   bool capacity_fits_ = true;
   LostOrders lost_;

@@ -280,9 +280,8 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
     for (const CycleRecord& record : log) loop.recall(record);
     if (!log.empty()) {
       const CycleRecord& newest = log.back();
-      loop.take_over({.utc_s = newest.utc_s,
-                      .ordered_power_w = newest.ordered_power_w,
-                      .trip = newest.is_tripped ? newest.trip : Trip{}});
+      loop.take_over({.utc_s = newest.utc_s, .ordered_power_w = newest.ordered_power_w},
+                     newest.is_tripped ? std::optional(newest.trip) : std::nullopt);
     }
     for (int i = 0; i < cycles_per_run; ++i) {
       fault(plant.battery, static_cast<int>(log.size()));
@@ -347,7 +346,7 @@ TEST(ClosedLoop, ThePriceIsLoggedAsOldAsAtTheWrite) {
 TEST(ClosedLoop, ATripOfTheRunBeforeHoldsUntilItIsCleared) {
   Plant plant;
   plant.prices.price = [](std::int64_t) { return -60'000; };
-  plant.loop.take_over({.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 7}});
+  plant.loop.take_over({}, Trip{.reason = Reason::kUncontrolledPower, .utc_s = 7});
   for (int i = 0; i < 5; ++i) {
     const CycleRecord record = plant.cycle();
     EXPECT_EQ(record.reason, Reason::kUncontrolledPower);

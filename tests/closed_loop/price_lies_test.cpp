@@ -129,7 +129,7 @@ TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
   CycleRecord record;
   for (int run = 0; run < 20; ++run) {
     Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
-    loop.take_over(take_over_of(record, Trip{}, record.price_level));
+    loop.take_over(take_over_of(record, record.price_level));
     for (int cycle = 0; cycle < 5; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
     EXPECT_EQ(record.reason == Reason::kFrozenPrice, run >= 18) << run;
     if (run % 2 == 0) loop.stop(record);  // else killed

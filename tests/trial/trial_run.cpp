@@ -66,8 +66,8 @@ void TrialSite::kill_and_restart() {
   start();
   recall_cycles(log_, clock.now_utc_s(), *loop_);
   const CycleRecord& newest = log_.records.back();
-  loop_->take_over(
-      take_over_of(newest, newest.is_tripped ? newest.trip : Trip{}, newest.price_level));
+  loop_->take_over(take_over_of(newest, newest.price_level),
+                   newest.is_tripped ? std::optional(newest.trip) : std::nullopt);
 }
 
 void TrialSite::step_clock() {

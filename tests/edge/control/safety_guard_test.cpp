@@ -277,11 +277,11 @@ TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
   const SafetyGuard guard{GuardSettings{}};
   GuardInputs in = healthy(Action::kCharge);
   in.previous_power_w = 1'000;
-  EXPECT_EQ(guard.recheck(in).power_w, 1'000);
+  EXPECT_EQ(guard.rechecked_power_w(in), 1'000);
   in.site.limit_charge(300, Reason::kImportLimit);
-  EXPECT_EQ(guard.recheck(in).power_w, 300);
+  EXPECT_EQ(guard.rechecked_power_w(in), 300);
   in.site.relief_w = 700;
-  EXPECT_EQ(guard.recheck(in).power_w, -700);
+  EXPECT_EQ(guard.rechecked_power_w(in), -700);
 }
 
 TEST(SafetyGuard, NegativeLiveLimitsMeanZero) {

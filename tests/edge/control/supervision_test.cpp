@@ -32,12 +32,12 @@ TEST(Supervision, ATripStaysUntilItIsCleared) {
   Supervision supervision(kSettings);
   for (int i = 1; i <= 2; ++i) supervision.observe(reading(120 * i, 4'000, -4'000), false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kWrongDirection);
-  EXPECT_EQ(supervision.trip().utc_s, 240);
+  EXPECT_EQ(supervision.trip()->utc_s, 240);
   for (int i = 3; i <= 800; ++i) supervision.observe(reading(120 * i, 0, 0), false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kWrongDirection);
-  EXPECT_EQ(supervision.trip().utc_s, 240);
+  EXPECT_EQ(supervision.trip()->utc_s, 240);
   supervision.clear();
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
 TEST(Supervision, ATripOfAnEarlierRunHoldsFromTheStart) {
@@ -58,7 +58,7 @@ TEST(Supervision, NoAnswerPausesLongerEachTime) {
     EXPECT_EQ(supervision.stop_reason(), Reason::kNoAnswer);
     own.utc_s = own.steady_s = utc_s += pause_s;
     supervision.observe(own, true);
-    EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+    EXPECT_EQ(supervision.stop_reason(), std::nullopt);
   }
 }
 
@@ -75,7 +75,7 @@ TEST(Supervision, AGoodAnswerMakesTheNextPauseShortAgain) {
   Response own = reading(utc_s += Pause::kFirstS, 0, 0);
   own.is_driven = own.measurement.dispatch_active = false;
   supervision.observe(own, true);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
 TEST(Supervision, OrdersThatFailAgainAndAgainAreGivenUp) {
@@ -84,7 +84,7 @@ TEST(Supervision, OrdersThatFailAgainAndAgainAreGivenUp) {
   supervision.on_ordered(120, Status::kBadReply);
   supervision.on_ordered(240, Status::kOk);
   for (int i = 3; i < 6; ++i) {
-    EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+    EXPECT_EQ(supervision.stop_reason(), std::nullopt);
     supervision.on_ordered(120 * i, Status::kBadReply);
   }
   EXPECT_EQ(supervision.stop_reason(), Reason::kOrdersFail);
@@ -93,13 +93,13 @@ TEST(Supervision, OrdersThatFailAgainAndAgainAreGivenUp) {
 TEST(Supervision, ASpentFlashBudgetIsNoFault) {
   Supervision supervision(kSettings);
   for (int i = 0; i < 20; ++i) supervision.on_ordered(120 * i, Status::kWriteBudget);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
 TEST(Supervision, YieldsToAnotherMasterForAsLongAsItOrders) {
   Supervision supervision(kSettings);
   supervision.observe(replaced(120), false);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
   supervision.observe(replaced(240), false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kOtherMaster);
   EXPECT_EQ(supervision.lost_orders().replaced(), 2);
@@ -114,7 +114,7 @@ TEST(Supervision, YieldsToAnotherMasterForAsLongAsItOrders) {
   foreign.measurement.dispatch_active = false;
   foreign.utc_s = foreign.steady_s = utc_s += Pause::kFirstS;
   supervision.observe(foreign, true);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
 TEST(Supervision, InsistsOnItsOrdersWhereItIsTold) {
@@ -122,7 +122,7 @@ TEST(Supervision, InsistsOnItsOrdersWhereItIsTold) {
   settings.yields_to_other_master = false;
   Supervision supervision(settings);
   for (int i = 1; i <= 10; ++i) supervision.observe(replaced(120 * i), false);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
   EXPECT_EQ(supervision.lost_orders().replaced(), 10);
 }
 
@@ -135,10 +135,10 @@ TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {
   now.utc_s = now.steady_s = 240;
   now.measurement.capacity_wh = 8'000;
   supervision.observe(now, false);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
   now.measurement.capacity_wh = 0;  // a device that tells none
   supervision.observe(now, false);
-  EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
+  EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
 /// Ten minutes each time, and a trip only after a day without an honest reading.
@@ -153,21 +153,21 @@ TEST(Supervision, ABatteryThatLooksAfterItselfIsLeftAloneForAWhile) {
   int pauses = 0;
   while (utc_s < 23 * 3'600) {
     supervision.observe(balancing(utc_s += 120), false);
-    ASSERT_FALSE(supervision.trip().is_set()) << utc_s;
+    ASSERT_FALSE(supervision.trip()) << utc_s;
     if (supervision.stop_reason() != Reason::kBatteryCare) continue;
     ++pauses;
     Response own = balancing(utc_s += Pause::kFirstS);
     own.is_driven = own.measurement.dispatch_active = false;
     supervision.observe(own, true);
-    ASSERT_EQ(supervision.stop_reason(), Reason::kStudent);
+    ASSERT_EQ(supervision.stop_reason(), std::nullopt);
   }
   EXPECT_GT(pauses, 90);
   Supervision forgiven = supervision;
   while (utc_s < 25 * 3'600) supervision.observe(balancing(utc_s += 120), false);
-  EXPECT_EQ(supervision.trip().reason, Reason::kUncontrolledPower);
+  EXPECT_EQ(supervision.trip()->reason, Reason::kUncontrolledPower);
   forgiven.observe(reading(utc_s += 120, 0, 0), false);
   for (int i = 0; i < 60; ++i) forgiven.observe(balancing(utc_s += 120), false);
-  EXPECT_FALSE(forgiven.trip().is_set());
+  EXPECT_FALSE(forgiven.trip());
 }
 
 }  // namespace

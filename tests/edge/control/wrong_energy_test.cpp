@@ -77,7 +77,7 @@ struct RarelyWrong {
   int wrong = 0;
 
   void run(std::int32_t ordered_w, std::int32_t wrong_w, int readings) {
-    for (int i = 0; i < readings && !supervision.trip().is_set(); ++i) {
+    for (int i = 0; i < readings && !supervision.trip(); ++i) {
       const bool is_wrong = i % 5 == 4;
       wrong += is_wrong ? 1 : 0;
       Response now = reading(steady_s += 120, ordered_w, is_wrong ? wrong_w : ordered_w);
@@ -103,7 +103,7 @@ TEST(WrongEnergy, TripsAsWhatItIsAtAFifthOfTheCapacity) {
     RarelyWrong rare;
     rare.cells.soc_e4 = c.from_e4;
     rare.run(c.ordered_w, c.wrong_w, 200);
-    EXPECT_EQ(rare.supervision.trip().reason, c.reason) << c.ordered_w;
+    EXPECT_EQ(rare.supervision.trip()->reason, c.reason) << c.ordered_w;
     EXPECT_NEAR(rare.wrong, c.wrong, 1) << c.ordered_w;
   }
 }
@@ -125,12 +125,12 @@ TEST(WrongEnergy, ARestartKeepsItAndAClearedTripDoesNot) {
   before.findings.wrong_energy_e6 = 190'000;
   CycleRecord after;
   SupervisionPart kept(SupervisionSettings{}, 10);
-  kept.restore(before);
+  kept.take_over(before, std::nullopt);
   kept.report(after);
   EXPECT_EQ(after.findings.wrong_energy_e6, 190'000);
-  before.is_tripped = true;  // and no trip is in force
+  before.is_tripped = true;
   SupervisionPart cleared(SupervisionSettings{}, 10);
-  cleared.restore(before);
+  cleared.take_over(before, std::nullopt);
   cleared.report(after);
   EXPECT_EQ(after.findings.wrong_energy_e6, 0);
 }

@@ -102,18 +102,13 @@ TEST(TakeOver, AnOrderIsAsOldAsItsPower) {
   EXPECT_EQ(ordered_since_utc_s(record), kNowUtcS);
 }
 
-TEST(TakeOver, TheTripIsTheOneThatIsGivenAndTheRestTheRecords) {
+TEST(TakeOver, TheLevelIsTheOneThatIsGivenAndTheRestTheRecords) {
   CycleRecord record;
   record.utc_s = kNowUtcS;
   record.ordered_power_w = -1'500;
-  record.is_tripped = true;
-  record.trip = {.reason = Reason::kSocMismatch, .utc_s = 5};
   record.lost_orders.judged = 7;
   record.standing_price.unchanged_s = 840;
-  const Trip trip{.reason = Reason::kWrongDirection, .utc_s = 9};
-  const CycleRecord taken = take_over_of(record, trip, PriceLevel{});
-  EXPECT_EQ(taken.trip.reason, Reason::kWrongDirection);
-  EXPECT_EQ(taken.trip.utc_s, 9);
+  const CycleRecord taken = take_over_of(record, PriceLevel{});
   EXPECT_EQ(taken.ordered_power_w, -1'500);
   EXPECT_EQ(taken.utc_s, kNowUtcS);
   EXPECT_EQ(taken.lost_orders.judged, 7);

@@ -22,7 +22,7 @@
 
 namespace bess {
 
-void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip) {
+void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, const std::optional<Trip>& trip) {
   using enum ScenarioEvent::Does;
   switch (event.does) {
     case kHold:
@@ -38,7 +38,7 @@ void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, co
       limit_.clear();
       return;
     case kClear:
-      if (trip.is_set()) cleared_.add(trip.utc_s);
+      if (trip) cleared_.add(trip->utc_s);
       return;
     default:
       return;
@@ -188,9 +188,9 @@ bool EdgeState::read_back(std::int64_t records, CycleRecord& record) const {
   return true;
 }
 
-Trip EdgeState::trip() const {
-  return !records_.empty() && !is_lost() && records_.back().is_tripped ? records_.back().trip
-                                                                       : Trip{};
+std::optional<Trip> EdgeState::trip() const {
+  if (records_.empty() || is_lost() || !records_.back().is_tripped) return std::nullopt;
+  return records_.back().trip;
 }
 
 VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
@@ -205,8 +205,8 @@ VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices
 Recall VirtualWorld::recall() const {
   Recall recalled;
   static_cast<void>(around_.state.read_back(0, recalled.before));
-  const Trip trip = around_.state.trip();
-  if (trip.is_set() && !around_.people.is_cleared(trip.utc_s)) recalled.trip = trip;
+  const std::optional<Trip> trip = around_.state.trip();
+  if (trip && !around_.people.is_cleared(trip->utc_s)) recalled.trip = trip;
   if (!around_.state.is_lost()) return recalled;
   recalled.unknown = "the scenario's disk has lost it";
   recalled.trip = trip_without_state(recalled, around_.time.edge_utc_ns() / kNanosecondsPerSecond);

@@ -30,7 +30,7 @@ namespace bess {
 class VirtualOperator {
  public:
   /// `now_utc_s` by the edge's clock; `trip` is the one in force, if any.
-  void act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip);
+  void act(const ScenarioEvent& event, std::int64_t now_utc_s, const std::optional<Trip>& trip);
 
   [[nodiscard]] const HoldMailbox& holds() const { return holds_; }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const { return cleared_.has(trip_utc_s); }
@@ -59,7 +59,7 @@ class EdgeState {
   void add(const CycleRecord& record);
   [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
   /// By the newest record.
-  [[nodiscard]] Trip trip() const;
+  [[nodiscard]] std::optional<Trip> trip() const;
   /// The disk has lost all of it: what was recorded stays as evidence, and nobody can read it back.
   void lose() { readable_from_ = std::ssize(records_); }
   /// The edge is told that there was something, and that it cannot be understood.
