@@ -151,7 +151,7 @@ EventLog::~EventLog() {
 bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identity,
                     FileMessage& error) {
   settings_ = settings;
-  identity_ = identity;
+  stored_.status.identity = identity;
   const auto may_go_on = [this](bool opened) {
     const bool is_disk = !opened && is_disk_trouble(errno);
     if (is_disk) totals_.disk_is_failing = true;
@@ -164,7 +164,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   if (!may_go_on(publish_metrics(settings.metrics.c_str()))) {
     return fail_with_errno(settings.metrics.c_str(), "cannot write the metrics here", error);
   }
-  if (!may_go_on(publish_status(settings.status.c_str()))) {
+  if (!may_go_on(publish_status(settings.status))) {
     return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
   }
   publish_in_memory();
@@ -285,7 +285,7 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   if (!publish_metrics(settings_.metrics.c_str())) ++totals_.disk_failures;
   const bool was_failing = totals_.disk_is_failing;
   totals_.disk_is_failing = totals_.disk_failures > failures_before;
-  if (!publish_status(settings_.status.c_str())) {
+  if (!publish_status(settings_.status)) {
     ++totals_.disk_failures;
     totals_.disk_is_failing = true;
   }
@@ -459,20 +459,25 @@ void EventLog::tell_of_run_folder() {
 void EventLog::publish_in_memory() {
   if (settings_.run_ring.empty()) return;
   const bool has_metrics = publish_metrics(settings_.run_metrics.c_str());
-  const bool has_status = publish_status(settings_.run_status.c_str());
+  const bool has_status = publish_status(settings_.run_status);
   if (!has_metrics || !has_status) totals_.run_folder_is_failing = true;
 }
 
 bool EventLog::publish_metrics(const char* path) {
   TextBuffer metrics(metrics_text_);
-  format_prometheus(identity_, totals_, metrics);
+  format_prometheus(stored_.status, metrics);
   return replace_or_remove_file(path, metrics.view());
 }
 
-bool EventLog::publish_status(const char* path) {
+bool EventLog::publish_status(const FixedText<511>& path) {
+  stored_.status.written_monotonic_ms = clock_ns(CLOCK_MONOTONIC) / 1'000'000;
+  const bool is_stored = write_status(stored_status_path(path).c_str(), stored_);
+  const int error = errno;
   TextBuffer status(status_text_);
-  format_status_json(identity_, totals_, clock_ns(CLOCK_MONOTONIC), status);
-  return replace_or_remove_file(path, status.view());
+  format_status_json(stored_.status, status);
+  const bool is_told = replace_or_remove_file(path.c_str(), status.view());
+  if (!is_stored) errno = error;
+  return is_stored && is_told;
 }
 
 }  // namespace bess

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "edge/control/reasons.h"
+#include "edge/control/tick.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -23,12 +24,15 @@ std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s";
 
 /// The convention of the field: warn at twice the cadence, critical at four times.
 void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.age_ms <= 2 * in.cadence_ms) return;
-  const bool is_critical = in.age_ms > 4 * in.cadence_ms;
+  const std::int64_t cadence_ms = in.status->identity.cadence_ms;
+  if (in.age_ms <= 2 * cadence_ms) return;
+  const bool is_critical = in.age_ms > 4 * cadence_ms;
   const std::string level = is_critical ? "CRITICAL" : "WARN";
   reasons.push_back(level + ": the last cycle ended " + seconds(in.age_ms) +
-                    " ago, one is due every " + seconds(in.cadence_ms));
+                    " ago, one is due every " + seconds(cadence_ms));
 }
+
+double eur_of(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 
 std::string held_row(double eur_per_mwh) {
   char text[160];
@@ -39,12 +43,12 @@ std::string held_row(double eur_per_mwh) {
   return text;
 }
 
-std::string frozen_price(const HealthInputs& in) {
+std::string frozen_price(const CycleRecord& last) {
   char text[240];
   std::snprintf(text, sizeof text,
-                "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
+                "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %d minutes under new "
                 "stamps, or for hours only among four values: does the source hang?",
-                in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
+                eur_of(last.price.price_centi_eur_per_mwh), last.standing_price.unchanged_s / 60);
   return text;
 }
 
@@ -57,126 +61,163 @@ std::string unusual_price(double eur_per_mwh) {
   return text;
 }
 
-void check_prices(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
-  if (in.price_frozen) reasons.push_back(frozen_price(in));
-  if (in.has_price && std::fabs(in.price_eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
-    reasons.push_back(unusual_price(in.price_eur_per_mwh));
+void check_prices(const CycleRecord& last, std::vector<std::string>& reasons) {
+  const double eur_per_mwh = eur_of(last.price.price_centi_eur_per_mwh);
+  if (last.price.step_held) {
+    reasons.push_back(held_row(eur_of(last.price.held_centi_eur_per_mwh)));
   }
-  if (in.unplanned_s > kUnplannedSMax) {
+  if (last.price_frozen) reasons.push_back(frozen_price(last));
+  if (last.price.has_row && std::fabs(eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
+    reasons.push_back(unusual_price(eur_per_mwh));
+  }
+  const bool has_outlook = last.outlook.source != OutlookSource::kNone;
+  if (has_outlook && last.utc_s - last.outlook.planned_utc_s > kUnplannedSMax) {
     reasons.push_back(
         "WARN: outlook: no day-ahead price of today for more than a day (last answer: " +
-        std::string(in.day_ahead_status) +
+        std::string(status_name(last.outlook.feed)) +
         "); planned on what is usual, which earns less: see [outlook]");
   }
 }
 
 /// What the supervision of the battery's answers tells without stopping.
-void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.unanswered_orders > kUnansweredOrdersMax) {
-    reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
+void check_findings(const CycleRecord& last, std::vector<std::string>& reasons) {
+  const ResponseFindings& found = last.findings;
+  if (last.unanswered_orders > kUnansweredOrdersMax) {
+    reasons.push_back("WARN: no power flows after " + std::to_string(last.unanswered_orders) +
                       " orders: is the battery full, empty or cold, or does it not listen?");
   }
-  if (in.weak_answers > kWeakAnswersMax) {
-    reasons.push_back("WARN: less power than ordered in " + std::to_string(in.weak_answers) +
+  if (last.weak_answers > kWeakAnswersMax) {
+    reasons.push_back("WARN: less power than ordered in " + std::to_string(last.weak_answers) +
                       " readings: is power_w right, does the battery limit itself?");
   }
-  if (in.energy_share_percent != 0) {
-    reasons.push_back("WARN: the SoC shows about " + std::to_string(in.energy_share_percent) +
+  if (found.energy_share_percent != 0) {
+    reasons.push_back("WARN: the SoC shows about " + std::to_string(found.energy_share_percent) +
                       " % of the measured energy: is capacity_wh right, does the power arrive?");
   }
-  if (in.wrong_energy_e6 >= kWrongEnergyE6Max) {
+  if (found.wrong_energy_e6 >= kWrongEnergyE6Max) {
     reasons.push_back("WARN: now and then the battery does not do as it is told: " +
-                      std::to_string(in.wrong_energy_e6 / 10'000) +
+                      std::to_string(found.wrong_energy_e6 / 10'000) +
                       " % of its capacity flowed against or beyond orders; a trip at 20 %");
   }
-  if (in.rest_loss_w != 0) {
+  if (found.rest_loss_w != 0) {
     reasons.push_back("WARN: at 0 W, or besides its orders, the battery " +
-                      std::string(in.rest_loss_w > 0 ? "loses" : "gains") + " about " +
-                      std::to_string(std::abs(in.rest_loss_w)) + " W: what else drives it?");
+                      std::string(found.rest_loss_w > 0 ? "loses" : "gains") + " about " +
+                      std::to_string(std::abs(found.rest_loss_w)) + " W: what else drives it?");
   }
-  if (in.locked_readings > kLockedReadingsMax) {
+  if (found.locked_readings > kLockedReadingsMax) {
     reasons.push_back("WARN: by its own limits the battery may neither charge nor discharge, in " +
-                      std::to_string(in.locked_readings) + " readings: see its own display");
+                      std::to_string(found.locked_readings) + " readings: see its own display");
   }
-  if (in.ramp_w_per_s != 0) {
+  if (found.ramp_w_per_s != 0) {
     reasons.push_back("WARN: the battery is slower than its map says, at most " +
-                      std::to_string(in.ramp_w_per_s) +
+                      std::to_string(found.ramp_w_per_s) +
                       " W/s from an order on: bess-edge commission tells whether by lag or by "
                       "ramp, and what to set");
   }
 }
 
-/// What the reason means and where to look, of a name in the table of reasons.
-std::string meaning_of(std::string_view reason) {
-  for (const ReasonInfo& info : kReasons) {
-    if (info.name == reason) return std::string(": ") + info.meaning + "; look at " + info.look_at;
-  }
-  return "";
+std::string meaning_of(Reason reason) {
+  const ReasonInfo& info = info_of(reason);
+  return std::string(": ") + info.meaning + "; look at " + info.look_at;
+}
+
+/// Of a number as records have it: 1 + index, 0 = none.
+std::string point_name(const RunIdentity& identity, int number) {
+  const bool is_known = number > 0 && number <= identity.point_names.size();
+  return is_known ? std::string(identity.point_names[number - 1].view()) : "";
 }
 
 /// One line an outage: once it has led to a safe mode, that line names what failed.
-void check_answers(const HealthInputs& in, std::vector<std::string>& reasons) {
+void check_answers(const RunStatus& status, std::vector<std::string>& reasons) {
+  const CycleRecord& last = status.totals.last;
   std::vector<std::string> failed;
-  if (in.battery_status != "ok") {
-    failed.push_back("battery: no usable answer, " + std::string(in.battery_status));
+  if (last.battery_status != Status::kOk) {
+    failed.push_back("battery: no usable answer, " + std::string(status_name(last.battery_status)));
   }
-  if (!in.lost_reading.empty()) {
-    failed.push_back("battery: " + std::string(in.lost_reading) + " could not be read");
+  const std::string lost = point_name(status.identity, last.measurement.lost_point);
+  if (!lost.empty()) failed.push_back("battery: " + lost + " could not be read");
+  if (last.price.status != Status::kOk) {
+    failed.push_back("prices: no usable answer, " + std::string(status_name(last.price.status)));
   }
-  if (in.price_status != "ok") {
-    failed.push_back("prices: no usable answer, " + std::string(in.price_status));
-  }
-  if (in.mode == "running") {
+  if (last.mode == Mode::kRunning) {
     for (const std::string& what : failed) reasons.push_back("WARN: " + what);
     return;
   }
-  std::string line = "WARN: mode is " + std::string(in.mode) + ", reason " +
-                     std::string(in.reason) + meaning_of(in.reason);
+  std::string line = "WARN: mode is " + std::string(mode_name(last.mode)) + ", reason " +
+                     std::string(reason_name(last.reason)) + meaning_of(last.reason);
   for (const std::string& what : failed) line += "; " + what;
   reasons.push_back(line);
 }
 
-void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.trip != "none") {
-    reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
-                      ": find out why (bess-edge log), then bess-edge clear --yes");
+void check_site(const CycleRecord& last, std::vector<std::string>& reasons) {
+  const SiteReport& site = last.site;
+  if (site.meter_status != Status::kOk) {
+    reasons.push_back("WARN: meter: " + std::string(status_name(site.meter_status)));
   }
-  check_answers(in, reasons);
-  if (!in.cut_reading.empty()) {
-    reasons.push_back("WARN: battery: " + std::string(in.cut_reading) +
-                      " is beyond its range, and taken for the end of it");
-  }
-  if (in.battery_warns) reasons.emplace_back("WARN: the battery warns, see its own display");
-  check_findings(in, reasons);
-  if (in.orders_are_lost) {
-    reasons.push_back("WARN: " + std::to_string(in.lost_orders) + " of the last " +
-                      std::to_string(in.judged_orders) +
-                      " orders were replaced or ended before their time: who else writes to the "
-                      "battery, or does it end them?");
-  }
-  check_prices(in, reasons);
-  if (in.hold_is_unreadable) {
-    reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
-  }
-  if (in.meter_status != "ok") {
-    reasons.push_back("WARN: meter: " + std::string(in.meter_status));
-  }
-  if (in.meter_is_mismatch) {
+  if (site.trust.is_mismatch) {
     reasons.emplace_back(
         "WARN: meter: it does not step with the battery, and is not believed: frozen, inverted, of "
         "another phase or ratio? Or is the battery's own power wrong?");
   }
-  if (in.house_is_implausible) {
-    reasons.push_back("WARN: meter: house " + std::to_string(in.house_w) +
+  if (site.house_is_implausible) {
+    const std::int64_t house_w = std::int64_t{site.grid_power_w} - last.measurement.power_w;
+    reasons.push_back("WARN: meter: house " + std::to_string(house_w) +
                       " W: a sign, the phase or the meter's place is wrong, or [meter] pv_w_max");
   }
-  if (in.limit_status == "timeout") {
+  if (site.limit_status == Status::kTimeout) {
     reasons.emplace_back(
         "WARN: the outside limit has lapsed or was never set: 0 W until a new one");
-  } else if (in.limit_status != "ok") {
+  } else if (site.limit_status != Status::kOk) {
     reasons.emplace_back(
         "WARN: the file of [limits] cannot be read or understood: 0 W until it can");
+  }
+}
+
+void check_cycle(const RunStatus& status, std::vector<std::string>& reasons) {
+  const CycleRecord& last = status.totals.last;
+  if (last.is_tripped) {
+    reasons.push_back("CRITICAL: tripped, " + std::string(reason_name(last.trip.reason)) +
+                      ": find out why (bess-edge log), then bess-edge clear --yes");
+  }
+  check_answers(status, reasons);
+  const std::string cut = point_name(status.identity, last.measurement.cut_point);
+  if (!cut.empty()) {
+    reasons.push_back("WARN: battery: " + cut +
+                      " is beyond its range, and taken for the end of it");
+  }
+  if (last.measurement.warning) {
+    reasons.emplace_back("WARN: the battery warns, see its own display");
+  }
+  check_findings(last, reasons);
+  if (last.lost_orders.is_found) {
+    reasons.push_back("WARN: " + std::to_string(last.lost_orders.lost) + " of the last " +
+                      std::to_string(last.lost_orders.judged) +
+                      " orders were replaced or ended before their time: who else writes to the "
+                      "battery, or does it end them?");
+  }
+  check_prices(last, reasons);
+  if (last.hold.unreadable) {
+    reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
+  }
+  check_site(last, reasons);
+}
+
+/// Of the state folder's device.
+void check_wear(const CardWear& wear, std::vector<std::string>& reasons) {
+  if (wear.used_life_percent > kUsedLifePercentMax) {
+    reasons.push_back("WARN: the card has used up to " + std::to_string(wear.used_life_percent) +
+                      " % of its life: replace it before it fails");
+  }
+  if (wear.spare_level >= 2) {
+    reasons.emplace_back(wear.spare_level >= 3
+                             ? "CRITICAL: the card has used 90 % of its spare blocks and will "
+                               "take no more before long: replace it now"
+                             : "WARN: the card has used 80 % of its spare blocks: replace it "
+                               "before it fails");
+  }
+  if (wear.file_system_errors > 0) {
+    reasons.push_back("WARN: the kernel has counted " + std::to_string(wear.file_system_errors) +
+                      " errors in the state folder's file system: is the card dying? (dmesg)");
   }
 }
 
@@ -187,44 +228,30 @@ Health assess_health(const HealthInputs& in) {
     return {HealthLevel::kNotRunning, {"CRITICAL: no bess-edge runs with this configuration"}};
   }
   Health health;
+  const RunTotals totals = in.status != nullptr ? in.status->totals : RunTotals{};
   if (!in.unknown.empty()) {
     health.reasons.push_back("CRITICAL: unknown: " + std::string(in.unknown));
-  } else if (!in.is_of_this_run || in.cycles == 0) {
+  } else if (!in.is_of_this_run || totals.cycles == 0) {
     health.reasons.emplace_back("WARN: started, no cycle has ended yet");
   } else {
-    check_cycle(in, health.reasons);
+    check_cycle(*in.status, health.reasons);
     check_age(in, health.reasons);
   }
   if (!in.update_trouble.empty()) {
     health.reasons.push_back("WARN: update: " + std::string(in.update_trouble));
   }
-  if (in.disk_is_slow)
+  if (totals.disk_is_slow) {
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
-  if (in.run_folder_is_failing) {
+  }
+  if (totals.run_folder_is_failing) {
     health.reasons.emplace_back("WARN: the files of [state] run_folder cannot be written");
   }
-  if (in.disk_used_life_percent > 0) {
-    health.reasons.push_back("WARN: the card has used up to " +
-                             std::to_string(in.disk_used_life_percent) +
-                             " % of its life: replace it before it fails");
-  }
-  if (in.disk_spare_level >= 2) {
-    health.reasons.emplace_back(
-        in.disk_spare_level >= 3 ? "CRITICAL: the card has used 90 % of its spare blocks and will "
-                                   "take no more before long: replace it now"
-                                 : "WARN: the card has used 80 % of its spare blocks: replace it "
-                                   "before it fails");
-  }
-  if (in.file_system_errors > 0) {
-    health.reasons.push_back(
-        "WARN: the kernel has counted " + std::to_string(in.file_system_errors) +
-        " errors in the state folder's file system: is the card dying? (dmesg)");
-  }
+  check_wear(in.wear, health.reasons);
   // Between the log's record and the status there is a moment in every cycle.
   if (in.cycles_behind > 1) {
-    health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +
+    health.reasons.push_back("WARN: the status is " + std::to_string(in.cycles_behind) +
                              " cycles behind the log, is the disk full or read-only?");
-  } else if (in.disk_is_failing) {
+  } else if (totals.disk_is_failing) {
     health.reasons.emplace_back("WARN: the log cannot be written, is the disk full or read-only?");
   } else if (in.disk_is_full) {
     health.reasons.emplace_back("WARN: the disk of the state folder is full or read-only");

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -18,7 +17,6 @@ enum class MemberKind : std::uint8_t { kNumber, kFlag, kUtc, kName };
 
 template <typename Source>
 struct MemberAccess {
-  std::uint64_t id;  ///< path_id of the member
   MemberKind kind;
   std::size_t bytes;  ///< on disk
   std::int64_t (*read)(const Source&);
@@ -53,17 +51,6 @@ struct PathStart {
 template <auto... kPath>
 using SourceOf = typename detail::PathStart<kPath...>::Source;
 
-/// Tells one path from another at compile time: FNV-1a over its spelling. The address of
-/// `read_member` would not do: under a sanitizer that is no constant.
-template <auto... kPath>
-constexpr std::uint64_t path_id() {
-  std::uint64_t id = 0xcbf29ce484222325;
-  for (const char letter : std::string_view(__PRETTY_FUNCTION__)) {
-    id = (id ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3;
-  }
-  return id;
-}
-
 template <auto... kPath>
 std::int64_t read_member(const SourceOf<kPath...>& source) {
   const auto& value = (source.*....*kPath);
@@ -90,8 +77,8 @@ template <auto... kPath>
 consteval auto member() {
   using Source = SourceOf<kPath...>;
   using Value = std::remove_reference_t<decltype((std::declval<Source&>().*....*kPath))>;
-  MemberAccess<Source> access{path_id<kPath...>(),   MemberKind::kNumber,  sizeof(Value),
-                              read_member<kPath...>, set_member<kPath...>, nullptr};
+  MemberAccess<Source> access{MemberKind::kNumber, sizeof(Value), read_member<kPath...>,
+                              set_member<kPath...>, nullptr};
   if constexpr (std::is_same_v<Value, bool>) access.kind = MemberKind::kFlag;
   if constexpr (std::is_enum_v<Value>) {
     static_assert(sizeof(Value) == 1, "a code is one byte on disk");

@@ -1,10 +1,14 @@
 #include "edge/log/run_status.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "edge/log/record_fields.h"
 #include "edge/log/whole_file.h"
+#include "shared/crc32.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -176,6 +180,13 @@ void add_wear(const CardWear& wear, const Metrics& text) {
   }
 }
 
+/// Of a memory image: padding is written, read and checked as it is.
+std::uint32_t crc_of(const RunStatus& status) {
+  Crc32 crc;
+  crc.add_bytes(&status, sizeof status);
+  return crc.value();
+}
+
 }  // namespace
 
 void RunTotals::count(const CycleRecord& record) {
@@ -188,19 +199,50 @@ void RunTotals::count(const CycleRecord& record) {
   if (has_asked && record.price.status != Status::kOk) ++price_failures;
 }
 
-void format_status_json(const RunIdentity& identity, const RunTotals& totals,
-                        std::int64_t written_monotonic_ns, TextBuffer& json) {
+FixedText<511> stored_status_path(const FixedText<511>& status_json) {
+  std::string_view stem = status_json.view();
+  stem.remove_suffix(std::min(stem.size(), std::string_view("json").size()));
+  char path[512];
+  const int size =
+      std::snprintf(path, sizeof path, "%.*sbin", static_cast<int>(stem.size()), stem.data());
+  return FixedText<511>(std::string_view(path, static_cast<std::size_t>(size)));
+}
+
+bool write_status(const char* path, StoredStatus& stored) {
+  stored.layout = kStatusLayout;
+  stored.bytes = sizeof stored;
+  stored.crc = crc_of(stored.status);
+  return replace_or_remove_file(path, {reinterpret_cast<const char*>(&stored), sizeof stored});
+}
+
+StatusFile read_status(const char* path, RunStatus& status) {
+  static_assert(std::is_trivially_copyable_v<RunStatus>);
+  StoredStatus stored;
+  const ssize_t size =
+      read_beginning(path, {reinterpret_cast<char*>(&stored), sizeof stored}, Links::kFollowed);
+  if (size < 0) return StatusFile::kAbsent;
+  const bool is_ours =
+      size == sizeof stored && stored.bytes == sizeof stored && stored.layout == kStatusLayout;
+  if (!is_ours || stored.crc != crc_of(stored.status)) return StatusFile::kDamaged;
+  status = stored.status;
+  return StatusFile::kRead;
+}
+
+void format_status_json(const RunStatus& status, TextBuffer& json) {
+  const RunTotals& totals = status.totals;
   json.add("{\n");
-  add_identity(identity, json);
-  json.add("  \"written_monotonic_ms\": %lld,\n", as_long(written_monotonic_ns / 1'000'000));
+  add_identity(status.identity, json);
+  json.add("  \"written_monotonic_ms\": %lld,\n", as_long(status.written_monotonic_ms));
   json.add("  \"log_number\": %llu,\n", static_cast<unsigned long long>(totals.log_number));
-  add_section<&Places::last>(kLastSection, totals, json);
-  add_section<&Places::totals>(kTotalsSection, totals, json);
+  add_section<&Places::last>("last", totals, json);
+  add_section<&Places::totals>("totals", totals, json);
   add_cycles_by_reason(totals, json);
   json.add("%s", checksum_end(json.view(), kJsonChecksum).c_str());
 }
 
-void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& out) {
+void format_prometheus(const RunStatus& status, TextBuffer& out) {
+  const RunIdentity& identity = status.identity;
+  const RunTotals& totals = status.totals;
   Metrics text{.out = out, .label = ""};
   std::snprintf(text.label, sizeof text.label, "battery=\"%s\"", identity.name.c_str());
   const CycleRecord& last = totals.last;

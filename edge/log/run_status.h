@@ -25,6 +25,9 @@ struct CardWear {
       -1;  ///< that the kernel has counted (ext4); negative = not told
 };
 
+/// Beyond it the card should be replaced.
+inline constexpr int kUsedLifePercentMax = 90;
+
 /// What does not change while the process runs.
 struct RunIdentity {
   FixedText<63> name;  ///< [battery] name
@@ -62,13 +65,37 @@ struct RunTotals {
   void count(const CycleRecord& record);
 };
 
+/// How a run is, in one piece: what bess-edge's own commands read. For other programs it is
+/// formatted as JSON and for Prometheus.
+struct RunStatus {
+  RunIdentity identity;
+  RunTotals totals;
+  std::int64_t written_monotonic_ms = 0;
+};
+
+/// Raised when a member of RunStatus is added, moved or removed.
+inline constexpr std::uint32_t kStatusLayout = 1;
+
+/// The status on disk: one of another layout, a torn or a damaged one is not read.
+struct StoredStatus {
+  std::uint32_t layout = 0;
+  std::uint32_t bytes = 0;
+  std::uint32_t crc = 0;  ///< of `status`
+  RunStatus status;
+};
+/// status.bin beside status.json.
+FixedText<511> stored_status_path(const FixedText<511>& status_json);
+/// False with errno set.
+bool write_status(const char* path, StoredStatus& stored);
+enum class StatusFile : std::uint8_t { kAbsent, kDamaged, kRead };
+StatusFile read_status(const char* path, RunStatus& status);
+
 inline constexpr std::size_t kStatusBytes = 6'144;
 inline constexpr std::size_t kMetricsBytes = 24'576;
 
 /// Both end with a checksum of what stands before (whole_file.h): as JSON's last member, as a
 /// comment.
-void format_status_json(const RunIdentity& identity, const RunTotals& totals,
-                        std::int64_t written_monotonic_ns, TextBuffer& json);
-void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text);
+void format_status_json(const RunStatus& status, TextBuffer& json);
+void format_prometheus(const RunStatus& status, TextBuffer& text);
 
 }  // namespace bess

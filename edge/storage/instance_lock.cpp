@@ -132,8 +132,8 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   if (!make_folder(folder)) {
     return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
   }
-  for (const auto& path :
-       {config.log.status, config.log.ring, config.log.run_status, config.log.run_ring}) {
+  for (const auto& path : {stored_status_path(config.log.status), config.log.ring,
+                           stored_status_path(config.log.run_status), config.log.run_ring}) {
     if (!refuse_stranger(path.c_str(), error)) return false;
   }
   char what[560];

@@ -11,7 +11,6 @@
 namespace bess {
 
 /// A card that has used more of its life is to be replaced.
-inline constexpr int kUsedLifePercentMax = 90;
 
 /// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in
 /// tenths), the worse one, as the upper end in percent; 0 when it does not tell.

@@ -177,10 +177,8 @@ TEST_F(Questions, StatusTellsTheTrainingDays) {
     RunIdentity identity;
     identity.trained_from = from;
     identity.trained_until = until;
-    char storage[kStatusBytes];
-    TextBuffer json(storage);
-    format_status_json(identity, {}, 5, json);
-    static_cast<void>(folder_.write("state/status.json", std::string(json.view())));
+    StoredStatus stored{.status = {.identity = identity}};
+    ASSERT_TRUE(write_status(folder_.file("state/status.bin").c_str(), stored));
   };
   const std::string today{local_date_text(std::time(nullptr)).view()};
   published("2023-01-01", today.c_str());

@@ -61,7 +61,7 @@ std::string json_text_of(const Field<Source>& field) {
 std::string status_of(const RunTotals& totals) {
   char storage[kStatusBytes];
   TextBuffer json(storage);
-  format_status_json(RunIdentity{}, totals, 0, json);
+  format_status_json({.identity = {}, .totals = totals}, json);
   return std::string(json.view());
 }
 
@@ -74,8 +74,8 @@ std::string section_of(const std::string& status, const std::string& name) {
 template <typename Source>
 void expect_in_status(const Field<Source>& field, const RunTotals& totals) {
   const std::string status = status_of(totals);
-  const std::pair<const char*, Output> sections[] = {{kLastSection, &Places::last},
-                                                     {kTotalsSection, &Places::totals}};
+  const std::pair<const char*, Output> sections[] = {{"last", &Places::last},
+                                                     {"totals", &Places::totals}};
   for (const auto& [name, output] : sections) {
     const std::string key = std::string("\"") + field.name_in(output) + "\": ";
     const std::string section = section_of(status, name);
@@ -92,7 +92,7 @@ void expect_in_metrics(const Field<Source>& field, const RunTotals& totals) {
   if (field.place_in(&Places::metrics) == 0) return;
   char storage[kMetricsBytes];
   TextBuffer text(storage);
-  format_prometheus(RunIdentity{}, totals, text);
+  format_prometheus({.identity = {}, .totals = totals}, text);
   const double value = static_cast<double>(telling_value(field.access.kind)) / field.metric.divisor;
   std::ostringstream line;
   line.precision(10);
@@ -207,18 +207,6 @@ TEST(RecordFields, PlacesAndNamesOfAnOutputAreTakenOnce) {
     for (const auto& field : kRunFields) take(field);
     EXPECT_FALSE(names.contains(""));
   }
-}
-
-TEST(StatusKeys, LeadToSectionAndName) {
-  constexpr StatusKey kPrice = status_key<&CycleRecord::price, &PriceReport::status>();
-  EXPECT_STREQ(kPrice.section, "last");
-  EXPECT_STREQ(kPrice.name, "price_status");
-  constexpr StatusKey kMoved = status_key<&CycleRecord::throughput, &DayThroughput::soc_moved_e4>();
-  EXPECT_STREQ(kMoved.section, "totals");
-  EXPECT_STREQ(kMoved.name, "soc_moved_e4_today");
-  constexpr StatusKey kCycles = status_key<&RunTotals::cycles>();
-  EXPECT_STREQ(kCycles.section, "totals");
-  EXPECT_STREQ(kCycles.name, "cycles");
 }
 
 }  // namespace

@@ -39,10 +39,12 @@ void add_lines(const char* name, const CycleRecord& record, std::ostream& out) {
 void add_files(const CycleRecord& last, std::ostream& out) {
   char status[kStatusBytes];
   TextBuffer json(status);
-  format_status_json(sample_identity(), full_totals(last), 5'000'000'000, json);
+  const RunStatus now{
+      .identity = sample_identity(), .totals = full_totals(last), .written_monotonic_ms = 5'000};
+  format_status_json(now, json);
   char metrics[kMetricsBytes];
   TextBuffer prometheus(metrics);
-  format_prometheus(sample_identity(), full_totals(last), prometheus);
+  format_prometheus(now, prometheus);
   EXPECT_FALSE(json.was_cut() || prometheus.was_cut());
   out << "status.json\n" << json.view() << "metrics.prom\n" << prometheus.view();
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -49,7 +50,7 @@ RunTotals totals_after(std::initializer_list<CycleRecord> records) {
 std::string prometheus_text(const RunTotals& totals) {
   char storage[kMetricsBytes];
   TextBuffer text(storage);
-  format_prometheus(sample_identity(), totals, text);
+  format_prometheus({.identity = sample_identity(), .totals = totals}, text);
   EXPECT_FALSE(text.was_cut());
   return std::string(text.view());
 }
@@ -96,8 +97,35 @@ TEST(RunStatusTexts, EndWithTheirChecksum) {
   EXPECT_EQ(check_text(prometheus_text(totals), kCommentChecksum), TextState::kIntact);
   char storage[kStatusBytes];
   TextBuffer json(storage);
-  format_status_json(sample_identity(), totals, 5, json);
+  format_status_json({.identity = sample_identity(), .totals = totals}, json);
   EXPECT_EQ(check_text(json.view(), kJsonChecksum), TextState::kIntact);
+}
+
+/// Any byte that a card forgets, a file of another build, and one that is cut.
+TEST(StoredStatus, IsReadWholeOrNotAtAll) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("status.bin");
+  EXPECT_EQ(stored_status_path(folder.file("status.json").c_str()).view(), path);
+  RunStatus read;
+  EXPECT_EQ(read_status(path.c_str(), read), StatusFile::kAbsent);
+  StoredStatus stored{.status = {.identity = sample_identity(),
+                                 .totals = totals_after({good_record()}),
+                                 .written_monotonic_ms = 77}};
+  ASSERT_TRUE(write_status(path.c_str(), stored));
+  ASSERT_EQ(read_status(path.c_str(), read), StatusFile::kRead);
+  EXPECT_EQ(read.identity.name, sample_identity().name);
+  EXPECT_EQ(read.totals.last.price.price_centi_eur_per_mwh, -12'345);
+  EXPECT_EQ(read.written_monotonic_ms, 77);
+  const std::string whole = text_of_file(path);
+  std::mt19937 random(20'261'128);
+  for (int i = 0; i < 200; ++i) {
+    std::string damaged = whole;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
+    static_cast<void>(folder.write("status.bin", damaged));
+    EXPECT_EQ(read_status(path.c_str(), read), StatusFile::kDamaged) << i;
+  }
+  static_cast<void>(folder.write("status.bin", whole.substr(0, whole.size() - 1)));
+  EXPECT_EQ(read_status(path.c_str(), read), StatusFile::kDamaged);
 }
 
 TEST(Prometheus, FollowsTheFormatAndTheNamingRules) {
@@ -197,11 +225,12 @@ TEST(RunStatus, TheLargestValuesFit) {
   t.cycles_by_reason.fill(INT64_MIN);
   char status_storage[kStatusBytes];
   TextBuffer json(status_storage);
-  format_status_json(id, t, INT64_MIN, json);
+  const RunStatus longest{.identity = id, .totals = t, .written_monotonic_ms = INT64_MIN};
+  format_status_json(longest, json);
   EXPECT_FALSE(json.was_cut());
   char metrics_storage[kMetricsBytes];
   TextBuffer metrics(metrics_storage);
-  format_prometheus(id, t, metrics);
+  format_prometheus(longest, metrics);
   EXPECT_FALSE(metrics.was_cut());
 }
 

@@ -44,7 +44,7 @@ TEST_F(FileOwner, AStrangersLockIsRefusedWithTheMend) {
 }
 
 TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
-  for (const char* name : {"status.json", "decisions.ring"}) {
+  for (const char* name : {"status.bin", "decisions.ring"}) {
     const TemporaryFolder state;
     EdgeConfig config;
     config.state.folder = state.file("").c_str();

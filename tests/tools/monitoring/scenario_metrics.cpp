@@ -57,7 +57,7 @@ void print_scenario(const Outcome& outcome) {
     if (totals.cycles == 0) continue;
     char storage[kMetricsBytes];
     TextBuffer text(storage);
-    format_prometheus(RunIdentity{}, totals, text);
+    format_prometheus({.identity = {}, .totals = totals}, text);
     print_scrape(text.view(), scenario.name, now);
   }
 }
