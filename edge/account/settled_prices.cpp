@@ -108,7 +108,10 @@ bool SettledPrices::parse(std::string_view text) {
   while (!rest.empty()) {
     const bool is_next = parse_line(take_line(rest), quarter) &&
                          (quarters_.empty() || quarters_.back().start_utc_s < quarter.start_utc_s);
-    if (!is_next) return quarters_.clear(), false;
+    if (!is_next) {
+      quarters_.clear();
+      return false;
+    }
     quarters_.push_back(quarter);
   }
   return true;

@@ -46,7 +46,8 @@ std::int32_t manageable_step_w(const StepFit& fit, const SpeedQuestion& question
     const std::int32_t middle_w = low_w + (high_w - low_w) / 2;
     const bool is_within =
         fit.seconds_until(middle_w, question.band_w(middle_w)).most <= kSettleSMax / kSpare;
-    (is_within ? low_w : high_w) = middle_w;
+    std::int32_t& bound_w = is_within ? low_w : high_w;
+    bound_w = middle_w;
   }
   return low_w / kStepToW * kStepToW;
 }

@@ -44,7 +44,9 @@ double seconds_until(const StepDynamics& d, double step_w, double left_w) {
   double high_s = low_s + step_w * d.ramp_s_per_w + 20 * d.time_constant_s;
   while (high_s - low_s > kFinestS) {
     const double middle_s = (low_s + high_s) / 2;
-    (risen_w(d, step_w, middle_s) < step_w - left_w ? low_s : high_s) = middle_s;
+    const bool is_too_early = risen_w(d, step_w, middle_s) < step_w - left_w;
+    double& bound_s = is_too_early ? low_s : high_s;
+    bound_s = middle_s;
   }
   return high_s;
 }

@@ -117,7 +117,11 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
   for (std::uint64_t n = span.first; n <= span.last; ++n) {
     if (!log.read(n, record)) continue;
     if (record.utc_s < span.since_utc_s || record.utc_s > span.until_utc_s) continue;
-    given.csv ? print_csv(record, given, thresholds) : print_text(record, given, thresholds);
+    if (given.csv) {
+      print_csv(record, given, thresholds);
+    } else {
+      print_text(record, given, thresholds);
+    }
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return failed("the output cannot be written");

@@ -160,7 +160,11 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
                 .exchanges = recording.exchanges()};
   result.findings = std::count_if(result.points.begin(), result.points.end(),
                                   [](const PointVerdict& p) { return !p.finding.empty(); });
-  given.json ? print_json(map, result) : print_text(map, result);
+  if (given.json) {
+    print_json(map, result);
+  } else {
+    print_text(map, result);
+  }
   return result.findings == 0 ? 0 : 1;
 }
 

@@ -46,7 +46,11 @@ struct Options {
   const char* started_as = "";
 };
 
-void complain(const std::string& text) { std::fprintf(stderr, "bess-prices: %s\n", text.c_str()); }
+/// The exit code.
+int complain(const std::string& text) {
+  std::fprintf(stderr, "bess-prices: %s\n", text.c_str());
+  return 1;
+}
 
 bool check_price(const EdgeConfig& config) {
   UnitWatch unit;
@@ -77,20 +81,20 @@ void check_day_ahead(const EdgeConfig& config) {
   DayAheadInquiry inquiry;
   inquiry.take(asked, outlook, now_utc_s);
   if (inquiry.status != Status::kOk) {
-    return complain("day-ahead prices from " + source + ": " +
-                    (asked.reason.empty()
-                         ? std::string(day_ahead_status_text(inquiry.status, outlook))
-                         : asked.reason) +
-                    "; planned on what is usual");
+    complain("day-ahead prices from " + source + ": " +
+             (asked.reason.empty() ? std::string(day_ahead_status_text(inquiry.status, outlook))
+                                   : asked.reason) +
+             "; planned on what is usual");
+    return;
   }
   std::printf("day-ahead  %u quarter-hours from %s\n", inquiry.book.changes(), source.c_str());
 }
 
 int settle_now(const EdgeConfig& config, const SettledSource& source) {
-  if (source.url.empty()) return complain("[settled] url is not set: nothing to fetch"), 1;
+  if (source.url.empty()) return complain("[settled] url is not set: nothing to fetch");
   const SettledResult result =
       fetch_settled(source, config.clock.now_utc_ns() / kNanosecondsPerSecond, {});
-  if (!result.trouble.empty()) return complain("settled prices: " + result.trouble), 1;
+  if (!result.trouble.empty()) return complain("settled prices: " + result.trouble);
   std::printf("%d quarter-hours, %s, kept in %s\n", result.fetched,
               result.is_whole ? "up to yesterday's last" : "yesterday is not whole yet",
               source.file.c_str());
@@ -141,9 +145,9 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   InstanceLock lock;
   FileMessage error;
   const bool is_folder = make_folder(folder_of(path.c_str()).c_str());
-  if (!is_folder) return complain(path + ": its folder cannot be made"), 1;
+  if (!is_folder) return complain(path + ": its folder cannot be made");
   if (!lock.take((path + ".lock").c_str(), "bess-prices", error)) {
-    return complain(error.c_str()), 1;
+    return complain(error.c_str());
   }
   std::stop_source stop;
   const StopSignals stop_signals([&] { stop.request_stop(); });
@@ -166,7 +170,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
 int run(const Options& options) {
   EdgeConfig config;
   std::string error;
-  if (!load_edge_config(options.config_path, config, error)) return complain(error), 1;
+  if (!load_edge_config(options.config_path, config, error)) return complain(error);
   config.outlook.ask_offset_s = day_ahead_offset_s(config);
   set_market_time_zone();
   SettledSource settled;

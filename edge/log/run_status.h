@@ -80,7 +80,7 @@ inline constexpr std::uint32_t kStatusLayout = 1;
 struct StoredStatus {
   std::uint32_t layout = 0;
   std::uint32_t bytes = 0;
-  std::uint32_t crc = 0;  ///< of `status`
+  std::uint64_t crc = 0;  ///< of `status`
   RunStatus status;
 };
 /// status.bin beside status.json.

@@ -51,7 +51,10 @@ int run(const Options& options) {
   std::string error;
   if (!load_page_settings(options.config_path, settings, error)) return fail(error);
   if (options.port >= 0) settings.port = options.port;
-  if (options.is_check) return print_check(settings), 0;
+  if (options.is_check) {
+    print_check(settings);
+    return 0;
+  }
   set_market_time_zone();
   PageServer server(settings);
   if (!server.bind(error)) return fail(error);

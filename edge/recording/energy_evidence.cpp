@@ -149,7 +149,8 @@ void EnergyEvidence::compare(const EnergyReading& reading) {
   const auto power_w = static_cast<double>(reading.power_w);
   const bool flows = std::abs(power_w) >= 0.1 * std::abs(order_w);
   if (std::abs(order_w) < kOrderWMin || !flows) return;  // full, empty, or cut by the device
-  (order_w > 0) == (power_w > 0) ? ++same_way_ : ++other_way_;
+  int& readings = (order_w > 0) == (power_w > 0) ? same_way_ : other_way_;
+  ++readings;
   measured_w_ += std::abs(power_w);
   ordered_w_ += std::abs(order_w);
 }

@@ -56,7 +56,11 @@ void MeterWitness::observe(const WitnessReading& now) {
     if (is_next_order) judge_excess(now);
     return;
   }
-  if (has_before_) is_next_order ? judge_step(now) : note_house(now);
+  if (is_next_order) {
+    judge_step(now);
+  } else if (has_before_) {
+    note_house(now);
+  }
   fade_doubt(now.utc_s);
   has_before_ = true;
   before_ = now;

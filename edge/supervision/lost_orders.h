@@ -69,7 +69,11 @@ class LostOrders {
     for (int i = std::clamp<int>(logged.judged, 0, kMost) - 1; i >= 0; --i) {
       const bool lost = (logged.orders >> i & 1U) != 0;
       history_.note(lost);
-      lost ? count_.bad() : count_.good();
+      if (lost) {
+        count_.bad();
+      } else {
+        count_.good();
+      }
       if (lost && first_lost_s_ == 0) first_lost_s_ = utc_s - (i + 1) * kSecondsPerStep;
     }
     lost_s_ = utc_s;
@@ -128,7 +132,8 @@ class LostOrders {
     lost_s_ = now.steady_s;
     if (first_lost_s_ == 0) first_lost_s_ = now.steady_s;
     was_replaced_ = was_replaced_ || fate == Fate::kReplaced;
-    ++(fate == Fate::kReplaced ? replaced_ : ended_);
+    std::int32_t& lost = fate == Fate::kReplaced ? replaced_ : ended_;
+    ++lost;
   }
 
   void forget_old() {

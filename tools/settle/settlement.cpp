@@ -90,7 +90,8 @@ Latency latency_of(const CsvTable& log, const std::vector<std::size_t>& rows,
 }  // namespace
 
 void Account::add(const BatteryParameters& battery, double energy_wh, double settled_eur_per_mwh) {
-  (energy_wh > 0 ? charged_wh : discharged_wh) += std::fabs(energy_wh);
+  charged_wh += std::max(energy_wh, 0.0);
+  discharged_wh += std::max(-energy_wh, 0.0);
   profit_eur -=
       exchange_cost_eur(battery, energy_wh / kWattHoursPerMegawattHour, settled_eur_per_mwh);
 }

@@ -31,7 +31,8 @@ double student_t_within(double coverage, int degrees) {
   while (probability_within(high, degrees) < coverage) high *= 2;
   while (high - low > kTolerance * high) {
     const double middle = (low + high) / 2;
-    (probability_within(middle, degrees) < coverage ? low : high) = middle;
+    double& bound = probability_within(middle, degrees) < coverage ? low : high;
+    bound = middle;
   }
   return high;
 }

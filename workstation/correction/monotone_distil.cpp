@@ -51,7 +51,8 @@ SignBounds SignBounds::monotone(const std::vector<Direction>& directions) {
     }
     if (trend1(unit) == Trend::kFree) continue;
     for (int next = 0; next < kStudentHidden2; ++next) {
-      (trend1(unit) == trend2(next) ? lower : upper).w2(next, unit) = 0;
+      MutableMlp& bound = trend1(unit) == trend2(next) ? lower : upper;
+      bound.w2(next, unit) = 0;
     }
   }
   constexpr auto kDischarge = static_cast<int>(Action::kDischarge);
@@ -60,8 +61,10 @@ SignBounds SignBounds::monotone(const std::vector<Direction>& directions) {
   for (int unit = 0; unit < kStudentHidden2; ++unit) {
     const bool falls = trend2(unit) == Trend::kFalls;
     lower.w3(kIdle, unit) = upper.w3(kIdle, unit) = 0;
-    (falls ? lower : upper).w3(kCharge, unit) = 0;
-    (falls ? upper : lower).w3(kDischarge, unit) = 0;
+    MutableMlp& charge_bound = falls ? lower : upper;
+    MutableMlp& discharge_bound = falls ? upper : lower;
+    charge_bound.w3(kCharge, unit) = 0;
+    discharge_bound.w3(kDischarge, unit) = 0;
   }
   return bounds;
 }

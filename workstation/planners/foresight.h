@@ -86,7 +86,8 @@ class ShadowPrice {
       tried_ = true;
       return;
     }
-    (kept ? high_ : low_) = 0.5 * (low_ + high_);
+    double& bound = kept ? high_ : low_;
+    bound = 0.5 * (low_ + high_);
   }
 
  private:

@@ -61,7 +61,8 @@ MinutePathGenerator::Sides MinutePathGenerator::final_sides(const QuarterHour& q
   const double decremental = quarter_hour.marginal_decremental_eur_per_mwh;
   // Where only the settled price is published it is the marginal price of the active side.
   const bool shortage = is_short(quarter_hour.system_imbalance_mw);
-  (shortage ? sides.incremental : sides.decremental) = quarter_hour.price_eur_per_mwh;
+  double& active = shortage ? sides.incremental : sides.decremental;
+  active = quarter_hour.price_eur_per_mwh;
   if (is_published(incremental)) sides.incremental = incremental;
   if (is_published(decremental)) sides.decremental = decremental;
   return sides;
