@@ -12,7 +12,6 @@
 #include "workstation/cli/commands.h"
 #include "workstation/run/run_plan.h"
 #include "workstation/run/run_stages.h"
-#include "workstation/run/stage_table.h"
 
 namespace bess {
 namespace {
@@ -25,7 +24,8 @@ void run_report(const std::string& path, const std::string& prices) {
          run_file::kRecord, path);
   }
   std::vector<GivenPath> outputs;
-  for (const std::string& name : run_files()) outputs.push_back({"--run", folder.file(name)});
+  for (const std::string& name : RunStages::files())
+    outputs.push_back({"--run", folder.file(name)});
   if (record->prices != run_file::kSimulatedPrices) {
     require_distinct(outputs, {{"--prices", prices}});
   }

@@ -17,7 +17,6 @@
 #include "workstation/run/run_plan.h"
 #include "workstation/run/run_report.h"
 #include "workstation/run/run_stages.h"
-#include "workstation/run/stage_table.h"
 
 namespace bess {
 namespace {
@@ -54,8 +53,8 @@ void run_one(const RunRequest& request, std::FILE* messages) {
   if (plan.record.teacher_file.empty()) warn_long_training(plan.record.config(plan.folder));
   require_writable(plan.folder.record());
   if (!lock) lock.emplace(plan.folder.path);
-  fmt::print(messages, "[{}/{}] prices: {} ({} minutes)\n", stage_named(stage_name::kPrices).number,
-             stage_count(), plan.record.prices_name, plan.series.size());
+  fmt::print(messages, "[1/{}] prices: {} ({} minutes)\n", RunStages::count(),
+             plan.record.prices_name, plan.series.size());
   if (!load_run_record(plan.folder)) save_run_record(plan.folder, plan.record);
   end_when_interrupted(how_to_go_on(plan.folder, plan.record));
   RunStages(plan.folder, plan.record, plan.series, messages).finish();
@@ -96,7 +95,7 @@ void add_run_command(ProgramCommand& app) {
   command.footer(
       "Each stage is written when it is done: after Ctrl-C, a full disk or a failed proof nothing "
       "is lost.\n" +
-      stages_help() +
+      RunStages::help() +
       "Examples:\n"
       "  bess-train run --out runs/first\n"
       "  bess-train run --resume --out runs/first\n"

@@ -7,7 +7,7 @@
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/run/run_report.h"
-#include "workstation/run/stage_table.h"
+#include "workstation/run/run_stages.h"
 
 namespace bess {
 namespace {
@@ -21,12 +21,13 @@ std::string absolute(const std::string& path) {
 /// Before a first run writes anything.
 void require_free(const RunFolder& folder, const RunRequest& request) {
   std::vector<GivenPath> outputs;
-  for (const std::string& name : run_files()) outputs.push_back({"--out", folder.file(name)});
+  for (const std::string& name : RunStages::files())
+    outputs.push_back({"--out", folder.file(name)});
   require_distinct(outputs, {{"--prices", request.prices},
                              {"--day-ahead", request.day_ahead.path()},
                              {"--config", request.common.config_path},
                              {"--from-teacher", request.from_teacher}});
-  for (const std::string& name : run_files()) {
+  for (const std::string& name : RunStages::files()) {
     if (!fs::exists(folder.file(name))) continue;
     fail("{}: holds {} but no {}, so that nobody knows what it was made of; give another --out",
          folder.path.string(), name, run_file::kRecord);

@@ -1,10 +1,12 @@
 #include "workstation/run/run_stages.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <utility>
 
 #include "shared/host/command_line.h"
 #include "shared/host/csv.h"
@@ -18,7 +20,6 @@
 #include "workstation/report/evaluation_days.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/run/run_backtest.h"
-#include "workstation/run/stage_table.h"
 #include "workstation/student/certificate.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/export.h"
@@ -29,6 +30,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace run_file;
+
+constexpr std::string_view kTeacherStage = "teacher";
+constexpr std::string_view kProofStage = "corrected student";
+constexpr std::string_view kEvaluationStage = "evaluation";
+constexpr std::string_view kReportStage = "report";
+constexpr std::string_view kFailureStage = "report of the failed proof";
 
 /// times.json: seconds and end of each stage, added to or replaced.
 void note_time(const fs::path& path, const std::string& stage, double seconds) {
@@ -98,35 +105,93 @@ void RunStages::tell(const std::string& text) const {
   std::fflush(messages_);
 }
 
-void RunStages::announce(const Stage& stage) const {
-  std::string text = stage.text;
-  if (stage.name == stage_name::kTeacher) {
-    text = record_.teacher_file.empty()
-               ? fmt::format("train the {} teacher", method_name(config_.train.method))
-               : "take the teacher of " + record_.teacher_file;
-  }
-  if (text.empty()) return;
-  fmt::print(messages_, "[{}/{}] {}\n", stage.number, stage_count(), text);
-  std::fflush(messages_);
+std::span<const RunStages::Stage> RunStages::stages() {
+  using R = RunStages;
+  static const Stage kRows[] = {
+      {"configuration", 1, "", When::kAlways, &R::make_configuration, {}, {kConfig}},
+      {"prices", 1, "", When::kOnBuiltInPrices, &R::make_prices, {}, {kSimulatedPrices}},
+      {kTeacherStage,
+       2,
+       "train the teacher, or take it",
+       When::kAlways,
+       &R::make_teacher,
+       {},
+       {kTeacher, kTrainingCurve, kCheckpoint}},
+      {"plain student",
+       3,
+       "distil without correction, for comparison",
+       When::kUnlessLean,
+       &R::make_plain_student,
+       {kTeacher},
+       {kPlainStudent, kPlainViolations}},
+      {kProofStage,
+       4,
+       "correct while distilling, and prove",
+       When::kAlways,
+       &R::make_corrected_student,
+       {kTeacher},
+       {kStudent, kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds, kCheckpoints}},
+      {"header", 5, "export", When::kAlways, &R::make_header, {kStudent}, {kHeader}},
+      {kEvaluationStage,
+       6,
+       "evaluate on test days and report",
+       When::kAlways,
+       &R::make_evaluation,
+       {kTeacher, kPlainStudent, kStudent},
+       {kTable, kDays}},
+      {kReportStage,
+       6,
+       "",
+       When::kUnlessLean,
+       &R::make_report,
+       {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
+       {kSummary, kReport}},
+      {kFailureStage,
+       6,
+       "report where the proof failed",
+       When::kAfterFailedProof,
+       &R::make_failure_report,
+       {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
+       {kSummary, kReport}},
+  };
+  return kRows;
 }
 
-RunStages::Names RunStages::make(std::string_view name) {
-  if (name == stage_name::kConfiguration) return make_configuration();
-  if (name == stage_name::kPrices) return make_prices();
-  if (name == stage_name::kTeacher) {
-    return record_.teacher_file.empty() ? make_teacher() : take_teacher();
+const RunStages::Stage& RunStages::stage_named(std::string_view name) {
+  return *std::ranges::find(stages(), name, &Stage::name);
+}
+
+int RunStages::count() { return stages().back().number; }
+
+RunStages::Names RunStages::files() {
+  Names files{kRecord, kTimes};
+  for (const Stage& stage : stages()) {
+    for (const std::string& file : stage.outputs) {
+      if (std::ranges::find(files, file) == files.end()) files.push_back(file);
+    }
   }
-  if (name == stage_name::kPlain) return make_plain_student();
-  if (name == stage_name::kCorrected) return make_corrected_student();
-  if (name == stage_name::kHeader) return make_header();
-  if (name == stage_name::kEvaluation) return make_evaluation();
-  return name == stage_name::kReport ? make_report() : make_failure_report();
+  return files;
+}
+
+std::string RunStages::help() {
+  std::string text;
+  for (const Stage& stage : stages()) {
+    text +=
+        fmt::format("  {}  {:<26}  {}\n", stage.number, stage.name, fmt::join(stage.outputs, ", "));
+  }
+  return text;
+}
+
+void RunStages::announce(const Stage& stage) const {
+  if (*stage.text == '\0') return;
+  fmt::print(messages_, "[{}/{}] {}\n", stage.number, count(), stage.text);
+  std::fflush(messages_);
 }
 
 void RunStages::go_through(const Stage& row) {
   if (const StageRecord* done = record_.holds(std::string(row.name), row.inputs, folder_)) {
     if (done->failed) fail_the_proof();
-    if (row.name != stage_name::kConfiguration) tell(fmt::format("{}: kept", row.name));
+    if (row.make != &RunStages::make_configuration) tell(fmt::format("{}: kept", row.name));
     return;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -134,10 +199,10 @@ void RunStages::go_through(const Stage& row) {
   for (const std::string& input : row.inputs) {
     stage.inputs.emplace_back(input, file_mark(folder_.path / input));
   }
-  for (const std::string& output : make(row.name)) {
+  for (const std::string& output : (this->*row.make)()) {
     stage.outputs.emplace_back(output, file_mark(folder_.path / output));
   }
-  stage.failed = row.name == stage_name::kCorrected && unproved_;
+  stage.failed = std::exchange(unproved_, false);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const bool failed = stage.failed;
   note(std::move(stage), taken.count());
@@ -160,7 +225,7 @@ void RunStages::tidy() const {
   for (const auto& entry : fs::directory_iterator(folder_.path, error)) {
     if (is_half_written(entry.path().filename().string())) fs::remove(entry.path(), error);
   }
-  if (record_.holds(std::string(stage_name::kTeacher), {}, folder_) != nullptr)
+  if (record_.holds(std::string(kTeacherStage), {}, folder_) != nullptr)
     fs::remove(path(kCheckpoint), error);
 }
 
@@ -169,25 +234,32 @@ void RunStages::finish() {
   const bool by_month = config_.train.context == ContextKind::kMonth;
   if (by_month || record_.value(kFoldKey).empty()) warn_untrained_months(market_, by_month);
   warn_unknown_regimes("this run", market_, market_, market_.days_of(Split::kTest));
-  for (const Stage& stage : run_stages()) {
+  for (const Stage& stage : stages()) {
     if (!is_due(stage)) continue;
     announce(stage);
     go_through(stage);
-    if (stage.name == stage_name::kTeacher) tidy();  // not at the end: a failed proof ends before
+    tidy();  // not at the end: a failed proof ends before
   }
 }
 
 bool RunStages::is_due(const Stage& stage) const {
-  if (stage.name == stage_name::kPrices) return record_.prices == kSimulatedPrices;
-  const bool is_shown = stage.name == stage_name::kPlain || stage.name == stage_name::kReport;
-  if (is_shown && record_.is_lean()) return false;
-  return stage.name != stage_name::kFailureReport;  // fail_the_proof() goes there
+  switch (stage.when) {
+    case When::kAlways:
+      return true;
+    case When::kOnBuiltInPrices:
+      return record_.prices == kSimulatedPrices;
+    case When::kUnlessLean:
+      return !record_.is_lean();
+    case When::kAfterFailedProof:  // fail_the_proof() goes there
+      break;
+  }
+  return false;
 }
 
 void RunStages::report_again() {
-  const int proof = stage_named(stage_name::kCorrected).number;
-  for (const Stage& stage : run_stages()) {
-    if (stage.number > proof || stage.name == stage_name::kPrices) continue;
+  const int proof = stage_named(kProofStage).number;
+  for (const Stage& stage : stages()) {
+    if (stage.number > proof || stage.when == When::kOnBuiltInPrices) continue;
     if (record_.holds(std::string(stage.name), stage.inputs, folder_) != nullptr) continue;
     fail(
         "{}: the {} is missing or was changed since; 'bess-train run --resume --out {}' makes it "
@@ -195,11 +267,11 @@ void RunStages::report_again() {
         folder_.path.string(), stage.name, folder_.path.string());
   }
   std::erase_if(record_.stages, [](const StageRecord& done) {
-    return done.name == stage_name::kReport || done.name == stage_name::kFailureReport;
+    return done.name == kReportStage || done.name == kFailureStage;
   });
   if (record_.has_failed()) return report_the_failure();
-  go_through(stage_named(stage_name::kEvaluation));
-  go_through(stage_named(stage_name::kReport));
+  go_through(stage_named(kEvaluationStage));
+  go_through(stage_named(kReportStage));
 }
 
 std::string RunStages::summary() const { return read_file(path(kSummary)); }
@@ -214,17 +286,24 @@ const Matrix& RunStages::visited() {
   return *visited_;
 }
 
-RunStages::Names RunStages::make_configuration() const {
+RunStages::Names RunStages::make_configuration() {
   write_file(path(kConfig), format_run_config(config_));
   return {kConfig};
 }
 
-RunStages::Names RunStages::make_prices() const {
+RunStages::Names RunStages::make_prices() {
   write_minute_file(path(kSimulatedPrices), series_, built_in_market_provenance());
   return {kSimulatedPrices};
 }
 
 RunStages::Names RunStages::make_teacher() {
+  const bool is_taken = !record_.teacher_file.empty();
+  tell(is_taken ? "the teacher of " + record_.teacher_file
+                : "method " + std::string(method_name(config_.train.method)));
+  return is_taken ? take_teacher() : train_teacher_here();
+}
+
+RunStages::Names RunStages::train_teacher_here() {
   std::string identity;
   for (const auto& [name, value] : record_.identity)
     identity += fmt::format("{} {}\n", name, value);
@@ -261,7 +340,7 @@ RunStages::Names RunStages::make_teacher() {
   return {kTeacher, kTrainingCurve};
 }
 
-RunStages::Names RunStages::take_teacher() const {
+RunStages::Names RunStages::take_teacher() {
   Teacher taken = load_teacher(record_.teacher_file);
   if ((taken.outlook != nullptr) != (config_.train.context == ContextKind::kOutlook)) {
     fail("{}: {} by outlook, and this run is the other way: [train] context, --day-ahead",
@@ -325,7 +404,7 @@ void RunStages::fail_the_proof() {
   const std::string what = describe_failed_proof(
       unproved_student(), parse_proof_rounds_csv(read_file(rounds), rounds), config_.distil.method);
   if (record_.is_lean()) throw ProofFailed(what);
-  announce(stage_named(stage_name::kFailureReport));
+  announce(stage_named(kFailureStage));
   report_the_failure();
   throw ProofFailed(what +
                     fmt::format("\n  {} shows where; then start at the correction: bess-train run "
@@ -333,7 +412,7 @@ void RunStages::fail_the_proof() {
                                 path(kReport).string(), folder_.path.string()));
 }
 
-void RunStages::report_the_failure() { go_through(stage_named(stage_name::kFailureReport)); }
+void RunStages::report_the_failure() { go_through(stage_named(kFailureStage)); }
 
 /// The same page, of a student that nobody may export.
 RunStages::Names RunStages::make_failure_report() {

@@ -5,13 +5,14 @@
 
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shared/host/minute_file.h"
 #include "workstation/run/run_record.h"
 #include "workstation/run/run_report.h"
-#include "workstation/run/stage_table.h"
 #include "workstation/student/prove.h"
 
 namespace bess {
@@ -30,13 +31,31 @@ class RunStages {
   /// Of the days that the run may see.
   [[nodiscard]] const MarketSteps& market() const { return market_; }
 
- private:
   using Names = std::vector<std::string>;
+  enum class When { kAlways, kOnBuiltInPrices, kUnlessLean, kAfterFailedProof };
+  struct Stage {
+    std::string_view name;  ///< in run.json and times.json
+    int number;             ///< of those that are announced
+    const char* text;       ///< empty: not announced, it goes with the one before
+    When when;
+    Names (RunStages::*make)();  ///< the files that it wrote
+    Names inputs;                ///< by whose marks it is kept
+    Names outputs;               ///< at most; figures and their tables not named
+  };
+  /// In order. Resuming, progress, help and the list of a run's files go by these rows.
+  static std::span<const Stage> stages();
+  /// All files that a run writes, but for the figures.
+  static Names files();
+  /// The number of the last stage that is announced; the first are the prices.
+  static int count();
+  /// A line a stage: its number, its name and what it writes.
+  static std::string help();
 
+ private:
+  static const Stage& stage_named(std::string_view name);
   [[nodiscard]] bool is_due(const Stage& stage) const;
   /// Keeps what is whole, else makes it. Throws ProofFailed.
   void go_through(const Stage& stage);
-  Names make(std::string_view stage);
   /// Notes that the stage is done and took `seconds`.
   void note(StageRecord stage, double seconds);
   void announce(const Stage& stage) const;
@@ -44,10 +63,11 @@ class RunStages {
   /// Removes what was left behind half-written, and a checkpoint that has served.
   void tidy() const;
 
-  Names make_configuration() const;
-  Names make_prices() const;
+  Names make_configuration();
+  Names make_prices();
   Names make_teacher();
-  Names take_teacher() const;
+  Names train_teacher_here();
+  Names take_teacher();
   Names make_plain_student();
   Names make_corrected_student();
   [[noreturn]] void fail_the_proof();

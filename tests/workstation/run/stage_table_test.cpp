@@ -1,5 +1,5 @@
 // The table of stages against what is written about it, and against the files that a run knows.
-#include "workstation/run/stage_table.h"
+#include "workstation/run/run_stages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,14 +15,13 @@ namespace {
 TEST(StageTable, EachStageReadsWhatAnEarlierOneWrote) {
   std::set<std::string> written;
   int number = 0;
-  for (const Stage& stage : run_stages()) {
+  for (const RunStages::Stage& stage : RunStages::stages()) {
     for (const std::string& input : stage.inputs) EXPECT_TRUE(written.contains(input)) << input;
     EXPECT_GE(stage.number, number) << stage.name;
     number = stage.number;
     written.insert(stage.outputs.begin(), stage.outputs.end());
-    EXPECT_EQ(&stage_named(stage.name), &stage);
   }
-  EXPECT_EQ(stage_count(), number);
+  EXPECT_EQ(RunStages::count(), number);
 }
 
 /// The README's line that begins with the stage names each of its files.
@@ -31,8 +30,8 @@ TEST(StageTable, TheReadmeTellsWhatEachStageWrites) {
   const std::size_t begin = readme.find("| stage | writes |");
   ASSERT_NE(begin, readme.npos);
   const std::string table = readme.substr(begin, readme.find("\n\n", begin) - begin);
-  for (const Stage& stage : run_stages()) {
-    if (std::string_view(stage.name) == stage_name::kFailureReport) continue;  // the same files
+  for (const RunStages::Stage& stage : RunStages::stages()) {
+    if (stage.when == RunStages::When::kAfterFailedProof) continue;  // the same files
     std::string_view left = table;
     std::string_view row;
     while (!left.empty() && row.empty()) {
