@@ -117,7 +117,7 @@ std::string TomlTable::resolved(std::string_view path) const {
 }
 
 void TomlTable::choice(std::string_view key, int& index,
-                       std::initializer_list<std::string_view> choices) {
+                       std::span<const std::string_view> choices) {
   const std::string* found = text(key);
   if (found == nullptr) return;
   std::string names;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -45,7 +46,10 @@ class TomlTable {
     fail(key, "is too long (at most " + std::to_string(kCapacity) + " characters)");
   }
   /// Index of the key's text in `choices`.
-  void choice(std::string_view key, int& index, std::initializer_list<std::string_view> choices);
+  void choice(std::string_view key, int& index, std::span<const std::string_view> choices);
+  void choice(std::string_view key, int& index, std::initializer_list<std::string_view> choices) {
+    choice(key, index, std::span(choices.begin(), choices.size()));
+  }
   /// What the key holds; null when it is absent, or is something else, which is an error.
   const std::string* text(std::string_view key);
   /// Text without control characters.

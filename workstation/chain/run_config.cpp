@@ -2,36 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <functional>
 #include <vector>
 
 #include "shared/battery_keys.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
-#include "shared/host/toml_document.h"
+#include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/config_plausibility.h"
 
 namespace bess {
 namespace {
-
-/// Where a value came from, for messages.
-struct Place {
-  const TomlValue& value;
-  std::string key;
-
-  [[noreturn]] void complain(const std::string& what) const {
-    fail("{}:{}: {}: {}", *value.file, value.line, key, what);
-  }
-  /// What is held, which must be a T.
-  template <typename T>
-  [[nodiscard]] const T& expect(const char* what) const {
-    const T* held = value.as<T>();
-    if (held == nullptr) complain(fmt::format("expected {}", what));
-    return *held;
-  }
-};
 
 using enum KeyUse;
 
@@ -40,7 +22,7 @@ struct Key {
   std::string name;
   KeyUse use;
   std::string comment;
-  std::function<void(const Place&)> set;
+  std::function<void(TomlTable&)> read;
   std::function<std::string()> get;
 };
 
@@ -56,50 +38,38 @@ class KeyList {
   void number(const char* name, KeyUse use, double& field, double low, double high,
               const char* comment) {
     keys_.push_back({section_, name, use, fmt::format("{} ({:g} .. {:g})", comment, low, high),
-                     [&field, low, high](const Place& place) {
-                       const auto value = place.value.number();
-                       if (!value) place.complain("expected a number");
-                       if (!(*value >= low && *value <= high)) {
-                         place.complain(fmt::format("{:g} is out of range: use {:g} to {:g}",
-                                                    *value, low, high));
-                       }
-                       field = *value;
-                     },
+                     [=, &field](TomlTable& table) { table.number(name, field, low, high); },
                      [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0: never -0
   }
   template <typename Integer>
   void integer(const char* name, KeyUse use, Integer& field, std::int64_t low, std::int64_t high,
                const char* comment) {
     keys_.push_back({section_, name, use, fmt::format("{} ({} .. {})", comment, low, high),
-                     [&field, low, high](const Place& place) {
-                       const auto value = place.expect<std::int64_t>("a whole number");
-                       if (value < low || value > high) {
-                         place.complain(
-                             fmt::format("{} is out of range: use {} to {}", value, low, high));
-                       }
-                       field = static_cast<Integer>(value);
+                     [=, &field](TomlTable& table) {
+                       auto wide = static_cast<std::int64_t>(field);
+                       table.integer(name, wide, low, high);
+                       field = static_cast<Integer>(wide);
                      },
                      [&field] { return fmt::format("{}", field); }});
   }
   void boolean(const char* name, KeyUse use, bool& field, const char* comment) {
     keys_.push_back({section_, name, use, comment,
-                     [&field](const Place& place) { field = place.expect<bool>("true or false"); },
+                     [name, &field](TomlTable& table) { table.boolean(name, field); },
                      [&field] { return std::string(field ? "true" : "false"); }});
   }
   template <typename Enum>
-  void choice(const char* name, KeyUse use, Enum& field, std::vector<std::string> choices,
-              const char* comment) {
-    keys_.push_back(
-        {section_, name, use, fmt::format("{} ({})", comment, fmt::join(choices, " | ")),
-         [&field, choices](const Place& place) {
-           const auto* text = place.value.as<std::string>();
-           const auto found = text == nullptr ? choices.end() : std::ranges::find(choices, *text);
-           if (found == choices.end()) {
-             place.complain(fmt::format("use one of \"{}\"", fmt::join(choices, "\", \"")));
-           }
-           field = static_cast<Enum>(found - choices.begin());
-         },
-         [&field, choices] { return '"' + choices[static_cast<std::size_t>(field)] + '"'; }});
+  void choice(const char* name, KeyUse use, Enum& field,
+              std::initializer_list<std::string_view> choices, const char* comment) {
+    const std::vector<std::string_view> names(choices);
+    keys_.push_back({section_, name, use, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
+                     [=, &field](TomlTable& table) {
+                       int index = static_cast<int>(field);
+                       table.choice(name, index, names);
+                       field = static_cast<Enum>(index);
+                     },
+                     [names, &field] {
+                       return fmt::format("\"{}\"", names[static_cast<std::size_t>(field)]);
+                     }});
   }
 
   void list(RunConfig& c);
@@ -248,44 +218,18 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
 }
 
-std::vector<std::string> section_names(const std::vector<Key>& keys) {
-  std::vector<std::string> names;
-  for (const Key& key : keys) names.push_back(key.section);
-  return names;
-}
-
-std::vector<std::string> key_names(const std::vector<Key>& keys, std::string_view section) {
-  std::vector<std::string> names;
-  for (const Key& key : keys) {
-    if (key.section == section) names.push_back(key.name);
-  }
-  return names;
-}
-
+/// Sections and keys of the document, each of which must be one of `keys`. Throws UserError.
 void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
-  for (const auto& [section, table] : *document.as<TomlMembers>()) {
-    const auto* members = table.as<TomlMembers>();
-    const bool known = std::ranges::find(keys, section, &Key::section) != keys.end();
-    if (members == nullptr && known) {
-      fail("{}:{}: \"{}\" is a section: write [{}] on a line of its own, once, and its keys below",
-           *table.file, table.line, section, section);
-    }
-    if (!known) {
-      fail("{}:{}: unknown section or key \"{}\"{}; 'bess-train config' lists all", *table.file,
-           table.line, one_line(section), did_you_mean(section, section_names(keys)));
-    }
-    for (const auto& [name, value] : *members) {
-      const auto is_it = [&section = section, &name = name](const Key& key) {
-        return key.section == section && key.name == name;
-      };
-      const auto found = std::ranges::find_if(keys, is_it);
-      if (found == keys.end()) {
-        fail("{}:{}: unknown key \"{}\" in [{}]{}; 'bess-train config' lists all", *value.file,
-             value.line, one_line(name), section, did_you_mean(name, key_names(keys, section)));
-      }
-      found->set({value, fmt::format("[{}] {}", section, name)});
-    }
+  std::string error;
+  TomlTable root(&document, *document.file, "", error);
+  for (auto key = keys.begin(); key != keys.end();) {
+    const std::string& section = key->section;
+    TomlTable table(root.table(section), *document.file, "[" + section + "]", error);
+    for (; key != keys.end() && key->section == section; ++key) key->read(table);
+    table.finish();
   }
+  root.finish();
+  if (!error.empty()) fail("{}; 'bess-train config' lists all keys", error);
 }
 
 }  // namespace
