@@ -30,8 +30,8 @@ LocalMinute local_minute_of(std::int64_t utc_s) {
 std::int64_t utc_from_civil(const CivilTime& t) {
   using namespace std::chrono;
   const sys_days date = year{t.year} / t.month / t.day;
-  return std::int64_t{date.time_since_epoch().count()} * 86'400 + t.hour * 3'600 + t.minute * 60 +
-         t.second;
+  return std::int64_t{date.time_since_epoch().count()} * kSecondsPerDay + t.hour * 3'600 +
+         t.minute * 60 + t.second;
 }
 
 std::int64_t utc_from_local(const CivilTime& wall) {
@@ -47,9 +47,9 @@ std::int64_t utc_from_local(const CivilTime& wall) {
            utc_s / 60 * 60;
   };
   // The offset of the day before holds up to a change of clocks, that of the day after from it on.
-  const std::int64_t before = wall_s - shown_ahead_s(wall_s - 86'400);
+  const std::int64_t before = wall_s - shown_ahead_s(wall_s - kSecondsPerDay);
   if (before + shown_ahead_s(before) == wall_s) return before;
-  const std::int64_t after = wall_s - shown_ahead_s(wall_s + 86'400);
+  const std::int64_t after = wall_s - shown_ahead_s(wall_s + kSecondsPerDay);
   return after + shown_ahead_s(after) == wall_s ? after : before;
 }
 

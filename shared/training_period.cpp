@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "shared/local_text.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 std::int64_t day_number(std::string_view date) {
   CivilTime t{};
   detail::take_date(date, t);
-  return utc_from_civil(t) / 86'400;
+  return utc_from_civil(t) / kSecondsPerDay;
 }
 
 }  // namespace

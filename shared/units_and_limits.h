@@ -12,6 +12,7 @@ inline constexpr int kMinutesPerStep = 2;  ///< one decision every 2 minutes
 inline constexpr int kSecondsPerStep = 60 * kMinutesPerStep;
 inline constexpr int kMinutesPerQuarterHour = 15;
 inline constexpr int kSecondsPerQuarterHour = 60 * kMinutesPerQuarterHour;
+inline constexpr std::int64_t kSecondsPerDay = 86'400;  ///< without a clock change
 inline constexpr int kMinutesPerDay = 24 * 60;
 inline constexpr int kStepsPerDay = kMinutesPerDay / kMinutesPerStep;
 inline constexpr double kHoursPerStep = kMinutesPerStep / 60.0;

@@ -12,6 +12,7 @@
 #include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -73,7 +74,7 @@ class DeviceTime {
     while (clock_ns(CLOCK_MONOTONIC) < end_ns) sleep_until_monotonic(end_ns);
   }
   [[nodiscard]] std::int64_t utc_day() const {
-    return clock_.now_utc_ns() / (86'400 * kNanosecondsPerSecond);
+    return clock_.now_utc_ns() / (kSecondsPerDay * kNanosecondsPerSecond);
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "shared/local_time.h"
 #include "shared/price_level.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -16,7 +17,7 @@ enum class FullChargeWish : std::uint8_t { kNone, kNoDischarge, kCharge };
 /// Days since 1970 of a local date.
 inline std::int32_t local_day_number(const LocalMinute& now) {
   const std::int64_t midnight_s = utc_from_civil({now.year, now.month, now.day, 0, 0, 0});
-  return static_cast<std::int32_t>(midnight_s / 86'400);
+  return static_cast<std::int32_t>(midnight_s / kSecondsPerDay);
 }
 
 /// What an earlier run's newest record tells: the local day of the last full charge; 0 = no record.

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <cstdint>
 
+#include "shared/units_and_limits.h"
+
 namespace bess {
 
 inline constexpr std::int64_t kHoldSecondsMin = 120;  ///< shorter ones could fall between two ticks
-inline constexpr std::int64_t kHoldSecondsMax = 7 * 86'400;
+inline constexpr std::int64_t kHoldSecondsMax = 7 * kSecondsPerDay;
 
 /// What the file said when it was last read. Not wanted, or unreadable: no power and no end.
 struct Hold {

@@ -22,7 +22,6 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kDayS = 86'400;
 constexpr std::size_t kAnswerBytesMax = 16 * 1024 * 1024;  // 100 days, with every field: 3 MB
 
 void say(JournalLevel level, const std::string& text) {
@@ -161,7 +160,8 @@ void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole) {
   // Behind the next midnight, when a day more may be there; and not at midnight, as everybody.
   constexpr std::int64_t kBehindMidnightS = 2 * 3'600;
   const std::int64_t tomorrow_utc_s =
-      midnight_before(midnight_before(now_utc_s) + kDayS + kDayS / 4) + kBehindMidnightS;
+      midnight_before(midnight_before(now_utc_s) + kSecondsPerDay + kSecondsPerDay / 4) +
+      kBehindMidnightS;
   next_utc_s_ = is_whole ? tomorrow_utc_s : now_utc_s + pause_s_;
 }
 
@@ -172,7 +172,7 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   const std::string loss = prices.read(source.file);
   if (!loss.empty()) say(JournalLevel::kWarning, loss);
   const std::int64_t until_utc_s = midnight_before(now_utc_s);
-  const std::int64_t oldest_utc_s = until_utc_s - source.days * kDayS;
+  const std::int64_t oldest_utc_s = until_utc_s - source.days * kSecondsPerDay;
   const std::string url = settled_url(source, prices.first_open(oldest_utc_s), until_utc_s);
   const std::string text = ask(source, url, result.trouble, stop);
   if (!result.trouble.empty()) return result;
@@ -181,7 +181,7 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   result.fetched = static_cast<int>(fetched.size());
   const std::vector<SettledQuarter> before = prices.quarters();
   prices.put(fetched);
-  prices.drop_before(oldest_utc_s - (kSettledDaysMax - source.days) * kDayS);
+  prices.drop_before(oldest_utc_s - (kSettledDaysMax - source.days) * kSecondsPerDay);
   result.is_whole = prices.find(until_utc_s - kQuarterHourS) != nullptr;
   if (prices.quarters() != before) result.trouble = keep(source, prices);
   return result;

@@ -16,7 +16,7 @@ constexpr std::int64_t kUnansweredOrdersMax = 5;
 constexpr std::int64_t kWeakAnswersMax = 1;
 /// An hour: a battery that is too cold or too warm may rest as long.
 constexpr std::int64_t kLockedReadingsMax = 30;
-constexpr std::int64_t kUnplannedSMax = 86'400;
+constexpr std::int64_t kUnplannedSMax = kSecondsPerDay;
 /// A trip is four times that (supervision/energy_balance.h).
 constexpr std::int64_t kWrongEnergyE6Max = 50'000;
 

@@ -5,6 +5,7 @@
 #include "edge/account/settled_prices.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -76,7 +77,7 @@ std::vector<Trouble> troubles_of(const ControllerStatus& status) {
 }
 
 std::string settled_trouble(const std::string& file, std::int64_t now_utc_s) {
-  constexpr std::int64_t kLateS = 4 * 86'400;  // a day is published on the next
+  constexpr std::int64_t kLateS = 4 * kSecondsPerDay;  // a day is published on the next
   constexpr const char* kMend = ": bess-prices --settle says why";
   SettledPrices prices;
   const std::string loss = prices.read(file);

@@ -9,6 +9,7 @@
 #include "edge/companion/numeric_address.h"
 #include "edge/log/battery_name.h"
 #include "edge/settings/retired_keys.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -62,7 +63,7 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
 void read_notify(TomlTable table, NotifySettings& settings) {
   std::string folder = "notify";
   table.integer("every_s", settings.every_s, 1, 3'600);
-  table.integer("after_s", settings.after_s, 0, 86'400);
+  table.integer("after_s", settings.after_s, 0, kSecondsPerDay);
   table.boolean("daily", settings.daily);
   table.line("folder", folder);
   table.line("program", settings.program);

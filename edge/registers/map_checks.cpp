@@ -200,7 +200,7 @@ void check_saved(TomlTable& root, const RegisterMap& map) {
   }
 }
 
-void check_models(TomlTable& root, const RegisterMap& map) {
+void check_addresses(TomlTable& root, const RegisterMap& map) {
   for (int i = 0; i < map.points.size(); ++i) {
     const RegisterPoint& p = map.points[i];
     const std::int64_t end = std::int64_t{p.address} + p.register_count();
@@ -214,7 +214,7 @@ void check_meter(TomlTable& root, RegisterMap& map) {
     root.fail("point",
               "\"grid_power\" is missing: it is what a meter is for (or grid_power in [state])");
   }
-  check_models(root, map);
+  check_addresses(root, map);
 }
 
 /// Flash that has a budget must still be able to release when the budget is used up.
@@ -283,8 +283,9 @@ void check_map(TomlTable& root, RegisterMap& map) {
   complete_power(map, "grid_power", map.grid_power);
   complete_measure(map);
   if (map.is_meter) return check_meter(root, map);
-  for (const auto check : {check_roles, check_optional, check_watchdog, check_saved, check_models,
-                           check_reserve, prove_watchdog_duration, prove_power_range}) {
+  for (const auto check :
+       {check_roles, check_optional, check_watchdog, check_saved, check_addresses, check_reserve,
+        prove_watchdog_duration, prove_power_range}) {
     if (root.ok()) check(root, map);
   }
 }

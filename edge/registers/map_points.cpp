@@ -1,5 +1,6 @@
 // [map], [unit_groups], [sunspec] and [[point]].
 #include "edge/registers/map_reader.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -198,7 +199,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   read_type(table, defaults, point);
   read_scale(table, map, point);
   table.choice("storage", storage, {"volatile", "eeprom"});
-  table.integer("max_age_s", point.max_age_s, 0, 86'400);
+  table.integer("max_age_s", point.max_age_s, 0, kSecondsPerDay);
   table.boolean("optional", point.optional);
   table.boolean("private", point.is_private);
   point.eeprom = storage == 1;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "edge/registers/map_reader.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -121,7 +122,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
     table.require("duration_s");
     table.require("refresh_s");
   }
-  table.integer("duration_s", map.watchdog.duration_s, 2, 86'400);
+  table.integer("duration_s", map.watchdog.duration_s, 2, kSecondsPerDay);
   table.integer("refresh_s", map.watchdog.refresh_s, 1, 43'200);
   table.boolean("expiry_visible", map.watchdog.expiry_visible);
   table.text("remaining", remaining);

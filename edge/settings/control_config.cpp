@@ -212,7 +212,7 @@ void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& 
   table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
   table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
   table.integer("stand_in_s_max", guard.stand_in_s_max, 0, 3'600);
-  table.integer("frozen_price_s_max", control.frozen_price.stop_s, 0, 86'400);
+  table.integer("frozen_price_s_max", control.frozen_price.stop_s, 0, kSecondsPerDay);
   table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
   table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "edge/control/tick.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -36,7 +37,7 @@ constexpr std::int64_t kRatioStandsS = 1'200;  ///< without a step that shows it
 
 constexpr std::int64_t kFirstPauseS = 600;
 constexpr std::int64_t kLongestPauseS = 6 * 3'600;
-constexpr std::int64_t kForgetPauseS = 86'400;
+constexpr std::int64_t kForgetPauseS = kSecondsPerDay;
 
 constexpr std::int64_t magnitude(std::int64_t power_w) { return power_w < 0 ? -power_w : power_w; }
 

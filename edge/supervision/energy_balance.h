@@ -21,6 +21,7 @@
 #include <cstdint>
 
 #include "edge/supervision/response.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -129,7 +130,8 @@ class WrongEnergy {
     const std::int64_t known_s = judged_s_ == 0 ? kKnownS : std::min(seconds, kKnownS);
     const std::int64_t wrong_ws =
         std::min(wrong_w, kWattsMax) * std::min<std::int64_t>(known_s, now.order_age_s);
-    const std::int64_t forgiven_e9 = kForgivenE6PerDay * 1'000 * std::min(seconds, kDayS) / kDayS;
+    const std::int64_t forgiven_e9 =
+        kForgivenE6PerDay * 1'000 * std::min(seconds, kSecondsPerDay) / kSecondsPerDay;
     const std::int64_t wrong_e9 = wrong_ws * 1'000'000 / capacity_wh * 10 / 36;
     sum_e9_ = std::clamp<std::int64_t>(sum_e9_ + wrong_e9 - forgiven_e9, 0, kMostE9);
     judged_s_ = now.steady_s;
@@ -144,7 +146,6 @@ class WrongEnergy {
 
  private:
   static constexpr std::int64_t kMostE9 = 2 * kFoundE6 * 1'000;
-  static constexpr std::int64_t kDayS = 86'400;
   static constexpr std::int64_t kWattsMax = 100'000'000;
   /// Of longer ago a reading says nothing: its watchdog may have ended the order meanwhile.
   static constexpr std::int64_t kKnownS = 300;

@@ -13,6 +13,7 @@
 #include "edge/loop/control_settings.h"
 #include "edge/why/margins.h"
 #include "shared/host/json.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -21,9 +22,9 @@ namespace bess {
 /// Seconds of whole numbers, each with s, m, h or d behind it; false when it is none, 0, or more
 /// than a week.
 inline bool parse_duration(std::string_view text, std::int64_t& seconds) {
-  constexpr std::int64_t kWeekS = 7 * 86'400;
+  constexpr std::int64_t kWeekS = 7 * kSecondsPerDay;
   constexpr std::string_view kUnits = "smhd";
-  constexpr std::int64_t kUnitSeconds[] = {1, 60, 3'600, 86'400};
+  constexpr std::int64_t kUnitSeconds[] = {1, 60, 3'600, kSecondsPerDay};
   seconds = 0;
   while (!text.empty()) {
     std::int32_t count = 0;

@@ -8,6 +8,7 @@
 
 #include "edge/why/explanation.h"
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -25,7 +26,7 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   for (const std::string_view day : {"today ", "yesterday "}) {
     if (!text.starts_with(day)) continue;
     std::string_view clock = text.substr(day.size());
-    const LocalMinute date = local_minute_of(now_utc_s - (day[0] == 'y' ? 86'400 : 0));
+    const LocalMinute date = local_minute_of(now_utc_s - (day[0] == 'y' ? kSecondsPerDay : 0));
     wall.year = date.year;
     wall.month = date.month;
     wall.day = date.day;
@@ -35,7 +36,7 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   }
   std::string_view clock = text;
   if (detail::take_clock(clock, wall) && clock.empty()) {
-    for (const std::int64_t day_of : {now_utc_s, now_utc_s - 86'400}) {
+    for (const std::int64_t day_of : {now_utc_s, now_utc_s - kSecondsPerDay}) {
       const LocalMinute day = local_minute_of(day_of);
       wall.year = day.year;
       wall.month = day.month;

@@ -7,12 +7,11 @@
 #include "edge/why/explanation.h"
 #include "shared/host/text.h"
 #include "shared/local_text.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
-
-constexpr std::int64_t kAhead_s = 86'400;
 
 Action decide_at(const LatticeState& state, std::int32_t price_centi,
                  const PriceThresholds& thresholds) {
@@ -37,7 +36,7 @@ std::vector<ReserveChange> changes_ahead(const ReservePlan& plan, std::int64_t n
   std::vector<ReserveChange> changes;
   std::int16_t before_e4 = reserve_soc_e4_at(plan, local_minute_of(now_utc_s));
   const std::int64_t first_s = (now_utc_s / 60 + 1) * 60;
-  for (std::int64_t utc_s = first_s; utc_s <= now_utc_s + kAhead_s; utc_s += 60) {
+  for (std::int64_t utc_s = first_s; utc_s <= now_utc_s + kSecondsPerDay; utc_s += 60) {
     const std::int16_t soc_e4 = reserve_soc_e4_at(plan, local_minute_of(utc_s));
     if (soc_e4 != before_e4) changes.push_back({utc_s, soc_e4});
     before_e4 = soc_e4;

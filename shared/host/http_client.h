@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/units_and_limits.h"
+
 namespace bess {
 
 struct HttpOutcome {
@@ -61,7 +63,7 @@ HttpOutcome http_request(const HttpRequest& request, const StopRequested& stop_r
 std::string url_encoded(const std::string& text);
 
 /// What a server may ask for at most: more is a mistake of its clock or of its numbers.
-inline constexpr double kWaitMax_s = 86'400;
+inline constexpr double kWaitMax_s = kSecondsPerDay;
 
 /// "7 s", "120 minutes", "a day or longer".
 std::string describe_wait(double wait_s);

@@ -3,6 +3,7 @@
 #include "shared/crc32.h"
 #include "shared/fixed_point.h"
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -16,7 +17,6 @@ constexpr std::int32_t kCentiPerTenth = 10;
 constexpr std::int32_t kBreakEvenMaxTenths = 30'000;
 /// A full step fits from these points of the grid on, both ways, at any usual power.
 constexpr int kEndPoints = 2;
-constexpr std::int64_t kSecondsPerDay = 86'400;
 
 constexpr std::int64_t shifted(std::int64_t value, int bits) {
   return (value + (std::int64_t{1} << (bits - 1))) >> bits;

@@ -7,13 +7,14 @@
 #include "edge/registers/codec.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
 
 constexpr double kRoomTemperatureDeciC = 200;
 constexpr double kHotDeciC = 700;
-constexpr std::int64_t kForEverS = 100LL * 365 * 86'400;
+constexpr std::int64_t kForEverS = 100LL * 365 * kSecondsPerDay;
 constexpr int kCommonModelRegisters = 66;
 
 /// What a model's header says: registers after id and length.

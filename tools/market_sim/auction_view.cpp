@@ -12,7 +12,6 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kHour_s = 3'600;
-constexpr std::int64_t kDay_s = 24 * kHour_s;
 
 /// When the wall clock shows this minute, on the local day that holds the instant.
 std::int64_t local_at(std::int64_t utc_s, int minute) {
@@ -80,7 +79,8 @@ AuctionFault AuctionView::fault_of(std::int64_t published_utc_s, std::int64_t no
   if (at_s < settings_.from_s || at_s >= settings_.to_s) return AuctionFault::kNone;
   const auto from_utc_s = settings_.start_utc_s + static_cast<std::int64_t>(settings_.from_s);
   const std::int64_t days =  // rounded: one with a change of clocks is an hour longer or shorter
-      (local_at(published_utc_s, 0) - local_at(from_utc_s, 0) + kDay_s / 2) / kDay_s;
+      (local_at(published_utc_s, 0) - local_at(from_utc_s, 0) + kSecondsPerDay / 2) /
+      kSecondsPerDay;
   if ((days + 1) % settings_.every != 0) return AuctionFault::kNone;
   constexpr std::int64_t kCount = std::ssize(kAuctionFaultNames) - 2;  // without none and all
   const AuctionFault fault = settings_.fault == AuctionFault::kAll
@@ -101,10 +101,10 @@ void AuctionView::add(AuctionFault fault, AuctionRow row, bool is_noon,
     return;  // repeated in the file alone
   }
   if (fault == AuctionFault::kYesterday) {
-    row.eur_per_mwh = price_at(row.utc_s - kDay_s, row.eur_per_mwh);
+    row.eur_per_mwh = price_at(row.utc_s - kSecondsPerDay, row.eur_per_mwh);
   }
   if (fault == AuctionFault::kShiftedHour) row.utc_s += kHour_s;
-  if (fault == AuctionFault::kShiftedDay) row.utc_s += kDay_s;
+  if (fault == AuctionFault::kShiftedDay) row.utc_s += kSecondsPerDay;
   if (fault == AuctionFault::kOutOfRange && is_noon) row.eur_per_mwh = 150'000;
   published.push_back(row);
   row.eur_per_mwh += 50;
@@ -117,12 +117,12 @@ void AuctionView::add_day(std::int64_t midnight_utc_s, std::int64_t now_utc_s,
   const bool is_noted = row != rows_.end() && row->published_utc_s != 0;
   const std::int64_t came_utc_s =
       is_noted ? row->published_utc_s
-               : local_at(midnight_utc_s - kDay_s / 2, settings_.published_min);
+               : local_at(midnight_utc_s - kSecondsPerDay / 2, settings_.published_min);
   if (came_utc_s > now_utc_s) return;
   const AuctionFault fault = fault_of(came_utc_s, now_utc_s);
   if (fault != AuctionFault::kNone) answer.fault = fault;
   if (fault == AuctionFault::kLate || fault == AuctionFault::kMissing) return;
-  const std::int64_t noon_utc_s = midnight_utc_s + kDay_s / 2;
+  const std::int64_t noon_utc_s = midnight_utc_s + kSecondsPerDay / 2;
   const std::int64_t end_utc_s =
       fault == AuctionFault::kHalf ? noon_utc_s : midnight_after(midnight_utc_s);
   for (; row != rows_.end() && row->utc_s < end_utc_s; ++row) {

@@ -8,12 +8,12 @@
 #include "shared/host/json.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
 
 constexpr std::int64_t kQuarterHourS = 900;
-constexpr std::int64_t kDayS = 86'400;
 
 std::string offset_time(std::int64_t utc_s) {
   const CivilTime t = civil_from_utc(utc_s);
@@ -33,9 +33,9 @@ std::pair<std::size_t, std::size_t> MarketView::window(Dataset dataset,
         std::clamp<std::int64_t>(minute, 0, static_cast<std::int64_t>(prices_.size())));
   };
   if (dataset == Dataset::kMinutesOfPastDays) {
-    return {0, first_at_or_after((published_s + 60) / kDayS * kDayS)};
+    return {0, first_at_or_after((published_s + 60) / kSecondsPerDay * kSecondsPerDay)};
   }
-  return {first_at_or_after(published_s + 1 - kDayS), first_at_or_after(published_s + 1)};
+  return {first_at_or_after(published_s + 1 - kSecondsPerDay), first_at_or_after(published_s + 1)};
 }
 
 std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,

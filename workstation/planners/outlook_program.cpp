@@ -10,6 +10,7 @@
 #include "shared/exchange_cost.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 #include "workstation/base/in_parallel.h"
 #include "workstation/planners/stochastic_program.h"
 
@@ -35,7 +36,7 @@ void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days
 std::int64_t midnight_utc_s(std::int64_t utc_s, int days_later) {
   const LocalMinute local = local_minute_of(utc_s);
   const std::int64_t day_s = utc_from_civil({local.year, local.month, local.day, 0, 0, 0});
-  return utc_from_local(civil_from_utc(day_s + std::int64_t{days_later} * 86'400));
+  return utc_from_local(civil_from_utc(day_s + std::int64_t{days_later} * kSecondsPerDay));
 }
 
 int quarter_hour_of(std::int64_t utc_s) { return local_minute_of(utc_s).quarter_hour; }

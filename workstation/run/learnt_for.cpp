@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "shared/training_period.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/market/series/imbalance_price.h"
@@ -82,7 +83,6 @@ std::string unknown_regimes(const Entries& there, const MarketSteps& market,
 }
 
 std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
-  constexpr std::int64_t kDay_s = 86'400;
   const auto date = [](std::int64_t utc_s) { return local_date_text(utc_s); };
   const auto newest = date(series.utc_s(series.size()) - 1);
   const auto age = training_age_text({newest.view(), newest.view()}, date(now_utc_s).view());
@@ -90,8 +90,8 @@ std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
   return fmt::format(
       "the newest day of these prices, {}, was {}; newer ones: bess-train prices fetch --from {} "
       "--to {} --out FILE, then run --prices FILE",
-      newest.view(), age.view(), date(now_utc_s - 365 * kDay_s).view(),
-      date(now_utc_s - kDay_s).view());
+      newest.view(), age.view(), date(now_utc_s - 365 * kSecondsPerDay).view(),
+      date(now_utc_s - kSecondsPerDay).view());
 }
 
 void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& here,

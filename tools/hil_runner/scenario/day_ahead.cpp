@@ -12,12 +12,11 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kDayS = 86'400;
-
 double made_up_day_ahead(std::int64_t utc_s) {
   const LocalMinute local = local_minute_of(utc_s);
   const int hour = local.minute_of_day / 60;
-  const std::int64_t day = utc_from_civil({local.year, local.month, local.day, 0, 0, 0}) / kDayS;
+  const std::int64_t day =
+      utc_from_civil({local.year, local.month, local.day, 0, 0, 0}) / kSecondsPerDay;
   const double of_hour = hour >= 18 && hour < 21   ? 110
                          : hour >= 11 && hour < 16 ? -70
                          : hour >= 7 && hour < 10  ? 60
@@ -56,8 +55,8 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
 std::string day_ahead_csv(const Scenario& scenario) {
   if (!scenario.day_ahead_file.empty()) return read_file(scenario.day_ahead_file);
   std::string csv = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
-  const LocalMinute first = local_minute_of(scenario.start_utc_s - kDayS);
-  const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kDayS;
+  const LocalMinute first = local_minute_of(scenario.start_utc_s - kSecondsPerDay);
+  const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kSecondsPerDay;
   for (std::int64_t t = utc_from_local({first.year, first.month, first.day, 0, 0, 0});
        t < end_utc_s; t += kSecondsPerQuarterHour) {
     csv += fmt::format("{},{:.2f},15,\n", utc_text(t).view(), made_up_day_ahead(t));

@@ -114,8 +114,8 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   fault.schedule.to_s = 60 * window.to_min;
   table.integer("every", fault.schedule.every, 1, 1'000'000);
   read_decimal(table, "probability", fault.schedule.probability, 0, 1);
-  read_decimal(table, "on_s", fault.schedule.on_s, 1, 86'400);
-  read_decimal(table, "off_s", fault.schedule.off_s, 1, 86'400);
+  read_decimal(table, "on_s", fault.schedule.on_s, 1, kSecondsPerDay);
+  read_decimal(table, "off_s", fault.schedule.off_s, 1, kSecondsPerDay);
   if (table.ok() && (fault.schedule.on_s > 0) != (fault.schedule.off_s > 0)) {
     table.fail(fault.schedule.on_s > 0 ? "on_s" : "off_s",
                "comes with the other of on_s and off_s");
@@ -123,7 +123,7 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
   fault.schedule.seed = static_cast<std::uint64_t>(seed);
-  table.integer("period_s", fault.schedule.period_s, 1, 86'400);
+  table.integer("period_s", fault.schedule.period_s, 1, kSecondsPerDay);
   table.integer("late_ms", fault.late_ms, 1, 60'000);
   table.integer("drip_ms", fault.drip_ms, 1, 60'000);
   table.integer("exception_code", fault.exception_code, 1, 255);

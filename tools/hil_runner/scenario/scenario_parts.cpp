@@ -104,8 +104,8 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
   schedule.every = 1;
   schedule.from_s = 60 * window.from_min;
   schedule.to_s = 60 * window.to_min;
-  read_decimal(table, "on_s", schedule.on_s, 1, 86'400);
-  read_decimal(table, "off_s", schedule.off_s, 1, 86'400);
+  read_decimal(table, "on_s", schedule.on_s, 1, kSecondsPerDay);
+  read_decimal(table, "off_s", schedule.off_s, 1, kSecondsPerDay);
   if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {
     table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "comes with the other of on_s and off_s");
   }
@@ -162,7 +162,7 @@ void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
   constexpr std::int64_t kPowerWMax = 100'000'000;
   if (event.does == kClockStep) {
     table.require("seconds");
-    read_decimal(table, "seconds", event.seconds, -86'400, 86'400);
+    read_decimal(table, "seconds", event.seconds, -kSecondsPerDay, kSecondsPerDay);
     if (table.ok() && event.seconds == 0) table.fail("seconds", "must not be 0");
   } else if (event.does == kHold) {
     table.require("power_w");

@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "workstation/base/progress.h"
 #include "workstation/market/feed/elia_window.h"
@@ -76,7 +77,7 @@ std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_
     const LocalDate until = window_end(from, end, today);
     const DatasetPair datasets = datasets_of(from, today);
     const std::int64_t until_utc_s = local_midnight_utc_s(until);
-    const bool settles_later = until_utc_s > now_utc_s - kFillingDays * 86'400;
+    const bool settles_later = until_utc_s > now_utc_s - kFillingDays * kSecondsPerDay;
     for (const char* dataset : {datasets.minutes, datasets.quarter_hours}) {
       windows.push_back({dataset, local_midnight_utc_s(from), until_utc_s, settles_later});
     }

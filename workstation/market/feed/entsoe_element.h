@@ -14,13 +14,14 @@
 #include "shared/host/plain_text.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
 
 inline constexpr std::int64_t kEntsoePeriodSecondsMax =
-    366LL * 86'400;  ///< the platform answers a year at most
+    366LL * kSecondsPerDay;  ///< the platform answers a year at most
 
 struct EntsoeSource {
   std::string_view text;

@@ -47,7 +47,7 @@ std::vector<Finding> Overlap::findings() const {
 namespace {
 
 /// A series is dense, so a stray date must not ask for centuries of memory.
-constexpr std::int64_t kSpanSecondsMax = 40LL * 366 * 86'400;
+constexpr std::int64_t kSpanSecondsMax = 40LL * 366 * kSecondsPerDay;
 
 /// Sorts by time, stable, so that of equal times the one read last comes last.
 template <typename Row, typename Price>

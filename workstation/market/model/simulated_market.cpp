@@ -7,6 +7,7 @@
 #include <span>
 
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 #include "workstation/base/random.h"
 #include "workstation/market/model/minute_path.h"
 #include "workstation/market/series/imbalance_price.h"
@@ -14,8 +15,6 @@
 namespace bess {
 
 namespace {
-
-constexpr std::int64_t kSecondsPerDay = 86'400;
 
 double profile_at(const HourlyProfile& profile, double hour) {
   const double position = hour - 0.5 < 0 ? hour + 23.5 : hour - 0.5;

@@ -5,14 +5,11 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
-namespace {
-
-constexpr std::int64_t kSecondsPerDay = 86'400;
-
-}  // namespace
+namespace {}  // namespace
 
 LocalDate parse_local_date(std::string_view text, std::string_view what) {
   std::int64_t utc_s = 0;

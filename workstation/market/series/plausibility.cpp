@@ -466,7 +466,8 @@ class DayAheadJudge {
     const std::int64_t into_day_s =
         series_.start_utc_s - local_midnight_utc_s(local_date_of(series_.start_utc_s));
     const auto before =
-        static_cast<std::size_t>((86'400 - into_day_s) / kSecondsPerQuarterHour) % kDayOfPrices;
+        static_cast<std::size_t>((kSecondsPerDay - into_day_s) / kSecondsPerQuarterHour) %
+        kDayOfPrices;
     for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series_.size(); ++q) {
       const bool midnight = local_minute_of(series_.utc_s(q)).minute_of_day == 0;
       if (!midnight || !repeats_day_before(q)) continue;
@@ -498,7 +499,7 @@ SharedPrices compare(const DayAheadSeries& day_ahead, const MinuteSeries& settle
   double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
   for (std::size_t q = 0; q < day_ahead.size(); ++q) {
     const double expected = day_ahead.eur_per_mwh[q];
-    const std::int64_t utc_s = day_ahead.utc_s(q) + std::int64_t{days_later} * 86'400;
+    const std::int64_t utc_s = day_ahead.utc_s(q) + std::int64_t{days_later} * kSecondsPerDay;
     const std::int64_t minute = (utc_s - settled.start_utc_s) / 60;
     if (!is_published(expected) || utc_s < settled.start_utc_s ||
         minute >= static_cast<std::int64_t>(settled.size())) {
