@@ -11,6 +11,7 @@
 #include "edge/battery/command_runner.h"
 #include "edge/battery/identity_check.h"
 #include "edge/battery/measurement_reader.h"
+#include "edge/battery/order_state.h"
 #include "edge/control/control_types.h"
 #include "edge/registers/codec.h"
 #include "shared/units_and_limits.h"
@@ -28,6 +29,7 @@ class BatteryDriver {
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
         reader_(map),
+        ours_(map.watchdog),
         adds_live_(std::any_of(std::begin(map.command), std::end(map.command), adds_to_order)) {}
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
@@ -51,8 +53,8 @@ class BatteryDriver {
     }
     note_order_in_force(measurement);
     watch_order(measurement.dispatch_active);
-    measurement.order_replaced = loss_ == Loss::kReplaced;
-    measurement.order_ended = loss_ == Loss::kEnded;
+    measurement.order_replaced = ours_.loss() == OrderLoss::kReplaced;
+    measurement.order_ended = ours_.loss() == OrderLoss::kEnded;
     return Status::kOk;
   }
 
@@ -60,9 +62,10 @@ class BatteryDriver {
   Status order(const PowerOrder& order) {
     if (const Status status = prepare(); status != Status::kOk) return refuse(status);
     const Command command = command_of(order.power_w);
-    if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
-      order_ = order;
-      if (is_due()) return feed();
+    const bool is_same = ours_.is_in_force() && command == ours_.command();
+    if (is_same && runner_.is_written(map_.sequence(command), order)) {
+      ours_.on_prolonged(order);
+      if (ours_.is_due(now_ns())) return feed();
       ++unchanged_orders_;
       return Status::kOk;
     }
@@ -71,14 +74,14 @@ class BatteryDriver {
     }
     // Nothing is written before it is known that all of it may be.
     Status status = check(map_.sequence(command), order);
-    if (status == Status::kOk && !enabled_) status = enable(order);
+    if (status == Status::kOk && !ours_.is_enabled()) status = enable(order);
     if (status != Status::kOk) return refuse(status);
     // 0 W that does not get through is not waited for as long: what follows is the release.
     const bool drives = command != Command::kIdle;
     status =
         runner_.run(map_.sequence(command), order, drives ? kOrderPatienceNs : kReadPatienceNs);
     if (status == Status::kOk) {
-      take_into_force(command, order);
+      ours_.on_taken(command, order, now_ns());
     } else {
       roll_back(status, command, order);
     }
@@ -86,15 +89,11 @@ class BatteryDriver {
   }
 
   /// Between orders, at least every `refresh_interval_s`: feeds the watchdog when it is due.
-  Status refresh() {
-    if (!in_force_ || !is_due()) return Status::kOk;
-    return feed();
-  }
+  Status refresh() { return ours_.is_due(now_ns()) ? feed() : Status::kOk; }
 
   /// 0: one order per cycle is enough to keep the watchdog fed.
   [[nodiscard]] std::int32_t refresh_interval_s() const {
-    const bool often =
-        map_.watchdog.kind != Watchdog::Kind::kNone && map_.watchdog.refresh_s < kSecondsPerStep;
+    const bool often = !ours_.lasts_for_ever() && map_.watchdog.refresh_s < kSecondsPerStep;
     return often ? map_.watchdog.refresh_s : 0;
   }
 
@@ -103,25 +102,28 @@ class BatteryDriver {
   /// do. Nor because the device has changed since it was known, which an order would be.
   Status release() {
     const Status known = identify();
-    if (known != Status::kOk && !(known == Status::kImplausible && may_be_released_)) return known;
+    if (known != Status::kOk && !(known == Status::kImplausible && was_known())) return known;
     static_cast<void>(prepare());
     const Status status =
         runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, kReadPatienceNs);
     lose_order();
-    if (status == Status::kOk) runner_.saved().forget();
-    if (status == Status::kOk) loss_ = Loss::kNone;
-    was_ordered_ = was_ordered_ || status == Status::kOk;
-    return status;
+    if (status != Status::kOk) return status;
+    runner_.saved().forget();
+    ours_.on_released();
+    return Status::kOk;
   }
 
   /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
   /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
   Status check_identity(IdentityFailure& failure) {
     const Status status = check_identity_of(map_, bus_, failure);
-    identified_ = status == Status::kOk;
-    identified_ns_ = bus_.time().now_ns();
+    if (status == Status::kOk) {
+      identity_ = Identity::kKnown;
+    } else if (identity_ == Identity::kKnown) {
+      identity_ = Identity::kWasKnown;
+    }
+    identified_ns_ = now_ns();
     identified_connections_ = bus_.link().counters().reconnects;
-    may_be_released_ = may_be_released_ || identified_;
     return status;
   }
 
@@ -133,7 +135,9 @@ class BatteryDriver {
   void require(std::int8_t point) { bus_.require(point); }
 
   /// A person insists: this device is to be given back whatever its identity checks say.
-  void permit_release() { may_be_released_ = true; }
+  void permit_release() {
+    if (identity_ == Identity::kUnknown) identity_ = Identity::kWasKnown;
+  }
 
   [[nodiscard]] BatteryCounters counters() const {
     const LinkCounters link = bus_.link().counters();
@@ -177,12 +181,11 @@ class BatteryDriver {
   }
 
  private:
-  /// How an order went that was in force and ought to be.
-  enum class Loss : std::uint8_t {
-    kNone,
-    kReplaced,  ///< its registers hold what somebody else wrote
-    kEnded      ///< the device follows none, and nothing in the registers says who ended it
-  };
+  /// Of the device: none is ordered anything unless it is known, nor released unless it was.
+  enum class Identity : std::uint8_t { kUnknown, kWasKnown, kKnown };
+
+  [[nodiscard]] bool was_known() const { return identity_ != Identity::kUnknown; }
+  [[nodiscard]] std::int64_t now_ns() const { return bus_.time().now_ns(); }
 
   static bool adds_to_order(const CommandSequence& sequence) {
     return std::any_of(sequence.writes.begin(), sequence.writes.end(), [](const BlockWrite& write) {
@@ -202,9 +205,9 @@ class BatteryDriver {
   /// Behind a new connection there may be another device, and one that stays may be changed.
   Status identify(IdentityFailure& failure) {
     const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
-    const bool is_recent = bus_.time().now_ns() - identified_ns_ < kIdentityAgeNs;
-    if (identified_ && same_connection && is_recent) return Status::kOk;
-    const std::int64_t patience_ns = may_be_released_ ? kReadPatienceNs : 0;
+    const bool is_recent = now_ns() - identified_ns_ < kIdentityAgeNs;
+    if (identity_ == Identity::kKnown && same_connection && is_recent) return Status::kOk;
+    const std::int64_t patience_ns = was_known() ? kReadPatienceNs : 0;
     return retried(bus_.time(), patience_ns, [&] { return check_identity(failure); });
   }
 
@@ -232,9 +235,9 @@ class BatteryDriver {
   /// can order (0 W above all) even while the measurements fail.
   Status prepare() {
     if (const Status status = identify(); status != Status::kOk) return status;
-    const bool needs_live = !map_.scales.empty() || (!enabled_ && !map_.saved.empty());
+    const bool needs_live = !map_.scales.empty() || (!ours_.is_enabled() && !map_.saved.empty());
     const std::int64_t read_ns = bus_.last_read_ns();
-    const bool fresh = read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs;
+    const bool fresh = read_ns != 0 && now_ns() - read_ns < kLiveAgeNs;
     if (fresh || !needs_live) return Status::kOk;
     const Status status = read_registers();
     return bus_.last_read_ns() == read_ns ? status : Status::kOk;
@@ -242,56 +245,55 @@ class BatteryDriver {
 
   /// What order the device follows, whoever gave it: a restart takes over from here.
   void note_order_in_force(BatteryMeasurement& m) {
-    const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
-                                   bus_.time().now_ns() - fed_ns_ <
-                                       map_.watchdog.duration_s * kNanosecondsPerSecond);
     const bool visible = shows_end();
     const bool active = live_all(map_, map_.active, bus_.live());
     // An order of a process that was killed: whether it has run out cannot be seen, but what it
     // switched over stays until it is given back.
-    const bool left_behind = !visible && !was_ordered_ && active;
-    m.dispatch_active = visible ? active : fed || left_behind;
+    const bool left_behind = !visible && !ours_.was_ours() && active;
+    m.dispatch_active = visible ? active : ours_.may_last(now_ns()) || left_behind;
     std::int64_t power_w = 0;
     m.has_order_power = m.dispatch_active && !left_behind &&
                         live_power(map_, map_.order_power, bus_.live(), power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
-    runs_out_ = in_force_ && remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s) &&
-                left_s < map_.watchdog.refresh_s;
+    const bool is_shown = remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s);
+    ours_.note_seconds_left(is_shown ? left_s : INT64_MAX);
   }
 
   /// An order in force is looked for where it was written. `active`: the device says that it
   /// follows one, as far as it can say so.
   void watch_order(bool active) {
-    if (!in_force_) return;
-    if (!active && !is_within_its_time()) return lose_order();  // nobody has fed it: nobody's fault
+    if (!ours_.is_in_force()) return;
+    if (!active && !ours_.is_within_its_time(now_ns())) return lose_order();  // not fed: run out
     OrderTrace trace = OrderTrace::kOurs;  // also where it cannot be read just now
-    static_cast<void>(runner_.trace(command_, trace));
+    static_cast<void>(runner_.trace(ours_.command(), trace));
     if (trace == OrderTrace::kForeign || (active && trace == OrderTrace::kAtRest)) {
-      note_loss(Loss::kReplaced, trace);
-    } else if (!active && (trace == OrderTrace::kAtRest || has_settled())) {
-      note_loss(Loss::kEnded, trace);
+      note_loss(OrderLoss::kReplaced, trace);
+    } else if (!active && (trace == OrderTrace::kAtRest ||
+                           ours_.has_settled(now_ns(), map_.response.settle_s))) {
+      note_loss(OrderLoss::kEnded, trace);
     }
   }
 
   /// Before it is fed: false when it is not there any more, which is remembered.
   [[nodiscard]] bool is_still_there() {
     OrderTrace trace = OrderTrace::kOurs;
-    if (runner_.trace(command_, trace) != Status::kOk || trace == OrderTrace::kOurs) return true;
+    const Status status = runner_.trace(ours_.command(), trace);
+    if (status != Status::kOk || trace == OrderTrace::kOurs) return true;
     // Only a fresh reading tells that the device still follows an order.
     const bool may_be_end = trace == OrderTrace::kAtRest && shows_end();
     const bool is_active =
         may_be_end && bus_.read_due() == Status::kOk && live_all(map_, map_.active, bus_.live());
-    note_loss(may_be_end && !is_active ? Loss::kEnded : Loss::kReplaced, trace);
+    note_loss(may_be_end && !is_active ? OrderLoss::kEnded : OrderLoss::kReplaced, trace);
     return false;
   }
 
   /// All of it is written again with the next order, unless control yields. Not before: two masters
-  /// that outdo each other would swing the power. What has just run out was not lost.
-  void note_loss(Loss loss, OrderTrace trace) {
-    if (trace == OrderTrace::kForeign || is_within_its_time()) loss_ = loss;
-    lose_order();
+  /// that outdo each other would swing the power.
+  void note_loss(OrderLoss loss, OrderTrace trace) {
+    ours_.on_lost(loss, trace == OrderTrace::kForeign, now_ns());
+    runner_.forget();
   }
 
   /// The device tells by its registers whether it follows an order.
@@ -299,39 +301,19 @@ class BatteryDriver {
     return !map_.active.empty() && map_.watchdog.expiry_visible;
   }
 
-  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart
-  /// agree.
-  [[nodiscard]] bool is_within_its_time() const {
-    if (map_.watchdog.kind == Watchdog::Kind::kNone) return true;
-    const std::int64_t duration_ns = map_.watchdog.duration_s * kNanosecondsPerSecond;
-    return bus_.time().now_ns() - fed_ns_ < duration_ns - duration_ns / 10;
-  }
-
-  /// Some devices show an order later than they confirm it.
-  [[nodiscard]] bool has_settled() const {
-    return bus_.time().now_ns() - since_ns_ >= map_.response.settle_s * kNanosecondsPerSecond;
-  }
-
-  /// Feeding at half the interval: nothing is lost when one feeding comes late.
-  [[nodiscard]] bool is_due() const {
-    if (map_.watchdog.kind == Watchdog::Kind::kNone) return false;
-    const std::int64_t half_ns = map_.watchdog.refresh_s * kNanosecondsPerSecond / 2;
-    return runs_out_ || bus_.time().now_ns() - fed_ns_ >= half_ns;
-  }
-
   Status feed() {
     if (!is_still_there()) return Status::kNotApplied;
     const CommandSequence& refresh = map_.sequence(Command::kRefresh);
-    const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
-    PowerOrder order = order_;
-    order.write_until_ns = order_.feed_until_ns;
+    const CommandSequence& sequence =
+        refresh.writes.empty() ? map_.sequence(ours_.command()) : refresh;
+    PowerOrder order = ours_.order();
+    order.write_until_ns = order.feed_until_ns;
     // What is added to an order changes between two ticks.
     Status status = adds_live_ ? bus_.read_points(map_.scales) : Status::kOk;
     if (status == Status::kOk) status = check(sequence, order);
     if (status == Status::kOk) status = runner_.run(sequence, order, kReadPatienceNs);
     if (status == Status::kOk) {
-      fed_ns_ = bus_.time().now_ns();
-      runs_out_ = false;
+      ours_.on_fed(now_ns());
     } else {
       lose_order();  // the next order writes everything again
     }
@@ -352,8 +334,11 @@ class BatteryDriver {
     if (status == Status::kOk) status = check(sequence, order);
     if (status != Status::kOk) return status;
     status = runner_.run(sequence, order, kReadPatienceNs);
-    enabled_ = status == Status::kOk;
-    if (!enabled_) roll_back(status, Command::kEnable, order);
+    if (status == Status::kOk) {
+      ours_.on_enabled();
+    } else {
+      roll_back(status, Command::kEnable, order);
+    }
     return status;
   }
 
@@ -379,7 +364,7 @@ class BatteryDriver {
   /// The order before the refused one is no longer wanted either: `refresh` must not keep it in
   /// force. Its timer ends it; where the device has none, it is taken back here.
   Status refuse(Status reason) {
-    const bool stays = in_force_ && map_.watchdog.kind == Watchdog::Kind::kNone;
+    const bool stays = ours_.is_in_force() && ours_.lasts_for_ever();
     lose_order();
     if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, 0));
     return reason;
@@ -388,7 +373,7 @@ class BatteryDriver {
   /// Half of a command may have been taken: rather the battery's own mode than a mixture.
   void roll_back(Status reason, Command command, const PowerOrder& order) {
     const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
-    const bool several = map_.sequence(command).writes.size() > 1 || enabled_;
+    const bool several = map_.sequence(command).writes.size() > 1 || ours_.is_enabled();
     lose_order();
     if (!sent || !(several || reason == Status::kNotApplied)) return;
     PowerOrder unbound = order;  // taking back is never too late
@@ -397,18 +382,8 @@ class BatteryDriver {
                                   0));  // the link may be gone: the watchdog ends it
   }
 
-  void take_into_force(Command command, const PowerOrder& order) {
-    loss_ = Loss::kNone;
-    in_force_ = was_ordered_ = true;
-    command_ = command;
-    order_ = order;
-    since_ns_ = fed_ns_ = bus_.time().now_ns();
-    runs_out_ = false;
-  }
-
   void lose_order() {
-    in_force_ = false;
-    enabled_ = false;
+    ours_.on_lost();
     runner_.forget();
   }
 
@@ -416,20 +391,11 @@ class BatteryDriver {
   BatteryBus<Link, Time> bus_;
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
+  OrderState ours_;
   bool adds_live_;  ///< a measured load is added to what is written
-  bool identified_ = false;
-  bool may_be_released_ = false;  ///< it was known once, or a person insists
+  Identity identity_ = Identity::kUnknown;
   std::int64_t identified_ns_ = 0;
   std::int64_t identified_connections_ = 0;
-  bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
-  bool enabled_ = false;
-  Loss loss_ = Loss::kNone;  ///< of the newest order
-  bool in_force_ = false;    ///< the order below was read back and nothing has ended it since
-  bool runs_out_ = false;    ///< the device's timer shows less than one refresh interval
-  Command command_ = Command::kIdle;
-  PowerOrder order_;
-  std::int64_t since_ns_ = 0;  ///< when it was written whole
-  std::int64_t fed_ns_ = 0;
   std::int64_t unchanged_orders_ = 0;
 };
 

@@ -10,7 +10,6 @@ namespace bess::trial {
 namespace {
 
 constexpr double kSecondsPerHour = 3'600;
-constexpr std::int64_t kSecondsPerDay = 86'400;
 constexpr std::int64_t kAnswerNs = 50'000'000;
 constexpr double kTimeOutS = 3;
 constexpr double kCreep = 0.005 / 60;  ///< of the count at the ends, a second

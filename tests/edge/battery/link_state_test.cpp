@@ -1,8 +1,11 @@
-// The connection's state machine, and which old RTU replies could be mistaken for a new one.
+// The state machines of connection and order, and which old RTU replies could be mistaken for a new one.
 #include "edge/battery/link_state.h"
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
+#include "edge/battery/order_state.h"
 #include "edge/battery/unanswered_requests.h"
 
 namespace bess {
@@ -87,6 +90,73 @@ TEST(UnansweredRequests, MoreThanTheListHoldsMakesEveryReadWait) {
   EXPECT_EQ(unanswered.earliest_ns(kBlock), 1'009);
   unanswered.on_answered(kBlock, 20);
   EXPECT_EQ(unanswered.earliest_ns(kBlock), 1'020);
+}
+
+constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
+constexpr Watchdog kHundredSeconds{
+    .kind = Watchdog::Kind::kDuration, .duration_s = 100, .refresh_s = 60};
+
+/// The drawn table: what each event makes of each state.
+TEST(OrderState, FollowsItsTable) {
+  struct Row {
+    const char* events;  ///< e enabled, t taken, f fed, l lost, r released
+    bool is_enabled, is_in_force, was_ours;
+  };
+  for (const Row& row :
+       {Row{"", false, false, false}, Row{"e", true, false, false}, Row{"el", false, false, false},
+        Row{"et", true, true, true}, Row{"etf", true, true, true}, Row{"ett", true, true, true},
+        Row{"etl", false, false, true}, Row{"etle", true, false, true},
+        Row{"r", false, false, true}, Row{"etr", false, false, true}}) {
+    OrderState order(kHundredSeconds);
+    for (const char event : std::string_view(row.events)) {
+      if (event == 'e') order.on_enabled();
+      if (event == 't') order.on_taken(Command::kCharge, {.power_w = 7}, 0);
+      if (event == 'f') order.on_fed(0);
+      if (event == 'l') order.on_lost();
+      if (event == 'r') order.on_released();
+    }
+    EXPECT_EQ(order.is_enabled(), row.is_enabled) << row.events;
+    EXPECT_EQ(order.is_in_force(), row.is_in_force) << row.events;
+    EXPECT_EQ(order.was_ours(), row.was_ours) << row.events;
+  }
+}
+
+TEST(OrderState, ItsTimeRunsFromTheLastFeeding) {
+  OrderState order(kHundredSeconds);
+  order.on_enabled();
+  order.on_taken(Command::kCharge, {}, 0);
+  EXPECT_FALSE(order.is_due(30 * kSecondNs - 1));
+  EXPECT_TRUE(order.is_due(30 * kSecondNs));
+  order.on_fed(30 * kSecondNs);
+  EXPECT_FALSE(order.is_due(60 * kSecondNs - 1));
+  order.note_seconds_left(59);
+  EXPECT_TRUE(order.is_due(31 * kSecondNs));
+  EXPECT_TRUE(order.is_within_its_time(120 * kSecondNs - 1));
+  EXPECT_FALSE(order.is_within_its_time(120 * kSecondNs));
+  EXPECT_TRUE(order.may_last(130 * kSecondNs - 1));
+  EXPECT_FALSE(order.may_last(130 * kSecondNs));
+  EXPECT_FALSE(order.has_settled(4 * kSecondNs, 5));
+  EXPECT_TRUE(order.has_settled(5 * kSecondNs, 5));
+  constexpr Watchdog kNoTimer{};
+  OrderState stays(kNoTimer);
+  stays.on_taken(Command::kCharge, {}, 0);
+  EXPECT_TRUE(stays.may_last(INT64_MAX));
+  EXPECT_FALSE(stays.is_due(INT64_MAX));
+}
+
+/// What ran out was not lost, but for what somebody else wrote over.
+TEST(OrderState, ALossIsRememberedUntilTheNextOrder) {
+  for (const bool is_foreign : {false, true}) {
+    for (const std::int64_t now_ns : {1 * kSecondNs, 95 * kSecondNs}) {
+      OrderState order(kHundredSeconds);
+      order.on_taken(Command::kCharge, {}, 0);
+      order.on_lost(OrderLoss::kReplaced, is_foreign, now_ns);
+      const bool is_lost = is_foreign || now_ns < 90 * kSecondNs;
+      EXPECT_EQ(order.loss(), is_lost ? OrderLoss::kReplaced : OrderLoss::kNone);
+      order.on_taken(Command::kCharge, {}, now_ns);
+      EXPECT_EQ(order.loss(), OrderLoss::kNone);
+    }
+  }
 }
 
 }  // namespace
