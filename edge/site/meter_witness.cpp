@@ -29,7 +29,7 @@ constexpr std::int64_t kBeyondAnyW = 100'000'000;
 
 constexpr std::int32_t kSumSteps = 16;    ///< that the sums remember
 constexpr std::int32_t kSumStepsMin = 8;  ///< that a finding by them needs
-constexpr std::int32_t kTrialSteps = 6;   ///< that end a finding
+constexpr std::int32_t kTestSteps = 6;    ///< that end a finding
 constexpr std::int64_t kPermilleMax = 4'000;
 constexpr std::int64_t kRatioMin = 450;
 constexpr std::int64_t kRatioMax = 2'000;
@@ -49,21 +49,20 @@ std::int64_t house_w_of(const WitnessReading& reading) {
 
 void MeterWitness::observe(const WitnessReading& now) {
   if (!settings_.judges) return;
-  if (!now.order.is_driven || now.utc_s < before_.utc_s) has_before_ = false;
+  if (!now.order.is_driven || (before_ && now.utc_s < before_->utc_s)) before_.reset();
   if (!now.order.is_driven) return;
   // Within one second the reading came first: settled, it cannot be of an order that young.
-  const bool is_next_order = has_before_ && now.utc_s - now.order.age_s >= before_.utc_s;
+  const bool is_next_order = before_ && now.utc_s - now.order.age_s >= before_->utc_s;
   if (now.order.age_s < settings_.settle_s) {
     if (is_next_order) judge_excess(now);
     return;
   }
   if (is_next_order) {
     judge_step(now);
-  } else if (has_before_) {
+  } else if (before_) {
     note_house(now);
   }
   fade_doubt(now.utc_s);
-  has_before_ = true;
   before_ = now;
 }
 
@@ -75,17 +74,17 @@ void MeterWitness::fade_doubt(std::int64_t utc_s) {
 }
 
 void MeterWitness::note_house(const WitnessReading& now) {
-  const std::int64_t seconds = now.utc_s - before_.utc_s;
+  const std::int64_t seconds = now.utc_s - before_->utc_s;
   const std::int64_t faded_s = std::min(seconds, kHouseFadesS);
   largest_move_w_ -= largest_move_w_ * faded_s / kHouseFadesS;
   noise_w_ -= noise_w_ * faded_s / kHouseFadesS;
   if (seconds > kHouseGapMaxS) return;
-  const std::int64_t house_step_w = house_w_of(now) - house_w_of(before_);
+  const std::int64_t house_step_w = house_w_of(now) - house_w_of(*before_);
   if (is_late_answer(house_step_w, now.utc_s)) {
-    missed_w_ = 0;
+    missed_.reset();
     return on_contradiction(now, kLateAnswer);
   }
-  if (turns_around(before_.grid_w, now.grid_w)) return on_contradiction(now, kTurnsAround);
+  if (turns_around(before_->grid_w, now.grid_w)) return on_contradiction(now, kTurnsAround);
   // The second largest: what moved once may be the meter, just gone wrong.
   const std::int64_t move_w = magnitude(house_step_w);
   noise_w_ = std::max(noise_w_, std::min(move_w, largest_move_w_));
@@ -98,28 +97,28 @@ bool MeterWitness::turns_around(std::int64_t from_w, std::int64_t to_w) const {
          magnitude(to_w + from_w) <= magnitude(to_w - from_w) / 16 + kMeterErrorW;
 }
 
-/// Else a meter that shows each step late would pass for a restless house.
+/// Otherwise a lagging meter would be mistaken for house-load noise.
 bool MeterWitness::is_late_answer(std::int64_t house_step_w, std::int64_t utc_s) const {
-  if (missed_w_ == 0 || utc_s - missed_utc_s_ > kLateMaxS) return false;
-  return magnitude(house_step_w - missed_w_) <= magnitude(missed_w_) / 8 + kMeterErrorW;
+  if (!missed_ || utc_s - missed_->utc_s > kLateMaxS) return false;
+  const std::int64_t missed_w = missed_->power_w;
+  return magnitude(house_step_w - missed_w) <= magnitude(missed_w) / 8 + kMeterErrorW;
 }
 
 void MeterWitness::judge_step(const WitnessReading& now) {
-  if (now.utc_s - before_.utc_s > settings_.settle_s + kWindowBeyondS) return;
+  if (now.utc_s - before_->utc_s > settings_.settle_s + kWindowBeyondS) return;
   const Step step = step_to(now);
   if (step.size_w * 1'000 < settings_.power_w * kStepMinPermille) return;
   note_ratio(step, now.utc_s);
-  missed_w_ = 0;
-  end_trial(now.utc_s);
+  missed_.reset();
+  end_test(now.utc_s);
   if (contradicts(step)) {
-    missed_w_ = std::int64_t{now.battery_w} - before_.battery_w;
-    missed_utc_s_ = now.utc_s;
+    missed_ = {.power_w = std::int64_t{now.battery_w} - before_->battery_w, .utc_s = now.utc_s};
     return on_contradiction(now, kContradicts);
   }
   const std::int64_t error_w = magnitude(step.along_w - step.size_w);
   const bool follows = error_w <= step.size_w / 4 + kMeterErrorW;
   if (trust_.is_mismatch) {
-    if (follows) judge_trial(step, now.utc_s);
+    if (follows) judge_test(step, now.utc_s);
     return;
   }
   if (follows) trust_.doubt = std::max(trust_.doubt - kFollows, 0);
@@ -135,7 +134,7 @@ void MeterWitness::judge_excess(const WitnessReading& now) {
   if (step.size_w * 4 < settings_.power_w) return;
   const std::int64_t excess_w = step.along_w - step.size_w;
   if (excess_w * 2 <= step.size_w * 3 || excess_w <= 2 * (noise_w_ + kMeterErrorW)) return;
-  has_before_ = false;  // counted once
+  before_.reset();  // counted once
   on_contradiction(now, kContradicts);
 }
 
@@ -162,8 +161,8 @@ MeterRatios MeterWitness::possible_ratios(std::int64_t now_utc_s) const {
 }
 
 MeterWitness::Step MeterWitness::step_to(const WitnessReading& now) const {
-  const std::int64_t battery_w = std::int64_t{now.battery_w} - before_.battery_w;
-  const std::int64_t grid_w = std::int64_t{now.grid_w} - before_.grid_w;
+  const std::int64_t battery_w = std::int64_t{now.battery_w} - before_->battery_w;
+  const std::int64_t grid_w = std::int64_t{now.grid_w} - before_->grid_w;
   return {.size_w = magnitude(battery_w), .along_w = battery_w < 0 ? -grid_w : grid_w};
 }
 
@@ -177,7 +176,7 @@ bool MeterWitness::contradicts(const Step& step) const {
 
 void MeterWitness::on_contradiction(const WitnessReading& now, std::int32_t points) {
   retreat_until_utc_s_ = next_tick_utc_s(now.utc_s);
-  if (is_paused(now.utc_s)) return;
+  if (state_at(now.utc_s) == State::kPaused) return;
   trust_.doubt = std::min(trust_.doubt + points, kFoundFrom);
   if (trust_.is_mismatch || trust_.doubt >= kFoundFrom) find(now.utc_s);
 }
@@ -212,10 +211,10 @@ bool MeterWitness::is_wrong_ratio() const {
 }
 
 /// After a pause: steps that agree end the finding if they also do in sum.
-void MeterWitness::judge_trial(const Step& step, std::int64_t utc_s) {
-  if (is_paused(utc_s)) return;
+void MeterWitness::judge_test(const Step& step, std::int64_t utc_s) {
+  if (state_at(utc_s) == State::kPaused) return;
   add_to_sums(step);
-  if (trust_.steps < kTrialSteps) return;
+  if (trust_.steps < kTestSteps) return;
   if (magnitude(trust_.error_products) * 4 > trust_.step_squares) return find(utc_s);
   trust_ = MeterTrust{.pause_until_utc_s = trust_.pause_until_utc_s, .pause_s = trust_.pause_s};
 }
@@ -231,14 +230,14 @@ void MeterWitness::find(std::int64_t utc_s) {
             .pause_s = static_cast<std::int32_t>(pause_s)};
 }
 
-/// Found, and not to be tested yet.
-bool MeterWitness::is_paused(std::int64_t now_utc_s) const {
+MeterWitness::State MeterWitness::state_at(std::int64_t now_utc_s) const {
+  if (!trust_.is_mismatch) return State::kTrusted;
   const std::int64_t left_s = trust_.pause_until_utc_s - now_utc_s;
-  return trust_.is_mismatch && left_s > 0 && left_s <= kLongestPauseS;
+  return left_s > 0 && left_s <= kLongestPauseS ? State::kPaused : State::kTested;
 }
 
-/// What a step had to show it has shown: the less flows meanwhile.
-void MeterWitness::end_trial(std::int64_t utc_s) {
+/// The step has been observed: 0 W until the next tick keeps the exposure short.
+void MeterWitness::end_test(std::int64_t utc_s) {
   if (trust_.is_mismatch) retreat_until_utc_s_ = next_tick_utc_s(utc_s);
 }
 
@@ -246,12 +245,20 @@ std::int32_t MeterWitness::power_w_max(std::int64_t now_utc_s) const {
   // A clock that was stepped back makes neither longer.
   const std::int64_t retreat_s = retreat_until_utc_s_ - now_utc_s;
   const bool retreats = retreat_s > 0 && retreat_s <= kSecondsPerStep;
-  if (retreats || is_paused(now_utc_s)) return 0;
-  return trust_.is_mismatch ? trial_power_w(now_utc_s) : kAnyPowerW;
+  if (retreats) return 0;
+  switch (state_at(now_utc_s)) {
+    case State::kTrusted:
+      return kAnyPowerW;
+    case State::kTested:
+      return test_power_w(now_utc_s);
+    case State::kPaused:
+      break;
+  }
+  return 0;
 }
 
 /// On in every other cycle, so that there are steps to judge by.
-std::int32_t MeterWitness::trial_power_w(std::int64_t now_utc_s) const {
+std::int32_t MeterWitness::test_power_w(std::int64_t now_utc_s) const {
   const bool is_on = now_utc_s / kSecondsPerStep % 2 != 0;
   return is_on ? settings_.power_w / 8 : 0;
 }

@@ -19,6 +19,11 @@
 //     (`possible_ratios`, 0.45 to 2, for 20 minutes): no finding, and it costs only near a limit;
 //   - a step that shows on the meter later, with the battery standing still, is the meter's and
 //     not the house's, and so is a sign that turns around.
+//   trusted --four contradictions, or wrong in sum--> paused --pause over--> tested
+//      ^                                                ^                      |  |
+//      |                                                +---contradiction------+  |
+//      +-----------------------six steps that agree, alone and in sum-------------+
+//
 // A finding ends by itself, for no person can see from afar either whether a meter is right, and
 // a battery that rests gives no evidence: after a pause (10 min, doubling to 6 h) it is tested
 // with an eighth of the power, in every other cycle, as far as prices ask for any, and only until
@@ -35,6 +40,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "edge/control/site_types.h"
 
@@ -133,6 +139,13 @@ class MeterWitness {
     std::int64_t along_w;  ///< of the meter, positive: the same way
   };
 
+  enum class State : std::uint8_t { kTrusted, kPaused, kTested };
+
+  /// A step of the battery that did not show, with its sign.
+  struct MissedStep {
+    std::int64_t power_w = 0;
+    std::int64_t utc_s = 0;
+  };
   struct ShownRatio {
     std::int64_t utc_s = 0;
     std::int32_t permille = kTrueRatio;
@@ -148,23 +161,21 @@ class MeterWitness {
   [[nodiscard]] bool is_late_answer(std::int64_t house_step_w, std::int64_t utc_s) const;
   [[nodiscard]] bool contradicts(const Step& step) const;
   void on_contradiction(const WitnessReading& now, std::int32_t points);
-  void judge_trial(const Step& step, std::int64_t utc_s);
-  void end_trial(std::int64_t utc_s);
+  void judge_test(const Step& step, std::int64_t utc_s);
+  void end_test(std::int64_t utc_s);
   void add_to_sums(const Step& step);
   [[nodiscard]] bool is_wrong_ratio() const;
-  [[nodiscard]] std::int32_t trial_power_w(std::int64_t now_utc_s) const;
-  [[nodiscard]] bool is_paused(std::int64_t now_utc_s) const;
+  [[nodiscard]] std::int32_t test_power_w(std::int64_t now_utc_s) const;
+  [[nodiscard]] State state_at(std::int64_t now_utc_s) const;
   void find(std::int64_t utc_s);
 
   MeterWitnessSettings settings_;
   MeterTrust trust_;
-  bool has_before_ = false;
-  WitnessReading before_;     ///< the last settled one
-  std::int64_t noise_w_ = 0;  ///< the house's second largest move of late, fading
+  std::optional<WitnessReading> before_;  ///< the last settled one
+  std::int64_t noise_w_ = 0;              ///< the house's second largest move of late, fading
   std::int64_t largest_move_w_ = 0;
   std::int64_t faded_utc_s_ = 0;  ///< when time last forgave
-  std::int64_t missed_w_ = 0;     ///< the battery's last step that did not show, with its sign
-  std::int64_t missed_utc_s_ = 0;
+  std::optional<MissedStep> missed_;
   std::int64_t retreat_until_utc_s_ = 0;
   std::array<ShownRatio, 3> shown_{};  ///< by the last steps
 };
