@@ -20,14 +20,12 @@ namespace bess {
 
 namespace {
 
-/// As the edge refuses and tells them.
+/// As the edge refuses it.
 constexpr double kPriceMaxEurPerMwh = kPlausiblePriceMaxEurPerMwh;
-constexpr double kUsualPriceMaxEurPerMwh = kUnusualPriceMaxEurPerMwh;
 /// No day of a balancing market stays within it; every one does when counted in EUR/kWh.
 constexpr double kUnitLowMax = 5;
 /// The median of no market; that of every market in cents.
 constexpr double kUnitHighMin = 1'500, kUnitHighMax = 1.5e6;
-constexpr std::size_t kJudgedMin = 1'440;  // a day's worth of prices
 constexpr std::int64_t kGapWorthNaming_min = 60;
 constexpr double kGapShareMax = 0.05;
 constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
@@ -40,9 +38,23 @@ constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
 constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
 constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
 
+/// Prices in evenly spaced rows, and what is usual of them.
 struct Column {
   const char* name;
   std::span<const double> prices;
+  std::int64_t start_utc_s;
+  std::int64_t row_s;
+  const char* row;
+  double usual_min_eur_per_mwh, usual_max_eur_per_mwh;
+  bool (*is_sentinel)(double);
+
+  [[nodiscard]] std::int64_t utc_s(std::size_t i) const {
+    return start_utc_s + static_cast<std::int64_t>(i) * row_s;
+  }
+  /// A day's worth of prices: judgements of a whole column need as many.
+  [[nodiscard]] std::size_t judged_min() const {
+    return static_cast<std::size_t>(kSecondsPerDay / row_s);
+  }
 };
 
 /// Of the published prices of a column.
@@ -76,7 +88,7 @@ double median_size(const Column& column) {
   return *middle;
 }
 
-/// Minutes whose price `wanted` names: how many, and the first.
+/// Rows whose price `wanted` names: how many, and the first.
 template <typename Wanted>
 std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Wanted wanted) {
   std::size_t count = 0;
@@ -87,43 +99,130 @@ std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Want
   return {count, first};
 }
 
-class Judge {
- public:
-  explicit Judge(const MinuteSeries& series) : series_(series) {}
-
-  std::vector<Finding> findings() {
-    check_dates();
-    for_columns(&Judge::check_row_step);
-    for_columns(&Judge::check_constant);
-    for_columns(&Judge::check_sentinels);
-    for_columns(&Judge::check_frequent_sentinels);
-    for_columns(&Judge::check_unit);
-    for_columns(&Judge::check_range);
-    for_columns(&Judge::check_unusual);
-    check_settled_changes();
-    for_columns(&Judge::check_frozen);
-    check_copied();
-    for_columns(&Judge::check_gaps);
-    return std::move(findings_);
-  }
-
- private:
-  void for_columns(void (Judge::*check)(const Column&)) {
-    (this->*check)({"settled", series_.settled});
-    (this->*check)({"indicative", series_.indicative});
-  }
-  void error(std::string_view name, std::size_t minute, std::string what) {
-    findings_.push_back({name, true, std::move(what), series_.utc_s(minute)});
+/// What minutes and day-ahead prices have in common.
+class ColumnJudge {
+ protected:
+  void error(std::string_view name, const Column& column, std::size_t row, std::string what) {
+    findings_.push_back({name, true, std::move(what), column.utc_s(row)});
   }
   void warning(std::string_view name, std::int64_t utc_s, std::string what) {
     findings_.push_back({name, false, std::move(what), utc_s});
   }
 
-  void check_dates() {
-    const std::size_t last = series_.size() - 1;
-    const bool early = series_.start_utc_s < kEarliest_s;
-    if (!early && series_.utc_s(last) < kLatest_s) return;
-    error("dates", early ? 0 : last, "the year cannot be meant; mend the times");
+  void check_dates(const Column& column) {
+    const std::size_t last = column.prices.size() - 1;
+    const bool early = column.start_utc_s < kEarliest_s;
+    if (!early && column.utc_s(last) < kLatest_s) return;
+    error("dates", column, early ? 0 : last, "the year cannot be meant; mend the times");
+  }
+
+  void check_constant(const Column& column) {
+    const Summary summary = summary_of(column);
+    if (summary.count < column.judged_min() || !summary.is_constant) return;
+    const double price = column.prices[*summary.first];
+    error("constant", column, *summary.first,
+          fmt::format("every {} price is {:g}, in {}; nothing can be learnt from it, get the "
+                      "prices again",
+                      column.name, price, counted(summary.count, column.row)));
+  }
+
+  void check_sentinels(const Column& column) {
+    const auto [count, first] = matches(column.prices, column.is_sentinel);
+    if (count == 0) return;
+    error("sentinel", column, first,
+          fmt::format("{} price {} stands for \"no price\" ({}); leave it out if your source says "
+                      "so",
+                      column.name, column.prices[first], counted(count, column.row)));
+  }
+
+  void check_unit(const Column& column) {
+    const Summary summary = summary_of(column);
+    if (summary.count < column.judged_min() || summary.is_constant) return;
+    if (summary.size_max < kUnitLowMax) {
+      error("price-unit", column, *summary.first,
+            fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
+                        "1000",
+                        column.name, summary.size_max));
+    }
+    if (summary.size_max < kUnitHighMin) return;
+    const double median = median_size(column);
+    if (median >= kUnitHighMin && median <= kUnitHighMax) {
+      error("price-unit", column, *summary.first,
+            fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
+                        "by 100",
+                        column.name, median));
+    }
+  }
+
+  void check_range(const Column& column) {
+    const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
+    const auto [count, first] = matches(column.prices, is_beyond);
+    if (count == 0) return;
+    error("price-range", column, first,
+          fmt::format("{} price {} lies beyond {:.0f} EUR/MWh, more than any market allows ({}); "
+                      "mend it or leave it out",
+                      column.name, column.prices[first], kPriceMaxEurPerMwh,
+                      counted(count, column.row)));
+  }
+
+  /// They are kept: the dearest minutes of a year are what a battery is for.
+  void check_unusual(const Column& column) {
+    const auto is_unusual = [&column](double price) {
+      const bool is_usual =
+          price >= column.usual_min_eur_per_mwh && price <= column.usual_max_eur_per_mwh;
+      return !is_usual && std::fabs(price) <= kPriceMaxEurPerMwh;
+    };
+    const auto [count, first] = matches(column.prices, is_unusual);
+    if (count == 0) return;
+    warning("unusual-price", column.utc_s(first),
+            fmt::format("{} price {} lies beyond {:.0f} .. {:.0f} EUR/MWh ({}): taken as it is",
+                        column.name, column.prices[first], column.usual_min_eur_per_mwh,
+                        column.usual_max_eur_per_mwh, counted(count, column.row)));
+  }
+
+  std::vector<Finding> findings_;
+};
+
+class MinuteJudge : public ColumnJudge {
+ public:
+  explicit MinuteJudge(const MinuteSeries& series)
+      : series_(series),
+        settled_(column("settled", series.settled)),
+        indicative_(column("indicative", series.indicative)) {}
+
+  std::vector<Finding> findings() {
+    check_dates(settled_);
+    using Check = void (MinuteJudge::*)(const Column&);
+    for (const Check check : std::initializer_list<Check>{
+             &MinuteJudge::check_row_step, &MinuteJudge::check_constant,
+             &MinuteJudge::check_sentinels, &MinuteJudge::check_frequent_sentinels,
+             &MinuteJudge::check_unit, &MinuteJudge::check_range, &MinuteJudge::check_unusual}) {
+      for_columns(check);
+    }
+    check_settled_changes();
+    for_columns(&MinuteJudge::check_frozen);
+    check_copied();
+    for_columns(&MinuteJudge::check_gaps);
+    return std::move(findings_);
+  }
+
+ private:
+  Column column(const char* name, const std::vector<double>& prices) const {
+    const auto is_sentinel = [](double price) {
+      return std::ranges::find(kSentinels, price) != kSentinels.end();
+    };
+    return {name,
+            prices,
+            series_.start_utc_s,
+            60,
+            "minute",
+            -kUnusualPriceMaxEurPerMwh,
+            kUnusualPriceMaxEurPerMwh,
+            is_sentinel};
+  }
+  void for_columns(void (MinuteJudge::*check)(const Column&)) {
+    (this->*check)(settled_);
+    (this->*check)(indicative_);
   }
 
   /// Minutes between rows as they usually follow each other; 1 when there are too few to say.
@@ -150,7 +249,7 @@ class Judge {
     const std::size_t first = *first_price;
     const std::size_t step = usual_step(column.prices, 0, 1);
     if (step > 1) {
-      error("row-step", first,
+      error("row-step", column, first,
             fmt::format("{} prices come every {} minutes, and a minute file has one a minute; "
                         "'bess-train prices reconstruct --quarter-hours' builds minutes on "
                         "quarter-hours",
@@ -163,38 +262,16 @@ class Judge {
         kSecondsPerQuarterHour / 60);
     const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
     if (rows_apart > quarter_hour) {
-      error("row-step", first,
+      error("row-step", column, first,
             fmt::format("{} prices come every {} minutes, and the market settles every 15: get "
                         "quarter-hours",
                         column.name, rows_apart));
     }
   }
 
-  void check_constant(const Column& column) {
-    const Summary summary = summary_of(column);
-    if (summary.count < kJudgedMin || !summary.is_constant) return;
-    const double price = column.prices[*summary.first];
-    error("constant", *summary.first,
-          fmt::format("every {} price is {:g}, in {} minutes; nothing can be learnt from it, get "
-                      "the prices again",
-                      column.name, price, summary.count));
-  }
-
-  void check_sentinels(const Column& column) {
-    const auto is_sentinel = [](double price) {
-      return std::ranges::find(kSentinels, price) != kSentinels.end();
-    };
-    const auto [count, first] = matches(column.prices, is_sentinel);
-    if (count == 0) return;
-    error("sentinel", first,
-          fmt::format("{} price {} stands for \"no price\" ({}); leave the field empty if your "
-                      "source says so",
-                      column.name, column.prices[first], counted(count, "minute")));
-  }
-
   void check_frequent_sentinels(const Column& column) {
     const std::size_t prices = summary_of(column).count;
-    if (prices < kJudgedMin) return;
+    if (prices < column.judged_min()) return;
     for (const double wanted : kAlsoPrices) {
       const auto [count, first] =
           matches(column.prices, [wanted](double price) { return price == wanted; });
@@ -205,50 +282,6 @@ class Judge {
                           "for \"no price\"? then leave the field empty",
                           column.name, wanted, 100 * share));
     }
-  }
-
-  void check_unit(const Column& column) {
-    const Summary summary = summary_of(column);
-    if (summary.count < kJudgedMin || summary.is_constant) return;
-    if (summary.size_max < kUnitLowMax) {
-      error("price-unit", *summary.first,
-            fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
-                        "1000",
-                        column.name, summary.size_max));
-    }
-    if (summary.size_max < kUnitHighMin) return;
-    const double median = median_size(column);
-    if (median >= kUnitHighMin && median <= kUnitHighMax) {
-      error("price-unit", *summary.first,
-            fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
-                        "by 100",
-                        column.name, median));
-    }
-  }
-
-  void check_range(const Column& column) {
-    const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
-    const auto [count, first] = matches(column.prices, is_beyond);
-    if (count == 0) return;
-    error("price-range", first,
-          fmt::format("{} price {} lies beyond {:.0f} EUR/MWh, more than any market allows ({}); "
-                      "mend it or leave it empty",
-                      column.name, column.prices[first], kPriceMaxEurPerMwh,
-                      counted(count, "minute")));
-  }
-
-  /// Nothing is done about them: the dearest minutes of a year are what a battery is for.
-  void check_unusual(const Column& column) {
-    const auto is_unusual = [](double price) {
-      return std::fabs(price) > kUsualPriceMaxEurPerMwh && std::fabs(price) <= kPriceMaxEurPerMwh;
-    };
-    const auto [count, first] = matches(column.prices, is_unusual);
-    if (count == 0) return;
-    warning("unusual-price", series_.utc_s(first),
-            fmt::format("{} price {} lies beyond {:.0f} EUR/MWh ({}): taken as it is, markets have "
-                        "settled there",
-                        column.name, column.prices[first], kUsualPriceMaxEurPerMwh,
-                        counted(count, "minute")));
   }
 
   /// The settled price belongs to the quarter-hour; when the other column keeps still instead, the
@@ -269,7 +302,7 @@ class Judge {
     if (changing == 0) return;
     const bool swapped = changing > 100 && still_indicative * 10 > changing * 9;
     error(
-        "settled-changes", first,
+        "settled-changes", settled_, first,
         fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
                     series_.settled[first - 1], series_.settled[first], counted(changing, "change"),
                     swapped ? "the indicative price does not: are the two columns swapped?"
@@ -288,7 +321,7 @@ class Judge {
         start_of_longest = start;
       }
     }
-    if (longest < kJudgedMin) return;
+    if (longest < column.judged_min()) return;
     warning("frozen", series_.utc_s(start_of_longest),
             fmt::format("the {} price stays at {:g} for {} minutes; did the source hang?",
                         column.name, column.prices[start_of_longest], longest));
@@ -301,7 +334,7 @@ class Judge {
       if (series_.indicative[m] != series_.settled[m]) return;
       ++both;
     }
-    if (both < kJudgedMin || summary_of({"settled", series_.settled}).is_constant) return;
+    if (both < settled_.judged_min() || summary_of(settled_).is_constant) return;
     warning("copied-column", series_.start_utc_s,
             "indicative and settled price are the same in every minute: a policy would see what it "
             "will be paid, and its figures flatter");
@@ -331,14 +364,15 @@ class Judge {
   }
 
   const MinuteSeries& series_;
-  std::vector<Finding> findings_;
+  Column settled_;
+  Column indicative_;
 };
 
 }  // namespace
 
 std::vector<Finding> implausible(const MinuteSeries& series) {
   if (series.size() == 0) return {};
-  return Judge(series).findings();
+  return MinuteJudge(series).findings();
 }
 
 std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series) {
@@ -361,86 +395,27 @@ constexpr std::size_t kSharedMin = 80 * kDayOfPrices;  ///< fewer may mislead
 constexpr double kCorrelationMore = 0.02;              ///< that a shift must have
 /// Limits of the coupled auction, raised by steps when reached (harmonised clearing prices).
 constexpr double kAuctionMinEurPerMwh = -500, kAuctionMaxEurPerMwh = 5'000;
-constexpr double kNoDayStaysWithinEurPerMwh = 5;  ///< as in EUR/kWh
-constexpr std::int64_t kYear2000_s = 946'684'800, kYear2100_s = 4'102'444'800;
 
-class DayAheadJudge {
+class DayAheadJudge : public ColumnJudge {
  public:
-  explicit DayAheadJudge(const DayAheadSeries& series) : series_(series) {}
+  explicit DayAheadJudge(const DayAheadSeries& series)
+      : series_(series), column_{"day-ahead",          series.eur_per_mwh,
+                                 series.start_utc_s,   kSecondsPerQuarterHour,
+                                 "quarter-hour",       kAuctionMinEurPerMwh,
+                                 kAuctionMaxEurPerMwh, is_day_ahead_sentinel} {}
 
   std::vector<Finding> findings() {
-    if (series_.start_utc_s < kYear2000_s || series_.end_utc_s() > kYear2100_s) {
-      error("dates", 0, "the year cannot be meant; mend the times");
-    }
-    check_prices();
-    check_column();
+    check_dates(column_);
+    check_sentinels(column_);
+    check_range(column_);
+    check_unusual(column_);
+    check_constant(column_);
+    check_unit(column_);
     check_days();
     return std::move(findings_);
   }
 
  private:
-  void error(std::string_view name, std::size_t q, std::string what) {
-    findings_.push_back({name, true, std::move(what), series_.utc_s(q)});
-  }
-  void warning(std::string_view name, std::size_t q, std::string what) {
-    findings_.push_back({name, false, std::move(what), series_.utc_s(q)});
-  }
-
-  template <typename Wanted>
-  void tell_first(std::string_view name, bool is_error, Wanted wanted, const char* what) {
-    std::size_t count = 0;
-    std::size_t first = 0;
-    for (std::size_t q = 0; q < series_.size(); ++q) {
-      if (is_published(series_.eur_per_mwh[q]) && wanted(series_.eur_per_mwh[q]) && count++ == 0) {
-        first = q;
-      }
-    }
-    if (count == 0) return;
-    findings_.push_back({name, is_error,
-                         fmt::format("day-ahead price {} {} ({})", series_.eur_per_mwh[first], what,
-                                     counted(count, "quarter-hour")),
-                         series_.utc_s(first)});
-  }
-
-  void check_prices() {
-    tell_first("sentinel", true, is_day_ahead_sentinel,
-               "stands for \"no price\"; leave the row out if your source says so");
-    tell_first(
-        "price-range", true,
-        [](double price) { return std::fabs(price) > kPlausiblePriceMaxEurPerMwh; },
-        "lies beyond what any market allows; mend it or leave the row out");
-    tell_first(
-        "unusual-price", false,
-        [](double price) {
-          return (price < kAuctionMinEurPerMwh || price > kAuctionMaxEurPerMwh) &&
-                 std::fabs(price) <= kPlausiblePriceMaxEurPerMwh;
-        },
-        "lies beyond the auction's limits of -500 and 5000 EUR/MWh: taken as it is");
-  }
-
-  void check_column() {
-    std::size_t count = 0;
-    double size_max = 0;
-    double first = kNotPublished;
-    bool is_constant = true;
-    for (const double price : series_.eur_per_mwh) {
-      if (!is_published(price)) continue;
-      if (count++ == 0) first = price;
-      is_constant = is_constant && price == first;
-      size_max = std::max(size_max, std::fabs(price));
-    }
-    if (count < kDayOfPrices) return;
-    if (is_constant) {
-      return error("constant", 0,
-                   fmt::format("every day-ahead price is {:g}; get the prices again", first));
-    }
-    if (size_max >= kNoDayStaysWithinEurPerMwh) return;
-    error("price-unit", 0,
-          fmt::format("no day-ahead price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply "
-                      "by 1000",
-                      size_max));
-  }
-
   /// Whether the day [from, from + 96) has the prices of the day before it, of which not all are
   /// one.
   [[nodiscard]] bool repeats_day_before(std::size_t from) const {
@@ -459,7 +434,7 @@ class DayAheadJudge {
     if (!incomplete.empty()) {
       const IncompleteDay& day = incomplete.front();
       warning(
-          "gaps", 0,
+          "gaps", series_.start_utc_s,
           fmt::format("{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
                       counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours));
     }
@@ -471,7 +446,7 @@ class DayAheadJudge {
     for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series_.size(); ++q) {
       const bool midnight = local_minute_of(series_.utc_s(q)).minute_of_day == 0;
       if (!midnight || !repeats_day_before(q)) continue;
-      return error("repeated-day", q,
+      return error("repeated-day", column_, q,
                    fmt::format("the day-ahead prices of {} are those of the day before: an old "
                                "answer? get the day again",
                                format_local_date(local_date_of(series_.utc_s(q)))));
@@ -479,7 +454,7 @@ class DayAheadJudge {
   }
 
   const DayAheadSeries& series_;
-  std::vector<Finding> findings_;
+  Column column_;
 };
 
 }  // namespace
