@@ -72,14 +72,14 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
     std::printf("nothing to clear: the supervision has not tripped\n");
     return 0;
   }
-  std::printf("tripped    %s at %s\n", reason_name(trip.reason).data(),
-              utc_text(trip.utc_s).c_str());
+  std::printf("tripped    %s at %s\n", reason_name(trip->reason).data(),
+              utc_text(trip->utc_s).c_str());
   if (!given.yes) {
     report(JournalLevel::kError,
            "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
     return 2;
   }
-  return clear(config, paths, trip);
+  return clear(config, paths, *trip);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void print_trip(const EdgeConfig& config) {
       "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
       "clear "
       "--yes (first: bess-edge log --last 10)\n",
-      reason_name(trip.reason).data(), utc_text(trip.utc_s).c_str());
+      reason_name(trip->reason).data(), utc_text(trip->utc_s).c_str());
 }
 
 void print_controller(const EdgeConfig& config) {

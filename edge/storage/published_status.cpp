@@ -157,8 +157,9 @@ int find_controller(const EdgeConfig& config, const std::optional<RunStatus>& st
 /// says.
 RunStatus status_of_record(const EdgeConfig& config, const std::optional<RunStatus>& older,
                            int holder, const CycleRecord& record, std::uint64_t number) {
-  RunStatus status = older.value_or(RunStatus{.identity = identity_of_run(config)});
+  RunStatus status = older.value_or(RunStatus{});
   if (!older) {
+    status.identity = identity_of_run(config);
     status.identity.pid = std::max(holder, 0);
     status.identity.start_utc_s = 0;
   }
