@@ -235,7 +235,7 @@ ReadLog LogInput::read() const {
 }
 
 void LogInput::require_not_read(const std::string& option, const std::string& output) const {
-  std::vector<GivenPath> inputs = given_paths("", files_);
+  std::vector<GivenPath> inputs = given_paths("files", files_);
   inputs.push_back({"--settled", settled_});
   inputs.push_back({"--config", config_});
   require_distinct({{option, output}}, inputs);
