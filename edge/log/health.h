@@ -19,8 +19,8 @@ struct HealthInputs {
   std::int64_t cycles_behind = 0;     ///< that the stored status is behind the log
   CardWear wear{};                    ///< of the state folder's device, now
   bool disk_is_full = false;          ///< of the state folder, or it is read-only
-  std::string_view unknown;         ///< not empty: a process runs, and nothing says how it is; why
-  std::string_view update_trouble;  ///< what the last upgrade ended badly with; empty = none
+  std::string_view unknown{};  ///< not empty: a process runs, and nothing says how it is; why
+  std::string_view update_trouble{};  ///< what the last upgrade ended badly with; empty = none
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

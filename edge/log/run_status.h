@@ -68,8 +68,8 @@ struct RunTotals {
 /// How a run is, in one piece: what bess-edge's own commands read. For other programs it is
 /// formatted as JSON and for Prometheus.
 struct RunStatus {
-  RunIdentity identity;
-  RunTotals totals;
+  RunIdentity identity{};
+  RunTotals totals{};
   std::int64_t written_monotonic_ms = 0;
 };
 
@@ -81,7 +81,7 @@ struct StoredStatus {
   std::uint32_t layout = 0;
   std::uint32_t bytes = 0;
   std::uint64_t crc = 0;  ///< of `status`
-  RunStatus status;
+  RunStatus status{};
 };
 /// status.bin beside status.json.
 FixedText<511> stored_status_path(const FixedText<511>& status_json);

@@ -17,7 +17,7 @@ void add_clock_command(bess::ProgramCommand& app) {
   bess::ProgramCommand command = app.subcommand(
       "clock", "Print CLOCK_MONOTONIC in ns: the common anchor of several simulated processes");
   command.option("--in-s", in_s, "Seconds from now, so that all are up before it begins")
-      .range(0.0, kSecondsPerDay .0);
+      .range(0.0, 1.0 * bess::kSecondsPerDay);
   command.runs([] {
     const auto ahead_ns = static_cast<long long>(in_s * 1e9);
     std::printf("%lld\n", static_cast<long long>(bess::clock_ns(CLOCK_MONOTONIC)) + ahead_ns);

@@ -145,7 +145,7 @@ void add_site_command(ProgramCommand& app) {
   command.option("--map", options->map, "Register map (TOML) of the battery").required();
   options->clock.add_to(command);
   command.option("--in-s", options->in_s, "Simulated time begins so long after the start")
-      .range(0.0, kSecondsPerDay .0)
+      .range(0.0, 1.0 * kSecondsPerDay)
       .with_default();
   command.option("--battery", options->battery, "More options of bess-sim battery, in one word");
   command.option("--market", options->market, "More options of bess-sim market, in one word");

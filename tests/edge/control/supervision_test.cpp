@@ -42,7 +42,7 @@ TEST(Supervision, ATripStaysUntilItIsCleared) {
 
 TEST(Supervision, ATripOfAnEarlierRunHoldsFromTheStart) {
   Supervision supervision(kSettings);
-  supervision.restore({.reason = Reason::kUncontrolledPower, .utc_s = 7});
+  supervision.restore(Trip{.reason = Reason::kUncontrolledPower, .utc_s = 7});
   EXPECT_EQ(supervision.stop_reason(), Reason::kUncontrolledPower);
 }
 

@@ -113,7 +113,7 @@ TEST(StoredStatus, IsReadWholeOrNotAtAll) {
                                  .written_monotonic_ms = 77}};
   ASSERT_TRUE(write_status(path.c_str(), stored));
   ASSERT_EQ(read_status(path.c_str(), read), StatusFile::kRead);
-  EXPECT_EQ(read.identity.name, sample_identity().name);
+  EXPECT_EQ(read.identity.name, sample_identity().name.view());
   EXPECT_EQ(read.totals.last.price.price_centi_eur_per_mwh, -12'345);
   EXPECT_EQ(read.written_monotonic_ms, 77);
   const std::string whole = text_of_file(path);
@@ -192,6 +192,28 @@ TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
     EXPECT_TRUE(published.contains(name))
         << "in edge/log/README.md, Metrics, but not published: " << name;
   }
+}
+
+/// tools/monitoring asks for nothing else, but of an upgrade and of a fleet's inventory.
+TEST(Prometheus, RulesAndDashboardAskForWhatIsPublished) {
+  std::set<std::string> known{"bess_update_trouble", "bess_expected_student_info"};
+  for (const auto& [name, family] :
+       parse_prometheus(prometheus_text(totals_after({full_record(1)})))) {
+    known.insert(name);
+  }
+  static const std::regex expression("expr\"?: |\\[[0-9]+m\\]");
+  static const std::regex metric("bess_[a-z_]+");
+  std::size_t asked = 0;
+  for (const std::string file : {"bess_rules.yml", "grafana_dashboard.json"}) {
+    std::istringstream lines(text_of_file(BESS_SOURCE_DIR "/tools/monitoring/" + file));
+    for (std::string line; std::getline(lines, line);) {
+      if (!std::regex_search(line, expression)) continue;
+      for (std::sregex_iterator m(line.begin(), line.end(), metric), end; m != end; ++m, ++asked) {
+        EXPECT_TRUE(known.contains(m->str())) << file << ": " << line;
+      }
+    }
+  }
+  EXPECT_GT(asked, 20U);
 }
 
 TEST(RunTotals, CountFailuresAndReasons) {

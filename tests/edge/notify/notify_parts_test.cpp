@@ -215,28 +215,29 @@ TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
 
 /// From the first answer that fails to the safe mode that follows.
 TEST(ControllerStatus, AnOutageIsOneTrouble) {
-  const auto keys_at = [](std::string_view mode, std::string_view reason, bool battery_fails) {
-    HealthInputs in{};
-    in.is_running = in.is_of_this_run = true;
-    in.cycles = 9;
-    in.mode = mode;
-    in.reason = reason;
-    in.battery_status = battery_fails ? "timeout" : "ok";
-    in.price_status = battery_fails ? "ok" : "http_error";
+  const auto keys_at = [](Mode mode, Reason reason, bool battery_fails) {
+    RunStatus run;
+    run.totals.cycles = 9;
+    CycleRecord& last = run.totals.last;
+    last.mode = mode;
+    last.reason = reason;
+    last.battery_status = battery_fails ? Status::kTimeout : Status::kOk;
+    last.price.status = battery_fails ? Status::kOk : Status::kHttpError;
+    const HealthInputs in{.is_running = true, .status = &run, .is_of_this_run = true};
     ControllerStatus status;
     Json reasons = Json::list();
     for (const std::string& line : assess_health(in).reasons) reasons.add(line);
-    status.json.set("last", Json::object({{"reason", reason}}));
+    status.json.set("last", Json::object({{"reason", reason_name(reason)}}));
     status.json.set("health_reasons", std::move(reasons));
     return keys_of(status);
   };
-  EXPECT_THAT(keys_at("running", "student", false), ElementsAre("prices"));
-  for (const char* reason : {"no_price", "price_age", "price_qh"}) {
-    EXPECT_THAT(keys_at("safe", reason, false), ElementsAre("prices")) << reason;
+  EXPECT_THAT(keys_at(Mode::kRunning, Reason::kStudent, false), ElementsAre("prices"));
+  for (const Reason reason : {Reason::kNoPrice, Reason::kPriceAge, Reason::kPriceQuarterHour}) {
+    EXPECT_THAT(keys_at(Mode::kSafe, reason, false), ElementsAre("prices")) << reason_name(reason);
   }
-  EXPECT_THAT(keys_at("running", "student", true), ElementsAre("battery"));
-  EXPECT_THAT(keys_at("holding", "link", true), ElementsAre("battery"));
-  EXPECT_THAT(keys_at("safe", "link", true), ElementsAre("battery"));
+  EXPECT_THAT(keys_at(Mode::kRunning, Reason::kStudent, true), ElementsAre("battery"));
+  EXPECT_THAT(keys_at(Mode::kHolding, Reason::kLink, true), ElementsAre("battery"));
+  EXPECT_THAT(keys_at(Mode::kSafe, Reason::kLink, true), ElementsAre("battery"));
 }
 
 TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {

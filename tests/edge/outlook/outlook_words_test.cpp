@@ -60,15 +60,17 @@ TEST_F(OutlookWords, WithoutPublishedPricesItIsWhatIsUsual) {
 }
 
 TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
-  HealthInputs in;
-  in.is_running = in.is_of_this_run = true;
-  in.cycles = 10;
-  in.mode = "running";
-  in.battery_status = in.price_status = "ok";
-  in.day_ahead_status = "malformed";
-  in.unplanned_s = 86'400;
+  RunStatus status;
+  status.totals.cycles = 10;
+  CycleRecord& last = status.totals.last;
+  last.mode = Mode::kRunning;
+  last.battery_status = last.price.status = Status::kOk;
+  last.outlook.source = OutlookSource::kUsual;
+  last.outlook.feed = Status::kMalformed;
+  last.utc_s = 86'400;
+  const HealthInputs in{.is_running = true, .status = &status, .is_of_this_run = true};
   EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
-  in.unplanned_s = 86'520;
+  last.utc_s = 86'520;
   const Health health = assess_health(in);
   ASSERT_EQ(health.reasons.size(), 1U);
   EXPECT_THAT(health.reasons[0], Names("outlook malformed"));

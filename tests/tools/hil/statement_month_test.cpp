@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "edge/account/account_days.h"
@@ -126,6 +127,14 @@ Month run_month(const std::string& parts) {
   return month;
 }
 
+/// One process runs all tests of a suite: a map's month is simulated once.
+const Month& undisturbed(const std::string& map) {
+  static std::map<std::string, Month> months;
+  const auto found = months.find(map);
+  if (found != months.end()) return found->second;
+  return months.emplace(map, run_month("[battery]\nmap = \"" + map + "\"\n")).first->second;
+}
+
 /// Each reading for two minutes, at the settled price: what a log says at first sight.
 double by_readings_eur(const Month& month) {
   double eur = 0;
@@ -157,7 +166,7 @@ void tell(const char* name, const DayAccount& statement, const Month& month) {
 TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
   for (const std::string map : {"alphaess", "sunspec_124", "huawei_luna2000", "victron_ess3"}) {
     const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
-    const Month month = run_month("[battery]\nmap = \"" + map + "\"\n");
+    const Month& month = undisturbed(map);
     EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
     const DayAccount statement = month.statement().together();
     tell(map.c_str(), statement, month);
@@ -171,7 +180,7 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
 }
 
 TEST(StatementOfAMonth, CountsBothDirections) {
-  const Month month = run_month("[battery]\nmap = \"alphaess\"\n");
+  const Month& month = undisturbed("alphaess");
   const DayAccount statement = month.statement().together();
   const Directions hand = by_hand(month.scenario, month.outcome.evidence);
   std::printf("charged %.3f kWh, by hand %.3f; discharged %.3f, by hand %.3f\n",
@@ -183,7 +192,7 @@ TEST(StatementOfAMonth, CountsBothDirections) {
 
 /// From its ring and the notifier's file, by the program, in the few MB that it has.
 TEST(StatementOfAMonth, IsWhatTheProgramSays) {
-  const Month month = run_month("[battery]\nmap = \"alphaess\"\n");
+  const Month& month = undisturbed("alphaess");
   const TemporaryFolder folder("/dev/shm");  // each record waits for its disk
   RingLog ring;
   FileMessage error;
