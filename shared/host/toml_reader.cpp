@@ -64,7 +64,8 @@ void TomlTable::integer(std::string_view key, std::int64_t& value, std::int64_t 
   const auto* found = expect<std::int64_t>(key, "must be a whole number");
   if (found == nullptr) return;
   if (*found < min || *found > max) {
-    return fail(key, "must lie between " + std::to_string(min) + " and " + std::to_string(max));
+    return fail(key, "must lie between " + std::to_string(min) + " and " + std::to_string(max) +
+                         ", not at " + std::to_string(*found));
   }
   value = *found;
 }
@@ -84,9 +85,9 @@ void TomlTable::number(std::string_view key, double& value, double min, double m
   if (!std::isfinite(*number) || *number < min || *number > max) {
     const bool is_percent = max == 1 && *number > 1 && *number <= 100;
     const std::string share = is_percent ? number_text(*number / 100) : "";
-    return fail(key,
-                range_text(min, max) +
-                    (is_percent ? ": write " + share + " for " + number_text(*number) + " %" : ""));
+    return fail(key, range_text(min, max) +
+                         (is_percent ? ": write " + share + " for " + number_text(*number) + " %"
+                                     : ", not at " + number_text(*number)));
   }
   value = *number;
 }
@@ -129,7 +130,7 @@ void TomlTable::choice(std::string_view key, int& index,
     }
     names += (i++ == 0 ? "\"" : ", \"") + std::string(choice) + "\"";
   }
-  fail(key, "must be one of " + names);
+  fail(key, "must be one of " + names + ", not \"" + *found + "\"");
 }
 
 const TomlValue* TomlTable::table(std::string_view key) {

@@ -152,7 +152,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   };
   run({"status"}, 3);
   EXPECT_THAT(run({"log"}, 1), Names("state/decisions.ring"));
-  EXPECT_THAT(run({"status", "--prometheus"}, 1), Names("state/metrics.prom"));
+  EXPECT_THAT(run({"status", "--prometheus"}, 1), Names("/state status"));
   {
     ChildProcess edge({edge_program(), "--config", config});
     for (int i = 0; i < 15; ++i) await_line(edge, "utc=");

@@ -39,8 +39,8 @@ CASES = [
     (f"verify --student {LONG}", 1, LONG[:50]),
     # Said once, and by the right name.
     ("evaluate --policy rbc --prices market.csv --accept gapss", 2, '--accept "gapss"'),
-    ("config --config scalar.toml", 1, 'scalar.toml:1 "battery" [battery]'),
-    ("config --config list.toml", 1, 'list.toml:1 "battery"'),
+    ("config --config scalar.toml", 1, 'scalar.toml:1 battery table'),
+    ("config --config list.toml", 1, 'list.toml:1 battery table'),
     # Twice: nobody knows which is meant.
     ("verify --student twice.json", 1, 'twice.json "version"'),
     ("export --student twice.json --out new.h", 1, 'twice.json "version"'),

@@ -89,7 +89,7 @@ TEST_F(SweepPlans, WhatCannotBeIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1,\n 1000]\n"),
               Names("plan.toml:3 [distil] fidelity 1000"));
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelty\" = 1\n"),
-              Names("plan.toml:2 \"fidelty\" [distil] fidelity"));
+              Names("plan.toml:2 [distil] fidelty fidelity"));
   EXPECT_THAT(refusal("[grid]\nfidelity = [1, 2]\n"), Names("plan.toml:2 \"fidelity\""));
   EXPECT_THAT(refusal("[gird]\n"), Names("plan.toml:1 gird grid list"));
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = []\n"), Names("plan.toml:2 distil.fidelity"));
