@@ -129,7 +129,7 @@ struct CycleRecord {
   PriceLevel price_level{};        ///< the prices of this cycle included
   std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
   bool is_tripped = false;
-  Trip trip{};  ///< where is_tripped
+  Trip trip{};                       ///< where is_tripped
   std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
   std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
   ReversalHistory reversals{};       ///< this cycle's order included

@@ -48,7 +48,7 @@ struct SiteReport {
 struct SiteRange {
   std::int32_t charge_w_max = kAnyPowerW;     ///< 0 or more
   std::int32_t discharge_w_max = kAnyPowerW;  ///< 0 or more
-  Reason charge_reason{};     ///< what set the limit, where there is one
+  Reason charge_reason{};                     ///< what set the limit, where there is one
   Reason discharge_reason{};
   /// To be discharged at least, so that the quarter-hour stays under its cap; within SoC, cycle and
   /// power limits, and within `discharge_w_max`.

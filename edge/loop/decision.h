@@ -52,8 +52,7 @@ inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleReco
 
 /// A device that answers, but no longer as the right one, was stopped for what it is, and not
 /// because it could not be read.
-constexpr Reason cause_of(Reason reason, std::optional<Reason> supervision,
-                          Status battery_status) {
+constexpr Reason cause_of(Reason reason, std::optional<Reason> supervision, Status battery_status) {
   const bool is_implausible = reason == Reason::kLink && battery_status == Status::kImplausible;
   return is_implausible ? supervision.value_or(reason) : reason;
 }

@@ -113,7 +113,8 @@ std::string why_unknown(const RingLog& ring, const RingLog& run_ring,
 
 }  // namespace
 
-std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared) {
+std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring,
+                                  const BothPlaces& cleared) {
   const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
   const RingLog& newer = run_is_newer ? run_ring : ring;
   const RingLog& other = run_is_newer ? ring : run_ring;

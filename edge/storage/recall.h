@@ -45,9 +45,9 @@ bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s);
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
 
 struct Recall {
-  CycleRecord before{};  ///< the newest record of both logs; empty where there is none
+  CycleRecord before{};        ///< the newest record of both logs; empty where there is none
   std::optional<Trip> trip{};  ///< one of the logs says so, and no person has cleared it
-  std::string unknown;   ///< not empty: what earlier runs left cannot be read, why
+  std::string unknown;         ///< not empty: what earlier runs left cannot be read, why
 };
 
 /// Of a start that cannot read what earlier runs left: the battery may have tripped, and nobody
@@ -58,7 +58,8 @@ inline std::optional<Trip> trip_without_state(const Recall& recalled, std::int64
 }
 
 /// The trip by the newest records, wherever they are, that no person has cleared.
-std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);
+std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring,
+                                  const BothPlaces& cleared);
 
 /// `published_number`: of the newest record that a status.json knows; 0 = none does.
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,

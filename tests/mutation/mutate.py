@@ -28,8 +28,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 ROOMS = ["control", "registers", "battery", "prices", "site", "supervision", "loop"]
 # Quickest first: a mutant is tried by what is dear only where nothing before has found it.
-UNIT_TESTS = ["edge_walks_test", "edge_test", "edge_commands_unit_test", "hil_test",
-              "price_feed_test", "tools_test", "control_loop_test", "site_test", "trial_test"]
+UNIT_TESTS = ["edge_test", "edge_commands_unit_test", "hil_test", "fetch_test", "tools_test",
+              "control_loop_test", "site_test", "trial_test"]
 TARGETS = ["bess-hil"] + UNIT_TESTS
 NUMBERS_PER_FILE = 1000
 LIMIT_S = 120  # of one run without a mutant
@@ -469,7 +469,7 @@ def main():
             help="only those that the mutated tree in this folder has too")
     parser.add_argument("--than", default="", help="compare: the other tree's folder")
     parser.add_argument("--kinds", default="",
-            help="by these alone, in this order: scenario, edge_walks_test, edge_test, ...")
+            help="by these alone, in this order: scenario, edge_test, ...")
     parser.add_argument("--seconds", type=seconds_of, default=(-1.0, 1e9),
             help="by tests that take so long alone: 0-4 for a first look, then --resume --again "
                  "--seconds 4- for who is left")

@@ -16,7 +16,7 @@ cd "$folder" || exit 1
 grep -q "^build/bess-train export .*student_weights.h" example.sh ||
   fail "the example ends with no header"
 [ -n "$BESS_README_FULL" ] ||
-  sed -i 's/ train --prices / train --steps 100 --prices /; /^build\/bess-train distil /,$d' example.sh
+  sed -i 's/ train / train --steps 100 /; /^build\/bess-train distil /,$d' example.sh
 sh -e example.sh >said 2>&1 || fail "the example fails"
 cmp -s teacher.bin before.bin || fail "the teacher was touched"
 grep -q '^no dear charging  *student and guard  *price at least 301' said ||

@@ -1,4 +1,5 @@
-// The state machines of connection and order, and which old RTU replies could be mistaken for a new one.
+// The state machines of connection and order, and which old RTU replies could be mistaken for a
+// new one.
 #include "edge/battery/link_state.h"
 
 #include <gtest/gtest.h>

@@ -393,8 +393,7 @@ TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
     cycles.read(4'000, 370, 1'629, kStepS, soc_e4);
     for (int i = 0; i < 2; ++i) cycles.read(0, 107, 942 - i, 107, soc_e4);
     const bool is_near_full = soc_e4 == 9'700;
-    EXPECT_EQ(cycles.monitor.trip().has_value(), !is_near_full)
-        << soc_e4;
+    EXPECT_EQ(cycles.monitor.trip().has_value(), !is_near_full) << soc_e4;
   }
 }
 

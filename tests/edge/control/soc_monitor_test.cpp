@@ -104,8 +104,7 @@ TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
         wrong += error / 40;  // drifts with what flows, and is set right at both ends
         if (battery.stored_frac > 0.98 || battery.stored_frac < 0.06) wrong = 0;
         battery.step(turn % 2 == 0 ? 4'000 : -4'000);
-        ASSERT_EQ(battery.monitor.trip(), std::nullopt)
-            << error << " turn " << turn << " " << i;
+        ASSERT_EQ(battery.monitor.trip(), std::nullopt) << error << " turn " << turn << " " << i;
       }
     }
   }

@@ -22,7 +22,8 @@
 
 namespace bess {
 
-void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, const std::optional<Trip>& trip) {
+void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s,
+                          const std::optional<Trip>& trip) {
   using enum ScenarioEvent::Does;
   switch (event.does) {
     case kHold:
