@@ -21,44 +21,46 @@ function(install_with_paths file folder name)
 endfunction()
 
 install(TARGETS bess-edge bess-prices DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
-install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
+install(DIRECTORY device/maps device/meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
         FILES_MATCHING PATTERN "*.toml")
-install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf
-        systemd/bess-notify-orders.conf
+install(FILES README.md delivery/systemd/bess-edge-serial.conf
+        delivery/systemd/bess-notify-mailer.conf delivery/systemd/bess-notify-orders.conf
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
-foreach(room battery control fetch log maps memory notify package page prices recording site
-        storage supervision systemd)
+foreach(room app/recording app/storage companions/notify companions/page core/control core/memory
+        core/site core/supervision delivery/package delivery/systemd device/battery device/maps
+        prices/fetch prices/record records/log)
   install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/delivery/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT edge)
-install(FILES systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf COMPONENT edge)
+install(FILES delivery/systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf
+        COMPONENT edge)
 # Absolute: bess-edge looks in /etc whatever the prefix. An example, so that no edited file is lost.
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.toml.example
-  "map = \"maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
-  "map = \"meters/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/meters/"
+  "map = \"device/maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
+  "map = \"device/meters/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/meters/"
   "folder = \"state\"  " "folder = \"/var/lib/bess\"  "
   "#run_folder = \"run\"   " "run_folder = \"/run/bess\""
   "folder = \"notify\"  " "folder = \"/var/lib/bess-notify\"  ")
-install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-edge.service lib/systemd/system
+install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/delivery/systemd/bess-edge.service lib/systemd/system
   bess-edge.service
   "/usr/bin/bess-edge" "${CMAKE_INSTALL_FULL_BINDIR}/bess-edge"
   "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
-install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-prices.service lib/systemd/system
-  bess-prices.service
+install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/delivery/systemd/bess-prices.service
+  lib/systemd/system bess-prices.service
   "/usr/bin/bess-prices" "${CMAKE_INSTALL_FULL_BINDIR}/bess-prices"
   "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
 if(BESS_NOTIFY)
   install(TARGETS bess-notify DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
-  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-notify.service lib/systemd/system
-    bess-notify.service
+  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/delivery/systemd/bess-notify.service
+    lib/systemd/system bess-notify.service
     "/usr/bin/bess-notify" "${CMAKE_INSTALL_FULL_BINDIR}/bess-notify"
     "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
 endif()
 if(BESS_PAGE)
   install(TARGETS bess-page DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
-  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-page.service lib/systemd/system
-    bess-page.service
+  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/delivery/systemd/bess-page.service
+    lib/systemd/system bess-page.service
     "/usr/bin/bess-page" "${CMAKE_INSTALL_FULL_BINDIR}/bess-page"
     "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
 endif()

@@ -1,4 +1,4 @@
-# libFuzzer with address and undefined-behaviour sanitizers, for tests/fuzz. Use: tools/fuzz
+# libFuzzer with address and undefined-behaviour sanitizers, for tests/checks/fuzz. Use: tools/fuzz
 set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
 set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")

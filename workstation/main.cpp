@@ -7,8 +7,8 @@
 #include "shared/host/command_line.h"
 #include "shared/host/made/build_info.h"
 #include "shared/local_time.h"
-#include "workstation/chain/folder_lock.h"
 #include "workstation/cli/commands.h"
+#include "workstation/runs/chain/folder_lock.h"
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk

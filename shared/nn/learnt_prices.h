@@ -1,5 +1,6 @@
 // The prices that a student learnt to decide on, told by its price map: half their distribution,
-// half a straight line over the lattice (workstation/rl/price_map.h). Every exported header has it.
+// half a straight line over the lattice (workstation/policy/rl/price_map.h). Every exported header
+// has it.
 #pragma once
 
 #include "shared/nn/student_net.h"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <sstream>
 
-#include "edge/battery/modbus_battery.h"
-#include "edge/registers/map_file.h"
+#include "edge/device/battery/modbus_battery.h"
+#include "edge/device/registers/map_file.h"
 #include "tests/bench/registry.h"
 #include "tests/support/simulated_site.h"
 
@@ -17,10 +17,12 @@ namespace {
 constexpr std::int32_t kFastScale = 900;
 constexpr int kOrders = 300;
 
-std::string map_path(const std::string& name) { return BESS_SOURCE_DIR "/edge/maps/" + name; }
+std::string map_path(const std::string& name) {
+  return BESS_SOURCE_DIR "/edge/device/maps/" + name;
+}
 
 struct CycleSetup {
-  std::string map;  ///< file in edge/maps
+  std::string map;  ///< file in edge/device/maps
   std::string variant;
   int cycles;
   std::int32_t time_scale;

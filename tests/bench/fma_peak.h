@@ -1,7 +1,7 @@
 // What the machine could do at this moment: multiply-adds on registers alone, without memory.
 #pragma once
 
-#include "workstation/nn/thread_team.h"
+#include "workstation/policy/nn/thread_team.h"
 
 namespace bess {
 

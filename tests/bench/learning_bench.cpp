@@ -12,8 +12,8 @@
 #include "tests/bench/simulated_year.h"
 #include "tests/bench/torch_peer.h"
 #include "workstation/base/random.h"
-#include "workstation/rl/experience.h"
-#include "workstation/rl/learner.h"
+#include "workstation/policy/rl/experience.h"
+#include "workstation/policy/rl/learner.h"
 
 namespace bess {
 namespace {

@@ -1,13 +1,13 @@
 // Import, environment and baselines on a year of the simulated market.
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
-#include "workstation/env/evaluate.h"
-#include "workstation/env/outlook_book.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/planners/baselines.h"
-#include "workstation/planners/foresight.h"
-#include "workstation/planners/outlook_integers.h"
-#include "workstation/planners/outlook_program.h"
+#include "workstation/data/env/evaluate.h"
+#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/market/model/simulated_market.h"
+#include "workstation/policy/planners/baselines.h"
+#include "workstation/policy/planners/foresight.h"
+#include "workstation/policy/planners/outlook_integers.h"
+#include "workstation/policy/planners/outlook_program.h"
 
 namespace bess {
 namespace {

@@ -1,7 +1,7 @@
 #include "tests/bench/simulated_year.h"
 
 #include "shared/local_time.h"
-#include "workstation/market/model/simulated_market.h"
+#include "workstation/data/market/model/simulated_market.h"
 
 namespace bess {
 namespace {

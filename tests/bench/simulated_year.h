@@ -1,7 +1,7 @@
 // A year of the simulated market, made once for all benchmarks.
 #pragma once
 
-#include "workstation/env/market_steps.h"
+#include "workstation/data/env/market_steps.h"
 
 namespace bess {
 

@@ -2,8 +2,8 @@
 #include "shared/nn/exported_student.h"
 #include "tests/bench/registry.h"
 #include "workstation/base/random.h"
-#include "workstation/correction/distil.h"
-#include "workstation/student/prove.h"
+#include "workstation/correction/distillation/distil.h"
+#include "workstation/correction/student/prove.h"
 
 namespace bess {
 namespace {

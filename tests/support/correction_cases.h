@@ -7,7 +7,7 @@
 #include "shared/action.h"
 #include "shared/units_and_limits.h"
 #include "workstation/base/random.h"
-#include "workstation/correction/correction_layer.h"
+#include "workstation/correction/distillation/correction_layer.h"
 
 namespace bess {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/commands/command_line.h"
+#include "edge/app/commands/command_line.h"
 
 namespace bess {
 

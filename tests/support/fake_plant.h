@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "edge/control/control_types.h"
-#include "edge/registers/codec.h"
+#include "edge/core/control/control_types.h"
+#include "edge/device/registers/codec.h"
 #include "shared/scaled_clock.h"
-#include "tools/battery_sim/simulated_battery.h"
+#include "tools/simulators/battery_sim/simulated_battery.h"
 
 namespace bess {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "edge/control/safety_guard.h"
+#include "edge/core/control/safety_guard.h"
 
 namespace bess {
 

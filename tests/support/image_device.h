@@ -5,8 +5,8 @@
 #include <string>
 
 #include "tests/support/register_device.h"
-#include "tools/battery_sim/register_image.h"
-#include "tools/battery_sim/simulated_battery.h"
+#include "tools/simulators/battery_sim/register_image.h"
+#include "tools/simulators/battery_sim/simulated_battery.h"
 
 namespace bess {
 

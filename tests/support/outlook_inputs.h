@@ -139,7 +139,7 @@ class DecisionDigest {
 };
 
 inline std::string outlook_golden_path() {
-  return BESS_SOURCE_DIR "/tests/golden/outlook_decisions.txt";
+  return BESS_SOURCE_DIR "/tests/data/golden/outlook_decisions.txt";
 }
 /// Its lines but the first, which says how they were made.
 inline std::vector<std::string> outlook_golden_lines() {

@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "workstation/env/market_steps.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/local_date.h"
+#include "workstation/data/env/market_steps.h"
+#include "workstation/data/market/model/simulated_market.h"
+#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/support/student_nets.h"
-#include "workstation/student/prove.h"
+#include "workstation/correction/student/prove.h"
 
 namespace bess {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "workstation/base/random.h"
-#include "workstation/correction/quadratic_program.h"
+#include "workstation/correction/distillation/quadratic_program.h"
 
 namespace bess {
 

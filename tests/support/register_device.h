@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "edge/battery/battery_driver.h"
-#include "edge/battery/modbus_link.h"
+#include "edge/device/battery/battery_driver.h"
+#include "edge/device/battery/modbus_link.h"
 #include "tests/support/shipped_maps.h"
 
 namespace bess {
@@ -147,7 +147,7 @@ class DeviceClock {
 
 using DeviceDriver = BatteryDriver<DeviceLink, DeviceClock>;
 
-/// A map of edge/maps with a device for it; the test fills the registers.
+/// A map of edge/device/maps with a device for it; the test fills the registers.
 struct MapUnderTest {
   RegisterMap map;
   RegisterDevice device;

@@ -1,4 +1,4 @@
-// The register maps of edge/maps by name, and all of them with all of their variants.
+// The register maps of edge/device/maps by name, and all of them with all of their variants.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-#include "edge/registers/map_file.h"
+#include "edge/device/registers/map_file.h"
 
 namespace bess {
 
@@ -38,7 +38,7 @@ inline constexpr MapVariant kShippedMapVariants[] = {{"alphaess", "block"},
                                                      {"marstek_venus", "gen_1_2"}};
 
 inline std::string shipped_map(const std::string& name) {
-  return std::string(BESS_SOURCE_DIR) + "/edge/maps/" + name + ".toml";
+  return std::string(BESS_SOURCE_DIR) + "/edge/device/maps/" + name + ".toml";
 }
 
 inline RegisterMap load_shipped_map(const MapVariant& wanted) {

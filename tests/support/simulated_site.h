@@ -1,6 +1,6 @@
-// A simulated site (tools/site) in a folder of its own, the prices of its market, and the
-// configuration with which bess-edge drives the one on the prices of the other. Where closed_loop/,
-// soak/ and peers/ start the real programs.
+// A simulated site (tools/simulators/site) in a folder of its own, the prices of its market, and
+// the configuration with which bess-edge drives the one on the prices of the other. Where
+// closed_loop/, soak/ and peers/ start the real programs.
 #pragma once
 
 #include <cmath>
@@ -15,8 +15,8 @@
 #include "tests/support/csv_rows.h"
 #include "tests/support/programs_under_test.h"
 #include "tests/support/temporary_folder.h"
-#include "tools/site/controller_settings.h"
-#include "tools/site/site_programs.h"
+#include "tools/simulators/site/controller_settings.h"
+#include "tools/simulators/site/site_programs.h"
 
 namespace bess {
 
@@ -68,7 +68,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
 
   /// Lines of TOML for [battery]: the device, and how long it may take to answer.
   static std::string alphaess_keys(int response_timeout_ms = 100) {
-    return "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\nresponse_timeout_ms = " +
+    return "map = \"" BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml\"\nresponse_timeout_ms = " +
            std::to_string(response_timeout_ms) + "\n";
   }
 

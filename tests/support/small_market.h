@@ -8,7 +8,7 @@
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/base/random.h"
-#include "workstation/env/evaluate.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 

@@ -7,9 +7,9 @@
 
 #include "shared/nn/student_net.h"
 #include "workstation/base/random.h"
-#include "workstation/correction/distil.h"
-#include "workstation/rl/price_map.h"
-#include "workstation/student/student_file.h"
+#include "workstation/correction/distillation/distil.h"
+#include "workstation/correction/student/student_file.h"
+#include "workstation/policy/rl/price_map.h"
 
 namespace bess {
 

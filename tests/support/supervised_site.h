@@ -9,9 +9,9 @@
 #include <functional>
 #include <memory>
 
-#include "edge/loop/control_loop.h"
+#include "edge/core/loop/control_loop.h"
 #include "tests/support/image_device.h"
-#include "tools/battery_sim/house_load.h"
+#include "tools/simulators/battery_sim/house_load.h"
 
 namespace bess {
 

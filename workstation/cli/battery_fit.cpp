@@ -9,9 +9,9 @@
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/run_config.h"
 #include "workstation/cli/commands.h"
-#include "workstation/env/battery_fit.h"
+#include "workstation/data/env/battery_fit.h"
+#include "workstation/runs/chain/run_config.h"
 
 namespace bess {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "workstation/chain/run_config.h"
 #include "workstation/report/figures/page_files.h"
+#include "workstation/runs/chain/run_config.h"
 
 namespace bess {
 

@@ -12,15 +12,15 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/policy_factory.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/env/charge_left.h"
-#include "workstation/planners/baselines.h"
+#include "workstation/data/env/charge_left.h"
+#include "workstation/policy/planners/baselines.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/evaluation_days.h"
-#include "workstation/run/learnt_for.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/policy_factory.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/run/learnt_for.h"
 
 namespace bess {
 namespace {

@@ -1,6 +1,6 @@
 // bess-train export: proves a student once more and writes the weight header of the edge, with the
 // signature that its build will have.
-#include "workstation/student/export.h"
+#include "workstation/correction/student/export.h"
 
 #include <fmt/core.h>
 
@@ -8,10 +8,10 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/source_tree.h"
 #include "workstation/cli/commands.h"
-#include "workstation/student/certificate.h"
+#include "workstation/correction/student/certificate.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/source_tree.h"
 
 namespace bess {
 namespace {

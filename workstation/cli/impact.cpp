@@ -8,12 +8,12 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/policy_factory.h"
 #include "workstation/cli/commands.h"
-#include "workstation/impact/impact_study.h"
-#include "workstation/planners/baselines.h"
+#include "workstation/policy/planners/baselines.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/policy_factory.h"
+#include "workstation/runs/impact/impact_study.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include "shared/nn/learnt_prices.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/log/log_comparison.h"
+#include "workstation/runs/log/log_comparison.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // bess-train log replay: what another student would have decided in the cycles of a log.
-#include "workstation/log/log_replay.h"
+#include "workstation/runs/log/log_replay.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/log/log_input.h"
+#include "workstation/runs/log/log_input.h"
 
 namespace bess {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
-#include "workstation/log/log_input.h"
-#include "workstation/log/statement_page.h"
+#include "workstation/runs/log/log_input.h"
+#include "workstation/runs/log/statement_page.h"
 
 namespace bess {
 namespace {

@@ -10,14 +10,14 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
-#include "workstation/chain/rule_files.h"
 #include "workstation/cli/commands.h"
+#include "workstation/correction/student/correct_and_prove.h"
+#include "workstation/correction/student/student_policy.h"
 #include "workstation/report/figures/walk_forward_figure.h"
-#include "workstation/student/correct_and_prove.h"
-#include "workstation/student/student_policy.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/chain/rule_files.h"
 
 namespace bess {
 namespace {

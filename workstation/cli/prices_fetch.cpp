@@ -5,13 +5,13 @@
 #include <memory>
 
 #include "shared/host/file.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/feed/day_ahead_fetch.h"
-#include "workstation/market/feed/elia_fetch.h"
-#include "workstation/market/feed/market_files.h"
+#include "workstation/data/market/feed/day_ahead_fetch.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+#include "workstation/data/market/feed/market_files.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

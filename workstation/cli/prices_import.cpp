@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "shared/host/file.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

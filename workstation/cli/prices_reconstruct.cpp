@@ -5,11 +5,11 @@
 
 #include "shared/host/file.h"
 #include "shared/host/text.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/feed/market_files.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/gaps.h"
+#include "workstation/data/market/feed/market_files.h"
+#include "workstation/data/market/model/simulated_market.h"
+#include "workstation/data/market/series/gaps.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

@@ -7,10 +7,10 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/local_date.h"
+#include "workstation/data/market/model/simulated_market.h"
+#include "workstation/data/market/series/local_date.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

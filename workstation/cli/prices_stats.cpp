@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "shared/host/file.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/feed/market_files.h"
-#include "workstation/market/series/judged_prices.h"
-#include "workstation/market/series/plausibility.h"
-#include "workstation/market/statistics/market_statistics.h"
+#include "workstation/data/market/feed/market_files.h"
+#include "workstation/data/market/series/judged_prices.h"
+#include "workstation/data/market/series/plausibility.h"
+#include "workstation/data/market/statistics/market_statistics.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

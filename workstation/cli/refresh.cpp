@@ -1,6 +1,6 @@
 // bess-train refresh: learns a run anew from what was published since, and puts it in the run's
 // place when it is not worse.
-#include "workstation/run/refresh.h"
+#include "workstation/runs/run/refresh.h"
 
 #include <fmt/core.h>
 
@@ -9,13 +9,13 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/market/feed/day_ahead_fetch.h"
-#include "workstation/market/feed/elia_fetch.h"
-#include "workstation/market/feed/market_files.h"
+#include "workstation/data/market/feed/day_ahead_fetch.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+#include "workstation/data/market/feed/market_files.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
 
 namespace bess {
 namespace {

@@ -6,12 +6,12 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/chain_steps.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/run/run_plan.h"
-#include "workstation/run/run_stages.h"
+#include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/run/run_plan.h"
+#include "workstation/runs/run/run_stages.h"
 
 namespace bess {
 namespace {

@@ -8,14 +8,14 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/policy_factory.h"
-#include "workstation/chain/price_input.h"
-#include "workstation/chain/rule_files.h"
 #include "workstation/cli/commands.h"
-#include "workstation/env/evaluate.h"
-#include "workstation/rules/rule_conflicts.h"
-#include "workstation/rules/ruled_policy.h"
+#include "workstation/correction/rules/rule_conflicts.h"
+#include "workstation/correction/rules/ruled_policy.h"
+#include "workstation/data/env/evaluate.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/policy_factory.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/chain/rule_files.h"
 
 namespace bess {
 namespace {

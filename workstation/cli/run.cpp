@@ -7,16 +7,16 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/chain/chain_steps.h"
-#include "workstation/chain/config_plausibility.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/run/learnt_for.h"
-#include "workstation/run/run_backtest.h"
-#include "workstation/run/run_plan.h"
-#include "workstation/run/run_report.h"
-#include "workstation/run/run_stages.h"
+#include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/chain/config_plausibility.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/run/learnt_for.h"
+#include "workstation/runs/run/run_backtest.h"
+#include "workstation/runs/run/run_plan.h"
+#include "workstation/runs/run/run_report.h"
+#include "workstation/runs/run/run_stages.h"
 
 namespace bess {
 namespace {

@@ -8,8 +8,8 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/run/run_report.h"
-#include "workstation/run/runs_page.h"
+#include "workstation/runs/run/run_report.h"
+#include "workstation/runs/run/runs_page.h"
 
 namespace bess {
 namespace {

@@ -6,15 +6,15 @@
 #include <memory>
 
 #include "shared/host/file.h"
-#include "workstation/chain/chain_steps.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/policy_factory.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/run/run_record.h"
-#include "workstation/run/run_report.h"
-#include "workstation/size/size_report.h"
+#include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/policy_factory.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/run/run_record.h"
+#include "workstation/runs/run/run_report.h"
+#include "workstation/runs/size/size_report.h"
 
 namespace bess {
 namespace {
@@ -103,7 +103,7 @@ void add_size_command(ProgramCommand& app) {
       .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
       .required();
   options->price_input.add(command);
-  command.option("--plan", options->plan, "TOML file (workstation/size/README.md)").required();
+  command.option("--plan", options->plan, "TOML file (workstation/runs/size/README.md)").required();
   command.option("--out", options->out, "Folder for table and page").required();
   options->day_ahead.add(command);
   command.flag("--json", options->json, "One JSON object");

@@ -9,9 +9,9 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/collected.h"
-#include "workstation/sweep/engines.h"
-#include "workstation/sweep/sweep_plan.h"
+#include "workstation/runs/sweep/collected.h"
+#include "workstation/runs/sweep/engines.h"
+#include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {
 namespace {

@@ -8,8 +8,8 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/class_packages.h"
-#include "workstation/sweep/sweep_plan.h"
+#include "workstation/runs/sweep/class_packages.h"
+#include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "shared/host/text.h"
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/engines.h"
-#include "workstation/sweep/sweep_plan.h"
+#include "workstation/runs/sweep/engines.h"
+#include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {
 namespace {

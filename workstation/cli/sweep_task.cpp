@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/collected.h"
+#include "workstation/runs/sweep/collected.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // bess-train train: prices in, teacher out.
-#include "workstation/rl/train.h"
+#include "workstation/policy/rl/train.h"
 
 #include <fmt/core.h>
 
@@ -10,15 +10,15 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/chain_steps.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/config_plausibility.h"
-#include "workstation/chain/folder_lock.h"
-#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/report/figures/curves.h"
-#include "workstation/run/learnt_for.h"
-#include "workstation/run/run_record.h"
+#include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/config_plausibility.h"
+#include "workstation/runs/chain/folder_lock.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/run/learnt_for.h"
+#include "workstation/runs/run/run_record.h"
 
 namespace bess {
 namespace {

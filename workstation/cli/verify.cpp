@@ -6,13 +6,13 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/chain/common_options.h"
-#include "workstation/chain/price_input.h"
-#include "workstation/chain/rule_files.h"
 #include "workstation/cli/commands.h"
-#include "workstation/rules/rule_conflicts.h"
-#include "workstation/student/certificate.h"
-#include "workstation/student/prove.h"
+#include "workstation/correction/rules/rule_conflicts.h"
+#include "workstation/correction/student/certificate.h"
+#include "workstation/correction/student/prove.h"
+#include "workstation/runs/chain/common_options.h"
+#include "workstation/runs/chain/price_input.h"
+#include "workstation/runs/chain/rule_files.h"
 
 namespace bess {
 namespace {

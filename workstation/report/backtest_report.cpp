@@ -12,7 +12,7 @@
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
 #include "workstation/base/palette.h"
-#include "workstation/env/drawdown.h"
+#include "workstation/data/env/drawdown.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"

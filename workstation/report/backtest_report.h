@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/backtest/walk_forward.h"
+#include "workstation/report/backtest/walk_forward.h"
 
 namespace bess {
 

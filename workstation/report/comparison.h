@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "workstation/base/table.h"
-#include "workstation/env/evaluate.h"
-#include "workstation/planners/baselines.h"
+#include "workstation/data/env/evaluate.h"
+#include "workstation/policy/planners/baselines.h"
 
 namespace bess {
 
@@ -56,7 +56,7 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
 ComparisonRow comparison_row(const std::string& name, const Evaluation& evaluation,
                              const Evaluation* first, const Evaluation* foresight = nullptr);
 
-/// Every figure of the rows; its keys are those that answers and tables share (base/answer.h).
+/// Every figure of the rows; its keys are those that answers and tables share (../base/answer.h).
 Table figures_table(const std::vector<ComparisonRow>& rows);
 /// The figures of `row` that every answer has.
 void add_figures(const ComparisonRow& row, Json& json);

@@ -15,7 +15,7 @@ namespace bess {
 
 namespace {
 
-/// As the split is made in env/market_steps.cpp.
+/// As the split is made in ../data/env/market_steps.cpp.
 struct SplitMeaning {
   Split split;
   const char* name;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/env/market_steps.h"
+#include "workstation/data/env/market_steps.h"
 #include "workstation/report/comparison.h"
 
 namespace bess {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "workstation/planners/foresight.h"
+#include "workstation/policy/planners/foresight.h"
 
 namespace bess {
 namespace {

@@ -31,7 +31,7 @@
 #include <string>
 #include <vector>
 
-#include "workstation/env/evaluate.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 

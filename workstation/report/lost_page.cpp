@@ -7,10 +7,10 @@
 
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
+#include "workstation/correction/rules/ruled_policy.h"
+#include "workstation/correction/student/student_policy.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/page_data.h"
-#include "workstation/rules/ruled_policy.h"
-#include "workstation/student/student_policy.h"
 
 namespace bess {
 namespace {

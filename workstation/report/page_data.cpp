@@ -10,14 +10,14 @@
 #include <string_view>
 
 #include "shared/utc_text.h"
-#include "workstation/env/context_fit.h"
+#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
+#include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/report/step_archive.h"
-#include "workstation/student/exported_policy.h"
-#include "workstation/student/student_policy.h"
 
 namespace bess {
 

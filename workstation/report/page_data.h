@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "shared/host/json.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/report.h"
 #include "workstation/report/step_archive.h"
-#include "workstation/rules/rule.h"
 
 namespace bess {
 

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "workstation/correction/distil.h"
+#include "workstation/correction/distillation/distil.h"
+#include "workstation/correction/student/prove.h"
+#include "workstation/correction/student/student_checkpoints.h"
+#include "workstation/correction/student/student_file.h"
+#include "workstation/policy/rl/train.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/report/report_tables.h"
-#include "workstation/rl/train.h"
-#include "workstation/student/prove.h"
-#include "workstation/student/student_checkpoints.h"
-#include "workstation/student/student_file.h"
 
 namespace bess {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "workstation/correction/student/certificate.h"
+#include "workstation/correction/student/prove.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/rule_prices.h"
-#include "workstation/student/certificate.h"
-#include "workstation/student/prove.h"
 
 namespace bess {
 

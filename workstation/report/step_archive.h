@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/env/evaluate.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 

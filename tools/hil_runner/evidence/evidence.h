@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "edge/control/control_types.h"
-#include "tools/battery_sim/simulated_battery.h"
+#include "edge/core/control/control_types.h"
+#include "tools/simulators/battery_sim/simulated_battery.h"
 
 namespace bess {
 

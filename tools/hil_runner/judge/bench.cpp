@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edge/control/quarter_hour_energy.h"
+#include "edge/core/control/quarter_hour_energy.h"
 #include "shared/features.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "shared/scaled_clock.h"
-#include "tools/battery_sim/house_load.h"
 #include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/judge/judge.h"
 #include "tools/hil_runner/scenario/rules.h"
+#include "tools/simulators/battery_sim/house_load.h"
 
 namespace bess {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <memory>
 
-#include "edge/control/cycle_budget.h"
-#include "edge/control/policy.h"
-#include "edge/control/reserve.h"
+#include "edge/core/control/cycle_budget.h"
+#include "edge/core/control/policy.h"
+#include "edge/core/control/reserve.h"
 #include "shared/features.h"
 #include "shared/local_time.h"
 #include "shared/outlook/outlook_plan.h"

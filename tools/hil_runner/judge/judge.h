@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/settings/edge_config.h"
+#include "edge/app/settings/edge_config.h"
 #include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/scenario/publication.h"
 #include "tools/hil_runner/scenario/scenario.h"

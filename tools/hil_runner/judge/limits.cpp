@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edge/control/quarter_hour_energy.h"
+#include "edge/core/control/quarter_hour_energy.h"
 #include "tools/hil_runner/judge/bench.h"
 
 namespace bess {

@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <map>
 
-#include "edge/registers/map_file.h"
+#include "edge/device/registers/map_file.h"
 #include "shared/host/bus_recording.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
-#include "tools/battery_sim/register_image.h"
+#include "tools/simulators/battery_sim/register_image.h"
 
 namespace bess {
 
@@ -198,7 +198,8 @@ std::string complaint_of_address(const std::string& address) {
 void add_real_options(ProgramCommand& command, RealOptions& options) {
   command.flag("--yes-drive-real-battery", options.is_sure,
                "Said besides --real: the battery there is charged and discharged");
-  command.option("--real-map", options.map, "Its register map: a name of edge/maps, or a path");
+  command.option("--real-map", options.map,
+                 "Its register map: a name of edge/device/maps, or a path");
   command.option("--real-capacity-wh", options.capacity_wh, "What it holds").positive();
   command.option("--real-power-w", options.power_w, "No order is larger").range(10.0, 1e8);
   command.option("--real-soc-min", options.soc_min_frac, "No discharge below").range(0.0, 1.0);

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "edge/settings/edge_config.h"
+#include "edge/app/settings/edge_config.h"
 #include "shared/host/command_line.h"
-#include "tools/battery_sim/simulated_battery.h"
 #include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/scenario/scenario.h"
+#include "tools/simulators/battery_sim/simulated_battery.h"
 
 namespace bess {
 

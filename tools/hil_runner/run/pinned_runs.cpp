@@ -5,7 +5,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "edge/log/record_codec.h"
+#include "edge/records/log/record_codec.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/signature.h"

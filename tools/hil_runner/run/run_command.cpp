@@ -15,12 +15,11 @@
 #include <random>
 #include <thread>
 
-#include "edge/log/log_text.h"
+#include "edge/records/log/log_text.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "tools/battery_sim/battery_record.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/real/real_options.h"
 #include "tools/hil_runner/run/agreement.h"
@@ -29,6 +28,7 @@
 #include "tools/hil_runner/run/report_page.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/rules.h"
+#include "tools/simulators/battery_sim/battery_record.h"
 
 namespace bess {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "edge/control/policy.h"
+#include "edge/core/control/policy.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/run/pinned_runs.h"

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edge/control/price_history.h"
+#include "edge/core/control/price_history.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "tools/site/controller_settings.h"
+#include "tools/simulators/site/controller_settings.h"
 
 namespace bess {
 namespace {

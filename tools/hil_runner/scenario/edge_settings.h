@@ -7,18 +7,19 @@
 #include <optional>
 #include <string>
 
-#include "edge/loop/control_settings.h"
-#include "edge/settings/edge_config.h"
-#include "edge/site/connection_guard.h"
+#include "edge/app/settings/edge_config.h"
+#include "edge/core/loop/control_settings.h"
+#include "edge/core/site/connection_guard.h"
 #include "shared/host/minute_file.h"
 #include "shared/price_level.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/scenario.h"
-#include "tools/site/controller_settings.h"
+#include "tools/simulators/site/controller_settings.h"
 
 namespace bess {
 
-// The line by which a scenario's other program limits the battery (edge/site/connection_guard.h).
+// The line by which a scenario's other program limits the battery
+// (edge/core/site/connection_guard.h).
 
 /// As a scenario says it and as the line and the command line have it: watts, or any.
 inline std::string limit_power_text(std::int32_t power_w) {

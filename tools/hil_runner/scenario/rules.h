@@ -1,5 +1,5 @@
 // What is judged of every scenario, in this order. A row is a rule: its name, by which a scenario
-// may leave it out, what it says, and its function judge_NAME in ../judge/.
+// may leave it out, what it says, and its function judge_NAME in ../judge.
 #pragma once
 
 namespace bess {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "edge/control/price_history.h"
+#include "edge/core/control/price_history.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"

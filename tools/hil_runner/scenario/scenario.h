@@ -13,12 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include "edge/control/outlook.h"
-#include "edge/control/site_types.h"
+#include "edge/core/control/outlook.h"
+#include "edge/core/control/site_types.h"
 #include "shared/battery_model.h"
-#include "tools/battery_sim/battery_faults.h"
-#include "tools/market_sim/auction_view.h"
-#include "tools/market_sim/market_fault.h"
+#include "tools/simulators/battery_sim/battery_faults.h"
+#include "tools/simulators/market_sim/auction_view.h"
+#include "tools/simulators/market_sim/market_fault.h"
 
 namespace bess {
 
@@ -209,7 +209,7 @@ struct Scenario {
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };
 
-/// A map is named as in edge/maps, or by its path, relative to `folder`.
+/// A map is named as in edge/device/maps, or by its path, relative to `folder`.
 std::string map_path(const std::string& name, const std::filesystem::path& folder);
 
 /// Throws UserError naming file and line.

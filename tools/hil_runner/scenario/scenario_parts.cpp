@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "edge/control/control_types.h"
-#include "edge/control/hold.h"
+#include "edge/core/control/control_types.h"
+#include "edge/core/control/hold.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/scenario_reader.h"

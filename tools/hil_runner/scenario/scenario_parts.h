@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "shared/host/toml_reader.h"
-#include "tools/battery_sim/house_load.h"
 #include "tools/hil_runner/scenario/scenario.h"
+#include "tools/simulators/battery_sim/house_load.h"
 
 namespace bess {
 

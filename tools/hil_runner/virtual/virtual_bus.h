@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "edge/base/status.h"
-#include "edge/battery/modbus_frame.h"
-#include "edge/registers/register_map.h"
+#include "edge/core/base/status.h"
+#include "edge/device/battery/modbus_frame.h"
+#include "edge/device/registers/register_map.h"
 #include "shared/signature.h"
-#include "tools/battery_sim/faulty_device.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
+#include "tools/simulators/battery_sim/faulty_device.h"
 
 namespace bess {
 

@@ -6,16 +6,16 @@
 #include <memory>
 #include <string>
 
-#include "edge/control/control_types.h"
-#include "edge/fetch/day_ahead_feed.h"
-#include "edge/fetch/outlook_fetcher.h"
-#include "edge/fetch/price_json.h"
-#include "edge/prices/newest_row.h"
-#include "edge/prices/price_settings.h"
+#include "edge/core/control/control_types.h"
+#include "edge/prices/fetch/day_ahead_feed.h"
+#include "edge/prices/fetch/outlook_fetcher.h"
+#include "edge/prices/fetch/price_json.h"
+#include "edge/prices/record/newest_row.h"
+#include "edge/prices/record/price_settings.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
-#include "tools/market_sim/market_fault.h"
-#include "tools/market_sim/market_view.h"
+#include "tools/simulators/market_sim/market_fault.h"
+#include "tools/simulators/market_sim/market_view.h"
 
 namespace bess {
 

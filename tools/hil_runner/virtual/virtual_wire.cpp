@@ -1,6 +1,6 @@
 // The edge's ModbusWire, by the same header, with the virtual bus of its port at the other end:
-// linked instead of edge/battery/modbus_wire.cpp.
-#include "edge/battery/modbus_wire.h"
+// linked instead of edge/device/battery/modbus_wire.cpp.
+#include "edge/device/battery/modbus_wire.h"
 
 #include "tools/hil_runner/virtual/virtual_bus.h"
 

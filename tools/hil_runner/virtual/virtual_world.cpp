@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "edge/control/policy.h"
-#include "edge/fetch/history_pages.h"
-#include "edge/log/record_codec.h"
-#include "edge/program/controller.h"
+#include "edge/app/program/controller.h"
+#include "edge/core/control/policy.h"
+#include "edge/prices/fetch/history_pages.h"
+#include "edge/records/log/record_codec.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/edge_settings.h"

@@ -1,5 +1,5 @@
-// Virtual time and memory as the world of a controller (edge/program/controller.h): the edge's own
-// clock, driver, link and meter on virtual buses, the simulated market's answers, and of what
+// Virtual time and memory as the world of a controller (edge/app/program/controller.h): the edge's
+// own clock, driver, link and meter on virtual buses, the simulated market's answers, and of what
 // outlives a run what EdgeState keeps.
 #pragma once
 
@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "edge/battery/modbus_battery.h"
-#include "edge/control/hold.h"
-#include "edge/log/journal.h"
-#include "edge/program/controller.h"
-#include "edge/settings/edge_config.h"
-#include "edge/site/connection_guard.h"
-#include "edge/storage/recall.h"
+#include "edge/app/program/controller.h"
+#include "edge/app/settings/edge_config.h"
+#include "edge/app/storage/recall.h"
+#include "edge/core/control/hold.h"
+#include "edge/core/site/connection_guard.h"
+#include "edge/device/battery/modbus_battery.h"
+#include "edge/records/log/journal.h"
 #include "shared/host/minute_file.h"
 #include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/scenario/scenario.h"

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string_view>
 
-#include "edge/log/log_reader.h"
+#include "edge/records/log/log_reader.h"
 #include "shared/host/user_error.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
-#include "tools/site/site_programs.h"
+#include "tools/simulators/site/site_programs.h"
 
 namespace bess {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "edge/settings/edge_config.h"
+#include "edge/app/settings/edge_config.h"
 #include "shared/host/child_process.h"
 #include "shared/host/user_error.h"
 #include "tools/hil_runner/base/work_folder.h"

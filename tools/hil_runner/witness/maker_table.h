@@ -1,7 +1,7 @@
 // What the registers of a battery mean by its maker's documents, written down a second time and by
-// hand: the sources are those that edge/maps/*.toml name, read again; the maps themselves are not.
-// A sign, a word order or a scale that map or interpreter get wrong is wrong for the edge and for
-// bess-sim alike, which have them in common; not here.
+// hand: the sources are those that edge/device/maps/*.toml name, read again; the maps themselves
+// are not. A sign, a word order or a scale that map or interpreter get wrong is wrong for the edge
+// and for bess-sim alike, which have them in common; not here.
 #pragma once
 
 #include <cstdint>

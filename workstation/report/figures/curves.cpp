@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "shared/host/csv.h"
-#include "workstation/market/statistics/market_statistics.h"
+#include "workstation/data/market/statistics/market_statistics.h"
 
 namespace bess {
 

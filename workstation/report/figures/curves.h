@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/correction/distil.h"
-#include "workstation/env/market_steps.h"
+#include "workstation/correction/distillation/distil.h"
+#include "workstation/data/env/market_steps.h"
+#include "workstation/policy/rl/train.h"
 #include "workstation/report/figures/picture_table.h"
-#include "workstation/rl/train.h"
 
 namespace bess {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 
-#include "workstation/market/series/imbalance_price.h"
+#include "workstation/correction/student/verify.h"
+#include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/sort_table.h"
-#include "workstation/student/verify.h"
 
 namespace bess {
 

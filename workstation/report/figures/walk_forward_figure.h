@@ -1,6 +1,6 @@
 // The walk-forward figure beside that of a run: what its chain would have earned had it been
-// retrained before each month it traded, so that it saw no later one (backtest/walk_forward.h). And
-// the table of students over omega.
+// retrained before each month it traded, so that it saw no later one
+// (report/backtest/walk_forward.h). And the table of students over omega.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/env/day_errors.h"
-#include "workstation/env/evaluate.h"
-#include "workstation/student/certificate.h"
+#include "workstation/correction/student/certificate.h"
+#include "workstation/data/env/day_errors.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 

@@ -1,0 +1,96 @@
+// `bess-edge clear`: a person has looked at why the supervision gave the battery back.
+#include <cstdio>
+
+#include "edge/app/commands/command.h"
+#include "edge/app/storage/instance_lock.h"
+#include "edge/app/storage/recall.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_reader.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+struct ClearGiven {
+  bool yes = false;
+};
+
+constexpr const char* kFooter =
+    R"(After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its
+own mode until this command is given, over restarts too. A running controller goes on at its next
+cycle.
+Exit codes:
+  0 cleared, or nothing to clear
+  1 log or state cannot be accessed
+  2 the command line is wrong, or --yes is missing
+Examples:
+  bess-edge log --last 10; bess-edge clear --yes)";
+
+/// False with one line where the word cannot be left.
+bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
+  return clear_trip_of(path, trip_utc_s) || fail_with_errno(path, "cannot be written", error);
+}
+
+/// In both places; one is enough for the controller to hear it.
+int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
+  FileMessage state_error;
+  FileMessage run_error;
+  const bool in_state = leave_word(paths.state.c_str(), trip.utc_s, state_error);
+  const bool in_run = !paths.run.empty() && leave_word(paths.run.c_str(), trip.utc_s, run_error);
+  if (!in_state) report(JournalLevel::kError, "%s", state_error.c_str());
+  if (!run_error.empty()) report(JournalLevel::kWarning, "%s", run_error.c_str());
+  if (!in_state && !in_run) {
+    report(JournalLevel::kError,
+           "not cleared: the battery stays released until the disk is mended");
+    return 1;
+  }
+  std::printf("cleared    the battery is driven again from the next %s on\n",
+              is_controller_running(config) ? "cycle" : "start");
+  if (!in_state) {
+    std::printf(
+        "           kept in %s alone, which the next boot of this machine forgets: then clear it "
+        "again\n",
+        paths.run.c_str());
+  }
+  return 0;
+}
+
+int run_clear(const ClearGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) {
+    report(JournalLevel::kError, "%s: whether the supervision has tripped cannot be known",
+           error.c_str());
+    return 1;
+  }
+  if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
+  const BothPlaces paths = both_places(config, kClearedFileName);
+  const std::optional<Trip> trip = standing_trip(log.ring(), log.run_ring(), paths);
+  if (!trip) {
+    std::printf("nothing to clear: the supervision has not tripped\n");
+    return 0;
+  }
+  std::printf("tripped    %s at %s\n", reason_name(trip->reason).data(),
+              utc_text(trip->utc_s).c_str());
+  if (!given.yes) {
+    report(JournalLevel::kError,
+           "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
+    return 2;
+  }
+  return clear(config, paths, *trip);
+}
+
+}  // namespace
+
+void add_clear(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("clear", "drive again after the supervision tripped and the cause is found");
+  const auto given = std::make_shared<ClearGiven>();
+  command.flag("--yes", given->yes, "clear the trip; otherwise it is only shown");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_clear(*given, settings); });
+}
+
+}  // namespace bess

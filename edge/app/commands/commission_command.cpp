@@ -1,0 +1,292 @@
+// bess-edge commission: runs the sign check on the real battery and stores its result.
+#include <algorithm>
+#include <cstdio>
+
+#include "edge/app/commands/command.h"
+#include "edge/app/program/find_battery.h"
+#include "edge/app/program/startup.h"
+#include "edge/app/recording/exchange_recorder.h"
+#include "edge/app/storage/commission_file.h"
+#include "edge/app/storage/operator_files.h"
+#include "edge/core/site/meter_witness.h"
+#include "edge/device/battery/commission.h"
+#include "edge/device/battery/modbus_battery.h"
+#include "edge/records/log/journal.h"
+
+namespace bess {
+namespace {
+
+struct CommissionGiven {
+  bool yes = false;
+  std::string record_path;
+};
+
+constexpr const char* kFooter =
+    R"(The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
+[commissioning] may say otherwise). Its measured power must follow each way, no less and no more
+than [response] of its map allows, and so must the meter of [meter]. Then, where SoC, limits and
+connection leave room, it follows half the largest step that the controller may order, for some
+seconds each way: a lag takes as long for any step, a ramp does not. A battery whose largest step
+surely takes longer than settle_s is refused with the lines to set; what one step alone leaves open
+is a warning with its figures. A direction that its SoC leaves no room for is reported, not tested.
+At the end the battery is released. The result is kept in the [state] folder and holds for this map,
+variant and address; bess-edge refuses to control a battery without it.
+Exit codes:
+  0 passed
+  1 refused: the line says why
+  2 the command line is wrong, or --yes is missing
+Examples:
+  bess-edge commission --config /etc/bess/edge.toml --yes
+  bess-edge commission --record steps.jsonl --yes)";
+
+/// The meter of [meter], a device of its own or the battery's grid point.
+class SiteMeter {
+ public:
+  SiteMeter(const SiteSettings& settings, ModbusMeter& meter)
+      : settings_(settings), meter_(meter) {}
+  [[nodiscard]] bool exists() const {
+    return settings_.meter != MeterSource::kNone && settings_.witness.judges;
+  }
+  Status read(const BatteryMeasurement& m, std::int32_t& grid_power_w) {
+    if (settings_.meter == MeterSource::kMap) return meter_.read(grid_power_w);
+    grid_power_w = m.grid_power_w;
+    return m.has_grid_power ? Status::kOk : Status::kImplausible;
+  }
+
+ private:
+  const SiteSettings& settings_;
+  ModbusMeter& meter_;
+};
+
+/// With a limit of somebody else's in force, or a connection whose house is not seen, nothing
+/// larger than the sign needs is ordered.
+bool may_drive_further(const SiteConfig& site, std::int64_t utc_s) {
+  const ConnectionSettings& connection = site.settings.connection;
+  const bool is_seen = site.settings.meter != MeterSource::kNone && site.settings.witness.judges;
+  const std::int32_t narrowest_w =
+      std::min({connection.import_w_max, connection.export_w_max, connection.peak_w_max});
+  if (narrowest_w < kAnyPowerW && !is_seen) return false;
+  if (!site.settings.has_outside_limits) return true;
+  OutsideLimit limit;
+  bool is_set = false;
+  const Status status = LimitFile(site.limit_file.c_str()).read(limit, is_set);
+  return status == Status::kOk && !(is_set && utc_s < limit.until_utc_s);
+}
+
+CommissionSettings settings_of(const EdgeConfig& config) {
+  const GuardSettings& guard = config.control.guard;
+  CommissionSettings settings;
+  const Commissioning& test = config.battery.map.commissioning;
+  settings.power_w = std::min(test.power_w, guard.power_w);
+  settings.rest_s = test.settle_s;
+  settings.drive_s = test.duration_s;
+  settings.tolerance_percent = test.tolerance_percent;
+  const Watchdog& watchdog = config.battery.map.watchdog;
+  const bool lasts_a_step =
+      watchdog.kind != Watchdog::Kind::kNone && watchdog.refresh_s >= kSecondsPerStep;
+  settings.unfed_s = lasts_a_step ? kSecondsPerStep + 5 : 0;
+  settings.response = config.battery.map.response;
+  const ConnectionSettings& connection = config.site.settings.connection;
+  settings.import_w_max =
+      std::min(connection.import_w_max, connection.peak_w_max) - connection.margin_w;
+  settings.export_w_max = connection.export_w_max - connection.margin_w;
+  settings.rated_w = guard.power_w;
+  settings.step_w_max =
+      guard.ramp_w_max > 0 ? std::min(guard.ramp_w_max, 2 * guard.power_w) : 2 * guard.power_w;
+  settings.soc_min_e4 = guard.soc_min_e4;
+  settings.soc_max_e4 = guard.soc_max_e4;
+  settings.order_duration_s = config.control.order_duration_s;
+  return settings;
+}
+
+std::int32_t further_w(const CommissionSettings& settings) {
+  return settings.drives_further ? std::min(settings.rated_w, settings.step_w_max)
+                                 : settings.power_w;
+}
+
+int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
+  report(
+      JournalLevel::kError,
+      "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
+      "W for %d s each, then, where SoC and limits leave room, up to %d W for some seconds, then "
+      "releases it; add --yes to do that",
+      battery_place(config.battery).c_str(), settings.rest_s, settings.power_w, settings.drive_s,
+      further_w(settings));
+  return 2;
+}
+
+void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
+  char timer[64] = "; it has no timer of its own: set it back by hand";
+  if (config.control.has_watchdog) {
+    std::snprintf(timer, sizeof timer, "; its own timer ends that after %d s",
+                  config.control.order_duration_s);
+  }
+  report(JournalLevel::kError,
+         "commission %s: the battery could not be released (%s) and may still follow an order of "
+         "%d W%s",
+         battery_place(config.battery).c_str(), status_text(result.release_status).data(),
+         result.ordered_power_w, timer);
+}
+
+/// Doubts are told with their figure: no reason to refuse.
+void print_speed(const DirectionResult& direction, const EdgeConfig& config) {
+  const AnswerSpeed& speed = direction.speed;
+  if (speed.largest.most <= 0) return;  // refused before it was asked for
+  const std::int32_t step_w = settings_of(config).step_w_max;
+  const char* const indent = "           ";
+  std::printf("%sfits a lag of %.1f s, a time constant of %.1f s and ", indent,
+              speed.dynamics.dead_time_s, speed.dynamics.time_constant_s);
+  const std::int32_t ramp = ramp_w_per_s(speed);
+  ramp > 0 ? std::printf("a ramp of %d W/s", ramp) : std::printf("no ramp");
+  std::printf(": a step of %d W takes %.1f s (%.1f to %.1f s)\n", step_w, speed.largest.best,
+              speed.largest.least, speed.largest.most);
+  if (direction.is_held_back) {
+    std::printf("%swarning: of %d W only %d W came: the battery's own limits?\n", indent,
+                direction.further_w, direction.further_measured_w);
+  }
+  if (!speed.is_doubtful) return;
+  std::printf("%swarning: settle_s = %d may be too short for it%s\n", indent,
+              config.battery.map.response.settle_s,
+              speed.has_two ? "" : "; a larger step, at a middle SoC, would tell: repeat it then");
+}
+
+void print_direction(const char* name, const DirectionResult& direction, std::int32_t soc_e4,
+                     const EdgeConfig& config) {
+  if (!direction.is_tested) {
+    std::printf(
+        "%-10s not tested: SoC %.1f %% or the battery's own limits leave no room; the other "
+        "direction is what is known\n",
+        name, soc_e4 / 100.0);
+    return;
+  }
+  std::printf("%-10s ordered %d W, measured %d W", name, direction.ordered_power_w,
+              direction.measured_power_w);
+  if (direction.came_ms >= 0)
+    std::printf(", there within %.1f s", static_cast<double>(direction.came_ms) / 1e3);
+  std::printf("\n");
+  print_speed(direction, config);
+}
+
+void print_measured(const EdgeConfig& config, const CommissionResult& result) {
+  if (result.charge.is_tested || result.discharge.is_tested) {
+    print_direction("charge", result.charge, result.soc_e4, config);
+    print_direction("discharge", result.discharge, result.soc_e4, config);
+  }
+  if (result.meter == MeterVerdict::kNotAsked) return;
+  std::printf("meter      shows %d %% of the battery's steps; house %d W at rest%s\n",
+              result.meter_percent, result.rest_house_w,
+              is_plausible_house(result.rest_house_w, 0, config.site.settings.pv_w_max)
+                  ? ""
+                  : ", which is below zero: is its sign right? Panels: [meter] pv_w_max");
+}
+
+/// With which it would pass.
+void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
+  if (result.wanted_duration_s > 0) {
+    std::printf("[watchdog]   # of the map, %s\nduration_s = %d   # it says %d\nrefresh_s = %d\n",
+                config.battery.map_path.c_str(), result.wanted_duration_s,
+                config.battery.map.watchdog.duration_s, result.wanted_duration_s / 2);
+  }
+  if (result.wanted_settle_s > 0 || result.wanted_tolerance_w > 0) {
+    std::printf("[response]   # of the map, %s\n", config.battery.map_path.c_str());
+  }
+  if (result.wanted_settle_s > 0) {
+    std::printf("settle_s = %d   # it says %d\n", result.wanted_settle_s,
+                config.battery.map.response.settle_s);
+  }
+  if (result.wanted_tolerance_w > 0) {
+    std::printf("tolerance_w = %d   # it says %d\n", result.wanted_tolerance_w,
+                config.battery.map.response.tolerance_w);
+  }
+  if (result.wanted_ramp_w_max > 0) {
+    std::printf(
+        "[guard]      # of the configuration: a larger step takes longer than that\n"
+        "ramp_w_max = %d\n",
+        result.wanted_ramp_w_max);
+  }
+}
+
+int refuse(const EdgeConfig& config, ModbusBattery& battery, const CommissionResult& result) {
+  std::string read;
+  if (result.verdict == CommissionVerdict::kMeterLost) {
+    read = status_text(result.status);
+  } else if (result.verdict == CommissionVerdict::kNoLink) {
+    read = reading_text(config, battery, result.status, result.lost_point);
+  } else {
+    read = "read: " + measured_text(config.battery.map, battery.live());
+  }
+  report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s; %s",
+         battery_place(config.battery).c_str(), result.ordered_power_w, result.measured_power_w,
+         commission_text(result.verdict).data(), read.c_str());
+  print_proposal(config, result);
+  return 1;
+}
+
+int run_commission(const CommissionGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  DeviceSession session;
+  if (!session.begin(config)) return 1;
+  EdgeClock& clock = session.clock();
+  CommissionSettings test = settings_of(config);
+  test.drives_further = may_drive_further(config.site, clock.now_utc_ns() / kNanosecondsPerSecond);
+  if (!given.yes) return ask_for_yes(config, test);
+  static ModbusBattery battery(config.battery.link, config.battery.map,
+                               config.clock);  // outlives a failed check
+  static ExchangeRecorder recorder;            // as long as its listener may be told
+  FileMessage message;
+  if (!given.record_path.empty()) {
+    if (!recorder.start(given.record_path.c_str(),
+                        recording_head_of(config.battery.map, config.battery.link, config.clock),
+                        config.battery.map, config.clock, message)) {
+      report(JournalLevel::kError, "%s", message.c_str());
+      return 1;
+    }
+    battery.link().tell_exchanges(recorder.listener());
+  }
+  ModbusMeter meter(config.site.link, config.site.map, config.clock);
+  release_if_a_check_fails(battery);
+  if (!reach_battery(config, battery, clock)) return 1;
+  std::printf(
+      "commission %s: resting %d s, then %d W for %d s each way, then up to %d W for seconds ...\n",
+      battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s,
+      further_w(test));
+  std::fflush(stdout);
+  CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
+                                test, battery, clock, SiteMeter(config.site.settings, meter))
+                                .run();
+  battery.link().tell_exchanges({});
+  if (!recorder.finish(message)) report(JournalLevel::kError, "%s", message.c_str());
+  if (result.release_status != Status::kOk) complain_about_release(config, result);
+  print_measured(config, result);
+  std::fflush(stdout);
+  if (result.verdict != CommissionVerdict::kPassed) return refuse(config, battery, result);
+  for (const std::int8_t point : config.battery.map.measure) {
+    if (battery.has_optional(point)) result.present.push_back(point);
+  }
+  std::string error;
+  const std::int64_t utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+  if (!write_commission_file(config, result, utc_s, error)) {
+    report(JournalLevel::kError, "%s", error.c_str());
+    return 1;
+  }
+  std::printf("passed     ordered %d W, measured %d W: the sign is right; stored in %s\n",
+              result.ordered_power_w, result.measured_power_w, config.state.folder.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_commission(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("commission", "check once that a battery follows the sign of its orders");
+  const auto given = std::make_shared<CommissionGiven>();
+  command
+      .option("--record", given->record_path,
+              "Modbus exchanges to a file: map check --steps reads delay, ramp and lag from it")
+      .value_name("FILE");
+  command.flag("--yes", given->yes, "give the orders; otherwise they are only listed");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_commission(*given, settings); });
+}
+
+}  // namespace bess

@@ -1,0 +1,99 @@
+// `bess-edge earned`: what the battery earned in some local days, from the decision log.
+#include <cstdio>
+
+#include "edge/app/commands/command.h"
+#include "edge/records/account/account_days.h"
+#include "edge/records/account/earnings.h"
+#include "edge/records/log/journal.h"
+#include "shared/local_day.h"
+
+namespace bess {
+namespace {
+
+struct EarnedGiven {
+  std::string period;  ///< empty = today
+  bool csv = false;
+  bool json = false;
+};
+
+constexpr const char* kFooter =
+    R"(Earned is what flowed, by quarter-hours: at the settled price where bess-prices has fetched
+it ([settled]), else at the last of the minutes, an estimate. Fees, taxes and wear are not
+subtracted. Then what is stored more or less at the end than at the beginning, and where the student
+did not decide, by reasons. Read from the log in [state] folder: days that it no longer holds are
+missing. bess-train log makes a statement to compare with the bill from bess-edge log --csv, and
+what other policies would have earned.
+Exit codes:
+  0 done
+  1 the log cannot be read, or has nothing of these days
+  2 the command line is wrong
+Examples:
+  bess-edge earned
+  bess-edge earned week
+  bess-edge earned month --csv > november.csv)";
+
+std::string complaint(const std::string& text) {
+  Period period;
+  if (parse_period(text, 19'700'101, period)) return "";
+  return "must be today, yesterday, week, month, last-month, a month as 2026-10, a day as "
+         "2026-11-23, or two with .. between, not " +
+         text;
+}
+
+std::string span_text(std::int32_t first_day, std::int32_t last_day) {
+  return DayAccount(first_day).date() + " to " + DayAccount(last_day).date();
+}
+
+/// The days that one can ask for.
+std::string held_text(const LogReader& log) {
+  CycleRecord oldest, newest;
+  if (!log.read(log.oldest_number(), oldest) || !log.newest(newest)) return "";
+  return "; it has " + span_text(local_day_at(oldest.utc_s), local_day_at(newest.utc_s));
+}
+
+int run_earned(const EarnedGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
+  const EdgeConfig& config = settings.config;
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) return failed(error.c_str());
+  const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  Period period{today, today};
+  if (!given.period.empty()) parse_period(given.period, today, period);
+  std::string trouble;
+  const MoneyTerms terms =
+      money_terms({.capacity_wh = config.battery.capacity_wh,
+                   .settled_file = std::string(state_file(config, "settled.csv").view())},
+                  trouble);
+  if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
+  const Earnings earnings(accounts_of_days(log, period.first_day, period.last_day, terms));
+  if (earnings.days().empty()) {
+    return failed("the log holds no cycle of " + span_text(period.first_day, period.last_day) +
+                  held_text(log));
+  }
+  const std::string text = given.csv    ? earnings.csv()
+                           : given.json ? earnings.json().text()
+                                        : earnings.text();
+  std::fputs(text.c_str(), stdout);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return failed("the output cannot be written");
+}
+
+}  // namespace
+
+void add_earned(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("earned", "what the battery earned, by days");
+  const auto given = std::make_shared<EarnedGiven>();
+  command
+      .option("period", given->period,
+              "today (default), yesterday, week, month, last-month, 2026-10, 2026-11-23 or "
+              "2026-11-01..2026-11-23; local days")
+      .value_name("PERIOD")
+      .check(complaint);
+  command.flag("--csv", given->csv, "one line a day, with a header");
+  command.flag("--json", given->json, "one JSON object: each day, and their sum").excludes("--csv");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_earned(*given, settings); });
+}
+
+}  // namespace bess

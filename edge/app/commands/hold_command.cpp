@@ -1,0 +1,213 @@
+// bess-edge hold: an operator's order with an end, left for the running controller to find.
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "edge/app/commands/command.h"
+#include "edge/app/storage/instance_lock.h"
+#include "edge/app/storage/operator_files.h"
+#include "edge/app/storage/recall.h"
+#include "edge/core/control/hold.h"
+#include "edge/core/control/tick.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_reader.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+struct HoldGiven {
+  std::optional<std::int64_t> power_w;
+  bool release = false;
+  std::int64_t for_s = 0;  ///< 0 = not given
+};
+
+constexpr const char* kFooter =
+    R"(The running controller follows from its next cycle on, restarts included, and trades again
+when the end has passed. A hold stands for the student and the price thresholds, and needs no price.
+Everything else of the guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals,
+power and connection limits, ramp. A hold is not followed while the supervision has tripped: that is
+said, see bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it
+as the controller's user, or as root.
+Exit codes:
+  0 done
+  1 refused: the line says why
+  2 the command line is wrong
+Examples:
+  bess-edge hold 0 --for 30m
+  bess-edge hold -2kW --for 2h
+  bess-edge hold --release)";
+
+/// Whole watts, as 2000, 2000W or 2kW. What is wrong with them, or nothing.
+std::string take_power(std::string_view text, std::optional<std::int64_t>& power_w) {
+  constexpr double kLargest = 1e9;
+  std::string_view digits = text;
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.ends_with('W')) digits.remove_suffix(1);
+  const bool is_kilo = digits.ends_with('k');
+  if (is_kilo) digits.remove_suffix(1);
+  double number = 0;
+  const char* const last = digits.data() + digits.size();
+  const auto [end, error] = std::from_chars(digits.data(), last, number);
+  const double watts = is_kilo ? 1e3 * number : number;
+  const bool is_whole = std::abs(watts) <= kLargest && watts == std::nearbyint(watts);
+  if (error != std::errc{} || end != last || !is_whole) {
+    return "must be a whole number of watts such as 2000, 2000W or -2kW, not " + std::string(text);
+  }
+  power_w = static_cast<std::int64_t>(watts);
+  return "";
+}
+
+/// Nothing is ordered while the supervision has tripped, whoever wants it.
+void print_trip(const EdgeConfig& config) {
+  LogReader log;
+  FileMessage ignored;
+  if (!log.open(config.log, ignored)) return;
+  const std::optional<Trip> trip =
+      standing_trip(log.ring(), log.run_ring(), both_places(config, kClearedFileName));
+  if (!trip) return;
+  std::printf(
+      "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
+      "clear "
+      "--yes (first: bess-edge log --last 10)\n",
+      reason_name(trip->reason).data(), utc_text(trip->utc_s).c_str());
+}
+
+void print_controller(const EdgeConfig& config) {
+  if (!is_controller_running(config)) {
+    std::printf(
+        "           no bess-edge runs with this configuration: one that starts before then "
+        "follows it\n");
+  } else if (!config.control.control) {
+    std::printf("           control = false: the controller logs what it would order\n");
+  }
+}
+
+void print_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
+  const LocalMinute local = local_minute_of(hold.until_utc_s);
+  const char* const direction = hold.power_w > 0   ? " (charging)"
+                                : hold.power_w < 0 ? " (discharging)"
+                                                   : " (at rest)";
+  std::printf("hold       %d W%s until %s, %04d-%02d-%02d %02d:%02d local time\n", hold.power_w,
+              direction, utc_text(hold.until_utc_s).c_str(), local.year, local.month, local.day,
+              local.minute_of_day / 60, local.minute_of_day % 60);
+  std::printf(
+      "           from the cycle of %s on, whatever the price; stop reasons, SoC bounds, "
+      "reserve, limits and ramp stay stronger\n",
+      utc_text(next_tick_utc_s(now_utc_s)).c_str());
+  print_controller(config);
+  print_trip(config);
+}
+
+bool is_kept(const char* path, const Hold& hold) {
+  return replace_file_durably(path, format_hold(hold).view());
+}
+
+bool is_gone(const char* path) {
+  if (unlink(path) != 0 && errno != ENOENT) return false;
+  sync_folder_of(path);
+  return true;
+}
+
+void warn_of_next_boot(const BothPlaces& paths, const FileMessage& error) {
+  report(JournalLevel::kWarning,
+         "%s; kept in %s alone, which the next boot of this machine forgets: repeat it then",
+         error.c_str(), paths.run.c_str());
+}
+
+/// One place is enough for the controller: its word is the newer one.
+int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
+  const BothPlaces paths = both_places(config, kHoldFileName);
+  FileMessage error;
+  FileMessage run_error;
+  const bool in_state = is_kept(paths.state.c_str(), hold) ||
+                        fail_with_errno(paths.state.c_str(), "cannot write the hold", error);
+  const bool in_run = !paths.run.empty() &&
+                      (is_kept(paths.run.c_str(), hold) ||
+                       fail_with_errno(paths.run.c_str(), "cannot write the hold", run_error));
+  if (!in_state && !in_run) {
+    report(JournalLevel::kError, "%s; nothing has changed", error.c_str());
+    return 1;
+  }
+  if (!in_state) warn_of_next_boot(paths, error);
+  if (!run_error.empty()) report(JournalLevel::kWarning, "note: %s", run_error.c_str());
+  print_hold(config, hold, now_utc_s);
+  return 0;
+}
+
+/// What cannot be taken away is outdone by a newer word in the other place: a hold that is over.
+int release_hold(const EdgeConfig& config) {
+  constexpr Hold kOver{.power_w = 0, .until_utc_s = 1};
+  const BothPlaces paths = both_places(config, kHoldFileName);
+  const bool has_run = !paths.run.empty();
+  FileMessage error;
+  const bool of_state = is_gone(paths.state.c_str()) ||
+                        fail_with_errno(paths.state.c_str(), "cannot take the hold away", error);
+  const bool of_run = !has_run || is_gone(paths.run.c_str()) ||
+                      fail_with_errno(paths.run.c_str(), "cannot take the hold away", error);
+  const bool is_outdone = (of_state || (has_run && is_kept(paths.run.c_str(), kOver))) &&
+                          (of_run || is_kept(paths.state.c_str(), kOver));
+  if (!is_outdone) {
+    report(JournalLevel::kError, "%s; it is still in force", error.c_str());
+    return 1;
+  }
+  if (!of_state) warn_of_next_boot(paths, error);
+  std::printf("hold       none: from the next cycle on the prices decide\n");
+  return 0;
+}
+
+int run_hold(const HoldGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  if (given.release) return release_hold(config);
+  const std::int64_t power_w_max = config.control.guard.power_w;
+  const std::int64_t power_w = *given.power_w;
+  if (power_w > power_w_max || power_w < -power_w_max) {
+    report(JournalLevel::kError,
+           "hold %lld W is beyond [battery] power_w of %s: choose between -%lld and %lld",
+           static_cast<long long>(power_w), settings.path.c_str(),
+           static_cast<long long>(power_w_max), static_cast<long long>(power_w_max));
+    return 1;
+  }
+  set_market_time_zone();
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
+                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + given.for_s)};
+  for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {
+    if (!folder->empty()) make_folder(folder->c_str());  // when it fails, the writing says why
+  }
+  return keep_hold(config, hold, now_utc_s);
+}
+
+}  // namespace
+
+void add_hold(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("hold", "hold a power until an end, whatever the price");
+  const auto given = std::make_shared<HoldGiven>();
+  command
+      .parsed(
+          "watts", [given](const std::string& text) { return take_power(text, given->power_w); },
+          "power to hold, as 2000, 2000W or 2kW: positive charges, negative discharges, 0 "
+          "rests; up to [battery] power_w")
+      .value_name("WATTS");
+  command.duration("--for", given->for_s, 120, "how long, 2m to 7d: 90m, 2h, 1d12h");
+  command.flag("--release", given->release, "end the hold before its time")
+      .excludes("--for")
+      .excludes("watts");
+  command.footer(kFooter);
+  command.does(
+      [given](SettingsFile& settings) { return run_hold(*given, settings); },
+      [given] {
+        const bool is_order = given->power_w.has_value() && given->for_s > 0;
+        return std::string(given->release || is_order
+                               ? ""
+                               : "a power in W and --for DURATION, or --release, is missing");
+      });
+}
+
+}  // namespace bess

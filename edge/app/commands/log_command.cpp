@@ -1,0 +1,153 @@
+// `bess-edge log`: prints the decision log from the ring in the state folder, as text or CSV.
+#include <algorithm>
+#include <cstdio>
+
+#include "edge/app/commands/command.h"
+#include "edge/records/account/day_account.h"
+#include "edge/records/log/log_reader.h"
+#include "edge/records/log/log_text.h"
+#include "edge/records/why/explanation.h"
+#include "edge/records/why/local_moment.h"
+#include "shared/local_text.h"
+
+namespace bess {
+namespace {
+
+struct LogGiven {
+  bool csv = false;
+  bool local = false;
+  bool explain = false;
+  std::int64_t last = -1;  ///< -1 = all
+  std::string since;       ///< moments; empty = all
+  std::string until;
+  std::string at;
+};
+
+constexpr const char* kFooter =
+    R"(A moment is local time, 14:32 (the latest), yesterday, "yesterday 14:32" or "2026-11-23
+14:32"; an age, 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are estimates, as those of
+bess-edge earned: the power measured at the tick, for two minutes, at the price decided on. Read
+from the ring in [state] folder, oldest first, whether the controller runs or not.
+Exit codes:
+  0 done
+  1 the log cannot be read
+  2 the command line is wrong
+Examples:
+  bess-edge log --last 10
+  bess-edge log --local --since 14:00 --until 15:00
+  bess-edge log --explain --last 30
+  bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv)";
+
+/// Which records, by number and by time.
+struct LogSpan {
+  std::uint64_t first = 1;
+  std::uint64_t last = 0;
+  std::int64_t since_utc_s = INT64_MIN;
+  std::int64_t until_utc_s = INT64_MAX;
+};
+
+/// Torn records count, and time may have been stepped: by number first.
+LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_utc_s) {
+  LogSpan span{.first = log.oldest_number(), .last = log.newest_number()};
+  std::int64_t at_utc_s = 0;
+  if (!given.at.empty() && parse_moment(given.at, now_utc_s, at_utc_s)) {
+    const std::uint64_t number = number_at(log, at_utc_s);
+    return {.first = std::max<std::uint64_t>(number, 1), .last = number};  // 0: none
+  }
+  if (given.last >= 0 && static_cast<std::uint64_t>(given.last) <= span.last) {
+    span.first = std::max(span.first, span.last - static_cast<std::uint64_t>(given.last) + 1);
+  }
+  if (!given.since.empty()) parse_moment(given.since, now_utc_s, span.since_utc_s);
+  if (!given.until.empty()) parse_moment(given.until, now_utc_s, span.until_utc_s);
+  return span;
+}
+
+double eur(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
+
+void print_csv(const CycleRecord& record, const LogGiven& given,
+               const PriceThresholds& thresholds) {
+  char line[kLogLineBytes];
+  format_csv_line(record, line);
+  std::fputs(line, stdout);
+  if (given.local) {
+    std::printf(",%s,%.2f,%.6f", local_text(record.utc_s).c_str(), cycle_energy_wh(record),
+                cycle_earned_eur(record));
+  }
+  Margins at;
+  if (given.explain && margins_of(record, thresholds, at)) {
+    std::printf(",%.2f,%.2f", eur(at.charge_up_to_centi), eur(at.discharge_from_centi));
+  } else if (given.explain) {
+    std::fputs(",,", stdout);  // nobody was asked
+  }
+  std::putchar('\n');
+}
+
+void print_text(const CycleRecord& record, const LogGiven& given,
+                const PriceThresholds& thresholds) {
+  char line[kLogLineBytes];
+  format_log_line(record, line);
+  if (given.local) {
+    std::printf("%s  %+8.1f Wh  %+8.4f EUR  ", local_text(record.utc_s).c_str(),
+                cycle_energy_wh(record), cycle_earned_eur(record));
+  }
+  std::fputs(line, stdout);
+  Margins at;
+  if (given.explain && margins_of(record, thresholds, at)) {
+    std::printf(" charge_up_to=%.2f discharge_from=%.2f", eur(at.charge_up_to_centi),
+                eur(at.discharge_from_centi));
+  }
+  std::putchar('\n');
+}
+
+int run_log(const LogGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
+  const EdgeConfig& config = settings.config;
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) return failed(error.c_str());
+  if (given.csv) {
+    char header[kLogLineBytes];
+    format_csv_header(header);
+    std::printf("%s%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "",
+                given.explain ? ",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh" : "");
+  }
+  const PriceThresholds& thresholds = config.control.guard.thresholds;
+  const LogSpan span = span_of(given, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  CycleRecord record;
+  for (std::uint64_t n = span.first; n <= span.last; ++n) {
+    if (!log.read(n, record)) continue;
+    if (record.utc_s < span.since_utc_s || record.utc_s > span.until_utc_s) continue;
+    if (given.csv) {
+      print_csv(record, given, thresholds);
+    } else {
+      print_text(record, given, thresholds);
+    }
+  }
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return failed("the output cannot be written");
+}
+
+}  // namespace
+
+void add_log(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("log", "what was decided in each cycle, and why");
+  const auto given = std::make_shared<LogGiven>();
+  command.flag("--csv", given->csv,
+               "comma-separated with a header; otherwise one key=value line a cycle");
+  command.flag("--local", given->local,
+               "also local time, energy in Wh (charging is positive) and money in EUR");
+  command.flag("--explain", given->explain,
+               "also the price up to which the student would have charged, and that from which it "
+               "would have discharged (bess-edge why tells more of one cycle)");
+  command.option("--last", given->last, "only the newest N cycles").value_name("N").positive();
+  command.moment("--since", given->since, "only from then on");
+  command.moment("--until", given->until, "only up to then");
+  command.moment("--at", given->at, "only the cycle whose order was in force then")
+      .excludes("--last")
+      .excludes("--since")
+      .excludes("--until");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_log(*given, settings); });
+}
+
+}  // namespace bess

@@ -1,0 +1,412 @@
+// `bess-edge status`: another process that reads what the controller publishes (its stored status,
+// the decision ring, the lock) and says how it is, to a person or to a program.
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+#include <sstream>
+
+#include "edge/app/commands/command.h"
+#include "edge/app/settings/idle_keys.h"
+#include "edge/app/storage/published_status.h"
+#include "edge/app/storage/storage_health.h"
+#include "edge/core/control/tick.h"
+#include "edge/records/log/health.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_reader.h"
+#include "edge/records/log/whole_file.h"
+#include "edge/records/why/explanation.h"
+#include "edge/records/why/next_decision.h"
+#include "shared/host/json.h"
+#include "shared/host/text.h"
+#include "shared/local_text.h"
+#include "shared/training_period.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+struct StatusGiven {
+  bool json = false;
+  bool prometheus = false;
+  bool follow = false;
+  bool no_lock = false;
+};
+
+constexpr const char* kFooter =
+    R"(Touches neither battery nor controller. While it runs also: the next decision if price and
+SoC stay, reserves and full charges of the plan, and settings that have no effect. Health is ok,
+degraded (with the reasons) or not running. A status older than two cycles is a WARN, older than
+four CRITICAL. Training days that are old or of another price regime are a WARN to retrain, and do
+not affect health.
+Exit codes:
+  0 ok
+  1 degraded, or the files cannot be read
+  2 the command line is wrong
+  3 not running
+Examples:
+  bess-edge status
+  bess-edge status --json | jq .health
+  watch -n 60 bess-edge status --config /etc/bess/edge.toml)";
+
+std::string local_of(std::int64_t utc_s) { return local_text(utc_s).c_str(); }
+double eur_of(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
+long long as_long(std::int64_t value) { return value; }
+
+constexpr const char* kUpdateFolder = "/var/lib/bess-update";
+
+Health health_of(const EdgeConfig& config, const PublishedStatus& published,
+                 const std::string& update_trouble) {
+  return assess_health({.is_running = published.holder != 0,
+                        .status = published.status ? &*published.status : nullptr,
+                        .is_of_this_run = published.is_of_this_run,
+                        .age_ms = published.age_ms,
+                        .cycles_behind = published.cycles_behind,
+                        .wear = card_wear_of(config.state.folder.c_str()),
+                        .disk_is_full = takes_no_file(config.state.folder.c_str()),
+                        .unknown = published.unknown,
+                        .update_trouble = update_trouble});
+}
+
+void print_health(const Health& health, const EdgeConfig& config) {
+  std::printf("health     %s\n", health_name(health.level).data());
+  for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
+  if (!config.contact.view().empty()) std::printf("call       %s\n", config.contact.c_str());
+}
+
+/// The plan on day-ahead prices.
+void print_outlook(const CycleRecord& last) {
+  const OutlookReport& outlook = last.outlook;
+  if (outlook.source == OutlookSource::kNone) return;
+  std::printf(
+      "outlook    %s, break-even %.2f EUR/MWh, class %d of %d; day-ahead prices of the "
+      "next %.1f h, last answer %s\n",
+      outlook_source_name(outlook.source).data(), eur_of(outlook.break_even_centi),
+      last.context_class, kContextClassCount, outlook.known_quarter_hours / 4.0,
+      status_name(outlook.feed).data());
+}
+
+/// The trailing price level and the student's class, where that is its context.
+void print_level(const RunIdentity& identity, const CycleRecord& last) {
+  if (identity.context.view() != "level") return;
+  const std::int64_t centi_q16 = last.price_level.centi_q16;
+  if (last.context_class == 0 && centi_q16 == 0) {  // exactly: no price has set it yet
+    std::printf("level      not known\n");
+    return;
+  }
+  std::printf("level      %.2f EUR/MWh, ", static_cast<double>(centi_q16) / PriceLevel::kQ16PerEur);
+  if (last.context_class == 0) {
+    std::printf("the student was not asked\n");
+  } else {
+    std::printf("class %d of %d\n", last.context_class, kContextClassCount);
+  }
+}
+
+/// What people asked for: a hold with its end, the reserve of this hour, full charges.
+void print_operator_orders(const CycleRecord& last) {
+  if (last.hold.held) {
+    std::printf("hold       %d W until %s\n", last.hold.power_w,
+                local_of(last.hold.until_utc_s).c_str());
+  }
+  if (last.reserve_soc_e4 > 0) {
+    std::printf("reserve    SoC %.1f %% at this hour\n", last.reserve_soc_e4 / 100.0);
+  }
+  std::printf("full       %d days since the last full charge\n", last.days_since_full);
+}
+
+/// Nothing where there is no meter.
+void print_site(const CycleRecord& last) {
+  if (!last.site.has_grid_power) return;
+  const std::int64_t house_w = std::int64_t{last.site.grid_power_w} - last.measurement.power_w;
+  std::printf(
+      "grid       %d W (import is positive), house %lld W, %d Wh imported in this quarter-hour\n",
+      last.site.grid_power_w, as_long(house_w), last.site.quarter_hour_import_wh);
+}
+
+void print_price(const CycleRecord& last) {
+  const PriceReport& price = last.price;
+  const char* const answer = status_name(price.status).data();
+  if (price.has_row) {
+    std::printf("price      %.2f EUR/MWh, %d s old at the decision, %s\n",
+                eur_of(price.price_centi_eur_per_mwh), last.price_age_s, answer);
+  } else {
+    std::printf("price      none, %s\n", answer);
+  }
+  if (price.step_held) {
+    std::printf("held       %.2f EUR/MWh, until the next row confirms it\n",
+                eur_of(price.held_centi_eur_per_mwh));
+  }
+}
+
+void print_last_cycle(const RunStatus& status, bool is_running) {
+  const CycleRecord& last = status.totals.last;
+  const char* const battery = status_name(last.battery_status).data();
+  std::printf("%-10s %s at %s, cycle %lld\n", is_running ? "state" : "was",
+              mode_name(last.mode).data(), local_of(last.utc_s).c_str(), as_long(last.cycle));
+  if (last.has_measurement) {
+    std::printf("battery    SoC %.1f %%, %d W before this order (charging is positive), %s\n",
+                last.measurement.soc_e4 / 100.0, last.measurement.power_w, battery);
+  } else {
+    std::printf("battery    not measured, %s\n", battery);
+  }
+  print_price(last);
+  print_level(status.identity, last);
+  print_outlook(last);
+  print_site(last);
+  std::printf("order      %d W, reason %s\n", last.ordered_power_w,
+              reason_name(last.reason).data());
+  print_operator_orders(last);
+}
+
+void print_counters(const RunTotals& t) {
+  std::printf(
+      "cycles     %lld, missed ticks %d, late orders %d, orders written %lld, log records "
+      "dropped %lld\n",
+      as_long(t.cycles), t.last.missed_ticks, t.last.deadline_misses, as_long(t.written_orders),
+      as_long(t.records_dropped));
+  std::printf("failures   battery %lld, prices %lld, disk %lld\n", as_long(t.battery_failures),
+              as_long(t.price_failures), as_long(t.disk_failures));
+  const BatteryCounters& bus = t.last.counters;
+  std::printf("modbus     %lld requests, %lld failed, %lld reconnects, %lld register writes\n",
+              as_long(bus.requests), as_long(bus.failed_requests), as_long(bus.reconnects),
+              as_long(bus.register_writes));
+}
+
+/// Of the log: where the newest decision would have been another, as `why` has it, and orders.
+void print_last_orders(const EdgeConfig& config) {
+  constexpr std::uint64_t kOrders = 10;
+  LogReader log;
+  FileMessage ignored;
+  if (!log.open(config.log, ignored)) return;
+  const std::uint64_t newest = log.newest_number();
+  CycleRecord r;
+  Margins margins;
+  if (log.read(newest, r) && margins_of(r, config.control.guard.thresholds, margins)) {
+    std::printf("margins    at %s it %s EUR/MWh\n", local_clock_text(r.utc_s).c_str(),
+                price_margins_text(margins).c_str());
+  }
+  std::printf("orders     local time        ordered W  price EUR/MWh   SoC %%  reason\n");
+  for (std::uint64_t n = newest > kOrders ? newest - kOrders + 1 : 1; n <= newest; ++n) {
+    if (!log.read(n, r)) continue;
+    std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", local_text(r.utc_s).c_str(),
+                r.ordered_power_w, r.price.price_centi_eur_per_mwh / 100.0,
+                r.measurement.soc_e4 / 100.0, reason_name(r.reason).data(),
+                r.written ? "" : " (not written)");
+  }
+}
+
+/// What comes next, from the newest record; false where the log has none.
+bool find_next(const EdgeConfig& config, NextDecision& next) {
+  LogReader log;
+  FileMessage ignored;
+  CycleRecord newest;
+  if (!log.open(config.log, ignored) || !log.read(log.newest_number(), newest)) return false;
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  next = find_next_decision(newest, now_utc_s, config.control);
+  return true;
+}
+
+void print_next(const EdgeConfig& config) {
+  NextDecision next;
+  if (find_next(config, next)) std::fputs(next_decision_text(next).c_str(), stdout);
+  const char* head = "no effect";
+  for (const std::string& key : keys_without_effect(config)) {
+    std::printf("%-10s %s\n", head, key.c_str());
+    head = "";
+  }
+}
+
+/// The controller that decides; of one that has ended, what it was and when its last record was
+/// made.
+void print_controller(const RunStatus& status, bool is_running) {
+  const RunIdentity& id = status.identity;
+  const CycleRecord& last = status.totals.last;
+  const char* const part = id.control ? "in control" : "read-only";
+  if (is_running) {
+    std::printf("controller %s, process %d since %s", part, id.pid,
+                local_of(id.start_utc_s).c_str());
+  } else {
+    const bool has_cycles = status.totals.cycles > 0;
+    const char* ended = "ended before a cycle had";
+    if (has_cycles) ended = "ended without a stop after the cycle of";
+    if (has_cycles && last.mode == Mode::kStopping) ended = "stopped at";
+    std::printf("controller none; the last one was %s, process %d from %s, %s %s", part, id.pid,
+                local_of(id.start_utc_s).c_str(), ended,
+                has_cycles ? local_of(last.utc_s).c_str() : "ended");
+  }
+  std::printf(", version %s, student %08x\n", id.version.c_str(), id.student_hash);
+}
+
+TrainingPeriod training_of(const RunIdentity& id) {
+  return {id.trained_from.c_str(), id.trained_until.c_str()};
+}
+
+/// Why the student should be retrained, or empty: it does not affect health, for it decides as it
+/// did.
+std::string retraining_note(const EdgeConfig& config, const RunIdentity& id) {
+  const auto today = local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const auto age = training_age_text(training_of(id), today.view());
+  return age.empty() ? "" : formatted("trained until %s: retrain on newer prices", age.c_str());
+}
+
+void print_run(const EdgeConfig& config, const RunStatus& status, bool is_running) {
+  const RunIdentity& id = status.identity;
+  print_controller(status, is_running);
+  std::printf("trained    %s\n", training_days_text(training_of(id)).c_str());
+  const std::string note = retraining_note(config, id);
+  if (!note.empty()) std::printf("           WARN: %s\n", note.c_str());
+  const char* const part = id.control ? "driving" : "reading";
+  std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at", id.battery.c_str(),
+              id.map.c_str(), id.variant.empty() ? "" : ", variant ", id.variant.c_str());
+  if (status.totals.cycles > 0) print_last_cycle(status, is_running);
+  if (is_running) print_next(config);
+  print_counters(status.totals);
+}
+
+void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
+                const std::string& update) {
+  print_health(health, config);
+  if (!published.unknown.empty()) {
+    std::printf("state      unknown: %s\n", published.unknown.c_str());
+  } else if (published.status) {
+    print_run(config, *published.status, health.level != HealthLevel::kNotRunning);
+  }
+  if (!update.empty()) std::printf("update     %s\n", update.c_str());
+  print_last_orders(config);
+}
+
+/// As status.json has it, without its checksum.
+Json json_of(const RunStatus& status) {
+  static char storage[kStatusBytes];
+  TextBuffer text(storage);
+  format_status_json(status, text);
+  return Json::parse(std::string(without_checksum(text.view(), kJsonChecksum)) + "\n}\n");
+}
+
+void print_json(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
+                const std::string& update) {
+  // What is of another run would say the opposite of "unknown".
+  const bool is_known = published.unknown.empty() && published.status.has_value();
+  Json status = is_known ? json_of(*published.status) : Json::object();
+  if (!published.unknown.empty()) status.set("unknown", published.unknown);
+  Json reasons = Json::list();
+  for (const std::string& reason : health.reasons) reasons.add(reason);
+  status.set("health", health_name(health.level));
+  status.set("health_reasons", std::move(reasons));
+  if (!config.contact.view().empty()) status.set("contact", config.contact.view());
+  if (is_known) status.set("retrain", retraining_note(config, published.status->identity));
+  NextDecision next;
+  if (health.level != HealthLevel::kNotRunning && find_next(config, next)) {
+    status.set("next", next_decision_json(next));
+  }
+  Json no_effect = Json::list();
+  for (const std::string& key : keys_without_effect(config)) no_effect.add(key);
+  status.set("no_effect", std::move(no_effect));
+  if (!update.empty()) status.set("update", update);
+  std::fputs(status.text().c_str(), stdout);
+}
+
+/// Why the newest cycle was decided as it was, as labels.
+std::string decision_info(const CycleRecord& last) {
+  return formatted(
+      "# HELP bess_decision_info Who decided the last cycle, and in which mode.\n"
+      "# TYPE bess_decision_info gauge\n"
+      "bess_decision_info{reason=\"%s\",mode=\"%s\"} 1\n",
+      reason_name(last.reason).data(), mode_name(last.mode).data());
+}
+
+/// Prints metrics, each with the battery's name: several controllers may be scraped at one place.
+void print_labelled(const EdgeConfig& config, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = line.find_first_of("{ ");
+    const bool is_sample = !line.empty() && line[0] != '#' && end != line.npos;
+    if (is_sample && line.find("battery=\"") == line.npos) {
+      const std::string label = formatted("{battery=\"%s\"", config.battery.name.c_str());
+      const bool has_labels = line[end] == '{';
+      line.replace(end, has_labels ? 1 : 0, label + (has_labels ? "," : "}"));
+    }
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& status,
+                   bool is_running) {
+  if (!status) {
+    failed(std::string(config.state.folder.view()) +
+           ": no status here; has bess-edge run with this configuration?");
+    return false;
+  }
+  static char storage[kMetricsBytes];
+  TextBuffer text(storage);
+  format_prometheus(*status, text);
+  std::fputs(std::string(text.view()).c_str(), stdout);
+  if (is_running) print_labelled(config, decision_info(status->totals.last));
+  NextDecision next;
+  if (is_running && find_next(config, next)) {
+    print_labelled(config, next_decision_metrics(next));
+  }
+  // Where this is a package: what bess-probation says, and what a fleet's inventory expects here.
+  for (const char* file : {"/update.prom", "/expected.prom"}) {
+    std::string more;
+    if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
+      print_labelled(config, more);
+    }
+  }
+  return true;
+}
+
+/// What bess-probation has to tell, one line; empty: nothing, or this is no package.
+std::string update_note() {
+  std::string note;
+  read_text((std::string(kUpdateFolder) + "/note").c_str(), note);
+  return note.substr(0, note.find('\n'));
+}
+
+int print_once(const StatusGiven& given, const EdgeConfig& config) {
+  const PublishedStatus published = read_published_status(config, given.no_lock);
+  const std::string update = update_note();
+  const bool is_trouble = update.starts_with("WARN: ");
+  const Health health = health_of(config, published, is_trouble ? update.substr(6) : "");
+  if (given.prometheus) {
+    const bool is_running = health.level != HealthLevel::kNotRunning;
+    if (!print_metrics(config, published.status, is_running)) return 1;
+  } else if (given.json) {
+    print_json(config, published, health, update);
+  } else {
+    print_text(config, published, health, update);
+  }
+  std::fflush(stdout);
+  return static_cast<int>(health.level);
+}
+
+int run_status(const StatusGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
+  const EdgeConfig& config = settings.config;
+  constexpr const char* kClearScreen = "\033[H\033[2J";
+  while (true) {
+    if (given.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
+    const int exit_code = print_once(given, config);
+    if (!given.follow) return exit_code;
+    sleep(2);
+  }
+}
+
+}  // namespace
+
+void add_status(EdgeCommand root) {
+  EdgeCommand command = root.subcommand("status", "state and health of the running controller");
+  const auto given = std::make_shared<StatusGiven>();
+  command.flag("--json", given->json, "one JSON object with \"health\"");
+  command
+      .flag("--prometheus", given->prometheus,
+            "metrics in the format of the node exporter's textfile collector")
+      .excludes("--json");
+  command.flag("--follow", given->follow, "again every two seconds, until Ctrl-C");
+  command.flag("--no-lock", given->no_lock,
+               "judge by the process number whether it runs: the lock is not even tried");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_status(*given, settings); });
+}
+
+}  // namespace bess

@@ -1,0 +1,84 @@
+// `bess-edge why`: who decided a cycle, since when, what ends it, and at which prices and states of
+// charge it would have been decided otherwise.
+#include <cstdio>
+
+#include "edge/app/commands/command.h"
+#include "edge/records/why/explanation.h"
+#include "edge/records/why/local_moment.h"
+#include "shared/local_text.h"
+
+namespace bess {
+namespace {
+
+struct WhyGiven {
+  std::string at;  ///< empty = the newest cycle
+  bool json = false;
+};
+
+constexpr const char* kFooter =
+    R"(What decided, since when, and what ends it; price and state of charge, each with the exact
+values up to which this cycle would have charged and from which it would have discharged. The
+student is proved to be monotone in both, so that no price or SoC between them decides otherwise.
+Limits, your own rules and stop reasons come first, and are named where they decided. Read from the
+log in [state] folder, whether the controller runs or not.
+Exit codes:
+  0 done
+  1 the log cannot be read, or nothing was decided then
+  2 the command line is wrong
+Examples:
+  bess-edge why
+  bess-edge why --at 14:32
+  bess-edge why --json | jq .margins)";
+
+/// Of the cycle that was asked for; otherwise `trouble` says why there is none.
+std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const LogReader& log,
+                         std::string& trouble) {
+  if (log.newest_number() == 0) trouble = "nothing was decided yet: the log is empty";
+  if (given.at.empty() || !trouble.empty()) return log.newest_number();
+  std::int64_t at_utc_s = 0;
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  parse_moment(given.at, now_utc_s, at_utc_s);
+  const std::uint64_t number = number_at(log, at_utc_s);
+  CycleRecord oldest;
+  if (number == 0 && log.read(log.oldest_number(), oldest)) {
+    trouble = std::string("nothing was decided at ") + local_text(at_utc_s).c_str() +
+              " local; the log begins at " + local_text(oldest.utc_s).c_str();
+  }
+  return number;
+}
+
+int run_why(const WhyGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
+  const EdgeConfig& config = settings.config;
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) return failed(error.c_str());
+  std::string trouble;
+  const std::uint64_t number = find_cycle(given, config, log, trouble);
+  if (!trouble.empty()) return failed(trouble);
+  Explanation explanation;
+  if (!explain(log, number, config.control.guard.thresholds, explanation)) {
+    return failed("the record of that cycle cannot be read");
+  }
+  const std::string text = given.json ? explanation_json(explanation, config.control).text()
+                                      : explanation_text(explanation, config.control);
+  std::fputs(text.c_str(), stdout);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return failed("the output cannot be written");
+}
+
+}  // namespace
+
+void add_why(EdgeCommand root) {
+  EdgeCommand command =
+      root.subcommand("why", "why it decided that, and at which price it would not have");
+  const auto given = std::make_shared<WhyGiven>();
+  command.moment("--at", given->at,
+                 "the cycle whose order was in force then, by the local clock: 14:32 (the latest), "
+                 "\"2026-11-23 14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest cycle");
+  command.flag("--json", given->json, "one JSON object with the same numbers");
+  command.footer(kFooter);
+  command.does([given](SettingsFile& settings) { return run_why(*given, settings); });
+}
+
+}  // namespace bess

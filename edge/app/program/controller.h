@@ -1,0 +1,154 @@
+// The controller, the same in every world: reach the battery, begin with what runs before left, run
+// cycle by cycle, end in a safe state. What a world supplies is below: the machine that bess-edge
+// runs on (real_world.h), or virtual time and memory (tools/hil_runner/virtual/virtual_world.h), so
+// that what is tested there is what drives a battery.
+//   reach   is the battery there, and is it the right one?
+//   begin   greet the price server, recall log and trip, come by the price level, listen to people
+//   run     cycles, each kept and told of; then the end: hand over, or 0 W and release
+// After `begin` nothing here allocates.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+
+#include "edge/app/program/find_battery.h"
+#include "edge/app/program/startup.h"
+#include "edge/app/program/take_over.h"
+#include "edge/app/storage/commission_file.h"
+#include "edge/app/storage/recall.h"
+#include "edge/core/loop/control_loop.h"
+#include "edge/prices/record/http_trust.h"
+#include "edge/records/log/journal.h"
+
+namespace bess {
+
+/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say.
+/// `Seal` exists as long as cycles run: nothing may allocate.
+template <typename World>
+concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
+                                   const CycleRecord& done, std::int64_t number, std::int32_t level,
+                                   const std::string& line) {
+  typename World::Prices;
+  typename World::Meter;
+  typename World::Limits;
+  typename World::Seal;
+  { world.clock() } -> std::same_as<EdgeClock&>;
+  { world.battery() } -> std::same_as<ModbusBattery&>;
+  { world.prices() } -> std::same_as<typename World::Prices&>;
+  { world.meter() } -> std::same_as<typename World::Meter&>;
+  { world.limits() } -> std::same_as<typename World::Limits&>;
+  // The first answer of whom prices come from, and what the last hours say of the price level.
+  { world.greet_prices() } -> std::same_as<Status>;
+  { world.find_history() } -> std::same_as<PublishedHistory>;
+  // What is kept over the end of a run. `open` says itself why it failed, and so does `recall`.
+  { world.open() } -> std::same_as<bool>;
+  { world.recall() } -> std::same_as<Recall>;
+  { known.read_back(number, record) } -> std::same_as<bool>;  // 0: the newest
+  world.keep(done);
+  // People: the holds that they ask for, and whether one has cleared the trip of an instant.
+  { world.listen() } -> std::same_as<const HoldMailbox&>;
+  // The plans of a student by outlook, from this level on; null where its context is another.
+  { world.look_out(level) } -> std::same_as<OutlookBoard*>;
+  { world.is_cleared(number) } -> std::same_as<bool>;
+  // Who is told.
+  world.needs_time(number);
+  world.complain(JournalLevel::kError, line);
+  world.write_line(JournalLevel::kInfo, line);
+  world.begins();
+  world.is_ready();
+  world.cycle_done(done);
+  world.stops();
+  world.has_stopped(done, true, true);
+};
+
+template <ControllerWorld World>
+class Controller {
+ public:
+  using Site = SiteLimits<typename World::Meter, typename World::Limits>;
+  using Loop = ControlLoop<ModbusBattery, typename World::Prices, EdgeClock, Site>;
+
+  /// Both must outlive this object.
+  Controller(const EdgeConfig& config, World& world)
+      : config_(config),
+        world_(world),
+        loop_(config.control, world.battery(), world.prices(), world.clock(),
+              Site(config.site.settings, &world.meter(), &world.limits())) {}
+
+  /// True when the battery is found.
+  bool reach() {
+    world_.needs_time(config_.battery.start_timeout_s + kStartMarginS);
+    for (const std::int8_t point : commissioned_points(config_)) world_.battery().require(point);
+    const BatterySearch found = find_battery(config_, world_.battery(), world_.clock());
+    if (found.status == Status::kOk) return true;
+    world_.complain(JournalLevel::kError, "battery at " + found.trouble);
+    return false;
+  }
+
+  /// False where this run must not drive, or cannot keep what it does.
+  bool begin() {
+    if (!world_.open()) return false;
+    const Status greeting = greet_price_server();
+    world_.begins();
+    take_over(greeting);
+    loop_.follow_holds(world_.listen());
+    world_.is_ready();
+    return true;
+  }
+
+  /// Until a stop is requested or so many cycles are done (negative: no such number); the last
+  /// order keeps its whole step. False when the battery could not be given back.
+  bool run(std::int64_t cycles) {
+    CycleRecord record{};
+    const typename World::Seal seal;  // from here on this thread calls no allocator
+    world_.clock().wait_for_simulated_start();
+    for (std::int64_t i = 0; i != cycles && loop_.run_cycle(record); ++i) {
+      world_.keep(record);
+      world_.cycle_done(record);
+      if (loop_.trip() && world_.is_cleared(loop_.trip()->utc_s)) loop_.clear_trip();
+    }
+    return end(record);
+  }
+
+ private:
+  static constexpr std::int64_t kStartMarginS = 60;  ///< of what the start waits for besides
+
+  bool end(CycleRecord& record) {
+    loop_.finish_step();
+    world_.stops();
+    if (!world_.clock().hand_over_requested() || !loop_.hand_over(record)) loop_.stop(record);
+    world_.keep(record);
+    world_.has_stopped(record, loop_.is_in_control(), loop_.order_ends_by_itself());
+    return record.battery_status == Status::kOk;
+  }
+
+  /// Says it when there is no price yet.
+  Status greet_price_server() {
+    const Status status = world_.greet_prices();
+    if (status == Status::kOk) return status;
+    world_.complain(JournalLevel::kWarning,
+                    "note: price from " +
+                        std::string(loggable_url(config_.price.feed.http.url.view()).view()) +
+                        ": " + std::string(price_status_text(status)) + "; waiting in safe state");
+    return status;
+  }
+
+  void take_over(Status greeting) {
+    const bool needs_level = student_context().kind != ContextKind::kMonth;
+    if (needs_level) world_.needs_time(kHistoryWait_s + kStartMarginS);
+    const Recall recalled = world_.recall();
+    const BatteryCounters& counters = recalled.before.counters;
+    world_.battery().restore_flash_writes(counters.flash_day, counters.flash_writes_today);
+    const LevelNews news = starting_level(config_, recalled.before.price_level, greeting, world_);
+    if (needs_level) world_.write_line(journal_level_of(news), level_note(news));
+    recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
+    loop_.take_over(take_over_of(recalled.before, news.start.level), recalled.trip);
+    loop_.follow_outlook(world_.look_out(news.start.level.centi_eur_per_mwh()));
+  }
+
+  const EdgeConfig& config_;
+  World& world_;
+  Loop loop_;
+};
+
+}  // namespace bess

@@ -1,0 +1,111 @@
+#include "edge/app/program/real_world.h"
+
+#include "edge/app/program/find_battery.h"
+#include "edge/app/program/startup.h"
+#include "edge/app/storage/commission_file.h"
+#include "edge/app/storage/operator_files.h"
+#include "edge/app/storage/published_status.h"
+#include "edge/core/control/policy.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kPlanningSMax = 30;  ///< of the first plans, on the slowest board
+constexpr std::int64_t kMillisecondsNs = 1'000'000;
+
+void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
+  if (!is_in_control) {
+    write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing was written");
+  } else if (last.reason == Reason::kHandOver) {
+    write_journal_line(JournalLevel::kNotice, "stopped: handed over, the order stays in force");
+  } else if (last.battery_status != Status::kOk && !ends_by_itself) {
+    write_journal_line(JournalLevel::kError,
+                       "stopped: release failed, and this battery has no timer: it may follow its "
+                       "last order for ever; start again, or set it back by hand");
+  } else if (last.battery_status != Status::kOk) {
+    write_journal_line(JournalLevel::kWarning,
+                       "stopped: release failed, the battery's own timer ends it");
+  } else {
+    write_journal_line(JournalLevel::kNotice, last.written ? "stopped: battery released"
+                                                           : "stopped: no order was in force");
+  }
+}
+
+}  // namespace
+
+RealWorld::RealWorld(const EdgeConfig& config, const Devices& devices)
+    : config_(config), devices_(devices), limits_(config.site.limit_file.c_str()) {}
+
+bool RealWorld::record_battery(const std::string& path, FileMessage& error) {
+  if (path.empty()) return true;
+  if (!recorder_.start(path.c_str(),
+                       recording_head_of(config_.battery.map, config_.battery.link, config_.clock),
+                       config_.battery.map, config_.clock, error)) {
+    return false;
+  }
+  battery().link().tell_exchanges(recorder_.listener());
+  return true;
+}
+
+bool RealWorld::open() {
+  std::string refusal;
+  if (config_.control.control && !is_commissioned(config_, refusal)) {
+    complain(JournalLevel::kError, refusal);
+    return false;
+  }
+  if (config_.control.control) report_commission_losses(config_);
+  published_ = published_log_number(config_);
+  FileMessage error;
+  if (log_.open(config_.log, identity_of_run(config_), error)) return true;
+  complain(JournalLevel::kError, error.c_str());
+  return false;
+}
+
+Recall RealWorld::recall() { return recall_at_start(config_, log_, published_); }
+
+const HoldMailbox& RealWorld::listen() {
+  people_.start(both_places(config_, kHoldFileName), both_places(config_, kClearedFileName),
+                config_.clock.scale);
+  return people_.mailbox();
+}
+
+/// Wall time: bess-prices may just have been started.
+Status RealWorld::greet_prices() {
+  const std::int64_t request_ms = config_.price.feed.http.timeout_ms + 1'000;
+  return devices_.prices.first_answer(request_ms * kMillisecondsNs);
+}
+
+PublishedHistory RealWorld::find_history() {
+  const std::int64_t wait_ns = config_.clock.wall_ns(kHistoryWait_s * kNanosecondsPerSecond);
+  return devices_.prices.await_history(wait_ns + kNanosecondsPerSecond);
+}
+
+OutlookBoard* RealWorld::look_out(std::int32_t) {
+  if (student_outlook() == nullptr) return nullptr;
+  const std::int64_t patience_s = config_.outlook.http.timeout_ms / 1'000 + kPlanningSMax;
+  needs_time(patience_s);
+  return devices_.prices.await_outlook(patience_s * kNanosecondsPerSecond);
+}
+
+void RealWorld::complain(JournalLevel level, const std::string& line) {
+  report(level, "%s", line.c_str());
+}
+
+void RealWorld::begins() {
+  const bool is_in_control = config_.control.control;
+  write_journal_line(JournalLevel::kNotice,
+                     is_in_control ? "started: in control" : "started: read-only");
+  journal_thresholds(config_);
+  journal_transport(config_);
+  if (is_in_control) release_if_a_check_fails(battery());
+}
+
+void RealWorld::has_stopped(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
+  constexpr std::int64_t kDrainNsMax = 5 * kNanosecondsPerSecond;
+  if (!log_.drain(kDrainNsMax)) {
+    report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
+  }
+  write_farewell(last, is_in_control, ends_by_itself);
+}
+
+}  // namespace bess

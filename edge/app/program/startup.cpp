@@ -1,0 +1,233 @@
+#include "edge/app/program/startup.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+
+#include <cstdio>
+
+#include "edge/app/settings/price_config.h"
+#include "edge/app/storage/commission_file.h"
+#include "edge/core/control/decision_signature.h"
+#include "edge/core/control/policy.h"
+#include "edge/prices/record/price_settings.h"
+#include "edge/records/log/journal.h"
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+
+bool check_student() {
+  set_market_time_zone();  // a plan of local days is one of the checks
+  const int failures = count_student_self_check_failures();
+  if (failures == 0) return true;
+  report(JournalLevel::kError,
+         "the built-in student fails %d of its %d self-checks on this machine; build bess-edge for "
+         "it again",
+         failures, student_self_check_count());
+  return false;
+}
+
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
+  const BatterySearch found = find_battery(config, battery, clock);
+  if (found.status == Status::kOk) return true;
+  report(JournalLevel::kError, "battery at %s", found.trouble.c_str());
+  return false;
+}
+
+void report_commission_losses(const EdgeConfig& config) {
+  for (const std::string& line : mend_commission_file(config)) {
+    report(JournalLevel::kError, "%s", line.c_str());
+  }
+}
+
+Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
+                       std::uint64_t published_number) {
+  const BothPlaces paths = both_places(config, kClearedFileName);
+  for (const FixedText<639>* path : {&paths.state, &paths.run}) {
+    if (!read_cleared(path->c_str()).unreadable) continue;
+    report(JournalLevel::kError,
+           "%s cannot be understood: a trip that was cleared there counts again", path->c_str());
+  }
+  Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
+  if (recalled.unknown.empty()) return recalled;
+  const char* const what = recalled.unknown.c_str();
+  if (recalled.trip) {
+    report(JournalLevel::kError,
+           "state: %s: cycle budget and price level of earlier runs are not known", what);
+    return recalled;
+  }
+  report(JournalLevel::kError,
+         "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes",
+         what);
+  recalled.trip = trip_without_state(recalled, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  return recalled;
+}
+
+void journal_thresholds(const EdgeConfig& config) {
+  const ThresholdNote note =
+      compare_thresholds(config.control.guard.thresholds, student_thresholds());
+  if (!note.agree) return report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+  write_journal_line(JournalLevel::kInfo, "guard: " + note.text);
+}
+
+void journal_transport(const EdgeConfig& config) {
+  const TransportNote note = transport_note({config.price.feed, config.price.history});
+  if (note.is_open) report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
+std::string decision_signature_line() {
+  set_market_time_zone();
+  return signature_line(student_hash(), replay_recorded_days()).c_str();
+}
+
+void prepare_process() {
+  set_market_time_zone();
+  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
+  prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
+}
+
+namespace {
+
+std::string eur_text(std::int32_t centi) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f EUR/MWh", static_cast<double>(centi) / kCentiPerEur);
+  return text;
+}
+
+std::string why_no_more(const LevelNews& news) {
+  if (news.hours_wanted == 0) return "history_hours = 0";
+  if (news.status == Status::kOk) return "the server has no more";
+  return std::string(price_status_text(news.status));
+}
+
+std::string history_note(const LevelNews& news) {
+  std::string text = "from " + std::to_string(news.rows) + " rows of the last " +
+                     std::to_string(news.hours) + " h";
+  if (news.hours >= news.hours_wanted) return text;
+  return text + ", not " + std::to_string(news.hours_wanted) + " h: " + why_no_more(news);
+}
+
+std::string source_note(const LevelNews& news) {
+  const std::string level = eur_text(news.start.level.centi_eur_per_mwh());
+  switch (news.start.source) {
+    case LevelSource::kLog:
+      return level + ", from the decision log";
+    case LevelSource::kHistory:
+      return level + ", " + history_note(news);
+    case LevelSource::kSetting:
+      return level + ", from level_start_eur_per_mwh; no history: " + why_no_more(news);
+    case LevelSource::kNone:
+      break;
+  }
+  return "the first price will set it; no history: " + why_no_more(news);
+}
+
+}  // namespace
+
+std::string context_note(const ContextClasses& context) {
+  if (context.kind == ContextKind::kMonth) return "month";
+  std::string text = context.is_outlook()
+                         ? "break-even price of a plan on day-ahead prices, classes divided at"
+                         : "trailing price level, classes divided at";
+  const char* separator = " ";
+  for (const std::int16_t edge : context.level_edge_eur_per_mwh) {
+    text.append(separator).append(std::to_string(edge));
+    separator = ", ";
+  }
+  return text + " EUR/MWh";
+}
+
+std::string level_note(const LevelNews& news) {
+  const char* const refused = news.start.refused_log ? "the log's is out of range; " : "";
+  return std::string("price level: ").append(refused).append(source_note(news));
+}
+
+JournalLevel journal_level_of(const LevelNews& news) {
+  return news.start.source == LevelSource::kNone ? JournalLevel::kWarning : JournalLevel::kNotice;
+}
+
+namespace {
+
+template <typename... Values>
+void add_line(std::string& note, const char* format, Values... values) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, values...);
+  note.append(line).append("\n");
+}
+
+}  // namespace
+
+std::string operator_note(const ControlSettings& control, const Hold& hold,
+                          std::int64_t now_utc_s) {
+  std::string note;
+  const HoldReport held = hold_at(hold, now_utc_s);
+  if (held.held) {
+    add_line(note, "hold       %d W until %s", held.power_w, utc_text(held.until_utc_s).c_str());
+  }
+  if (held.unreadable) add_line(note, "hold       %s", "its file is not readable: not followed");
+  if (!control.reserve.empty()) {
+    const std::int16_t now_e4 = reserve_soc_e4_at(control.reserve, local_minute_of(now_utc_s));
+    add_line(note, "reserve    SoC %.1f %% at this hour, %d periods in all", now_e4 / 100.0,
+             control.reserve.size());
+  }
+  for (int r = 0; r < guard_rule_count(); ++r) {
+    add_line(note, "rule       %s", guard_rule_name(r));
+  }
+  if (control.full_charge_every_days > 0) {
+    add_line(note, "full       every %d days, with %d W", control.full_charge_every_days,
+             control.guard.full_charge_power_w);
+  }
+  return note;
+}
+
+namespace {
+
+/// One threshold as both have it.
+struct Pair {
+  const char* key;
+  const char* action;
+  std::int32_t guard;
+  std::int32_t proved;
+  bool guard_reaches_further;  ///< it acts at prices at which the student need not
+  bool binds_student;
+};
+
+const char* who_answers(const Pair& pair) {
+  if (pair.guard_reaches_further) return "the guard alone makes it ";
+  return pair.binds_student ? "the student's proof alone makes it " : "nothing makes it ";
+}
+
+void add_difference(const Pair& pair, std::string& text) {
+  if (pair.guard == pair.proved) return;
+  if (!text.empty()) text += "; ";
+  text.append(pair.key).append(" = ").append(std::to_string(pair.guard));
+  text.append(", the student is proved for ").append(std::to_string(pair.proved));
+  text.append(": between them ").append(who_answers(pair)).append(pair.action);
+}
+
+std::string agreement(const PriceThresholds& both) {
+  std::string text = "charge at or below " + std::to_string(both.low_eur_per_mwh);
+  text.append(guard_alone_note(both.low_binds_student()));
+  text.append(", discharge at or above ").append(std::to_string(both.high_eur_per_mwh));
+  text.append(guard_alone_note(both.high_binds_student()));
+  return text.append(" EUR/MWh, as the student is proved for");
+}
+
+}  // namespace
+
+ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved) {
+  if (guard == proved) return {true, agreement(guard)};
+  ThresholdNote note;
+  add_difference(
+      {"[guard] low_price_eur_per_mwh", "charge", guard.low_eur_per_mwh, proved.low_eur_per_mwh,
+       guard.low_eur_per_mwh > proved.low_eur_per_mwh, proved.low_binds_student()},
+      note.text);
+  add_difference({"[guard] high_price_eur_per_mwh", "discharge", guard.high_eur_per_mwh,
+                  proved.high_eur_per_mwh, guard.high_eur_per_mwh < proved.high_eur_per_mwh,
+                  proved.high_binds_student()},
+                 note.text);
+  return note;
+}
+
+}  // namespace bess

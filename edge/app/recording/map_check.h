@@ -1,0 +1,91 @@
+// Does a register map fit what a device answered? Takes the exchanges of a recording one by one and
+// tells, for every point of the map, whether its values can be true and, if not, what would fit.
+// Two kinds of evidence:
+//   each point by itself   never answered, outside its range; then other scale, word order and type
+//                          are tried
+//   points together        energy_evidence.h
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edge/app/recording/energy_evidence.h"
+#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/register_map.h"
+#include "shared/bus_exchange.h"
+
+namespace bess {
+
+/// What is known of one point at the end.
+struct PointVerdict {
+  std::string name;
+  std::int32_t unit = 0;
+  int address = -1;  ///< PDU address; -1 = its SunSpec model was not found
+  std::int64_t answers = 0;
+  bool has_values = false;
+  std::int64_t value_min = 0;  ///< of the plausible values
+  std::int64_t value_max = 0;
+  std::string finding;  ///< what is wrong and what would fit, in one line; empty = nothing
+};
+
+class MapCheck {
+ public:
+  /// `unit` replaces the map's unit id when it is not negative. `map` must outlive this object.
+  MapCheck(const RegisterMap& map, std::int32_t unit);
+
+  /// Every exchange of a recording, in its order.
+  void add(const BusExchange& exchange);
+
+  /// One for each point of the map, in its order.
+  [[nodiscard]] std::vector<PointVerdict> verdicts() const;
+  /// One line when sign and scale of the power could not be judged; empty when they could.
+  [[nodiscard]] std::string unjudged() const;
+
+ private:
+  struct Seen {
+    std::int64_t asked = 0;
+    std::int64_t answers = 0;
+    std::int64_t absent = 0;    ///< of the answers: the device has no such value
+    std::int64_t unscaled = 0;  ///< the point that holds its scale had no value
+    std::int64_t bad = 0;       ///< outside the range
+    std::int64_t strange = 0;   ///< not what an identity check asks for
+    int exception = 0;          ///< of the newest refusal
+    std::int64_t good = 0;
+    std::int64_t value_min = 0, value_max = 0;
+    std::array<std::uint16_t, kPointRegistersMax> bad_raw{};  ///< the first
+    Scaling bad_scaling;
+    std::int64_t strange_value = 0;
+  };
+
+  void take(const BusExchange& exchange, int point, int offset);
+  void take_value(int point, const std::uint16_t* raw);
+  void judge_identity(int point, const std::uint16_t* raw, std::int64_t value);
+  [[nodiscard]] bool begins_round(const BusExchange& exchange) const;
+  void end_round();
+  void note_order(std::int64_t utc_ns);
+  [[nodiscard]] std::string finding_of(int point) const;
+  [[nodiscard]] std::string range_finding(int point) const;
+  [[nodiscard]] std::string unanswered_finding(int point) const;
+  [[nodiscard]] std::string energy_finding(int point) const;
+  [[nodiscard]] std::string power_finding(double capacity_wh) const;
+  [[nodiscard]] std::string soc_finding(double capacity_wh) const;
+  [[nodiscard]] double capacity_wh() const;
+  [[nodiscard]] bool is_needed(int point) const;
+
+  const RegisterMap& map_;
+  PointPlaces places_;
+  LivePoints live_;
+  std::array<Seen, kPointsMax> seen_{};
+  EnergyEvidence energy_;
+  std::array<bool, kPointsMax> in_round_{};  ///< read since the newest round began
+  std::int64_t power_utc_ns_ = 0;            ///< of the power in it
+  std::optional<std::int64_t> order_w_;      ///< in force, as far as is known
+  std::int64_t order_since_ns_ = 0;
+  int soc_, capacity_;           ///< points; -1 = not in this map
+  int power_ = -1, order_ = -1;  ///< the first of those that make the power up
+};
+
+}  // namespace bess

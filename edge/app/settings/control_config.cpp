@@ -1,0 +1,457 @@
+#include "edge/app/settings/control_config.h"
+
+#include <arpa/inet.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "edge/app/settings/price_config.h"
+#include "edge/core/control/full_charge.h"
+#include "edge/device/registers/map_file.h"
+#include "edge/prices/record/http_trust.h"
+#include "edge/records/log/battery_name.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+namespace {
+
+bool is_numeric_ipv4(const char* host) {
+  in_addr address{};
+  return inet_pton(AF_INET, host, &address) == 1;
+}
+
+/// What the operator does not say about the link is as the device's maker ships it.
+void complete_link(TomlTable& table, BatteryLinkSettings& link, RegisterMap& map) {
+  if (!table.has("port")) link.port = map.port;
+  if (!table.has("baud")) link.baud = map.baud;
+  if (!table.has("parity")) link.parity = map.parity;
+  if (!table.has("stop_bits")) link.stop_bits = map.stop_bits;
+  TomlTable units(table.table("units"), table.file(), table.where() + " units", table.error());
+  for (UnitGroup& group : map.unit_groups) units.integer(group.name.view(), group.unit, 0, 255);
+  units.finish();
+}
+
+}  // namespace
+
+void read_link(TomlTable& table, BatteryLinkSettings& link) {
+  int transport = 0;
+  int parity = 0;
+  table.choice("transport", transport, {"tcp", "rtu"});
+  table.text("host", link.host);
+  table.integer("port", link.port, 1, 65'535);
+  table.text("device", link.device);
+  table.integer("baud", link.baud, 1'200, 230'400);
+  table.choice("parity", parity, {"none", "even", "odd"});
+  table.integer("stop_bits", link.stop_bits, 1, 2);
+  table.integer("unit", link.unit, 0, 255);
+  table.integer("response_timeout_ms", link.response_timeout_ms, 10, 30'000);
+  static_cast<void>(table.table("units"));
+  link.rtu = transport == 1;
+  link.parity = static_cast<Parity>(parity);
+}
+
+void check_link(TomlTable& table, const BatteryLinkSettings& link) {
+  if (!is_serial_speed(link.baud)) {
+    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
+  }
+  if (!link.rtu && !is_numeric_ipv4(link.host.c_str())) {
+    table.fail("host",
+               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
+               "depend on the resolver at every reconnect");
+  }
+}
+
+bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_view variant,
+                     BatteryLinkSettings& link, RegisterMap& map, FixedText<511>& path) {
+  if (!table.ok()) return false;
+  const std::string map_path = table.resolved(map_file);
+  if (!path.assign(map_path)) table.fail("map", "is too long");
+  if (access(map_path.c_str(), R_OK) != 0) {
+    table.fail("map", "= " + map_path + " cannot be read: " + std::strerror(errno) +
+                          "; the installed maps lie in share/bess/maps, of meters in "
+                          "share/bess/meters");
+    return false;
+  }
+  if (!load_register_map(map_path, variant, map, table.error())) return false;
+  complete_link(table, link, map);
+  return table.ok();
+}
+
+namespace {
+
+constexpr std::int64_t kConnectionWMax = 100'000'000;
+
+void read_connection(TomlTable& table, ConnectionSettings& connection) {
+  table.integer("import_w_max", connection.import_w_max, 0, kConnectionWMax);
+  table.integer("export_w_max", connection.export_w_max, 0, kConnectionWMax);
+  table.integer("peak_w_max", connection.peak_w_max, 1, kConnectionWMax);
+  table.integer("margin_w", connection.margin_w, 0, kConnectionWMax);
+  table.boolean("peak_shave", connection.peak_shave);
+}
+
+void check_connection(TomlTable& table, const ConnectionSettings& connection) {
+  for (const char* const key : {"import_w_max", "peak_w_max"}) {
+    const std::int32_t limit_w = key[0] == 'i' ? connection.import_w_max : connection.peak_w_max;
+    if (limit_w <= connection.margin_w) {
+      table.fail(key, "must be above margin_w (" + std::to_string(connection.margin_w) +
+                          "): the battery would never charge");
+    }
+  }
+  if (table.has("peak_w_max")) return;
+  if (table.has("peak_shave")) table.fail("peak_shave", "means nothing without peak_w_max");
+}
+
+bool is_same_line(const BatteryLinkSettings& a, const BatteryLinkSettings& b) {
+  if (!a.rtu || !b.rtu) return false;
+  std::error_code ignored;
+  return a.device == b.device.view() ||
+         std::filesystem::equivalent(a.device.c_str(), b.device.c_str(), ignored);
+}
+
+void load_meter_map(TomlTable& table, const MeteredBattery& battery, std::string_view map_file,
+                    std::string_view variant, SiteConfig& site) {
+  check_link(table, site.link);
+  FixedText<511> path;
+  if (!load_linked_map(table, map_file, variant, site.link, site.map, path)) return;
+  if (!site.map.is_meter) {
+    table.fail("map", "is a battery's map; meters lie in meters/, their maps say kind = \"meter\"");
+  }
+  if (is_same_line(site.link, battery.link)) {
+    table.fail("device",
+               "is the battery's serial line, which it has for itself: use another line, or "
+               "source = \"battery\" where the battery has a grid point");
+  }
+}
+
+void use_grid_point(TomlTable& table, const MeteredBattery& battery) {
+  if (!table.ok() || measure_grid_power(battery.map)) return;
+  table.fail("source", "= \"battery\": the battery's map " + std::string(battery.map.name.view()) +
+                           " has no grid point; use a meter's map");
+}
+
+}  // namespace
+
+void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
+  if (table.value() == nullptr) return;
+  SiteSettings& settings = site.settings;
+  int source = 0;
+  int on_loss = 0;
+  FixedText<255> map_file;
+  RegisterName variant;
+  table.choice("source", source, {"map", "battery"});
+  settings.meter = source == 0 ? MeterSource::kMap : MeterSource::kBattery;
+  if (settings.meter == MeterSource::kMap) {
+    table.require("map");
+    table.text("map", map_file);
+    table.text("variant", variant);
+    read_link(table, site.link);
+  }
+  read_connection(table, settings.connection);
+  table.choice("on_loss", on_loss, {"idle", "ignore"});
+  table.boolean("judged", settings.witness.judges);
+  table.integer("pv_w_max", settings.pv_w_max, 0, kConnectionWMax);
+  table.finish();
+  settings.idle_without_meter = on_loss == 0;
+  check_connection(table, settings.connection);
+  if (settings.meter == MeterSource::kMap) {
+    load_meter_map(table, battery, map_file.view(), variant.view(), site);
+  } else {
+    use_grid_point(table, battery);
+  }
+}
+
+void read_limits(TomlTable table, SiteConfig& site) {
+  if (table.value() == nullptr) return;
+  FixedText<255> file;
+  int on_timeout = 0;
+  table.require("file");
+  table.text("file", file);
+  table.choice("on_timeout", on_timeout, {"release_limits", "idle"});
+  table.finish();
+  if (!table.ok()) return;
+  if (!site.limit_file.assign(table.resolved(file.view()))) {
+    table.fail("file", "is too long a path");
+  }
+  site.settings.has_outside_limits = true;
+  site.settings.idle_after_timeout = on_timeout == 1;
+}
+
+namespace {
+
+/// In whole EUR/MWh, as the proof counts them: 1500 as well as 1500.0.
+void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_per_mwh) {
+  std::int32_t centi_eur_per_mwh = eur_per_mwh * kCentiPerEur;
+  table.scaled(key, centi_eur_per_mwh, kCentiPerEur, -kThresholdMaxEurPerMwh,
+               kThresholdMaxEurPerMwh);
+  if (centi_eur_per_mwh % kCentiPerEur != 0) {
+    table.fail(key, "must be whole EUR/MWh, as the student is proved for");
+  }
+  eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
+}
+
+/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have
+/// needed.
+std::int32_t default_cycles_per_day_e4(std::int32_t power_w, std::int32_t capacity_wh) {
+  const std::int64_t cycles_e4 = std::int64_t{120'000} * power_w / capacity_wh;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(cycles_e4, 10'000, 1'000'000));
+}
+
+}  // namespace
+
+void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control) {
+  GuardSettings& guard = control.guard;
+  read_threshold(table, "low_price_eur_per_mwh", guard.thresholds.low_eur_per_mwh);
+  read_threshold(table, "high_price_eur_per_mwh", guard.thresholds.high_eur_per_mwh);
+  table.scaled("soc_min", guard.soc_min_e4, 10'000, 0, 1);
+  table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
+  table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
+  table.integer("stand_in_s_max", guard.stand_in_s_max, 0, 3'600);
+  table.integer("frozen_price_s_max", control.frozen_price.stop_s, 0, kSecondsPerDay);
+  table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
+  table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
+  table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
+  control.cycles_per_day_max_e4 = default_cycles_per_day_e4(guard.power_w, battery.capacity_wh);
+  table.scaled("cycles_per_day_max", control.cycles_per_day_max_e4, 10'000, 0, 100);
+  table.integer("reversals_per_hour_max", control.reversals_per_hour_max, 0, kStepsPerHour);
+  table.finish();
+  if (!guard.thresholds.are_ordered()) {
+    table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
+  }
+  if (guard.soc_min_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
+    table.fail("soc_min", "must be below soc_max by more than 0.01");
+  }
+  if (guard.temperature_min_deci_c >= guard.temperature_max_deci_c) {
+    table.fail("temperature_min_c", "must be below temperature_max_c");
+  }
+}
+
+namespace {
+
+/// "17:00", or "24:00" for the end of the day.
+bool parse_time_of_day(std::string_view text, std::int16_t& minute) {
+  const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+  if (text.size() != 5 || text[2] != ':') return false;
+  if (!is_digit(0) || !is_digit(1) || !is_digit(3) || !is_digit(4)) return false;
+  const int hours = (text[0] - '0') * 10 + (text[1] - '0');
+  const int minutes = (text[3] - '0') * 10 + (text[4] - '0');
+  if (minutes > 59 || hours * 60 + minutes > kMinutesPerDay) return false;
+  minute = static_cast<std::int16_t>(hours * 60 + minutes);
+  return true;
+}
+
+void read_time(TomlTable& table, std::string_view key, std::int16_t& minute) {
+  table.require(key);
+  const std::string* const text = table.text(key);
+  if (text == nullptr || parse_time_of_day(*text, minute)) return;
+  table.fail(key, "must be a local time of day such as \"17:00\", \"24:00\" at the latest");
+}
+
+void read_months(TomlTable& table, ReservePeriod& period) {
+  const TomlArray* const months = table.array("months");
+  if (months == nullptr) return;
+  period.months = 0;
+  for (const TomlValue& month : *months) {
+    const std::int64_t* const number = month.as<std::int64_t>();
+    if (number == nullptr || *number < 1 || *number > 12) {
+      return table.fail("months", "must hold months, 1 to 12");
+    }
+    period.months |= static_cast<std::uint16_t>(1 << (*number - 1));
+  }
+  if (period.months == 0) table.fail("months", "is empty: leave it out for every month");
+}
+
+ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
+  ReservePeriod period;
+  std::int32_t soc_e4 = 0;
+  read_time(table, "from", period.from_minute);
+  read_time(table, "to", period.to_minute);
+  table.require("soc");
+  table.scaled("soc", soc_e4, 10'000, 0, 1);
+  read_months(table, period);
+  table.finish();
+  if (period.from_minute == period.to_minute) {
+    table.fail("to", "is the same as from: a whole day is \"00:00\" to \"24:00\"");
+  }
+  if (soc_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
+    table.fail("soc", "must be below [guard] soc_max by more than 0.01");
+  }
+  period.soc_e4 = static_cast<std::int16_t>(soc_e4);
+  return period;
+}
+
+}  // namespace
+
+void read_full_charge(TomlTable& battery, ControlSettings& control) {
+  battery.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);
+  control.guard.full_charge_power_w = control.guard.power_w / 2;
+}
+
+void check_full_charge(TomlTable& battery, const ControlSettings& control) {
+  if (control.full_charge_every_days == 0) return;
+  if (control.guard.soc_max_e4 >= FullCharge::kFullE4) return;
+  battery.fail("full_charge_every_days",
+               "needs [guard] soc_max of at least 0.995, else no charge is full");
+}
+
+void read_reserve(TomlTable& root, ControlSettings& control) {
+  const TomlArray* const periods = root.array("reserve");
+  if (periods == nullptr) return;
+  for (const TomlValue& value : *periods) {
+    if (!root.ok()) return;
+    if (value.as<TomlMembers>() == nullptr) {
+      return root.fail("reserve", "must hold tables: [[reserve]] with from, to and soc");
+    }
+    const ReservePeriod period =
+        read_period(TomlTable(&value, root.file(), "[[reserve]]", root.error()), control.guard);
+    if (control.reserve.try_push_back(period)) continue;
+    return root.fail("reserve", "has more than " + std::to_string(ReservePlan::capacity()) +
+                                    " periods: leave some out");
+  }
+}
+
+void read_outlook(TomlTable table, OutlookSettings& outlook) {
+  FixedText<255> header_file;
+  PriceTransportKeys transport;
+  table.text("url", outlook.http.url);
+  table.text("file", outlook.file);
+  table.text("ca_file", outlook.http.ca_file);
+  table.text("header_file", header_file);
+  table.text("rows_field", outlook.fields.rows);
+  table.text("time_field", outlook.fields.time);
+  table.text("price_field", outlook.fields.price);
+  table.boolean("allow_http", transport.allow_http);
+  table.finish();
+  if (!table.ok() || table.value() == nullptr) return;
+  if (table.has("url") && table.has("file")) {
+    return table.fail("file", "and url are two sources: leave one of them out");
+  }
+  if (!outlook.file.empty()) {
+    if (!outlook.file.assign(table.resolved(outlook.file.view()))) {
+      table.fail("file", "is too long a path");
+    }
+    return;
+  }
+  transport.has_header_file = !header_file.empty();
+  check_price_url(table, "url", outlook.http.url.view(), transport);
+  if (!outlook.http.ca_file.assign(table.resolved(outlook.http.ca_file.view()))) {
+    table.fail("ca_file", "is too long a path");
+  }
+  if (header_file.empty() || !table.ok()) return;
+  load_http_headers(table.resolved(header_file.view()).c_str(), outlook.http.headers,
+                    table.error());
+}
+
+namespace {
+
+struct CapacityRange {
+  std::int64_t least_wh;
+  std::int64_t most_wh;
+};
+
+/// What a battery of the configured capacity reports.
+CapacityRange capacity_range(const BatteryConfig& battery) {
+  const std::int64_t capacity_wh = battery.capacity_wh;
+  const std::int64_t tolerance_wh = capacity_wh / 4;  // ageing and rounding
+  return {.least_wh = capacity_wh - tolerance_wh, .most_wh = capacity_wh + tolerance_wh};
+}
+
+/// The battery must report the configured capacity, else the address leads to another one.
+void expect_capacity(BatteryConfig& battery) {
+  const CapacityRange range = capacity_range(battery);
+  for (IdentityCheck& check : battery.map.identity) {
+    if (battery.map.points[check.point].name != "capacity") continue;
+    check.value_min = range.least_wh;
+    check.value_max = range.most_wh;
+    check.hint = "is [battery] capacity_wh right, or is this another battery?";
+  }
+}
+
+/// No battery is that small: the value was given in kW or kWh.
+void expect_watts(TomlTable& table, std::string_view key, std::int32_t value, const char* unit) {
+  constexpr std::int32_t kLeast = 100;
+  if (!table.ok() || !table.has(key) || value >= kLeast) return;
+  const std::string given = std::to_string(value);
+  table.fail(
+      key, "= " + given + " is in " + unit + ": write " + given + "000 for " + given + " k" + unit);
+}
+
+}  // namespace
+
+void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& control) {
+  FixedText<255> map_file("maps/alphaess.toml");
+  RegisterName variant;
+  table.text("name", battery.name);
+  if (table.has("name") && table.ok() && !is_battery_name(battery.name.view())) {
+    table.fail("name", "must be 1 to 63 letters, digits, - and _");
+  }
+  table.text("map", map_file);
+  table.text("variant", variant);
+  read_link(table, battery.link);
+  table.integer("power_w", control.guard.power_w, 1, 100'000'000);
+  table.integer("capacity_wh", battery.capacity_wh, 1, 1'000'000'000);
+  expect_watts(table, "power_w", control.guard.power_w, "W");
+  expect_watts(table, "capacity_wh", battery.capacity_wh, "Wh");
+  table.integer("start_timeout_s", battery.start_timeout_s, 0, 3'600);
+  table.boolean("allow_without_watchdog", battery.allow_without_watchdog);
+  int on_other_master = 0;
+  table.choice("on_other_master", on_other_master, {"yield", "insist"});
+  control.supervision.yields_to_other_master = on_other_master == 0;
+  read_full_charge(table, control);
+  table.finish();
+  check_link(table, battery.link);
+  if (!load_linked_map(table, map_file.view(), variant.view(), battery.link, battery.map,
+                       battery.map_path)) {
+    return;
+  }
+  if (battery.map.is_meter) return table.fail("map", "is a meter's: it belongs into [meter]");
+  expect_capacity(battery);
+}
+
+void check_battery_against_map(TomlTable table, const BatteryConfig& battery,
+                               const ControlSettings& control) {
+  if (!table.ok()) return;
+  const std::int32_t power_w = control.guard.power_w;
+  if (power_w > battery.map.charge_w_max || power_w > battery.map.discharge_w_max) {
+    table.fail("power_w", "= " + std::to_string(power_w) + " is more than the map " +
+                              std::string(battery.map.name.view()) + " can express (charge " +
+                              std::to_string(battery.map.charge_w_max) + " W, discharge " +
+                              std::to_string(battery.map.discharge_w_max) + " W)");
+  }
+  if (control.control && battery.map.watchdog.duration_s == 0 && !battery.allow_without_watchdog) {
+    table.fail("variant",
+               "\"" + std::string(battery.map.variant.view()) + "\" of map " +
+                   std::string(battery.map.name.view()) +
+                   " has no watchdog: if bess-edge dies, the battery follows its last order for "
+                   "ever; choose another variant, or add allow_without_watchdog = true");
+  }
+}
+
+void set_supervision(const BatteryConfig& battery, ControlSettings& control) {
+  SupervisionSettings& supervision = control.supervision;
+  supervision.response = {.band = battery.map.response,
+                          .power_w = control.guard.power_w,
+                          .capacity_wh = battery.capacity_wh};
+  const CapacityRange range = capacity_range(battery);
+  supervision.capacity_wh_min = static_cast<std::int32_t>(range.least_wh);
+  supervision.capacity_wh_max = static_cast<std::int32_t>(range.most_wh);
+}
+
+FixedText<159> battery_place(const BatteryConfig& battery) {
+  const int unit = battery.link.unit >= 0 ? battery.link.unit : battery.map.unit;
+  char place[160];
+  if (battery.link.rtu) {
+    std::snprintf(place, sizeof place, "%s unit %d", battery.link.device.c_str(), unit);
+  } else {
+    std::snprintf(place, sizeof place, "%s:%d unit %d", battery.link.host.c_str(),
+                  battery.link.port, unit);
+  }
+  return FixedText<159>(place);
+}
+
+}  // namespace bess

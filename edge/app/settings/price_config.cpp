@@ -1,0 +1,141 @@
+#include "edge/app/settings/price_config.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <string>
+
+#include "edge/core/control/price_history.h"
+#include "edge/prices/record/http_trust.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+namespace {
+
+bool is_http(std::string_view url) {
+  return url.starts_with("http://") || url.starts_with("https://");
+}
+
+/// How a student by level is given the level at a first start.
+void read_history(TomlTable& table, PriceConfig& price) {
+  HistorySettings& history = price.history;
+  table.integer("history_hours", history.hours, 0, PriceHistory::kHoursMax);
+  table.text("history_url", history.url);
+  if (table.has("level_start_eur_per_mwh")) {
+    std::int32_t start_centi_eur_per_mwh = 0;
+    table.scaled("level_start_eur_per_mwh", start_centi_eur_per_mwh, kCentiPerEur,
+                 kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
+    price.level_start_centi_eur_per_mwh = start_centi_eur_per_mwh;
+  }
+}
+
+/// What a number of the source is in EUR/MWh, and which are none.
+void read_unit(TomlTable& table, PriceFields& fields) {
+  constexpr std::int32_t kEurPerMwhE1[] = {10, 10'000, 100};
+  int unit = 0;
+  table.choice("unit", unit, {"EUR/MWh", "EUR/kWh", "ct/kWh"});
+  fields.eur_per_mwh_e1 = kEurPerMwhE1[unit];
+  const TomlArray* const none = table.array("no_price");
+  if (none == nullptr) return;
+  for (const TomlValue& item : *none) {
+    const std::optional<double> number = item.number();
+    if (!number) return table.fail_at(item, "no_price must hold numbers");
+    if (!fields.no_price.try_push_back(*number)) return table.fail("no_price", "holds more than 8");
+  }
+}
+
+/// Secrets are sent to one host alone.
+void check_history_url(TomlTable& table, const PriceConfig& price) {
+  const FixedText<511>& url = price.history.url;
+  if (url.empty()) return;
+  if (!is_http(url.view()) || place_of_url(url.view()).empty() ||
+      place_of_url(url.view()) != place_of_url(price.feed.http.url.view())) {
+    table.fail("history_url", "must start with http:// or https:// and be of the host of url");
+  }
+}
+
+}  // namespace
+
+void read_price(TomlTable table, PriceConfig& price) {
+  FixedText<255> header_file;
+  PriceTransportKeys transport;
+  table.require("url");
+  table.text("url", price.feed.http.url);
+  table.text("ca_file", price.feed.http.ca_file);
+  table.text("header_file", header_file);
+  table.text("rows_field", price.feed.fields.rows);
+  table.text("time_field", price.feed.fields.time);
+  table.text("price_field", price.feed.fields.price);
+  read_unit(table, price.feed.fields);
+  read_history(table, price);
+  table.boolean("allow_http", transport.allow_http);
+  table.finish();
+  if (!table.ok()) return;
+  const std::string_view url = price.feed.http.url.view();
+  check_history_url(table, price);
+  transport.has_header_file = !header_file.empty();
+  check_price_transport(table, {price.feed, price.history}, transport);
+  const std::string ca_file = table.resolved(price.feed.http.ca_file.view());
+  if (!price.feed.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
+  if (url.starts_with("https://") && access(price.feed.http.ca_file.c_str(), R_OK) != 0) {
+    table.fail("ca_file", "= " + ca_file +
+                              " cannot be read: install the package ca-certificates, "
+                              "or name your own file");
+  }
+  if (header_file.empty() || !table.ok()) return;
+  load_http_headers(table.resolved(header_file.view()).c_str(), price.feed.http.headers,
+                    table.error());
+}
+
+void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
+                     const PriceTransportKeys& keys) {
+  const UrlTransport transport = transport_of(url);
+  if (transport == UrlTransport::kUnusable) {
+    return table.fail(key, "must start with http:// or https:// and name a host");
+  }
+  if (transport == UrlTransport::kSecure) return;
+  // Inside this machine as well: while the server is down, any user may listen at its port.
+  if (keys.has_header_file) {
+    return table.fail("header_file",
+                      "holds secrets, which are never sent over plain http: use an https:// url, "
+                      "or leave header_file out");
+  }
+  if (holds_login(url)) {
+    return table.fail(key,
+                      "holds a user or a password, which are never sent over plain http: use "
+                      "https://, or leave them out");
+  }
+  if (transport == UrlTransport::kOpen && !keys.allow_http) {
+    table.fail(key,
+               "is plain http to another machine: whoever is on the way can write the prices; use "
+               "https://, or add allow_http = true (127.0.0.1 and [::1] need no key)");
+  }
+}
+
+void check_price_transport(TomlTable& table, const PriceSources& sources,
+                           const PriceTransportKeys& keys) {
+  check_price_url(table, "url", sources.price.http.url.view(), keys);
+  if (!sources.history.url.empty())
+    check_price_url(table, "history_url", sources.history.url.view(), keys);
+}
+
+TransportNote transport_note(const PriceSources& sources) {
+  UrlTransport weakest = transport_of(sources.price.http.url.view());
+  if (!sources.history.url.empty()) {
+    weakest = std::max(weakest, transport_of(sources.history.url.view()));
+  }
+  switch (weakest) {
+    case UrlTransport::kSecure:
+      return {.text = "https"};
+    case UrlTransport::kLoopback:
+      return {.text = "plain http inside this machine"};
+    case UrlTransport::kOpen:
+    case UrlTransport::kUnusable:
+      break;
+  }
+  return {.is_open = true,
+          .text = "prices come over plain http (allow_http): whoever is on the way can write them"};
+}
+
+}  // namespace bess

@@ -1,0 +1,70 @@
+// Keys of earlier versions, whose value is fixed by now, for the controller and the programs beside
+// it: a configuration that has them still works, and --check and status name them.
+#pragma once
+
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "edge/core/base/static_vector.h"
+#include "shared/host/toml_reader.h"
+
+namespace bess {
+
+struct RetiredKey {
+  std::string_view section;
+  std::string_view key;
+};
+using RetiredKeys = StaticVector<RetiredKey, 40>;
+
+inline constexpr RetiredKey kRetiredKeys[] = {
+    {"battery", "capacity_tolerance_percent"},
+    {"battery", "full_charge_power"},
+    {"battery", "read_lead_s"},
+    {"battery", "start_without_battery"},
+    {"price", "frozen_price_s"},
+    {"price", "history_wait_s"},
+    {"price", "hold_flagged_step"},
+    {"price", "requests_per_cycle"},
+    {"price", "resolve_every_s"},
+    {"price", "step_flag_eur_per_mwh"},
+    {"price", "timeout_ms"},
+    {"price", "wait_s"},
+    {"outlook", "ask_spread_s"},
+    {"outlook", "timeout_ms"},
+    {"guard", "hold_s"},
+    {"guard", "order_deadline_s"},
+    {"guard", "require_synchronised_clock"},
+    {"guard", "soc_hysteresis"},
+    {"guard", "start_spread_s"},
+    {"state", "drive_without_state"},
+    {"state", "lock_folder"},
+    {"meter", "age_s_max"},
+    {"meter", "check_every_s"},
+    {"meter", "house_rise_w"},
+    {"contract", "import_adder_eur_per_mwh"},  // `bess-train log statement --config` has them
+    {"contract", "import_percent"},
+    {"contract", "export_fee_eur_per_mwh"},
+    {"contract", "export_percent"},
+    {"contract", "wear_eur_per_mwh"},
+    {"notify", "mqtt_discovery_prefix"},
+    {"notify", "mqtt_hold_minutes"},
+    {"page", "program"},
+    {"page", "refresh_s"},
+    {"page", "token_file"},
+    {"settled", "days"},
+};
+static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
+
+/// A section of the configuration, with its retired keys taken; `retired` collects those it has.
+inline TomlTable section(TomlTable& root, std::string_view name, RetiredKeys* retired = nullptr) {
+  TomlTable table(root.table(name), root.file(), std::string("[").append(name).append("]"),
+                  root.error());
+  for (const RetiredKey& old : kRetiredKeys) {
+    if (old.section != name || !table.take_retired(old.key) || retired == nullptr) continue;
+    static_cast<void>(retired->try_push_back(old));
+  }
+  return table;
+}
+
+}  // namespace bess

@@ -1,0 +1,318 @@
+#include "edge/app/storage/commission_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "edge/records/log/whole_file.h"
+#include "shared/crc32.h"
+#include "shared/host/toml_reader.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// Far more than is ever written.
+constexpr std::size_t kBytesMax = 8'192;
+
+/// Where it lies, the one that counts first. The copy outlasts a flipped byte, that in memory a
+/// dead disk.
+std::vector<std::string> places_of(const EdgeConfig& config) {
+  std::vector<std::string> places = {state_file(config, "commissioned.toml").c_str(),
+                                     state_file(config, "commissioned.copy").c_str()};
+  if (!config.state.run_folder.empty()) {
+    places.emplace_back(run_file(config, "commissioned.toml").c_str());
+  }
+  return places;
+}
+
+/// What one of the places has.
+struct Stored {
+  std::string path;
+  std::string text;
+  std::string loss;  ///< why it does not count; "" = it counts
+  bool is_absent = false;
+  bool is_checked = false;
+  TomlValue document{};
+};
+
+constexpr const char* kHidden = "is not for this user to read";
+
+std::string why_unreadable(int cause) {
+  if (cause == ENOENT) return "is gone";
+  if (cause == EPERM) return "belongs to another user";
+  if (cause == EACCES) return kHidden;
+  return std::string("cannot be read: ") + std::strerror(cause);
+}
+
+Stored read_place(const std::string& path) {
+  Stored stored{.path = path, .text = std::string(kBytesMax, '\0'), .loss = ""};
+  const ssize_t size = read_beginning(path.c_str(), stored.text, Links::kRefused);
+  if (size < 0) {
+    stored.is_absent = errno == ENOENT;
+    stored.loss = why_unreadable(errno);
+    stored.text.clear();
+    return stored;
+  }
+  stored.text.resize(static_cast<std::size_t>(size));
+  std::string error;
+  const TextState state = check_text(stored.text, kCommentChecksum);
+  stored.is_checked = state == TextState::kIntact;
+  if (state == TextState::kBroken) {
+    stored.loss = "is damaged: its checksum does not fit";
+  } else if (!parse_toml_text(stored.text, path, stored.document, error)) {
+    stored.loss = "is damaged: " + error;
+  } else if (stored.document.find("battery") == nullptr) {
+    stored.loss = "is damaged: what it must say is cut off";
+  }
+  return stored;
+}
+
+struct AllStored {
+  std::vector<Stored> places;
+
+  /// A checksum is better than none, which an older program wrote or a cut has left; then the order
+  /// of places.
+  [[nodiscard]] const Stored* that_counts() const {
+    const Stored* best = nullptr;
+    for (const Stored& one : places) {
+      const bool is_better = best == nullptr || (one.is_checked && !best->is_checked);
+      if (one.loss.empty() && is_better) best = &one;
+    }
+    return best;
+  }
+  [[nodiscard]] bool are_absent() const {
+    return std::all_of(places.begin(), places.end(),
+                       [](const Stored& one) { return one.is_absent; });
+  }
+};
+
+AllStored read_places(const EdgeConfig& config) {
+  AllStored all;
+  for (const std::string& path : places_of(config)) all.places.push_back(read_place(path));
+  return all;
+}
+
+std::string why_not_commissioned(const AllStored& all) {
+  const Stored& first = all.places.front();
+  if (first.loss == kHidden) {
+    return first.path + " " + kHidden + ": run this as the user of the service, or with sudo";
+  }
+  const std::string why =
+      all.are_absent()
+          ? ": not there: the battery's sign has not been checked (or the disk of [state] "
+            "folder is not mounted); run once: "
+          : " " + first.loss +
+                ", and no copy counts: is its disk dying, or not mounted? Mend it, or "
+                "check the sign again: ";
+  return first.path + why + "bess-edge commission --config FILE --yes";
+}
+
+void add_file(const std::string& path, Crc32& crc) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  const std::string text = bytes.str();
+  crc.add_bytes(text.data(), text.size());
+}
+
+/// Of the bytes of the map file and of the one that it includes: an edited map is another map.
+std::string map_checksum(const EdgeConfig& config) {
+  const std::string path(config.battery.map_path.view());
+  Crc32 crc;
+  add_file(path, crc);
+  TomlValue document;
+  std::string error;
+  const bool is_map = parse_toml_file(path, document, error);
+  const TomlValue* include = is_map ? document.find("include") : nullptr;
+  if (const auto* name = include == nullptr ? nullptr : include->as<std::string>()) {
+    add_file((std::filesystem::path(path).parent_path() / *name).string(), crc);
+  }
+  char hex[16];
+  std::snprintf(hex, sizeof hex, "%08x", crc.value());
+  return hex;
+}
+
+/// Where it is, with the unit ids of the map's groups: another id is another inverter.
+std::string battery_text(const EdgeConfig& config) {
+  std::string text(battery_place(config.battery).view());
+  for (const UnitGroup& group : config.battery.map.unit_groups) {
+    text.append(", ").append(group.name.view()).append(" ").append(std::to_string(group.unit));
+  }
+  return text;
+}
+
+/// What was found out, for people: nothing is compared with it.
+void add_direction(std::string_view name, const DirectionResult& direction,
+                   std::ostringstream& text) {
+  if (!direction.is_tested) return;
+  const AnswerSpeed& speed = direction.speed;
+  text << name << "_measured_w = " << direction.measured_power_w << "\n"
+       << name << "_lag_ms = " << std::lround(speed.dynamics.dead_time_s * 1e3) << "\n"
+       << name << "_time_constant_ms = " << std::lround(speed.dynamics.time_constant_s * 1e3)
+       << "\n"
+       << name << "_ramp_w_per_s = " << ramp_w_per_s(speed)
+       << (ramp_w_per_s(speed) == 0 ? "  # faster than could be seen\n" : "\n");
+}
+
+std::string file_text(const EdgeConfig& config, const CommissionResult& result,
+                      std::int64_t utc_s) {
+  std::ostringstream text;
+  text << "# Written by: bess-edge commission, which also renews it. It lies here, beside as "
+          "commissioned.copy,\n"
+          "# and in [state] run_folder: one that is lost or damaged is taken from the others.\n"
+       << "map = \"" << config.battery.map.name.view() << "\"\n"
+       << "variant = \"" << config.battery.map.variant.view() << "\"\n"
+       << "map_crc32 = \"" << map_checksum(config) << "\"\n"
+       << "battery = \"" << battery_text(config) << "\"\n"
+       << "ordered_power_w = " << result.ordered_power_w << "\n"
+       << "measured_power_w = " << result.measured_power_w << "\n"
+       << "utc = \"" << utc_text(utc_s).view() << "\"\n";
+  add_direction("charge", result.charge, text);
+  add_direction("discharge", result.discharge, text);
+  if (result.meter != MeterVerdict::kNotAsked) {
+    text << "meter_percent = " << result.meter_percent << "\n";
+  }
+  text << "# Optional points that this device has: required from now on.\npresent = [";
+  for (const std::int8_t point : result.present) {
+    text << (point == result.present[0] ? "\"" : ", \"")
+         << config.battery.map.points[point].name.view() << "\"";
+  }
+  text << "]\n";
+  return text.str();
+}
+
+/// What every place should hold.
+std::string whole_text(const Stored& good) {
+  std::string text(without_checksum(good.text, kCommentChecksum));
+  text += checksum_end(text, kCommentChecksum).view();
+  return text;
+}
+
+/// Of a place that holds something else. A boot has emptied memory; an older program kept one
+/// alone, without a checksum: neither is a loss.
+bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
+             const Stored& good) {
+  if (!one.is_absent) return &one != &good;
+  const bool is_in_memory = &one == &all.places.back() && !config.state.run_folder.empty();
+  return !is_in_memory && good.is_checked;
+}
+
+std::string loss_line(const Stored& one, const Stored& good) {
+  std::string line = one.path + " ";
+  if (one.loss.empty()) {
+    line += one.is_checked ? "says something else" : "has lost its checksum";
+  }
+  line += one.loss;
+  if (&one != &good) line += "; " + good.path + " counts";
+  return line;
+}
+
+/// Visits each place that holds something else than it should: the place, the one that counts,
+/// what should be there, and whether that is a loss. None where none counts.
+template <typename Visit>
+void for_each_other(const EdgeConfig& config, const Visit& visit) {
+  const AllStored all = read_places(config);
+  const Stored* const good = all.that_counts();
+  if (good == nullptr) return;
+  const std::string text = whole_text(*good);
+  for (const Stored& one : all.places) {
+    if (one.text != text) visit(one, *good, text, is_loss(config, all, one, *good));
+  }
+}
+
+/// The file's keys, compared one by one; the first that differs is named.
+bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
+  FixedText<255> found;
+  table.require(key);
+  table.text(key, found);
+  if (!table.ok() || found.view() == configured) return table.ok();
+  table.fail(key, "is \"" + std::string(found.view()) + "\", the configuration now has \"" +
+                      configured + "\"");
+  return false;
+}
+
+}  // namespace
+
+bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
+                           std::int64_t utc_s, std::string& error) {
+  make_folder(config.state.folder.c_str());  // when it fails, the open below says why
+  std::string text = file_text(config, result, utc_s);
+  text += checksum_end(text, kCommentChecksum).view();
+  const std::vector<std::string> places = places_of(config);
+  if (!replace_file_durably(places.front().c_str(), text)) {
+    error = places.front() + ": cannot write here: " + std::strerror(errno) +
+            "; mend the folder's permissions, its disk, or [state] folder, and repeat";
+    return false;
+  }
+  if (!config.state.run_folder.empty()) make_folder(config.state.run_folder.c_str());
+  // Copies of another battery would be of no use; what cannot be written is told at the next start.
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    if (!replace_file_durably(places[i].c_str(), text)) unlink(places[i].c_str());
+  }
+  return true;
+}
+
+bool is_commissioned(const EdgeConfig& config, std::string& error) {
+  const AllStored all = read_places(config);
+  const Stored* const stored = all.that_counts();
+  if (stored == nullptr) {
+    error = why_not_commissioned(all);
+    return false;
+  }
+  TomlTable table(&stored->document, stored->path, "", error);
+  const bool same = expect_same(table, "map", std::string(config.battery.map.name.view())) &&
+                    expect_same(table, "variant", std::string(config.battery.map.variant.view())) &&
+                    expect_same(table, "map_crc32", map_checksum(config)) &&
+                    expect_same(table, "battery", battery_text(config));
+  if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";
+  return same;
+}
+
+std::vector<std::int8_t> commissioned_points(const EdgeConfig& config) {
+  const AllStored all = read_places(config);
+  const Stored* const stored = all.that_counts();
+  const TomlValue* const node = stored == nullptr ? nullptr : stored->document.find("present");
+  const auto* const list = node == nullptr ? nullptr : node->as<TomlArray>();
+  std::vector<std::int8_t> points;
+  if (list == nullptr) return points;
+  for (const TomlValue& item : *list) {
+    const auto* const name = item.as<std::string>();
+    const int point = name == nullptr ? -1 : find_point(config.battery.map, *name);
+    if (point >= 0) points.push_back(static_cast<std::int8_t>(point));
+  }
+  return points;
+}
+
+std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
+  std::vector<std::string> lines;
+  for_each_other(config,
+                 [&](const Stored& one, const Stored& good, const std::string&, bool is_lost) {
+                   if (is_lost)
+                     lines.push_back(loss_line(one, good) + "; a start in control writes it again");
+                 });
+  return lines;
+}
+
+std::vector<std::string> mend_commission_file(const EdgeConfig& config) {
+  std::vector<std::string> lines;
+  for_each_other(config, [&](const Stored& one, const Stored& good, const std::string& text,
+                             bool is_lost) {
+    const bool is_written = replace_file_durably(one.path.c_str(), text);
+    const int cause = errno;
+    if (is_written && !is_lost) return;
+    lines.push_back(loss_line(one, good) +
+                    (is_written ? ", and it is written again"
+                                : std::string("; it cannot be written: ") + std::strerror(cause)));
+  });
+  return lines;
+}
+
+}  // namespace bess

@@ -1,0 +1,262 @@
+#include "edge/app/storage/instance_lock.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+
+#include "edge/records/log/journal.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
+
+FileMessage strangers_file(const char* path) {
+  struct stat info {};
+  const bool is_known = lstat(path, &info) == 0;
+  char line[768];
+  std::snprintf(
+      line, sizeof line,
+      "%.500s belongs to user %ld, neither to root nor to the user that runs this bess-edge "
+      "(%ld): if nothing of that user should be there, remove it",
+      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid()));
+  return {line};
+}
+
+bool refuse_stranger(const char* path, FileMessage& error) {
+  struct stat info {};
+  if (lstat(path, &info) != 0 || is_trusted(info.st_uid)) return true;
+  error = strangers_file(path);
+  return false;
+}
+
+bool refuse_roots_leftover(const char* path, FileMessage& error) {
+  struct stat info {};
+  if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
+  char line[1'400];  // what is too long for a message is cut
+  std::snprintf(
+      line, sizeof line,
+      "%s is root's, of a bess-edge that was started as root: if none runs any more (pgrep "
+      "-u root -x bess-edge), it was killed; remove its lock: sudo rm %s",
+      path, path);
+  error = FileMessage(line);
+  return false;
+}
+
+bool is_believable(const char* path) {
+  struct stat file {};
+  return lstat(path, &file) != 0 || is_of_the_house(file.st_uid, path);
+}
+
+namespace {
+
+/// /dev/serial/by-id/... and /dev/ttyUSB0 may be one device: its real name counts. On a serial line
+/// two masters cannot even share the wire, so the unit does not matter there.
+FixedText<159> locked_thing(const EdgeConfig& config) {
+  if (!config.battery.link.rtu) return battery_place(config.battery);
+  char real[PATH_MAX];
+  const char* const found = realpath(config.battery.link.device.c_str(), real);
+  return {found != nullptr ? found : config.battery.link.device.c_str()};
+}
+
+bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  const char* const folder = config.state.run_folder.c_str();
+  if (*folder == '\0') return true;
+  if (!make_folder(folder)) {
+    static_cast<void>(
+        fail_with_errno(folder, "cannot make the folder of [state] run_folder", error));
+    report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
+    error = {};
+    return true;
+  }
+  char what[560];
+  std::snprintf(what, sizeof what, "the run folder %s", folder);
+  return locks.run.take(run_file(config, "lock").c_str(), what, error);
+}
+
+}  // namespace
+
+FixedText<639> battery_lock_path(const EdgeConfig& config) {
+  const std::string_view folder = lock_folder();
+  FixedText<159> thing = locked_thing(config);
+  char name[160];
+  std::size_t size = 0;
+  for (const char c : thing.view()) name[size++] = c == '/' || c == ' ' || c == ':' ? '_' : c;
+  char path[640];
+  std::snprintf(path, sizeof path, "%.*s/bess-%.*s.lock", static_cast<int>(folder.size()),
+                folder.data(), static_cast<int>(size), name);
+  return {path};
+}
+
+FixedText<639> name_lock_path(const EdgeConfig& config) {
+  const std::string_view folder = lock_folder();
+  char path[640];
+  std::snprintf(path, sizeof path, "%.*s/bess-name-%s.lock", static_cast<int>(folder.size()),
+                folder.data(), config.battery.name.c_str());
+  return {path};
+}
+
+std::string_view lock_folder() {
+  struct stat info {};
+  const bool is_there = stat("/run/lock", &info) == 0 && S_ISDIR(info.st_mode);
+  return is_there ? "/run/lock" : "/tmp";
+}
+
+int controller_holding(const EdgeConfig& config) {
+  const bool has_run_folder = !config.state.run_folder.empty();
+  const int of_run_folder = has_run_folder ? holder_of(run_file(config, "lock").c_str()) : 0;
+  if (of_run_folder > 0) return of_run_folder;
+  const int of_state_folder = holder_of(state_file(config, "lock").c_str());
+  return of_state_folder != 0 ? of_state_folder : of_run_folder;
+}
+
+bool is_controller_running(const EdgeConfig& config) { return controller_holding(config) != 0; }
+
+bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  char what[200];
+  std::snprintf(what, sizeof what, "the battery at %s", battery_place(config.battery).c_str());
+  return locks.battery.take(battery_lock_path(config).c_str(), what, error);
+}
+
+bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  const char* const folder = config.state.folder.c_str();
+  if (!make_folder(folder)) {
+    return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
+  }
+  for (const auto& path : {stored_status_path(config.log.status), config.log.ring,
+                           stored_status_path(config.log.run_status), config.log.run_ring}) {
+    if (!refuse_stranger(path.c_str(), error)) return false;
+  }
+  char what[560];
+  std::snprintf(what, sizeof what, "the state folder %s", folder);
+  if (!locks.state.take(state_file(config, "lock").c_str(), what, error)) return false;
+  std::snprintf(what, sizeof what, "[battery] name %s", config.battery.name.c_str());
+  if (!locks.name.take(name_lock_path(config).c_str(), what, error)) return false;
+  return lock_run_folder(config, locks, error);
+}
+
+namespace {
+
+/// For its owner alone: whoever may open a file, if only to read it, can hold its lock.
+constexpr mode_t kLockMode = 0600;
+
+/// First without O_CREAT: in a sticky folder such as /run/lock the kernel (fs.protected_regular)
+/// refuses O_CREAT on another user's file, even to root.
+int open_or_create(const char* path) {
+  constexpr int kFlags = O_CLOEXEC | O_NOFOLLOW;
+  int fd = open(path, O_RDWR | kFlags);
+  if (fd < 0 && errno == EROFS) fd = open(path, O_RDONLY | kFlags);  // a lock needs no writing
+  if (fd >= 0 || errno != ENOENT) return fd;
+  const int made = open(path, O_RDWR | O_CREAT | O_EXCL | kFlags, kLockMode);
+  return made < 0 && errno == EEXIST ? open(path, O_RDWR | kFlags) : made;
+}
+
+/// The holder removes its file when it ends; a lock on a removed file would lock nothing.
+bool is_still_at(int fd, const char* path) {
+  struct stat ours {};
+  struct stat there {};
+  return fstat(fd, &ours) == 0 && stat(path, &there) == 0 && ours.st_ino == there.st_ino &&
+         ours.st_dev == there.st_dev;
+}
+
+int pid_in(int fd) {
+  char text[16] = {};
+  if (pread(fd, text, sizeof text - 1, 0) <= 0) return -1;
+  const long pid = std::strtol(text, nullptr, 10);  // 0 when it is no number
+  return pid > 0 && pid <= INT_MAX ? static_cast<int>(pid) : -1;
+}
+
+}  // namespace
+
+InstanceLock::~InstanceLock() {
+  if (fd_ < 0) return;
+  unlink(path_.c_str());  // while still holding it; see is_still_at
+  close(fd_);
+}
+
+bool InstanceLock::take(const char* path, const char* what, FileMessage& error) {
+  constexpr int kTries = 11;
+  constexpr std::int64_t kPauseNs = kNanosecondsPerSecond / 10;
+  for (int i = 0; i < kTries; ++i) {
+    const Try result = try_once(path);
+    if (result == Try::kTaken) {
+      path_ = FixedText<639>(path);
+      leave_pid();
+      return true;
+    }
+    if (result == Try::kFailed) return explain(path, error);
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kPauseNs);
+  }
+  FileMessage stranger;
+  const bool is_strangers = !refuse_stranger(path, stranger);
+  char line[1'700];  // of two messages; what is too long for one is cut
+  std::snprintf(line, sizeof line,
+                "%s is in use by another program (process %d, lock %s): two must not share it, not "
+                "even to read; stop that one, or ask bess-edge status%s%s",
+                what, holder_of(path), path, is_strangers ? "; " : "", stranger.c_str());
+  static_cast<void>(error.assign(line));
+  return false;
+}
+
+InstanceLock::Try InstanceLock::try_once(const char* path) {
+  const int fd = open_or_create(path);
+  if (fd < 0) return Try::kFailed;
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || !is_still_at(fd, path)) {
+    close(fd);
+    return Try::kHeld;  // or its file was just removed: the next try makes a new one
+  }
+  struct stat info {};
+  if (fstat(fd, &info) == 0 && is_trusted(info.st_uid)) {
+    fd_ = fd;
+    return Try::kTaken;
+  }
+  close(fd);
+  errno = EACCES;  // its owner could take it from us, or remove it, at any time
+  return Try::kFailed;
+}
+
+/// True where only the disk stands in the way: the battery is driven all the same.
+bool InstanceLock::explain(const char* path, FileMessage& error) {
+  const int cause = errno;
+  static_cast<void>(fail_with_errno(path, "cannot make the lock", error));
+  if (is_disk_trouble(cause)) {
+    report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
+    error = {};
+    return true;
+  }
+  if (cause == EACCES && refuse_stranger(path, error)) {
+    static_cast<void>(refuse_roots_leftover(path, error));
+  }
+  return false;
+}
+
+void InstanceLock::leave_pid() const {
+  fchmod(fd_, kLockMode);  // of an older program, which let everybody write
+  char text[16];
+  const int length = std::snprintf(text, sizeof text, "%d\n", static_cast<int>(getpid()));
+  const bool written = ftruncate(fd_, 0) == 0 && pwrite(fd_, text, length, 0) == length;
+  static_cast<void>(written);  // only for the message of the next one who comes
+}
+
+int holder_of(const char* path) {
+  if (!is_believable(path)) return 0;
+  const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return errno == EACCES ? kHolderHidden : 0;
+  int holder = 0;
+  if (flock(fd, LOCK_SH | LOCK_NB) != 0) holder = pid_in(fd);
+  // On a read-only disk a lock keeps the number of whoever could write it last.
+  if (holder > 0 && kill(holder, 0) != 0 && errno == ESRCH) holder = -1;
+  close(fd);
+  return holder;
+}
+
+}  // namespace bess

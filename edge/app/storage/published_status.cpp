@@ -1,0 +1,245 @@
+#include "edge/app/storage/published_status.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "edge/app/storage/instance_lock.h"
+#include "edge/app/storage/storage_health.h"
+#include "edge/core/control/policy.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_reader.h"
+#include "edge/records/log/run_status.h"
+
+namespace bess {
+
+RunIdentity identity_of_run(const EdgeConfig& config) {
+  RunIdentity identity;
+  identity.name = config.battery.name;
+  identity.version = BESS_VERSION;
+  identity.student_hash = student_hash();
+  identity.student_provenance = student_provenance();
+  identity.trained_from = student_training().first_day;
+  identity.trained_until = student_training().last_day;
+  identity.context = context_name(student_context().kind);
+  identity.map = config.battery.map.name.view();
+  identity.variant = config.battery.map.variant.view();
+  for (const RegisterPoint& point : config.battery.map.points) {
+    identity.point_names.push_back(point.name);
+  }
+  identity.battery = battery_place(config.battery);
+  identity.control = config.control.control;
+  identity.pid = getpid();
+  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.wear = card_wear_of(config.state.folder.c_str());
+  identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
+  return identity;
+}
+
+namespace {
+
+std::int64_t age_ms_of(const RunStatus& status) {
+  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - status.written_monotonic_ms;
+}
+
+/// Of one place; nothing when there is none, it is not ours, or it is not as it was written.
+std::optional<RunStatus> stored_status(const FixedText<511>& status_json) {
+  if (status_json.empty()) return std::nullopt;
+  const FixedText<511> path = stored_status_path(status_json);
+  if (!is_believable(path.c_str())) {
+    report(JournalLevel::kWarning, "%s", strangers_file(path.c_str()).c_str());
+    return std::nullopt;
+  }
+  RunStatus status;
+  switch (read_status(path.c_str(), status)) {
+    case StatusFile::kRead:
+      return status;
+    case StatusFile::kDamaged:
+      report(JournalLevel::kWarning, "%s is damaged, or of another version: not believed",
+             path.c_str());
+      return std::nullopt;
+    case StatusFile::kAbsent:
+      break;
+  }
+  if (errno == EACCES) {
+    report(JournalLevel::kWarning,
+           "%s is not for this user to read: ask as the user of the service, or with sudo",
+           path.c_str());
+  }
+  return std::nullopt;
+}
+
+/// Of both places the one that was written last. One of before the last boot is older than any
+/// other.
+std::optional<RunStatus> newer_status(const EdgeConfig& config) {
+  const std::optional<RunStatus> of_state = stored_status(config.log.status);
+  const std::optional<RunStatus> of_run = stored_status(config.log.run_status);
+  if (!of_run) return of_state;
+  if (!of_state) return of_run;
+  const std::int64_t age_ms = age_ms_of(*of_state);
+  return age_ms >= 0 && age_ms < age_ms_of(*of_run) ? of_state : of_run;
+}
+
+/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is
+/// of no process, nor is a number that another program has by now, where that can be seen.
+int living_writer_of(const std::optional<RunStatus>& status) {
+  if (!status) return 0;
+  const int pid = status->identity.pid;
+  if (pid <= 0 || age_ms_of(*status) < 0) return 0;
+  if (kill(pid, 0) != 0 && errno != EPERM) return 0;
+  std::string name;
+  const bool is_another =
+      read_text(("/proc/" + std::to_string(pid) + "/comm").c_str(), name) && name != "bess-edge\n";
+  return is_another ? 0 : pid;
+}
+
+/// Whether a controller could write a status anywhere now.
+bool has_place_for_status(const EdgeConfig& config) {
+  const char* const run_folder = config.state.run_folder.c_str();
+  return !takes_no_file(config.state.folder.c_str()) ||
+         (*run_folder != '\0' && !takes_no_file(run_folder));
+}
+
+/// Whether neither a status nor the log can have been written just now.
+bool is_every_place_read_only(const EdgeConfig& config) {
+  const char* const run_folder = config.state.run_folder.c_str();
+  return is_read_only(config.state.folder.c_str()) &&
+         (*run_folder == '\0' || is_read_only(run_folder));
+}
+
+/// How long ago the youngest of a controller's locks was made, as far as one is left.
+std::optional<std::int64_t> lock_age_ms(const EdgeConfig& config) {
+  std::optional<std::int64_t> youngest;
+  for (const FixedText<639>& path :
+       {state_file(config, "lock"), run_file(config, "lock"), battery_lock_path(config)}) {
+    struct stat info {};
+    if (path.empty() || stat(path.c_str(), &info) != 0) continue;
+    const std::int64_t age_ms = (std::time(nullptr) - info.st_mtime) * 1'000;
+    youngest = std::min(youngest.value_or(age_ms), age_ms);
+  }
+  return youngest;
+}
+
+/// Negative where somebody may run whose number nobody tells.
+constexpr int kSomebody = -1;
+
+/// Without asking for locks: the writer of the status, or whoever has locked the battery since.
+int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>& status) {
+  const int writer = living_writer_of(status);
+  if (writer != 0) return writer;
+  const std::optional<std::int64_t> lock_ms = lock_age_ms(config);
+  const bool is_later = lock_ms.has_value() && (!status || *lock_ms + 1'000 < age_ms_of(*status));
+  return is_later ? kSomebody : 0;
+}
+
+/// Who may not open the lock, or will not, asks the files.
+int find_controller(const EdgeConfig& config, const std::optional<RunStatus>& status,
+                    bool no_lock) {
+  int holder = no_lock ? kHolderHidden : controller_holding(config);
+  if (holder == 0 && !has_place_for_status(config)) {  // nor could it make its locks there
+    holder = holder_of(battery_lock_path(config).c_str());
+  }
+  if (holder == kHolderHidden) return controller_by_files(config, status);
+  // A full disk keeps the lock and not the number in it.
+  const int writer = holder < 0 ? living_writer_of(status) : 0;
+  return writer != 0 ? writer : holder;
+}
+
+/// The status that should have been stored with this record, by what an older one of the same run
+/// says.
+RunStatus status_of_record(const EdgeConfig& config, const std::optional<RunStatus>& older,
+                           int holder, const CycleRecord& record, std::uint64_t number) {
+  RunStatus status = older.value_or(RunStatus{});
+  if (!older) {
+    status.identity = identity_of_run(config);
+    status.identity.pid = std::max(holder, 0);
+    status.identity.start_utc_s = 0;
+  }
+  status.totals.last = record;
+  status.totals.cycles = record.cycle;
+  status.totals.log_number = number;
+  status.totals.disk_is_failing = true;
+  const std::int64_t age_ns =
+      (config.clock.now_utc_ns() - record.utc_s * kNanosecondsPerSecond) / config.clock.scale;
+  status.written_monotonic_ms = (clock_ns(CLOCK_MONOTONIC) - age_ns) / 1'000'000;
+  return status;
+}
+
+/// Where the log has newer cycles than the status, they count.
+void believe_the_log(const EdgeConfig& config, PublishedStatus& published) {
+  LogReader log;
+  FileMessage ignored;
+  CycleRecord newest;
+  if (!log.open(config.log, ignored) || !log.newest(newest)) return;
+  const std::optional<RunStatus> older = published.status;
+  const std::uint64_t known = older ? older->totals.log_number : 0;
+  if (log.newest_number() <= known) return;
+  published.cycles_behind =
+      older ? static_cast<std::int64_t>(log.newest_number() - known) : newest.cycle;
+  const bool is_same_run =
+      older && (published.holder <= 0 || published.holder == older->identity.pid);
+  published.status = status_of_record(config, is_same_run ? older : std::nullopt, published.holder,
+                                      newest, log.newest_number());
+}
+
+std::string why_unknown(const EdgeConfig& config, const PublishedStatus& published) {
+  const std::int64_t start_ms = (std::int64_t{config.battery.start_timeout_s} + 60) * 1'000;
+  const bool is_starting = lock_age_ms(config).value_or(INT64_MAX) < start_ms;
+  if (is_starting && has_place_for_status(config)) return "";
+  const std::string who = published.holder > 0
+                              ? "process " + std::to_string(published.holder) + " runs"
+                              : std::string("a controller has locked this battery or its state");
+  const bool has_run_folder = !config.state.run_folder.empty();
+  return who + ", but neither a status nor the log tells of it: is the disk under " +
+         config.state.folder.c_str() +
+         (has_run_folder ? " and " + std::string(config.state.run_folder.view()) : "") +
+         " full or read-only" + (has_run_folder ? "?" : "? [state] run_folder would tell");
+}
+
+}  // namespace
+
+bool read_text(const char* path, std::string& text) {
+  const std::ifstream file(path);
+  if (!file) return false;
+  std::ostringstream all;
+  all << file.rdbuf();
+  text = all.str();
+  return true;
+}
+
+PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
+  PublishedStatus published{.status = newer_status(config), .unknown = ""};
+  published.holder = find_controller(config, published.status, no_lock);
+  believe_the_log(config, published);
+  const int pid = published.status ? published.status->identity.pid : 0;
+  const std::int64_t cadence_ms = published.status ? published.status->identity.cadence_ms : 0;
+  published.age_ms = published.status ? age_ms_of(*published.status) : 0;
+  const bool is_fresh = published.cycles_behind > 0 && published.age_ms < 4 * cadence_ms;
+  published.is_of_this_run = published.holder > 0 ? published.holder == pid : is_fresh;
+  const bool is_old = !published.is_of_this_run || (pid == 0 && !is_fresh);
+  // What cannot be written any more says nothing of now.
+  const bool is_stuck = 2 * published.age_ms > 3 * cadence_ms && is_every_place_read_only(config);
+  if (published.holder != 0 && (is_old || is_stuck)) {
+    published.unknown = why_unknown(config, published);
+  }
+  return published;
+}
+
+std::uint64_t published_log_number(const EdgeConfig& config) {
+  std::uint64_t newest = 0;
+  for (const auto& path : {config.log.status, config.log.run_status}) {
+    const std::optional<RunStatus> status = stored_status(path);
+    if (status) newest = std::max(newest, status->totals.log_number);
+  }
+  return newest;
+}
+
+}  // namespace bess

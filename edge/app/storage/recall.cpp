@@ -1,0 +1,140 @@
+#include "edge/app/storage/recall.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+
+#include "edge/records/log/text_buffer.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/crc32.h"
+
+namespace bess {
+
+namespace {
+
+constexpr std::string_view kHead = "bess-cleared 1";
+constexpr std::string_view kBeforeCrc = " crc32=";
+
+constexpr ClearedTrips kUnreadable{.unreadable = true};
+
+/// Programs before this form left the instant alone.
+bool parse_older(std::string_view text, ClearedTrips& cleared) {
+  if (!text.ends_with('\n')) return false;
+  const char* const end = text.data() + text.size() - 1;
+  const auto read = std::from_chars(text.data(), end, cleared.utc_s.front());
+  return read.ec == std::errc{} && read.ptr == end;
+}
+
+}  // namespace
+
+bool ClearedTrips::has(std::int64_t trip_utc_s) const {
+  return trip_utc_s != 0 && std::find(utc_s.begin(), utc_s.end(), trip_utc_s) != utc_s.end();
+}
+
+void ClearedTrips::add(std::int64_t trip_utc_s) {
+  std::copy_backward(utc_s.begin(), utc_s.end() - 1, utc_s.end());
+  utc_s.front() = trip_utc_s;
+}
+
+ClearanceText format_cleared(const ClearedTrips& cleared) {
+  char storage[256];
+  TextBuffer text(storage);
+  text.add("%s", kHead.data());
+  for (const std::int64_t utc_s : cleared.utc_s) {
+    if (utc_s != 0) text.add(" %lld", static_cast<long long>(utc_s));
+  }
+  Crc32 crc;
+  crc.add_bytes(text.view().data(), text.view().size());
+  text.add("%s%08x\n", kBeforeCrc.data(), crc.value());
+  return {text.view()};
+}
+
+ClearedTrips parse_cleared(std::string_view text) {
+  if (ClearedTrips older; parse_older(text, older)) return older;
+  const std::size_t end = text.find(kBeforeCrc);
+  if (!text.starts_with(kHead) || end == std::string_view::npos) return kUnreadable;
+  ClearedTrips cleared;
+  const char* at = text.data() + kHead.size();
+  for (std::int64_t& utc_s : cleared.utc_s) {
+    if (at >= text.data() + end) break;
+    const auto read = std::from_chars(at + 1, text.data() + end, utc_s);
+    if (read.ec != std::errc{}) return kUnreadable;
+    at = read.ptr;
+  }
+  // Every other character, and the checksum: written again it must be the same.
+  return format_cleared(cleared) == text ? cleared : kUnreadable;
+}
+
+ClearedTrips read_cleared(const char* path) {
+  char text[256];
+  if (*path == '\0') return {};
+  const ssize_t size = read_beginning(path, text, Links::kRefused);
+  if (size < 0) return errno == ENOENT ? ClearedTrips{} : kUnreadable;
+  return parse_cleared({text, static_cast<std::size_t>(size)});
+}
+
+bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s) {
+  return read_cleared(paths.state.c_str()).has(trip_utc_s) ||
+         read_cleared(paths.run.c_str()).has(trip_utc_s);
+}
+
+bool clear_trip_of(const char* path, std::int64_t trip_utc_s) {
+  ClearedTrips cleared = read_cleared(path);
+  if (cleared.unreadable) cleared = {};
+  cleared.add(trip_utc_s);
+  return replace_file_durably(path, format_cleared(cleared).view());
+}
+
+namespace {
+
+std::string why_nothing_is_known(const RingLog& ring, std::uint64_t published_number) {
+  if (!ring.is_open()) return "the decision log can be neither read nor made";
+  if (ring.damage().is_any()) return "nothing in the decision log can be understood";
+  if (published_number == 0) return "";  // a new battery
+  return "the decision log is gone, although a controller has run here";
+}
+
+std::string why_unknown(const RingLog& ring, const RingLog& run_ring,
+                        std::uint64_t published_number) {
+  const std::uint64_t newest = std::max(ring.newest_number(), run_ring.newest_number());
+  if (newest == 0) return why_nothing_is_known(ring, published_number);
+  // One record less is one cycle less; several may hide a trip.
+  const bool knows_more = run_ring.newest_number() > ring.newest_number();
+  if (!knows_more && ring.damage().newest_lost > 1) {
+    return "the newest records of the decision log are lost, perhaps " +
+           std::to_string(ring.damage().newest_lost);
+  }
+  if (published_number > newest + 1) {
+    return "the decision log ends with record " + std::to_string(newest) +
+           ", although there was a record " + std::to_string(published_number);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring,
+                                  const BothPlaces& cleared) {
+  const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
+  const RingLog& newer = run_is_newer ? run_ring : ring;
+  const RingLog& other = run_is_newer ? ring : run_ring;
+  CycleRecord record;
+  for (const RingLog* log : {&newer, &other}) {
+    const bool is_tripped =
+        log->newest(record) && record.is_tripped && !is_trip_cleared(cleared, record.trip.utc_s);
+    if (is_tripped) return record.trip;
+  }
+  return std::nullopt;
+}
+
+Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,
+              const BothPlaces& cleared) {
+  Recall recalled;
+  const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
+  static_cast<void>((run_is_newer ? run_ring : ring).newest(recalled.before));
+  recalled.trip = standing_trip(ring, run_ring, cleared);
+  recalled.unknown = why_unknown(ring, run_ring, published_number);
+  return recalled;
+}
+
+}  // namespace bess

@@ -1,0 +1,262 @@
+#include "edge/companions/notify/notifier.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <utility>
+
+#include "edge/companions/notify/topics.h"
+#include "edge/records/log/journal.h"
+#include "shared/host/run_program.h"
+
+namespace bess {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+void say(JournalLevel level, const std::string& text) {
+  write_journal_line(level, "bess-notify: " + text);
+}
+
+std::string duration_text(std::int64_t seconds) {
+  if (seconds < 120) return std::to_string(seconds) + " s";
+  if (seconds < 7'200) return std::to_string(seconds / 60) + " min";
+  return std::to_string(seconds / 3'600) + " h";
+}
+
+NotifierState recall(const NotifySettings& settings) {
+  std::vector<std::string> losses;
+  NotifierState state = read_notifier_state(settings.memories, losses);
+  for (const std::string& loss : losses) say(JournalLevel::kError, loss);
+  return state;
+}
+
+}  // namespace
+
+Notifier::Notifier(const NotifySettings& settings, std::stop_token stop)
+    : settings_(settings),
+      stop_(std::move(stop)),
+      state_(recall(settings)),
+      kept_(notifier_state_text(state_)) {
+  if (!settings_.has_channel()) {
+    say(JournalLevel::kWarning,
+        "[notify] names no channel (command, mqtt_host): alarms stand in the journal alone");
+  }
+  say(JournalLevel::kNotice, "started");
+  if (settings_.mqtt.host.empty()) return;
+  const auto take_order = [this](const std::string& topic, const std::string& payload) {
+    constexpr std::size_t kOrdersMax = 8;
+    const std::lock_guard lock(mutex_);
+    if (orders_.size() < kOrdersMax) orders_.push_back({topic, payload.substr(0, 64)});
+    changed_.notify_all();
+  };
+  mqtt_ = std::make_unique<MqttClient>(
+      settings_, MqttPresence::kStays,
+      settings_.mqtt.orders ? MqttClient::OnOrder(take_order) : MqttClient::OnOrder());
+  mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
+}
+
+Notifier::~Notifier() {
+  constexpr std::chrono::seconds kGrace(2);
+  serve(steady_clock::now() + kGrace, {}, true);
+  keep();
+  say(JournalLevel::kNotice, "stopped");
+}
+
+void Notifier::run_round(std::int64_t now_utc_s) {
+  const ControllerStatus status = ask_controller(settings_);
+  tell_alarms(status, now_utc_s);
+  tell_day(status, now_utc_s);
+  if (mqtt_ != nullptr) note_connection();
+  publish(status);
+  keep();  // before it is sent: killed in between, a message is sent late and not never
+  run_command();
+}
+
+bool Notifier::finish(milliseconds patience) {
+  serve(steady_clock::now() + patience, stop_, true);
+  if (mqtt_ != nullptr) mqtt_->wait_until_sent(milliseconds(settings_.mqtt.wait_ms_max));
+  return !is_command_running_;
+}
+
+void Notifier::serve(TimePoint until, const std::stop_token& stop, bool is_for_command) {
+  std::unique_lock lock(mutex_);
+  const auto has_news = [this] { return !orders_.empty() || outcome_.has_value(); };
+  while ((is_command_running_ || !is_for_command) &&
+         changed_.wait_until(lock, stop, until, has_news)) {
+    const std::deque<Order> orders = std::exchange(orders_, {});
+    const std::optional<std::string> outcome = std::exchange(outcome_, std::nullopt);
+    lock.unlock();
+    if (outcome.has_value()) hear_of_command(*outcome);
+    for (const Order& order : orders) follow(order);
+    if (!orders.empty()) publish(ask_controller(settings_));
+    lock.lock();
+  }
+}
+
+void Notifier::tell_alarms(const ControllerStatus& status, std::int64_t now_utc_s) {
+  std::vector<Trouble> troubles = troubles_of(status);
+  if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
+  if (!settings_.settled_file.empty()) {
+    const std::string trouble = settled_trouble(settings_.settled_file, now_utc_s);
+    if (!trouble.empty()) troubles.push_back({.key = "settled", .text = trouble});
+  }
+  if (mqtt_ != nullptr && mqtt_->is_cut_off()) {
+    troubles.push_back({.key = "mqtt_cut_off",
+                        .text = "the MQTT broker ends each connection: is there another client "
+                                "with the id of this one, from a copied machine?"});
+  }
+  for (const auto& [is_over, alarm] :
+       observe(state_.alarms, troubles, settings_.after_s, now_utc_s)) {
+    Message message{.severity = is_over ? "over" : "alarm",
+                    .key = alarm.key,
+                    .text = alarm.text,
+                    .utc_s = now_utc_s,
+                    .since_utc_s = alarm.since_utc_s};
+    // It began up to a round before it was first seen, and ended up to a round after the last time.
+    const std::int64_t lasted_s = alarm.seen_utc_s - alarm.since_utc_s + settings_.every_s;
+    if (is_over) message.text += " (lasted " + duration_text(lasted_s) + ")";
+    tell(message);
+  }
+}
+
+/// Only behind a new cycle: an answer costs a reading of the log. A day is over when the next has
+/// its first cycle; the days before the first look were not watched.
+void Notifier::tell_day(const ControllerStatus& status, std::int64_t now_utc_s) {
+  const std::string newest_utc = status.json.value()["last"]["utc"].text_or("");
+  if (newest_utc.empty() || newest_utc == newest_utc_) return;
+  newest_utc_ = newest_utc;
+  Json today = ask_earned(settings_, {"today"});
+  const std::string date = (*today.value()["days"].begin())["date"].text_or("");
+  if (date.empty()) return;
+  today_ = std::move(today);
+  const std::string before = std::exchange(state_.day, date);
+  if (before.empty() || before == date || !settings_.daily) return;
+  const Json yesterday = ask_earned(settings_, {"yesterday"});
+  const JsonValue day = *yesterday.value()["days"].begin();
+  if (!day.exists()) return;
+  tell({.severity = "day",
+        .key = day["date"].text_or(""),
+        .text = day["line"].text_or(""),
+        .utc_s = now_utc_s});
+  if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.name, "day"), day_json(yesterday.value()));
+}
+
+void Notifier::tell(const Message& message) {
+  say(message.severity == "alarm" ? JournalLevel::kWarning : JournalLevel::kNotice,
+      headline(message));
+  if (mqtt_ != nullptr) {
+    mqtt_->publish(topic(settings_.name, "event"), event_json(settings_.name, message).line());
+  }
+  if (settings_.command.empty()) return;
+  state_.pending.push_back(message);
+  if (state_.pending.size() <= kPendingMax) return;
+  const auto oldest = state_.pending.begin() + (is_command_running_ ? 1 : 0);
+  say(JournalLevel::kError, "too many wait for the command; dropped: " + headline(*oldest));
+  state_.pending.erase(oldest);
+}
+
+/// Logged once for each time that the connection is lost.
+void Notifier::note_connection() {
+  constexpr int kRounds = 2;  // one that has just begun is no trouble
+  rounds_apart_ = mqtt_->is_connected() ? 0 : rounds_apart_ + 1;
+  if (rounds_apart_ != kRounds) return;
+  say(JournalLevel::kWarning, "mqtt: " + mqtt_->find_trouble() + "; tried again");
+}
+
+void Notifier::publish(const ControllerStatus& status) {
+  if (mqtt_ == nullptr) return;
+  is_held_ = status.json.value()["last"]["held"].boolean().value_or(false);
+  mqtt_->retain(topic(settings_.name, "state"),
+                state_json(status, state_.alarms, today_.value(),
+                           settings_.mqtt.orders ? std::optional(hold_power_w_) : std::nullopt));
+  mqtt_->retain(topic(settings_.name, "alarms"), alarms_json(state_.alarms));
+}
+
+/// As a command of bess-edge, with its checks, its refusals and its line in the journal.
+void Notifier::follow(const Order& order) {
+  std::vector<std::string> words = {settings_.program, "hold"};
+  if (order.topic.ends_with(kHoldPowerTopic)) {
+    const char* const end = order.payload.data() + order.payload.size();
+    std::int32_t power_w = 0;
+    const auto [read_up_to, error] = std::from_chars(order.payload.data(), end, power_w);
+    if (error != std::errc{} || read_up_to != end || std::abs(power_w) > settings_.power_w) {
+      return say(JournalLevel::kWarning,
+                 "mqtt order: hold_power/set takes whole W up to [battery] power_w");
+    }
+    hold_power_w_ = power_w;
+    if (!is_held_) return;
+  } else if (order.payload != "ON" && order.payload != "OFF") {
+    return say(JournalLevel::kWarning, "mqtt order: hold/set takes ON or OFF");
+  }
+  if (order.payload == "OFF") {
+    words.emplace_back("--release");
+  } else {
+    words.insert(words.end(), {std::to_string(hold_power_w_), "--for", "60m"});
+  }
+  words.insert(words.end(), {"--config", settings_.config_path});
+  constexpr std::int64_t kOrderSMax = 10;
+  const ProgramResult result = run_and_hear(words, kOrderSMax);
+  say(result.is_well() ? JournalLevel::kNotice : JournalLevel::kWarning,
+      "mqtt orders: hold " + words[2] + ": " + (result.is_well() ? "done" : result.complaint()));
+}
+
+void Notifier::keep() {
+  if (notifier_state_text(state_) == kept_ && memory_trouble_.empty()) return;
+  ++state_.number;
+  kept_ = notifier_state_text(state_);
+  const std::string before =
+      std::exchange(memory_trouble_, write_notifier_state(settings_.memories, kept_));
+  if (before.empty() == memory_trouble_.empty()) return;
+  say(JournalLevel::kWarning,
+      memory_trouble_.empty() ? "what is reported is kept again" : memory_trouble_);
+}
+
+/// For the oldest message, unless it runs for one.
+void Notifier::run_command() {
+  if (is_command_running_ || state_.pending.empty()) return;
+  is_command_running_ = true;
+  command_ = std::jthread([this, message = state_.pending.front()](const std::stop_token& stop) {
+    std::string trouble = run_alarm_command(settings_, message, stop);
+    const std::lock_guard lock(mutex_);
+    outcome_ = std::move(trouble);
+    changed_.notify_all();
+  });
+}
+
+/// One that has just failed would only cost its time again: the rest waits for the next round.
+void Notifier::hear_of_command(const std::string& trouble) {
+  is_command_running_ = false;
+  const bool is_new = std::exchange(command_trouble_, trouble) != trouble;
+  if (!trouble.empty()) {
+    if (is_new) say(JournalLevel::kWarning, trouble + "; tried again every round");
+    return;
+  }
+  state_.pending.pop_front();
+  keep();
+  run_command();
+}
+
+bool send_test(const NotifySettings& settings, std::int64_t now_utc_s) {
+  bool all = true;
+  Message message{.key = "test", .utc_s = now_utc_s};
+  const auto note = [&all](const std::string& channel, const std::string& trouble) {
+    all = all && trouble.empty();
+    say(trouble.empty() ? JournalLevel::kInfo : JournalLevel::kError,
+        trouble.empty() ? channel + ": sent" : trouble);
+  };
+  if (!settings.command.empty()) {
+    message.text = "bess-notify can reach you by command";
+    note("command", run_alarm_command(settings, message));
+  }
+  if (!settings.mqtt.host.empty()) {
+    message.text = "bess-notify can reach you by mqtt";
+    MqttClient client(settings, MqttPresence::kVisits);
+    client.publish(topic(settings.name, "event"), event_json(settings.name, message).line());
+    const bool is_sent = client.wait_until_sent(milliseconds(2 * settings.mqtt.wait_ms_max));
+    note("mqtt", is_sent ? "" : "mqtt: " + client.find_trouble());
+  }
+  return all;
+}
+
+}  // namespace bess

@@ -1,0 +1,146 @@
+#include "edge/companions/notify/notifier_state.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "edge/companions/notify/topics.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/host/json.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+
+std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
+                                std::int64_t after_s, std::int64_t now_utc_s) {
+  std::vector<AlarmEvent> events;
+  for (Alarm& alarm : alarms) {  // a clock that was in the future must not silence anything
+    alarm.since_utc_s = std::min(alarm.since_utc_s, now_utc_s);
+    alarm.seen_utc_s = std::min(alarm.seen_utc_s, now_utc_s);
+  }
+  for (const Trouble& trouble : troubles) {
+    auto alarm = std::ranges::find(alarms, trouble.key, &Alarm::key);
+    if (alarm == alarms.end()) {
+      alarm = alarms.insert(alarm, {.key = trouble.key, .since_utc_s = now_utc_s});
+    }
+    alarm->text = trouble.text;
+    alarm->seen_utc_s = now_utc_s;
+    if (alarm->is_told || now_utc_s - alarm->since_utc_s < after_s) continue;
+    alarm->is_told = true;
+    events.push_back({.is_over = false, .alarm = *alarm});
+  }
+  std::erase_if(alarms, [&](const Alarm& alarm) {
+    // Strictly longer than 0, or with after_s = 0 what was just seen would be over.
+    const std::int64_t away_s = now_utc_s - alarm.seen_utc_s;
+    if (away_s == 0 || away_s < after_s) return false;
+    if (alarm.is_told) events.push_back({.is_over = true, .alarm = alarm});
+    return true;
+  });
+  return events;
+}
+
+namespace {
+
+constexpr int kVersion = 1;
+
+std::int64_t utc_of(JsonValue value) {
+  std::int64_t utc_s = 0;
+  static_cast<void>(parse_utc(value.text_or(""), utc_s));
+  return utc_s;
+}
+
+NotifierState state_in(JsonValue all) {
+  NotifierState state{.number = static_cast<std::uint64_t>(all["number"].number().value_or(0)),
+                      .day = all["day"].text_or("")};
+  for (const JsonValue alarm : all["alarms"]) {
+    state.alarms.push_back({.key = alarm["key"].text_or(""),
+                            .text = alarm["text"].text_or(""),
+                            .since_utc_s = utc_of(alarm["since_utc"]),
+                            .seen_utc_s = utc_of(alarm["seen_utc"]),
+                            .is_told = alarm["is_told"].boolean().value_or(false)});
+  }
+  for (const JsonValue message : all["pending"]) {
+    state.pending.push_back({.severity = message["kind"].text_or(""),
+                             .key = message["key"].text_or(""),
+                             .text = message["text"].text_or(""),
+                             .utc_s = utc_of(message["utc"]),
+                             .since_utc_s = utc_of(message["since_utc"])});
+  }
+  return state;
+}
+
+/// False with errno, 0 where it is damaged.
+bool read_place(const std::string& path, NotifierState& state) {
+  constexpr std::size_t kBytesMax = 4 * 1024 * 1024;  // 200 messages need a twentieth
+  std::string text(kBytesMax, '\0');
+  const ssize_t size = read_beginning(path.c_str(), text, Links::kRefused);
+  if (size < 0) return false;
+  text.resize(static_cast<std::size_t>(size));
+  errno = 0;
+  const Json json = Json::parse(text);  // one of an older program has no checksum
+  const bool is_broken = check_text(text, kJsonChecksum) == TextState::kBroken;
+  if (is_broken || json.value()["version"].number() != kVersion) return false;
+  state = state_in(json.value());
+  return true;
+}
+
+}  // namespace
+
+NotifierState read_notifier_state(const std::vector<std::string>& paths,
+                                  std::vector<std::string>& losses) {
+  NotifierState newest;
+  bool is_known = false;
+  for (const std::string& path : paths) {
+    NotifierState state;
+    if (read_place(path, state)) {
+      if (!is_known || state.number > newest.number) newest = std::move(state);
+      is_known = true;
+    } else if (errno != ENOENT) {
+      losses.push_back(path + (errno == 0 ? " is damaged, or of another version: not believed"
+                                          : std::string(" cannot be read: ") + strerror(errno)));
+    }
+  }
+  if (!is_known && !losses.empty()) {
+    losses.emplace_back("what was reported is not known: alarms are reported again");
+  }
+  return newest;
+}
+
+std::string notifier_state_text(const NotifierState& state) {
+  Json alarms = Json::list();
+  Json pending = Json::list();
+  for (const Alarm& alarm : state.alarms) {
+    Json json = alarm_json(alarm);
+    json.set("seen_utc", utc_text(alarm.seen_utc_s).view());
+    json.set("is_told", alarm.is_told);
+    alarms.add(std::move(json));
+  }
+  for (const Message& message : state.pending) pending.add(event_json("", message));
+  const std::string text = Json::object({{"version", kVersion},
+                                         {"number", state.number},
+                                         {"day", state.day},
+                                         {"alarms", std::move(alarms)},
+                                         {"pending", std::move(pending)}})
+                               .text();
+  const std::string body = text.substr(0, text.rfind("\n}"));
+  return body + std::string(checksum_end(body, kJsonChecksum).view());
+}
+
+std::string write_notifier_state(const std::vector<std::string>& paths, const std::string& text) {
+  std::string trouble;
+  std::string kept;
+  for (const std::string& path : paths) {
+    if (make_folder(folder_of(path.c_str()).c_str()) && replace_file_durably(path.c_str(), text)) {
+      kept = path;
+      continue;
+    }
+    FileMessage message;
+    fail_with_errno(path.c_str(), "cannot be written", message);
+    if (trouble.empty()) trouble = message.view();
+  }
+  if (trouble.empty()) return "";
+  return trouble + (kept.empty() ? "; what is reported is kept nowhere: a restart reports it again"
+                                 : "; what is reported is kept in " + kept + " alone");
+}
+
+}  // namespace bess

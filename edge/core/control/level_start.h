@@ -1,0 +1,74 @@
+// How the trailing price level is come by when the program starts. In this order:
+//   the log      the level rests while nobody runs, so the newest record has it
+//   history      the prices of the last days, from the server
+//   setting      what the operator expects
+//   none         the first price sets it
+// A student by month needs no more than the log.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "shared/context_classes.h"
+#include "shared/fixed_point.h"
+#include "shared/price_level.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+// What an imbalance price that is too old to trade on has probably become: of its distance from the
+// trailing level a thirtieth goes with each step, so that a third is left after an hour. Measured
+// on three years ("When prices stay away", edge/prices/record/README.md): for half an hour this
+// keeps up to two fifths of what a short outage costs; after an hour no guess earns anything.
+
+/// Hundredths of EUR/MWh. `age_s` from 0 to a day.
+constexpr std::int32_t stand_in_centi(std::int32_t newest_centi, std::int32_t level_centi,
+                                      std::int64_t age_s) {
+  constexpr std::int64_t kStepsToFade = 30;  ///< time constant of an hour
+  std::int64_t distance_centi = std::int64_t{newest_centi} - level_centi;
+  for (std::int64_t step = age_s / kSecondsPerStep; step > 0; --step) {
+    distance_centi = rounding_divide(distance_centi * (kStepsToFade - 1), kStepsToFade);
+  }
+  return static_cast<std::int32_t>(level_centi + distance_centi);
+}
+
+enum class LevelSource : std::uint8_t { kLog, kHistory, kSetting, kNone };
+
+struct LevelStart {
+  PriceLevel level{};
+  LevelSource source = LevelSource::kNone;
+  bool refused_log = false;  ///< the log had a level that no prices lead to
+};
+
+/// The level of the newest record, as far as it may be believed. A row later than any that can
+/// exist was logged while the clock was wrong: what the level is stands, but rows of now must count
+/// again.
+constexpr PriceLevel level_from_log(const PriceLevel& logged, std::int64_t now_utc_s) {
+  if (!logged.is_known() || !logged.is_sound()) return {};
+  const std::int64_t newest_possible_utc_s = std::max<std::int64_t>(now_utc_s / 60 * 60 - 60, 1);
+  return {.centi_q16 = logged.centi_q16,
+          .row_minute_utc_s = std::min(logged.row_minute_utc_s, newest_possible_utc_s)};
+}
+
+/// `fetch_history` gives the level of the last days, not known where no row came; it is asked only
+/// when it is needed.
+template <typename FetchHistory>
+LevelStart find_start_level(ContextKind kind, const PriceLevel& logged, std::int64_t now_utc_s,
+                            std::optional<std::int32_t> setting_centi_eur_per_mwh,
+                            const FetchHistory& fetch_history) {
+  const PriceLevel kept = level_from_log(logged, now_utc_s);
+  if (kept.is_known()) return {.level = kept, .source = LevelSource::kLog};
+  LevelStart start{.refused_log = !logged.is_sound()};
+  if (kind == ContextKind::kMonth) return start;
+  start.level = fetch_history();
+  if (start.level.is_known()) {
+    start.source = LevelSource::kHistory;
+  } else if (setting_centi_eur_per_mwh.has_value()) {
+    start.level = PriceLevel::starting_at(*setting_centi_eur_per_mwh);
+    start.source = LevelSource::kSetting;
+  }
+  return start;
+}
+
+}  // namespace bess

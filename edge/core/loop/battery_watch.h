@@ -1,0 +1,151 @@
+// Battery and site, read for a cycle and looked after between two: the watchdog is fed as often as
+// its map asks, and what the site no longer bears of the order in force is taken off it. Only a
+// tick gives it back.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "edge/core/control/safety_guard.h"
+#include "edge/core/control/tick.h"
+#include "edge/core/loop/control_settings.h"
+#include "edge/core/loop/cycle_parts.h"
+#include "edge/core/loop/order_in_force.h"
+
+namespace bess {
+
+template <typename Battery, typename Clock, typename Site>
+class BatteryWatch {
+ public:
+  using Order = OrderInForce<Battery, Clock>;
+  using Parts = CycleParts<Site>;
+
+  /// All of them are the loop's, and outlive this object.
+  BatteryWatch(const ControlSettings& settings, Battery& battery, Clock& clock, Order& order,
+               Parts& parts, const SafetyGuard& guard, const Mode& mode)
+      : settings_(settings),
+        battery_(battery),
+        clock_(clock),
+        order_(order),
+        parts_(parts),
+        guard_(guard),
+        mode_(mode) {}
+  BatteryWatch(const BatteryWatch&) = delete;
+  BatteryWatch& operator=(const BatteryWatch&) = delete;
+
+  /// For a cycle, or for the last record of a run.
+  void read(Look look, CycleRecord& record) {
+    record.battery_status = battery_.read(record.measurement);
+    record.has_measurement = record.battery_status == Status::kOk;
+    if (record.has_measurement) {
+      measured_ = record.measurement;
+      order_.find(record.measurement);
+    }
+    const Response response = order_.response(record.measurement);
+    observe(look, record.utc_s, record.battery_status, response);
+    if (!record.has_measurement) {
+      record.measurement = {.lost_point = record.measurement.lost_point};
+    } else if (settings_.control) {
+      record.followed = {.is_judged = response.is_driven && !was_cut_,
+                         .power_w = response.ordered_power_w,
+                         .age_s = response.order_age_s,
+                         .soc_floor_e4 = static_cast<std::int16_t>(response.soc_floor_e4)};
+      was_cut_ = false;
+    }
+  }
+
+  /// When the site is to be looked at next; never where there is nothing to look at.
+  [[nodiscard]] std::int64_t check_due_utc_ns() const {
+    const std::int32_t interval_s = site().check_every_s();
+    if (interval_s <= 0) return INT64_MAX;
+    const std::int64_t now_ns = clock_.now_utc_ns();
+    if (looked_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
+    return looked_utc_ns_ + interval_s * kNanosecondsPerSecond;
+  }
+
+  /// Is the order in force still borne?
+  void check() {
+    BatteryMeasurement measurement;
+    Status status = site().needs_battery() ? battery_.read(measurement) : Status::kNotConnected;
+    observe(Look::kCheck, now_utc_s(), status, order_.response(measurement));
+    bool is_read = status == Status::kOk;
+    if (!settings_.control || !order_.exists() || mode_ != Mode::kRunning) return;
+    const BatteryMeasurement& known = is_read ? measurement : measured_;
+    if (bearable(known, Margin::kHalf).power_w == order_.power_w() && !cut_failed_) return;
+    const Bearable left = bearable(known, Margin::kWhole);
+    if (!site().needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
+    // What became of our order is for the tick to see, and not to be hidden by the next one. Some
+    // follow none of 0 W: there is nothing to hide.
+    const bool has_ended = measurement.order_ended && order_.drives();
+    if (is_read && (measurement.order_replaced || has_ended)) return;
+    // What flowed under the order until now would be taken for the next one's at the next reading.
+    if (is_read) observe(Look::kCut, now_utc_s(), Status::kOk, order_.response(measurement));
+    cut(left);
+  }
+
+  /// This tick orders anew.
+  void forget_failed_cut() { cut_failed_ = false; }
+  /// Since start, between two ticks.
+  [[nodiscard]] std::int32_t order_cuts() const { return order_cuts_; }
+
+ private:
+  [[nodiscard]] std::int64_t now_utc_s() const {
+    return clock_.now_utc_ns() / kNanosecondsPerSecond;
+  }
+
+  [[nodiscard]] const Site& site() const { return parts_.template get<SitePart<Site>>().site; }
+
+  void observe(Look look, std::int64_t utc_s, Status status, const Response& response) {
+    parts_.observe({.look = look,
+                    .utc_s = utc_s,
+                    .status = status,
+                    .is_read = status == Status::kOk,
+                    .is_under_control = settings_.control,
+                    .holds_nothing = !order_.exists(),
+                    .drives = order_.drives(),
+                    .response = response});
+    if (look == Look::kTick || look == Look::kCheck) looked_utc_ns_ = clock_.now_utc_ns();
+  }
+
+  struct Bearable {
+    std::int32_t power_w = 0;
+    std::int32_t reserve_soc_e4 = 0;
+  };
+
+  /// Of the order in force.
+  [[nodiscard]] Bearable bearable(const BatteryMeasurement& measurement, Margin margin) {
+    GuardInputs in{
+        .now_utc_s = now_utc_s(), .measurement = measurement, .previous_power_w = order_.power_w()};
+    CycleRecord between;  // of no cycle
+    parts_.put({.is_tick = false, .margin = margin, .power_w = settings_.guard.power_w}, between,
+               in);
+    return {.power_w = guard_.rechecked_power_w(in), .reserve_soc_e4 = in.reserve_soc_e4};
+  }
+
+  /// As fresh as the readings that it follows from, and never longer than its cycle's order.
+  void cut(const Bearable& left) {
+    if (left.power_w != order_.power_w()) ++order_cuts_;
+    was_cut_ = true;
+    const std::int64_t write_until_ns =
+        clock_.monotonic_ns() + settings_.order_deadline_s * kNanosecondsPerSecond;
+    const Status status = order_.write(left.power_w, left.reserve_soc_e4,
+                                       std::min(order_.feed_until_ns(), write_until_ns));
+    cut_failed_ = status != Status::kOk;  // the next cycle's record says what became of it
+    parts_.note(left.power_w);
+  }
+
+  const ControlSettings& settings_;
+  Battery& battery_;
+  Clock& clock_;
+  Order& order_;
+  Parts& parts_;
+  const SafetyGuard& guard_;
+  const Mode& mode_;
+  BatteryMeasurement measured_;     ///< the last that was read at a tick
+  std::int64_t looked_utc_ns_ = 0;  ///< when the site was last looked at
+  std::int32_t order_cuts_ = 0;
+  bool cut_failed_ = false;  ///< since this tick: the battery may still follow more
+  bool was_cut_ = false;     ///< since the last tick's reading
+};
+
+}  // namespace bess

@@ -1,0 +1,40 @@
+// A thread with the stack that is the process's default (heap_seal.h), started without the heap of
+// this program: the proof of the control path finds no allocator here.
+#pragma once
+
+#include <pthread.h>
+
+#include "edge/core/base/check.h"
+
+namespace bess {
+
+class PlainThread {
+ public:
+  PlainThread() = default;
+  PlainThread(const PlainThread&) = delete;
+  PlainThread& operator=(const PlainThread&) = delete;
+  ~PlainThread() { BESS_CHECK(!is_running_); }
+
+  /// `(owner->*kRun)()` on it.
+  template <auto kRun, typename Owner>
+  void start(Owner* owner) {
+    BESS_CHECK(!is_running_);
+    const auto run = [](void* self) -> void* {
+      (static_cast<Owner*>(self)->*kRun)();
+      return nullptr;
+    };
+    BESS_CHECK(pthread_create(&thread_, nullptr, run, owner) == 0);
+    is_running_ = true;
+  }
+  [[nodiscard]] bool is_running() const { return is_running_; }
+  void join() {
+    pthread_join(thread_, nullptr);
+    is_running_ = false;
+  }
+
+ private:
+  pthread_t thread_{};
+  bool is_running_ = false;
+};
+
+}  // namespace bess

@@ -1,0 +1,214 @@
+// The site around the battery, for the control loop: keeps the newest meter reading and the energy
+// of the quarter-hour, asks the outside limits, and says how far an order may go. A template over
+// both sources, so that the tests give it others; either may be absent. Nothing allocates.
+//
+//   Meter          Status read(int32& grid_power_w)       must end by a deadline of its own
+//   OutsideLimits  Status read(OutsideLimit&, bool& is_set)
+//
+// Between two ticks the loop looks again every `check_every_s` and cuts an order that has become
+// too large; it never gives back before the next tick, so that reading and order cannot chase each
+// other. A tick's order leaves `margin_w` free; one in force is cut when half of that is used up,
+// so that a refrigerator costs no write. A meter that does not step with the battery is as good as
+// lost (meter_witness.h).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "edge/core/control/control_types.h"
+#include "edge/core/control/site_types.h"
+#include "edge/core/site/connection_guard.h"
+#include "edge/core/site/meter_witness.h"
+
+namespace bess {
+
+enum class MeterSource : std::uint8_t {
+  kNone,
+  kMap,     ///< a device of its own
+  kBattery  ///< the battery's own grid point
+};
+
+/// How much of the margin an order must leave free.
+enum class Margin : std::uint8_t { kWhole, kHalf };
+
+inline constexpr std::int32_t kMeterAgeMax_s = 30;  ///< an older reading is no reading
+/// Between two ticks the site is read this often; at most half of the above: one may be lost.
+inline constexpr std::int32_t kSiteCheck_s = 10;
+
+struct SiteSettings {
+  MeterSource meter = MeterSource::kNone;
+  bool idle_without_meter = true;  ///< false: a lost meter limits nothing
+  ConnectionSettings connection;
+  MeterWitnessSettings witness;
+  std::int32_t pv_w_max = 0;  ///< of panels behind the meter; kAnyPowerW: not known
+  bool has_outside_limits = false;
+  bool idle_after_timeout = false;  ///< false: a limit that has lapsed, or none, limits nothing
+};
+
+/// A control loop without a site: nothing is measured, nothing is limited.
+struct NoSite {
+  void take_over(std::int64_t, const SiteReport&) {}
+  [[nodiscard]] std::int32_t check_every_s() const { return 0; }
+  [[nodiscard]] bool needs_battery() const { return false; }
+  void observe(std::int64_t, bool, const BatteryMeasurement&, const SeenOrder&) {}
+  [[nodiscard]] SiteRange range(std::int64_t, std::int32_t, Margin) const { return {}; }
+  [[nodiscard]] SiteReport report(std::int64_t) const { return {}; }
+};
+
+template <typename Meter, typename OutsideLimits>
+class SiteLimits {
+ public:
+  /// Null: there is none. Both must outlive this object.
+  SiteLimits(const SiteSettings& settings, Meter* meter, OutsideLimits* outside)
+      : settings_(settings),
+        meter_(meter),
+        outside_(outside),
+        witness_(settings.witness),
+        energy_(settings.connection.peak_w_max == kAnyPowerW ? 0 : settings.connection.peak_w_max,
+                kMeterAgeMax_s) {}
+
+  /// What an earlier run had counted when it wrote its last record.
+  void take_over(std::int64_t utc_s, const SiteReport& before) {
+    energy_.restore(utc_s, before.quarter_hour_import_wh, before.quarter_hour_battery_wh);
+    witness_.restore(before.trust);
+  }
+
+  /// 0: there is nothing to look at between two ticks.
+  [[nodiscard]] std::int32_t check_every_s() const {
+    return has_meter() || settings_.has_outside_limits ? kSiteCheck_s : 0;
+  }
+  /// The house's load cannot be known without the battery's power of the same time.
+  [[nodiscard]] bool needs_battery() const { return has_meter(); }
+
+  /// Reads meter and outside limits; `battery` was read just before, `is_read` says whether well,
+  /// `order` what it followed.
+  void observe(std::int64_t utc_s, bool is_read, const BatteryMeasurement& battery,
+               const SeenOrder& order) {
+    read_outside_limits();
+    if (!has_meter()) return;
+    std::int32_t grid_w = 0;
+    meter_status_ = read_meter(is_read, battery, grid_w);
+    if (meter_status_ != Status::kOk || !is_read) return;
+    read_utc_s_ = utc_s;
+    grid_w_ = grid_w;
+    battery_w_ = battery.power_w;
+    energy_.add(utc_s, grid_w_, battery_w_);
+    house_watch_.observe(is_plausible_house(grid_w_, battery_w_, settings_.pv_w_max));
+    witness_.observe({.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
+  }
+
+  /// How far an order may go from `now_utc_s` on; `relief_w_max` is what the battery can discharge.
+  [[nodiscard]] SiteRange range(std::int64_t now_utc_s, std::int32_t relief_w_max,
+                                Margin margin) const {
+    SiteRange range;
+    limit_from_outside(now_utc_s, range);
+    if (!has_meter()) return range;
+    if (witness_.is_mismatch() && !settings_.idle_without_meter) return range;
+    if (is_recent(now_utc_s)) {
+      const std::int32_t trusted_w = limit_by_trust(now_utc_s, range);
+      limit_at_connection_by_ratios(now_utc_s, relief_w_max, margin, range);
+      if (trusted_w != kAnyPowerW) range.relief_w = 0;
+    } else if (settings_.idle_without_meter) {
+      range.forbid(Reason::kMeterLost);
+    }
+    return range;
+  }
+
+  [[nodiscard]] SiteReport report(std::int64_t now_utc_s) const {
+    SiteReport report{.meter_status = meter_status_, .limit_status = limit_status(now_utc_s)};
+    if (!has_meter()) return report;
+    report.has_grid_power = is_recent(now_utc_s);
+    report.grid_power_w = report.has_grid_power ? grid_w_ : 0;
+    const QuarterHourEnergy::Sums sums = energy_.at(now_utc_s);
+    report.quarter_hour_import_wh = watt_hours(sums.import_ws);
+    report.quarter_hour_battery_wh = watt_hours(sums.battery_ws);
+    report.house_is_implausible = house_watch_.is_implausible();
+    report.trust = witness_.trust();
+    return report;
+  }
+
+ private:
+  [[nodiscard]] bool has_meter() const { return settings_.meter != MeterSource::kNone; }
+
+  static std::int32_t watt_hours(std::int64_t watt_seconds) {
+    const std::int64_t wh =
+        (watt_seconds + QuarterHourEnergy::kWsPerWh - 1) / QuarterHourEnergy::kWsPerWh;
+    return static_cast<std::int32_t>(std::min<std::int64_t>(wh, INT32_MAX));
+  }
+
+  /// To what may be ordered as far as the meter is believed; returns that.
+  std::int32_t limit_by_trust(std::int64_t now_utc_s, SiteRange& range) const {
+    const std::int32_t power_w =
+        settings_.idle_without_meter ? witness_.power_w_max(now_utc_s) : kAnyPowerW;
+    range.limit_charge(power_w, Reason::kMeterMismatch);
+    range.limit_discharge(power_w, Reason::kMeterMismatch);
+    return power_w;
+  }
+
+  /// As the meter shows it, and as it would be if its last steps' ratio were the meter's and not
+  /// the house's.
+  void limit_at_connection_by_ratios(std::int64_t now_utc_s, std::int32_t relief_w_max,
+                                     Margin margin, SiteRange& range) const {
+    const std::int32_t margin_w = settings_.connection.margin_w;
+    const std::int32_t kept_w = margin == Margin::kWhole ? margin_w : margin_w / 2;
+    ConnectionState state{.grid_w = grid_w_,
+                          .battery_w = battery_w_,
+                          .relief_w_max = relief_w_max,
+                          .quarter_hour = energy_.at(now_utc_s)};
+    const MeterRatios ratios = witness_.possible_ratios(now_utc_s);
+    // 1 is the last: what is given back follows from what was measured.
+    for (const std::int32_t permille : {ratios.least_permille, ratios.most_permille, kTrueRatio}) {
+      const std::int64_t grid_w = std::int64_t{grid_w_} * kTrueRatio / permille;
+      state.grid_w =
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(grid_w, -kAnyPowerW, kAnyPowerW));
+      limit_at_connection(settings_.connection, kept_w, state, range);
+    }
+  }
+
+  /// A clock that was stepped back makes readings of the future: those are no readings either.
+  [[nodiscard]] bool is_recent(std::int64_t now_utc_s) const {
+    const std::int64_t age_s = now_utc_s - read_utc_s_;
+    return age_s <= kMeterAgeMax_s && age_s >= -kMeterAgeMax_s;
+  }
+
+  Status read_meter(bool is_read, const BatteryMeasurement& battery, std::int32_t& grid_w) {
+    if (settings_.meter == MeterSource::kMap) return meter_->read(grid_w);
+    grid_w = battery.grid_power_w;
+    if (!is_read) return Status::kNotConnected;
+    return battery.has_grid_power ? Status::kOk : Status::kImplausible;
+  }
+
+  void read_outside_limits() {
+    if (settings_.has_outside_limits) outside_status_ = outside_->read(limit_, is_limit_set_);
+  }
+
+  [[nodiscard]] Status limit_status(std::int64_t now_utc_s) const {
+    if (!settings_.has_outside_limits || outside_status_ != Status::kOk) return outside_status_;
+    const bool is_in_force = is_limit_set_ && now_utc_s < limit_.until_utc_s;
+    return is_in_force || !settings_.idle_after_timeout ? Status::kOk : Status::kTimeout;
+  }
+
+  void limit_from_outside(std::int64_t now_utc_s, SiteRange& range) const {
+    if (!settings_.has_outside_limits) return;
+    if (limit_status(now_utc_s) != Status::kOk) return range.forbid(Reason::kOutsideLimit);
+    if (!is_limit_set_ || now_utc_s >= limit_.until_utc_s) return;
+    range.limit_charge(limit_.charge_w_max, Reason::kOutsideLimit);
+    range.limit_discharge(limit_.discharge_w_max, Reason::kOutsideLimit);
+  }
+
+  SiteSettings settings_;
+  Meter* meter_;
+  OutsideLimits* outside_;
+  MeterWitness witness_;
+  HouseWatch house_watch_;
+  QuarterHourEnergy energy_;
+  std::int64_t read_utc_s_ = INT64_MIN / 2;  ///< of the newest good reading
+  std::int32_t grid_w_ = 0;
+  std::int32_t battery_w_ = 0;
+  Status meter_status_ = Status::kOk;
+  OutsideLimit limit_;
+  bool is_limit_set_ = false;
+  Status outside_status_ = Status::kOk;
+};
+
+}  // namespace bess

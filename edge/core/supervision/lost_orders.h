@@ -1,0 +1,158 @@
+// Orders of ours that are not in force when they are read back before their end: somebody else
+// replaced them, or they ended, by the device or by a hand that wrote just that. Counted once each,
+// so that who comes and goes is found as well (leaky_count.h); one that nobody meant is no finding:
+//
+//   0 W that ended, and no power flows                     it rests, as it was told
+//   charging that ended near full, discharging near empty  there was nothing left to do
+//   an alarm, an island, charging in the cold              the device's own safety
+//   its time was over, the link was away, it was released  the driver tells these apart
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+
+#include "edge/core/control/lost_order_history.h"
+#include "edge/core/supervision/leaky_count.h"
+#include "edge/core/supervision/response.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+class LostOrders {
+ public:
+  static constexpr std::int64_t kForgottenAfterS = 2 * 3'600;
+  static constexpr std::int64_t kInsistsForS = 3'600;
+  static constexpr std::int32_t kOrdersToSettle = 10;
+
+  explicit LostOrders(const ResponseSettings& settings) : settings_(settings) {}
+
+  /// `follows_another`: nothing of ours is in force, and the battery follows an order.
+  void observe(const Response& now, bool follows_another) {
+    if (lost_s_ != 0 && now.steady_s - lost_s_ > kForgottenAfterS) forget_old();
+    const Fate fate = follows_another ? Fate::kReplaced : fate_of(now);
+    if (is_lost(now.measurement)) lost_order_ = now.order_number;
+    was_lost_ = fate == Fate::kReplaced || fate == Fate::kEnded;
+    if (was_lost_) {
+      count_loss(now, fate);
+    } else if (fate == Fate::kHolds) {
+      count_.good();
+      history_.note(false);
+      if (++held_ >= kOrdersToSettle) settle();
+    }
+  }
+
+  /// Time to give the battery back: the newest order was lost, and so were others before it. Who
+  /// insists tries for an hour first, and after that as long as less than half is lost.
+  [[nodiscard]] bool is_to_be_given_up(std::int64_t steady_s, bool yields) const {
+    if (!was_lost_ || !count_.is_found()) return false;
+    const bool most = 2 * history_.lost >= history_.judged;
+    return yields || (most && steady_s - first_lost_s_ >= kInsistsForS);
+  }
+  /// Why: kOtherMaster where somebody's hand was seen, else kNoAnswer.
+  [[nodiscard]] Reason reason() const {
+    return was_replaced_ ? Reason::kOtherMaster : Reason::kNoAnswer;
+  }
+  /// Orders have held for long enough since one was lost.
+  [[nodiscard]] bool has_settled() const { return first_lost_s_ == 0; }
+
+  /// The battery has been given back: found anew from here.
+  void forget_findings() {
+    count_.forget();
+    was_replaced_ = was_lost_ = false;
+  }
+
+  [[nodiscard]] const LostOrderHistory& history() const { return history_; }
+  /// Of an earlier run, by its log: `utc_s` is that of the record.
+  void restore(const LostOrderHistory& logged, std::int64_t utc_s) {
+    constexpr int kMost = LostOrderHistory::kRemembered;
+    for (int i = std::clamp<int>(logged.judged, 0, kMost) - 1; i >= 0; --i) {
+      const bool lost = (logged.orders >> i & 1U) != 0;
+      history_.note(lost);
+      if (lost) {
+        count_.bad();
+      } else {
+        count_.good();
+      }
+      if (lost && first_lost_s_ == 0) first_lost_s_ = utc_s - (i + 1) * kSecondsPerStep;
+    }
+    lost_s_ = utc_s;
+    history_.is_found = logged.is_found;
+  }
+  /// Since start.
+  [[nodiscard]] std::int32_t replaced() const { return replaced_; }
+  [[nodiscard]] std::int32_t ended() const { return ended_; }
+
+ private:
+  enum class Fate : std::uint8_t { kNothingToSee, kHolds, kReplaced, kEnded };
+
+  /// A battery may be done this far from the ends that its order names.
+  static constexpr std::int32_t kDoneBelowCeilingE4 = 500;
+  static constexpr std::int32_t kDoneAboveFloorE4 = 1'000;
+  /// Below this, in 0.1 degC, charging may be refused.
+  static constexpr std::int32_t kColdDeciC = 80;
+
+  static bool is_lost(const BatteryMeasurement& m) { return m.order_replaced || m.order_ended; }
+
+  [[nodiscard]] Fate fate_of(const Response& now) const {
+    const BatteryMeasurement& m = now.measurement;
+    if (m.alarm || m.off_grid) return Fate::kNothingToSee;
+    const bool is_counted = is_lost(m) && now.order_number == lost_order_;
+    if (is_counted) return Fate::kNothingToSee;
+    if (m.order_replaced) return Fate::kReplaced;
+    if (m.order_ended) return is_done(now) ? Fate::kNothingToSee : Fate::kEnded;
+    return now.is_driven && moves(now.ordered_power_w) ? Fate::kHolds : Fate::kNothingToSee;
+  }
+
+  [[nodiscard]] bool moves(std::int32_t power_w) const {
+    return std::abs(std::int64_t{power_w}) >
+           std::max(settings_.band.tolerance_w, settings_.power_w / 40);
+  }
+
+  [[nodiscard]] bool is_done(const Response& now) const {
+    const BatteryMeasurement& m = now.measurement;
+    if (!moves(now.ordered_power_w)) return !moves(m.power_w);
+    if (now.ordered_power_w < 0) {
+      return m.soc_e4 <= now.soc_floor_e4 + kDoneAboveFloorE4 || !moves(m.discharge_w_max);
+    }
+    return m.soc_e4 >= now.soc_ceiling_e4 - kDoneBelowCeilingE4 || !moves(m.charge_w_max) ||
+           m.temperature_min_deci_c < kColdDeciC;
+  }
+
+  void settle() {
+    first_lost_s_ = 0;
+    history_.is_found = false;
+  }
+
+  void count_loss(const Response& now, Fate fate) {
+    count_.bad();
+    history_.note(true);
+    history_.is_found = history_.is_found || count_.is_found();
+    held_ = 0;
+    lost_s_ = now.steady_s;
+    if (first_lost_s_ == 0) first_lost_s_ = now.steady_s;
+    was_replaced_ = was_replaced_ || fate == Fate::kReplaced;
+    std::int32_t& lost = fate == Fate::kReplaced ? replaced_ : ended_;
+    ++lost;
+  }
+
+  void forget_old() {
+    forget_findings();
+    history_ = {};
+    lost_s_ = 0;
+  }
+
+  ResponseSettings settings_;
+  LeakyCount count_;
+  LostOrderHistory history_;
+  bool was_lost_ = false;          ///< by the newest reading
+  bool was_replaced_ = false;      ///< one of those that are counted
+  std::int64_t lost_order_ = -1;   ///< number of the newest that was
+  std::int64_t lost_s_ = 0;        ///< when that was seen; 0 = long ago
+  std::int64_t first_lost_s_ = 0;  ///< of those since orders had settled; 0 = they have
+  std::int32_t held_ = 0;          ///< in a row since then
+  std::int32_t replaced_ = 0;
+  std::int32_t ended_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,90 @@
+// The state of charge against the measured power, reading by reading.
+//
+//   stands still while power flows; runs apart from it over a longer span   contradiction
+//   changes at once by more than power explains                             jump: it was set right
+//   shows another share of the energy, or loses some at rest                told (energy_balance.h)
+//
+// Near the ends a count of charge clings and is set right: charging above 95 %, and discharging
+// below 10 %, explains a SoC that stands still or goes further than power does. Only these:
+// discharging at 97 %, it must fall. And only for as much energy as an honest count can be wrong
+// by.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/core/base/response_band.h"
+#include "edge/core/supervision/energy_balance.h"
+#include "edge/core/supervision/leaky_count.h"
+#include "edge/core/supervision/response.h"
+
+namespace bess {
+
+class SocMonitor {
+ public:
+  explicit SocMonitor(const ResponseSettings& settings);
+
+  void observe(const Response& now);
+  /// Between two readings that are judged, just before an order changes: counts what has flowed.
+  void note_cut(const Response& now);
+
+  /// The SoC is not that of this battery's energy.
+  [[nodiscard]] bool contradicts() const { return contradicts_; }
+  /// It changed by more than power explains, and readings have not agreed for long enough since.
+  [[nodiscard]] bool has_jumped() const { return unsettled_readings_ > 0; }
+  [[nodiscard]] const EnergyBalance::Findings& balance() const { return balance_.findings(); }
+
+ private:
+  /// What the power of an interval may have moved, in 1e-4 of the capacity.
+  struct Flow {
+    std::int64_t energy_e4 = 0;       ///< each reading's power since its order
+    std::int64_t late_energy_e4 = 0;  ///< followed, and shown, as late as it may be
+    std::int64_t least_e4 = 0;  ///< change of the SoC that losses and a rounded capacity leave
+    std::int64_t most_e4 = 0;
+  };
+
+  [[nodiscard]] Flow flow_until(const Response& now) const;
+  [[nodiscard]] std::int64_t flowed_ws(const Response& now, std::int64_t delay_s) const;
+  [[nodiscard]] std::int64_t late_ws(const Response& now) const;
+  [[nodiscard]] EnergyInterval interval_of(const Response& now, const Flow& flow) const;
+  [[nodiscard]] std::int64_t e4_of(std::int64_t energy_ws) const;
+  [[nodiscard]] bool rests(const Response& reading) const;
+  [[nodiscard]] std::int32_t soc_step_e4() const;
+  [[nodiscard]] std::int32_t soc_span_e4() const;
+  [[nodiscard]] std::int64_t surely_moved_e4(const Flow& flow, std::int64_t seconds) const;
+  bool is_excused(const Response& now, const Flow& flow, std::int64_t change_e4);
+  bool is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::int64_t change_e4);
+  bool judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4);
+  [[nodiscard]] std::int64_t must_show_e4() const;
+  void note_power(const Response& now);
+  void judge_balance(const EnergyInterval& interval);
+  void judge_seldom(const Response& now, bool excused);
+  void judge_standstill(const Response& now, const Flow& flow, bool excused);
+  void begin_anew(const Response& now);
+
+  ResponseSettings settings_;
+  EnergyBalance balance_;
+  SeldomSoc seldom_;  ///< instead of every reading, where the SoC is seldom refreshed
+  bool contradicts_ = false;
+
+  bool has_before_ = false;
+  Response before_;
+  std::int64_t capacity_wh_ = 1;
+  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_s_`, with `flow_power_w_` at its end
+  std::int64_t late_ws_ = 0;
+  std::int64_t flow_s_ = 0;
+  std::int32_t flow_power_w_ = 0;
+
+  std::int32_t shown_step_e4_ = 0;  ///< the smallest change that it has shown; 0 = none yet
+  std::int32_t unsettled_readings_ = 0;
+  LeakyCount jumps_;                ///< under power; at rest a count of charge may be set right
+  std::int64_t excused_e4_ = 0;     ///< at this end, since it was reached
+  std::int64_t beyond_end_e4_ = 0;  ///< what a jump onto an end may have left beyond it
+  /// Moved by the measured power since the SoC last changed: now, and how far it went.
+  std::int64_t still_e4_ = 0;
+  std::int64_t still_least_e4_ = 0;
+  std::int64_t still_most_e4_ = 0;
+  std::int64_t still_total_e4_ = 0;  ///< all ways together
+  std::int32_t still_readings_ = 0;
+};
+
+}  // namespace bess

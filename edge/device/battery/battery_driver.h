@@ -1,0 +1,402 @@
+// The battery as the controller sees it, driven through a register map: measure, order, keep the
+// watchdog fed, release. Costs as few writes as possible: an order that is in force already is not
+// written again until the watchdog is due. A template over link and time (see battery_bus.h).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "edge/core/control/control_types.h"
+#include "edge/device/battery/battery_bus.h"
+#include "edge/device/battery/command_runner.h"
+#include "edge/device/battery/identity_check.h"
+#include "edge/device/battery/measurement_reader.h"
+#include "edge/device/battery/order_state.h"
+#include "edge/device/registers/codec.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+template <typename Link, typename Time>
+class BatteryDriver {
+ public:
+  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  template <typename... LinkArguments>
+  BatteryDriver(const RegisterMap& map, const Time& time, std::int32_t unit,
+                LinkArguments&&... link)
+      : map_(map),
+        bus_(map, time, unit, std::forward<LinkArguments>(link)...),
+        runner_(map, bus_),
+        reader_(map),
+        ours_(map.watchdog),
+        adds_live_(std::any_of(std::begin(map.command), std::end(map.command), adds_to_order)) {}
+  BatteryDriver(const BatteryDriver&) = delete;
+  BatteryDriver& operator=(const BatteryDriver&) = delete;
+
+  /// Connects if needed and reads everything that the map measures. Where an identity check finds
+  /// another capacity, that is all there is of the measurement.
+  Status read(BatteryMeasurement& measurement) {
+    measurement = BatteryMeasurement{};
+    IdentityFailure failure;
+    if (const Status status = identify(failure); status != Status::kOk) {
+      if (status == Status::kImplausible) note_capacity(failure, measurement);
+      return status;
+    }
+    const Status came = read_registers();
+    const bool is_complete = came == Status::kOk || !reader_.lacks_essentials(bus_.live());
+    const Status status =
+        is_complete ? reader_.translate(bus_.live(), bus_.time().now_ns(), measurement) : came;
+    if (status != Status::kOk) {
+      measurement = {.lost_point = reader_.lost_essential(bus_.live())};
+      return status;
+    }
+    note_order_in_force(measurement);
+    watch_order(measurement.dispatch_active);
+    measurement.order_replaced = ours_.loss() == OrderLoss::kReplaced;
+    measurement.order_ended = ours_.loss() == OrderLoss::kEnded;
+    return Status::kOk;
+  }
+
+  /// Brings an order into force and reads it back. Costs nothing while it is in force already.
+  Status order(const PowerOrder& order) {
+    if (const Status status = prepare(); status != Status::kOk) return refuse(status);
+    const Command command = command_of(order.power_w);
+    const bool is_same = ours_.is_in_force() && command == ours_.command();
+    if (is_same && runner_.is_written(map_.sequence(command), order)) {
+      ours_.on_prolonged(order);
+      if (ours_.is_due(now_ns())) return feed();
+      ++unchanged_orders_;
+      return Status::kOk;
+    }
+    if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
+      return refuse(Status::kNotExpressible);
+    }
+    // Nothing is written before it is known that all of it may be.
+    Status status = check(map_.sequence(command), order);
+    if (status == Status::kOk && !ours_.is_enabled()) status = enable(order);
+    if (status != Status::kOk) return refuse(status);
+    // 0 W that does not get through is not waited for as long: what follows is the release.
+    const bool drives = command != Command::kIdle;
+    status =
+        runner_.run(map_.sequence(command), order, drives ? kOrderPatienceNs : kReadPatienceNs);
+    if (status == Status::kOk) {
+      ours_.on_taken(command, order, now_ns());
+    } else {
+      roll_back(status, command, order);
+    }
+    return status;
+  }
+
+  /// Between orders, at least every `refresh_interval_s`: feeds the watchdog when it is due.
+  Status refresh() { return ours_.is_due(now_ns()) ? feed() : Status::kOk; }
+
+  /// 0: one order per cycle is enough to keep the watchdog fed.
+  [[nodiscard]] std::int32_t refresh_interval_s() const {
+    const bool often = !ours_.lasts_for_ever() && map_.watchdog.refresh_s < kSecondsPerStep;
+    return often ? map_.watchdog.refresh_s : 0;
+  }
+
+  /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
+  /// itself, and is not refused because measurements fail: scale factors that were read once will
+  /// do. Nor because the device has changed since it was known, which an order would be.
+  Status release() {
+    const Status known = identify();
+    if (known != Status::kOk && !(known == Status::kImplausible && was_known())) return known;
+    static_cast<void>(prepare());
+    const Status status =
+        runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, kReadPatienceNs);
+    lose_order();
+    if (status != Status::kOk) return status;
+    runner_.saved().forget();
+    ours_.on_released();
+    return Status::kOk;
+  }
+
+  /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
+  /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
+  Status check_identity(IdentityFailure& failure) {
+    const Status status = check_identity_of(map_, bus_, failure);
+    if (status == Status::kOk) {
+      identity_ = Identity::kKnown;
+    } else if (identity_ == Identity::kKnown) {
+      identity_ = Identity::kWasKnown;
+    }
+    identified_ns_ = now_ns();
+    identified_connections_ = bus_.link().counters().reconnects;
+    return status;
+  }
+
+  /// Whether the map calls a point optional and this device has it.
+  [[nodiscard]] bool has_optional(std::int8_t point) const {
+    return map_.points[point].optional && !bus_.live().absent[point];
+  }
+  /// An optional point that this device was seen to have: it is required.
+  void require(std::int8_t point) { bus_.require(point); }
+
+  /// A person insists: this device is to be given back whatever its identity checks say.
+  void permit_release() {
+    if (identity_ == Identity::kUnknown) identity_ = Identity::kWasKnown;
+  }
+
+  [[nodiscard]] BatteryCounters counters() const {
+    const LinkCounters link = bus_.link().counters();
+    BatteryCounters counters{.requests = link.requests,
+                             .failed_requests = link.failed_requests,
+                             .reconnects = link.reconnects,
+                             .register_writes = link.register_writes,
+                             .unchanged_orders = unchanged_orders_,
+                             .flash_day = bus_.time().utc_day()};
+    counters.flash_writes_today = runner_.budget().writes_on(counters.flash_day);
+    return counters;
+  }
+
+  /// At start, with what the log remembers: the budget of a day survives a restart.
+  void restore_flash_writes(std::int64_t day, std::int32_t writes) {
+    runner_.budget().restore(day, writes);
+  }
+
+  /// What a write of a command would be, without asking or telling the device anything.
+  /// kNotConnected while its scale or place is only known to a device that has not been read yet.
+  Status preview(const BlockWrite& write, const PowerOrder& order, std::uint16_t& address,
+                 RegisterBlock& block) const {
+    const bool was_read = bus_.last_read_ns() != 0;
+    for (const WriteValue& value : write.values) {
+      const RegisterPoint& p = map_.points[value.point];
+      const bool needs_device =
+          p.model >= 0 || p.scale_from >= 0 || p.percent_of >= 0 || value.plus >= 0;
+      if (needs_device && !was_read) return Status::kNotConnected;
+    }
+    address = bus_.placed(write.values[0].point, 3).place.address;
+    return encode_block(map_, write, order, block, {.live = was_read ? &bus_.live() : nullptr});
+  }
+
+  /// Gives the one connection free; the next request opens it again.
+  void close() { bus_.link().close(); }
+  [[nodiscard]] Link& link() { return bus_.link(); }
+  [[nodiscard]] const LivePoints& live() const { return bus_.live(); }
+  /// Where a point lies on this device.
+  [[nodiscard]] PlacedPoint place_of(std::int8_t point) const {
+    return bus_.placed(point, map_.points[point].read_function);
+  }
+
+ private:
+  /// Of the device: none is ordered anything unless it is known, nor released unless it was.
+  enum class Identity : std::uint8_t { kUnknown, kWasKnown, kKnown };
+
+  [[nodiscard]] bool was_known() const { return identity_ != Identity::kUnknown; }
+  [[nodiscard]] std::int64_t now_ns() const { return bus_.time().now_ns(); }
+
+  static bool adds_to_order(const CommandSequence& sequence) {
+    return std::any_of(sequence.writes.begin(), sequence.writes.end(), [](const BlockWrite& write) {
+      return std::any_of(write.values.begin(), write.values.end(),
+                         [](const WriteValue& value) { return value.plus >= 0; });
+    });
+  }
+
+  static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
+  static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
+
+  Status identify() {
+    IdentityFailure failure;
+    return identify(failure);
+  }
+
+  /// Behind a new connection there may be another device, and one that stays may be changed.
+  Status identify(IdentityFailure& failure) {
+    const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
+    const bool is_recent = now_ns() - identified_ns_ < kIdentityAgeNs;
+    if (identity_ == Identity::kKnown && same_connection && is_recent) return Status::kOk;
+    const std::int64_t patience_ns = was_known() ? kReadPatienceNs : 0;
+    return retried(bus_.time(), patience_ns, [&] { return check_identity(failure); });
+  }
+
+  void note_capacity(const IdentityFailure& failure, BatteryMeasurement& measurement) const {
+    const bool is_value = failure.missing_model == 0 && failure.is_known;
+    if (!is_value || map_.points[map_.identity[failure.check].point].name != "capacity") return;
+    measurement.capacity_wh = clamp_to_int32(failure.value);
+  }
+
+  /// What is missing is asked for again, patiently; meanwhile the watchdog is fed.
+  Status read_registers() {
+    int attempt = 0;
+    return retried(bus_.time(), kReadPatienceNs, [&] {
+      if (++attempt > kBusAttempts) static_cast<void>(refresh());
+      return attempt == 1 ? bus_.read_due() : bus_.read_rest();
+    });
+  }
+
+  /// Whether it may be written; flash is compared with the device first.
+  Status check(const CommandSequence& sequence, const PowerOrder& order) {
+    return retried(bus_.time(), kReadPatienceNs, [&] { return runner_.check(sequence, order); });
+  }
+
+  /// Scale factors, ratings and limits that go into an order must not be old. A map without them
+  /// can order (0 W above all) even while the measurements fail.
+  Status prepare() {
+    if (const Status status = identify(); status != Status::kOk) return status;
+    const bool needs_live = !map_.scales.empty() || (!ours_.is_enabled() && !map_.saved.empty());
+    const std::int64_t read_ns = bus_.last_read_ns();
+    const bool fresh = read_ns != 0 && now_ns() - read_ns < kLiveAgeNs;
+    if (fresh || !needs_live) return Status::kOk;
+    const Status status = read_registers();
+    return bus_.last_read_ns() == read_ns ? status : Status::kOk;
+  }
+
+  /// What order the device follows, whoever gave it: a restart takes over from here.
+  void note_order_in_force(BatteryMeasurement& m) {
+    const bool visible = shows_end();
+    const bool active = live_all(map_, map_.active, bus_.live());
+    // An order of a process that was killed: whether it has run out cannot be seen, but what it
+    // switched over stays until it is given back.
+    const bool left_behind = !visible && !ours_.was_ours() && active;
+    m.dispatch_active = visible ? active : ours_.may_last(now_ns()) || left_behind;
+    std::int64_t power_w = 0;
+    m.has_order_power = m.dispatch_active && !left_behind &&
+                        live_power(map_, map_.order_power, bus_.live(), power_w);
+    if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
+    std::int64_t left_s = 0;
+    const int remaining = map_.watchdog.remaining;
+    const bool is_shown = remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s);
+    ours_.note_seconds_left(is_shown ? left_s : INT64_MAX);
+  }
+
+  /// An order in force is looked for where it was written. `active`: the device says that it
+  /// follows one, as far as it can say so.
+  void watch_order(bool active) {
+    if (!ours_.is_in_force()) return;
+    if (!active && !ours_.is_within_its_time(now_ns())) return lose_order();  // not fed: run out
+    OrderTrace trace = OrderTrace::kOurs;  // also where it cannot be read just now
+    static_cast<void>(runner_.trace(ours_.command(), trace));
+    if (trace == OrderTrace::kForeign || (active && trace == OrderTrace::kAtRest)) {
+      note_loss(OrderLoss::kReplaced, trace);
+    } else if (!active && (trace == OrderTrace::kAtRest ||
+                           ours_.has_settled(now_ns(), map_.response.settle_s))) {
+      note_loss(OrderLoss::kEnded, trace);
+    }
+  }
+
+  /// Before it is fed: false when it is not there any more, which is remembered.
+  [[nodiscard]] bool is_still_there() {
+    OrderTrace trace = OrderTrace::kOurs;
+    const Status status = runner_.trace(ours_.command(), trace);
+    if (status != Status::kOk || trace == OrderTrace::kOurs) return true;
+    // Only a fresh reading tells that the device still follows an order.
+    const bool may_be_end = trace == OrderTrace::kAtRest && shows_end();
+    const bool is_active =
+        may_be_end && bus_.read_due() == Status::kOk && live_all(map_, map_.active, bus_.live());
+    note_loss(may_be_end && !is_active ? OrderLoss::kEnded : OrderLoss::kReplaced, trace);
+    return false;
+  }
+
+  /// All of it is written again with the next order, unless control yields. Not before: two masters
+  /// that outdo each other would swing the power.
+  void note_loss(OrderLoss loss, OrderTrace trace) {
+    ours_.on_lost(loss, trace == OrderTrace::kForeign, now_ns());
+    runner_.forget();
+  }
+
+  /// The device tells by its registers whether it follows an order.
+  [[nodiscard]] bool shows_end() const {
+    return !map_.active.empty() && map_.watchdog.expiry_visible;
+  }
+
+  Status feed() {
+    if (!is_still_there()) return Status::kNotApplied;
+    const CommandSequence& refresh = map_.sequence(Command::kRefresh);
+    const CommandSequence& sequence =
+        refresh.writes.empty() ? map_.sequence(ours_.command()) : refresh;
+    PowerOrder order = ours_.order();
+    order.write_until_ns = order.feed_until_ns;
+    // What is added to an order changes between two ticks.
+    Status status = adds_live_ ? bus_.read_points(map_.scales) : Status::kOk;
+    if (status == Status::kOk) status = check(sequence, order);
+    if (status == Status::kOk) status = runner_.run(sequence, order, kReadPatienceNs);
+    if (status == Status::kOk) {
+      ours_.on_fed(now_ns());
+    } else {
+      lose_order();  // the next order writes everything again
+    }
+    return status;
+  }
+
+  /// Once before the first order: conditions, what must be restored later, external control.
+  Status enable(const PowerOrder& order) {
+    for (const Condition& condition : map_.precondition) {
+      bool holds = false;
+      const Status status =
+          retried(bus_.time(), kReadPatienceNs, [&] { return runner_.test(condition, holds); });
+      if (status != Status::kOk) return status;
+      if (!holds) return Status::kNotPermitted;
+    }
+    Status status = retried(bus_.time(), kReadPatienceNs, [this] { return save_registers(); });
+    const CommandSequence& sequence = map_.sequence(Command::kEnable);
+    if (status == Status::kOk) status = check(sequence, order);
+    if (status != Status::kOk) return status;
+    status = runner_.run(sequence, order, kReadPatienceNs);
+    if (status == Status::kOk) {
+      ours_.on_enabled();
+    } else {
+      roll_back(status, Command::kEnable, order);
+    }
+    return status;
+  }
+
+  /// An order that is in force without us is an earlier process's: then the registers hold what
+  /// that process wrote, and the map's fallback is what is restored.
+  Status save_registers() {
+    StaticVector<std::int8_t, kPointsMax> unsaved;
+    for (const SavedPoint& saved : map_.saved) {
+      if (!runner_.saved().known[saved.point]) unsaved.push_back(saved.point);
+    }
+    if (unsaved.empty() || live_all(map_, map_.active, bus_.live())) return Status::kOk;
+    const Status status = runner_.read_written(unsaved, runner_.saved());
+    for (const std::int8_t point : unsaved) {
+      Scaling scaling;
+      std::int64_t value = 0;  // "not implemented" must not be written back
+      const bool good = live_scaling(map_, bus_.live(), point, scaling) &&
+                        decode(map_.points[point], runner_.saved().raw[point], value, scaling);
+      if (!good) runner_.saved().known[point] = false;
+    }
+    return status;
+  }
+
+  /// The order before the refused one is no longer wanted either: `refresh` must not keep it in
+  /// force. Its timer ends it; where the device has none, it is taken back here.
+  Status refuse(Status reason) {
+    const bool stays = ours_.is_in_force() && ours_.lasts_for_ever();
+    lose_order();
+    if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, 0));
+    return reason;
+  }
+
+  /// Half of a command may have been taken: rather the battery's own mode than a mixture.
+  void roll_back(Status reason, Command command, const PowerOrder& order) {
+    const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
+    const bool several = map_.sequence(command).writes.size() > 1 || ours_.is_enabled();
+    lose_order();
+    if (!sent || !(several || reason == Status::kNotApplied)) return;
+    PowerOrder unbound = order;  // taking back is never too late
+    unbound.write_until_ns = INT64_MAX;
+    static_cast<void>(runner_.run(map_.sequence(Command::kRelease), unbound,
+                                  0));  // the link may be gone: the watchdog ends it
+  }
+
+  void lose_order() {
+    ours_.on_lost();
+    runner_.forget();
+  }
+
+  const RegisterMap& map_;
+  BatteryBus<Link, Time> bus_;
+  CommandRunner<Link, Time> runner_;
+  MeasurementReader reader_;
+  OrderState ours_;
+  bool adds_live_;  ///< a measured load is added to what is written
+  Identity identity_ = Identity::kUnknown;
+  std::int64_t identified_ns_ = 0;
+  std::int64_t identified_connections_ = 0;
+  std::int64_t unchanged_orders_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,382 @@
+// The sign check that a new battery must pass before it may be controlled: small orders, and a
+// look at which way the power goes, how much of it, how soon, and whether the meter at the
+// connection sees it. A map's sign is documented both ways for some devices, and registers that
+// read back as written prove nothing about it.
+//
+//   read -> rest: 0 W, power must be near 0 -> drive one way -> rest -> drive the other way -> rest
+//        -> where SoC and limits leave room: half the largest step one way -> from there the other
+//           way, which is the largest -> and back -> rest                              -> release
+//
+// The small steps say whether the way is right, and nothing larger is ordered before; the larger
+// ones, of a few seconds, tell a battery that lags from one that ramps (commission_types.h).
+// A direction that the SoC, or the battery's own limit, does not leave is not tested, and said.
+// Power beyond the order ends it at once. A template over battery, clock and meter like the
+// control loop (control_loop.h names what the first two offer).
+//
+//   Meter   bool exists();  Status read(const BatteryMeasurement&, int32& grid_power_w)
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "edge/core/control/control_types.h"
+#include "edge/core/control/power_order.h"
+#include "edge/device/battery/commission_types.h"
+#include "edge/device/battery/meter_proof.h"
+#include "edge/device/battery/step_fit.h"
+#include "edge/device/registers/codec.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+struct NoCommissionMeter {
+  [[nodiscard]] static bool exists() { return false; }
+  static Status read(const BatteryMeasurement&, std::int32_t&) { return Status::kOk; }
+};
+
+template <typename Battery, typename Clock, typename Meter = NoCommissionMeter>
+class SignCheck {
+ public:
+  SignCheck(const CommissionSettings& settings, Battery& battery, Clock& clock,
+            Meter meter = Meter())
+      : settings_(settings), battery_(battery), clock_(clock), meter_(meter) {}
+
+  CommissionResult run() {
+    if (!reads(before_)) return result_;
+    result_.soc_e4 = before_.soc_e4;
+    if (before_.alarm || before_.off_grid) return fail(CommissionVerdict::kAlarm);
+    if (before_.dispatch_active) return fail(CommissionVerdict::kForeignOrder);
+    const auto can_drive = [this](int sign) {
+      return room_e4(sign) >= kRoomE4 && limit_w(sign) >= settings_.power_w;
+    };
+    if (!can_drive(1) && !can_drive(-1)) return fail(CommissionVerdict::kNoRoom);
+    const int first = before_.soc_e4 < (settings_.soc_min_e4 + settings_.soc_max_e4) / 2 ? 1 : -1;
+    result_.verdict = CommissionVerdict::kPassed;
+    if (rests() && can_drive(first)) drives(first);
+    if (passes() && can_drive(-first)) drives(-first);
+    judge_meter();
+    if (passes() && settings_.drives_further) drives_further(first);
+    release();
+    judge_speeds();
+    return result_;
+  }
+
+ private:
+  static constexpr std::int32_t kRoomE4 = 100;
+  static constexpr std::int64_t kReadingEveryNs = kNanosecondsPerSecond;
+  /// Of too much power, until it is given back.
+  static constexpr int kReadingsBeyond = 2;
+  /// For a larger step: up to a minute of the rating, and away from where a battery holds back.
+  static constexpr std::int32_t kFurtherRoomE4 = 500;
+  static constexpr std::int32_t kFurtherS = 8;
+  /// What has come has to stay so long, and a third of its way.
+  static constexpr std::int64_t kStaysMs = 5'000;
+  /// A slow one takes its time to come to rest, too.
+  static constexpr std::int32_t kRestPatienceS = 240;
+  /// Longer than the link pauses between two connects.
+  static constexpr std::int64_t kReleasePatienceNs = 65 * kNanosecondsPerSecond;
+
+  CommissionResult fail(CommissionVerdict verdict) {
+    result_.verdict = verdict;
+    return result_;
+  }
+  [[nodiscard]] bool passes() const { return result_.verdict == CommissionVerdict::kPassed; }
+
+  bool succeeded(Status status, CommissionVerdict verdict = CommissionVerdict::kNoLink) {
+    if (status == Status::kOk) return true;
+    result_.verdict = verdict;
+    result_.status = status;
+    return false;
+  }
+
+  bool reads(BatteryMeasurement& m) {
+    const Status status = battery_.read(m);
+    result_.lost_point = m.lost_point;
+    if (status == Status::kOk && m.lost_point != 0) return succeeded(Status::kImplausible);
+    return succeeded(status);
+  }
+
+  struct Seen {
+    std::optional<AnswerCurve> small;
+    std::optional<AnswerCurve> large;
+  };
+  DirectionResult& direction(int sign) { return sign > 0 ? result_.charge : result_.discharge; }
+  Seen& seen(int sign) { return sign > 0 ? seen_charge_ : seen_discharge_; }
+  [[nodiscard]] std::int32_t limit_w(int sign) const {
+    return sign > 0 ? before_.charge_w_max : before_.discharge_w_max;
+  }
+  [[nodiscard]] std::int32_t room_e4(int sign) const {
+    return sign > 0 ? settings_.soc_max_e4 - before_.soc_e4 : before_.soc_e4 - settings_.soc_min_e4;
+  }
+
+  bool rests(std::int32_t patience_s = 0) {
+    AnswerCurve ignored(1, 0);
+    // A meter may show a second later what the battery does, or ten.
+    const std::int32_t meter_s = reads_meter() ? settings_.response.settle_s + 5 : 0;
+    const std::int32_t rest_s = std::max(settings_.rest_s, meter_s);
+    if (!order_and_watch(0, rest_s, std::max(settings_.drive_s, patience_s), ignored)) return false;
+    if (!is_at_rest()) fail(CommissionVerdict::kNotAtRest);
+    if (reads_meter()) result_.rest_house_w = last_grid_w_ - result_.measured_power_w;
+    return passes();
+  }
+  [[nodiscard]] bool is_at_rest() const {
+    return result_.measured_power_w <= settings_.noise_w &&
+           result_.measured_power_w >= -settings_.noise_w;
+  }
+
+  [[nodiscard]] bool reads_meter() const { return meter_.exists() && !is_further_; }
+
+  /// There and back again.
+  void drives(int sign) {
+    AnswerCurve& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
+                                                  sign * last_power_w_);
+    const bool is_watched =
+        order_and_watch(sign * settings_.power_w, drive_s(sign), settings_.drive_s, curve);
+    direction(sign) = {.is_tested = true,
+                       .ordered_power_w = sign * settings_.power_w,
+                       .measured_power_w = result_.measured_power_w,
+                       .came_ms = curve.came_ms()};
+    if (is_watched) judge_drive(sign * result_.measured_power_w, curve);
+    if (passes()) rests_and_tells_of(direction(sign));
+  }
+  /// The first time for as long as an order must last without being fed.
+  std::int32_t drive_s(int sign) {
+    const bool is_long = !was_unfed_ && room_e4(sign) >= kFurtherRoomE4;
+    was_unfed_ = was_unfed_ || is_long;
+    return is_long ? std::max(settings_.drive_s, settings_.unfed_s) : settings_.drive_s;
+  }
+  void rests_and_tells_of(const DirectionResult& driven) {
+    rests(kRestPatienceS);
+    result_.ordered_power_w = driven.ordered_power_w;
+    if (passes()) result_.measured_power_w = driven.measured_power_w;
+  }
+
+  /// From rest half the largest step, and the largest from there to the other side and back; where
+  /// only one way is left, the largest that is.
+  void drives_further(int first) {
+    is_further_ = true;
+    const std::int32_t to_w = further_w(first);
+    const std::int32_t back_w = further_w(-first);
+    const std::int32_t both_w = std::min({to_w, back_w, settings_.step_w_max / 2});
+    const std::int32_t one_w = std::min(std::max(to_w, back_w), settings_.step_w_max);
+    const int one = to_w > 0 ? first : -first;
+    if (both_w >= settings_.power_w) {
+      for (const int sign : {first, -first, first}) {
+        if (!drives_on(sign, both_w) || !passes()) break;
+      }
+    } else if (std::min(to_w, back_w) == 0 && one_w >= 2 * settings_.power_w) {
+      drives_on(one, one_w);
+    } else {
+      return;
+    }
+    if (passes()) rests_and_tells_of(direction(direction(-first).is_tested ? -first : first));
+  }
+  /// 0: it is not to be tried.
+  [[nodiscard]] std::int32_t further_w(int sign) {
+    if (!direction(sign).is_tested || room_e4(sign) < kFurtherRoomE4) return 0;
+    const std::int64_t house_w = result_.rest_house_w;
+    const std::int64_t grid_w =
+        sign > 0 ? settings_.import_w_max - house_w : settings_.export_w_max + house_w;
+    const std::int64_t most_w =
+        std::min({grid_w, std::int64_t{settings_.rated_w}, std::int64_t{limit_w(sign)}});
+    return static_cast<std::int32_t>(std::max<std::int64_t>(most_w, 0));
+  }
+  /// Whether that came.
+  bool drives_on(int sign, std::int32_t power_w) {
+    AnswerCurve curve(power_w, band_w(power_w), sign * last_power_w_);
+    const std::int32_t last_s = std::max(2 * settings_.drive_s, settings_.response.settle_s + 10);
+    if (!order_and_watch(sign * power_w, kFurtherS, last_s - kFurtherS, curve)) return false;
+    DirectionResult& driven = direction(sign);
+    driven.further_w = sign * power_w;
+    driven.further_measured_w = result_.measured_power_w;
+    if (is_beyond(sign * power_w)) fail(CommissionVerdict::kTooMuch);
+    driven.is_held_back = !curve.has_come() && !curve.is_rising();
+    if (!driven.is_held_back) seen(sign).large = curve;
+    return curve.has_come();
+  }
+
+  /// Orders, reads until the time is over, feeding the watchdog; false when that was not possible.
+  bool order_and_watch(std::int32_t power_w, std::int32_t seconds, std::int32_t patience_s,
+                       AnswerCurve& curve) {
+    const PowerOrder order{.power_w = power_w,
+                           .soc_min_e4 = settings_.soc_min_e4,
+                           .soc_max_e4 = settings_.soc_max_e4,
+                           .duration_s = settings_.order_duration_s};
+    proof_.end_plateau();
+    result_.ordered_power_w = power_w;
+    if (!succeeded(battery_.order(order))) return false;
+    const std::int64_t start_ns = clock_.now_utc_ns();
+    const std::int64_t end_ns = start_ns + seconds * kNanosecondsPerSecond;
+    // One that is late is watched for longer, to say by how much.
+    const std::int64_t last_ns = end_ns + patience_s * kNanosecondsPerSecond;
+    fed_ns_ = start_ns;
+    has_flowed_ = false;
+    gone_ns_ = 0;
+    int beyond = 0;
+    while (true) {
+      const std::int64_t now_ns = clock_.now_utc_ns();
+      const bool has_come = power_w == 0 ? is_at_rest() : has_stayed(curve, now_ns - start_ns);
+      if (now_ns >= end_ns && (has_come || now_ns >= last_ns)) break;
+      const std::int64_t next_ns = now_ns + kReadingEveryNs;
+      if (!wait(now_ns < end_ns ? std::min(next_ns, end_ns) : next_ns)) return false;
+      if (!look(power_w, start_ns, end_ns, curve)) return false;
+      beyond = is_beyond(power_w) ? beyond + 1 : 0;
+      if (beyond >= kReadingsBeyond) break;
+    }
+    return true;
+  }
+
+  static bool has_stayed(const AnswerCurve& curve, std::int64_t since_ns) {
+    const std::int64_t stays_ms = std::max(kStaysMs, curve.came_ms() / 3);
+    return curve.has_come() && since_ns / 1'000'000 - curve.came_ms() >= stays_ms;
+  }
+
+  /// One reading of battery and meter.
+  bool look(std::int32_t power_w, std::int64_t start_ns, std::int64_t end_ns, AnswerCurve& curve) {
+    BatteryMeasurement m;
+    const std::int64_t begin_ns = clock_.now_utc_ns();
+    if (!reads(m)) return false;
+    const std::int64_t now_ns = clock_.now_utc_ns();
+    result_.measured_power_w = last_power_w_ = m.power_w;
+    if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
+    note_end(power_w, now_ns);
+    // Once it has come, the rest of a long order tells nothing of its speed.
+    const std::int64_t told_ns = start_ns + settings_.drive_s * kNanosecondsPerSecond;
+    if (!curve.has_come() || begin_ns <= told_ns) {
+      curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
+                 .end_ms = (now_ns - start_ns) / 1'000'000,
+                 .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});
+    }
+    if (!passes() || !reads_meter()) return passes();
+    if (!succeeded(meter_.read(m, last_grid_w_), CommissionVerdict::kMeterLost)) return false;
+    // The last third: both meters have had time.
+    if (begin_ns - start_ns >= (end_ns - start_ns) / 3 * 2) proof_.add(m.power_w, last_grid_w_);
+    return true;
+  }
+
+  /// Two readings in a row of hardly any power, after most of it had come.
+  void note_end(std::int32_t power_w, std::int64_t now_ns) {
+    const std::int64_t along_w = std::int64_t{result_.measured_power_w} * (power_w < 0 ? -1 : 1);
+    const std::int64_t ordered_w = std::abs(std::int64_t{power_w});
+    if (2 * along_w >= ordered_w) has_flowed_ = true;
+    const bool is_gone = power_w != 0 && has_flowed_ && 4 * along_w < ordered_w;
+    if (!is_gone) gone_ns_ = 0;
+    if (!is_gone || !passes()) return;
+    if (gone_ns_ == 0) {
+      gone_ns_ = now_ns;
+      return;
+    }
+    result_.wanted_duration_s = static_cast<std::int32_t>(
+        std::max<std::int64_t>((gone_ns_ - fed_ns_) / kNanosecondsPerSecond - 1, 2));
+    fail(CommissionVerdict::kEndsEarly);
+  }
+
+  /// Refreshes on the way; what fails there shows in the measurement.
+  bool wait(std::int64_t until_ns) {
+    const std::int64_t interval_ns = battery_.refresh_interval_s() * kNanosecondsPerSecond;
+    if (interval_ns > 0 && fed_ns_ + interval_ns <= until_ns) {
+      if (!sleep(std::max(fed_ns_ + interval_ns, clock_.now_utc_ns()))) return false;
+      static_cast<void>(battery_.refresh());
+      fed_ns_ = clock_.now_utc_ns();
+    }
+    return sleep(until_ns);
+  }
+  bool sleep(std::int64_t until_ns) {
+    if (clock_.sleep_until_utc_ns(until_ns)) return true;
+    result_.verdict = CommissionVerdict::kInterrupted;
+    return false;
+  }
+
+  /// What a power may miss, by the map; of a small step nothing is forgiven for a high rating.
+  [[nodiscard]] std::int32_t band_w(std::int32_t power_w) const {
+    return settings_.response.tolerance_of_w(is_further_ ? settings_.rated_w : 0, power_w);
+  }
+  [[nodiscard]] bool is_beyond(std::int32_t power_w) const {
+    if (power_w == 0) return false;  // it may still be on its way
+    const std::int64_t ordered_w = power_w < 0 ? -power_w : power_w;
+    const std::int64_t most_w = ordered_w + band_w(static_cast<std::int32_t>(ordered_w));
+    return result_.measured_power_w > most_w || result_.measured_power_w < -most_w;
+  }
+
+  void judge_drive(std::int32_t along_w, const AnswerCurve& curve) {
+    const std::int32_t least_w = settings_.power_w * (100 - settings_.tolerance_percent) / 100;
+    if (along_w <= -std::max(least_w, 1)) {
+      fail(CommissionVerdict::kWrongSign);
+    } else if (along_w < least_w) {
+      fail(CommissionVerdict::kDoesNotFollow);
+    } else if (along_w > settings_.power_w + band_w(settings_.power_w)) {
+      fail(CommissionVerdict::kTooMuch);
+    } else if (along_w < settings_.power_w - band_w(settings_.power_w) && !curve.is_rising()) {
+      result_.wanted_tolerance_w = rounded_up((settings_.power_w - along_w) * 5 / 4, 50);
+      fail(CommissionVerdict::kTooLittle);
+    }
+  }
+
+  /// A battery may be quicker one way than the other.
+  void judge_speeds() {
+    const SpeedQuestion question{.response = settings_.response,
+                                 .rated_w = settings_.rated_w,
+                                 .step_w_max = settings_.step_w_max};
+    if (!passes()) return;
+    for (const int sign : {1, -1}) {
+      const Seen& of = seen(sign);
+      if (!of.small.has_value()) continue;
+      AnswerSpeed& speed = direction(sign).speed;
+      speed = judge_speed(*of.small, of.large.has_value() ? &*of.large : nullptr, question);
+      if (speed.is_slow) take_proposal(speed);
+    }
+  }
+  void take_proposal(const AnswerSpeed& speed) {
+    fail(CommissionVerdict::kSlow);
+    result_.wanted_settle_s = std::max(result_.wanted_settle_s, speed.wanted_settle_s);
+    const std::int32_t step_w = result_.wanted_ramp_w_max;
+    if (speed.wanted_ramp_w_max == 0) return;
+    result_.wanted_ramp_w_max =
+        step_w == 0 ? speed.wanted_ramp_w_max : std::min(step_w, speed.wanted_ramp_w_max);
+  }
+
+  static std::int32_t rounded_up(std::int32_t value, std::int32_t to) {
+    return (value + to - 1) / to * to;
+  }
+
+  void judge_meter() {
+    proof_.end_plateau();
+    result_.meter = proof_.verdict();
+    result_.meter_percent = proof_.percent();
+    if (!passes()) return;
+    if (result_.meter == MeterVerdict::kMismatch) fail(CommissionVerdict::kMeterMismatch);
+    if (result_.meter == MeterVerdict::kRestless) fail(CommissionVerdict::kMeterRestless);
+  }
+
+  /// On every way out, and tried until the link has had its chance to come back; a verdict that
+  /// failed earlier says more than the release's.
+  void release() {
+    const std::int64_t last_ns = clock_.now_utc_ns() + kReleasePatienceNs;
+    result_.release_status = battery_.release();
+    while (result_.release_status != Status::kOk && clock_.now_utc_ns() < last_ns) {
+      clock_.pause_ns(5 * kNanosecondsPerSecond);
+      result_.release_status = battery_.release();
+    }
+    if (passes()) static_cast<void>(succeeded(result_.release_status));
+  }
+
+  CommissionSettings settings_;
+  Battery& battery_;
+  Clock& clock_;
+  Meter meter_;
+  CommissionResult result_;
+  BatteryMeasurement before_;
+  Seen seen_charge_;
+  Seen seen_discharge_;
+  bool is_further_ = false;
+  bool was_unfed_ = false;
+  MeterProof proof_;
+  std::int32_t last_power_w_ = 0;
+  std::int32_t last_grid_w_ = 0;
+  bool has_flowed_ = false;   ///< since the newest order
+  std::int64_t gone_ns_ = 0;  ///< when its power was first seen to be gone; 0 = it is not
+  std::int64_t fed_ns_ = 0;   ///< when the battery last got an order or a refresh
+};
+
+}  // namespace bess

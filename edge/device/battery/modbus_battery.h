@@ -1,0 +1,111 @@
+// Battery and meter behind a Modbus link: the drivers of battery_driver.h and of the grid meter
+// over libmodbus, in the time of the configured clock.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "edge/device/battery/battery_driver.h"
+#include "edge/device/battery/identity_check.h"
+#include "edge/device/battery/measurement_reader.h"
+#include "edge/device/battery/modbus_link.h"
+#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/register_map.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+// The meter at the connection to the grid, through a register map of its own (kind = "meter"): one
+// value, the power that flows in. Read by the same bus as the battery, with the same checks: the
+// device must be the map's, and a value that is not plausible is no value. A template over link and
+// time (battery_bus.h). Never writes.
+
+template <typename Link, typename Time>
+class GridMeter {
+ public:
+  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  template <typename... LinkArguments>
+  GridMeter(const RegisterMap& map, const Time& time, std::int32_t unit, LinkArguments&&... link)
+      : map_(map), bus_(map, time, unit, std::forward<LinkArguments>(link)...), alive_(map) {}
+
+  /// Import is positive. One attempt: the next look is seconds away, and the battery waits.
+  /// kImplausible: another device, a value out of its range, or one that stands still.
+  Status read(std::int32_t& grid_power_w) {
+    if (!identified_) {
+      IdentityFailure failure;
+      if (const Status status = check_identity(failure); status != Status::kOk) return status;
+    }
+    if (const Status status = bus_.read_due(); status != Status::kOk) return status;
+    std::int64_t power_w = 0;
+    if (!live_power(map_, map_.grid_power, bus_.live(), power_w)) return Status::kImplausible;
+    if (!alive_.is_alive(bus_.live(), bus_.time().now_ns())) return Status::kImplausible;
+    grid_power_w = clamp_to_int32(power_w);
+    return Status::kOk;
+  }
+
+  /// On kImplausible `failure` says which check of the map failed and what was read.
+  Status check_identity(IdentityFailure& failure) {
+    const Status status = check_identity_of(map_, bus_, failure);
+    identified_ = status == Status::kOk;
+    return status;
+  }
+
+ private:
+  const RegisterMap& map_;
+  BatteryBus<Link, Time> bus_;
+  AliveWatch alive_;
+  bool identified_ = false;
+};
+
+/// The time that the device lives in: simulated seconds pass faster, and it never jumps.
+class DeviceTime {
+ public:
+  explicit DeviceTime(const ScaledClock& clock)
+      : clock_(clock), start_ns_(clock_ns(CLOCK_MONOTONIC)) {}
+
+  /// Since construction, never 0.
+  [[nodiscard]] std::int64_t now_ns() const {
+    return (clock_ns(CLOCK_MONOTONIC) - start_ns_) * clock_.scale + 1;
+  }
+  void sleep_ms(std::int32_t ms) const {
+    const std::int64_t end_ns =
+        clock_ns(CLOCK_MONOTONIC) + clock_.wall_ns(std::int64_t{ms} * 1'000'000);
+    while (clock_ns(CLOCK_MONOTONIC) < end_ns) sleep_until_monotonic(end_ns);
+  }
+  [[nodiscard]] std::int64_t utc_day() const {
+    return clock_.now_utc_ns() / (kSecondsPerDay * kNanosecondsPerSecond);
+  }
+
+ private:
+  ScaledClock clock_;
+  std::int64_t start_ns_;
+};
+
+/// What the map says of the device's timing.
+inline LinkTiming timing_of(const RegisterMap& map) {
+  return {.response_timeout_ms = map.response_timeout_ms,
+          .minimum_gap_ms = map.minimum_gap_ms,
+          .connect_delay_ms = map.connect_delay_ms};
+}
+
+extern template class BatteryDriver<ModbusLink, DeviceTime>;
+
+class ModbusBattery : public BatteryDriver<ModbusLink, DeviceTime> {
+ public:
+  /// `map` must outlive this object.
+  ModbusBattery(const BatteryLinkSettings& link, const RegisterMap& map, const ScaledClock& clock);
+};
+
+// The meter behind a Modbus link of its own: modbus_battery.h over libmodbus, in the time of the
+// configured clock.
+
+extern template class GridMeter<ModbusLink, DeviceTime>;
+
+class ModbusMeter : public GridMeter<ModbusLink, DeviceTime> {
+ public:
+  /// `map` must outlive this object.
+  ModbusMeter(const BatteryLinkSettings& link, const RegisterMap& map, const ScaledClock& clock);
+};
+
+}  // namespace bess

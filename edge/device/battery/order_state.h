@@ -1,0 +1,111 @@
+// The states of our order in the device, as a pure machine over CLOCK_MONOTONIC instants:
+//
+//   none --enabled--> enabled --taken--> in force --fed, taken again--> in force
+//    ^                   |                  |
+//    +------ lost -------+------ lost ------+      replaced, ended, run out, refused or released
+//
+// none      the device is in its own mode, or follows an order that is not ours
+// enabled   external control is switched on, no order is there yet
+// in force  the order was read back and nothing has ended it since; its time runs from its last
+//           feeding
+#pragma once
+
+#include <cstdint>
+
+#include "edge/core/control/power_order.h"
+#include "edge/device/registers/battery_command.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+/// How an order went that was in force and ought to be.
+enum class OrderLoss : std::uint8_t {
+  kNone,
+  kReplaced,  ///< its registers hold what somebody else wrote
+  kEnded      ///< the device follows none, and nothing in the registers says who ended it
+};
+
+class OrderState {
+ public:
+  /// `watchdog` must outlive this object.
+  explicit OrderState(const Watchdog& watchdog) : watchdog_(watchdog) {}
+
+  [[nodiscard]] bool is_enabled() const { return state_ != State::kNone; }
+  [[nodiscard]] bool is_in_force() const { return state_ == State::kInForce; }
+  /// What the device holds is ours, or was given back by us.
+  [[nodiscard]] bool was_ours() const { return was_ours_; }
+  [[nodiscard]] OrderLoss loss() const { return loss_; }
+  /// Of the order in force.
+  [[nodiscard]] Command command() const { return command_; }
+  [[nodiscard]] const PowerOrder& order() const { return order_; }
+
+  void on_enabled() { state_ = State::kEnabled; }
+  /// Written whole and read back.
+  void on_taken(Command command, const PowerOrder& order, std::int64_t now_ns) {
+    state_ = State::kInForce;
+    was_ours_ = true;
+    loss_ = OrderLoss::kNone;
+    command_ = command;
+    order_ = order;
+    since_ns_ = fed_ns_ = now_ns;
+    runs_out_ = false;
+  }
+  /// The same registers, wanted for longer.
+  void on_prolonged(const PowerOrder& order) { order_ = order; }
+  void on_fed(std::int64_t now_ns) {
+    fed_ns_ = now_ns;
+    runs_out_ = false;
+  }
+  /// The device's own timer, as last read.
+  void note_seconds_left(std::int64_t left_s) { runs_out_ = left_s < watchdog_.refresh_s; }
+  void on_lost() { state_ = State::kNone; }
+  /// What has just run out was not lost to anybody, but for one that somebody else wrote over.
+  void on_lost(OrderLoss loss, bool is_foreign, std::int64_t now_ns) {
+    if (is_foreign || is_within_its_time(now_ns)) loss_ = loss;
+    on_lost();
+  }
+  void on_released() {
+    on_lost();
+    was_ours_ = true;
+    loss_ = OrderLoss::kNone;
+  }
+
+  /// The device may still follow it.
+  [[nodiscard]] bool may_last(std::int64_t now_ns) const {
+    return is_in_force() && (lasts_for_ever() || now_ns - fed_ns_ < duration_ns());
+  }
+  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart
+  /// agree.
+  [[nodiscard]] bool is_within_its_time(std::int64_t now_ns) const {
+    return lasts_for_ever() || now_ns - fed_ns_ < duration_ns() - duration_ns() / 10;
+  }
+  /// Fed at half the interval: nothing is lost when one feeding comes late.
+  [[nodiscard]] bool is_due(std::int64_t now_ns) const {
+    const std::int64_t half_ns = watchdog_.refresh_s * kNanosecondsPerSecond / 2;
+    return is_in_force() && !lasts_for_ever() && (runs_out_ || now_ns - fed_ns_ >= half_ns);
+  }
+  /// Some devices show an order later than they confirm it.
+  [[nodiscard]] bool has_settled(std::int64_t now_ns, std::int32_t settle_s) const {
+    return now_ns - since_ns_ >= settle_s * kNanosecondsPerSecond;
+  }
+  [[nodiscard]] bool lasts_for_ever() const { return watchdog_.kind == Watchdog::Kind::kNone; }
+
+ private:
+  enum class State : std::uint8_t { kNone, kEnabled, kInForce };
+
+  [[nodiscard]] std::int64_t duration_ns() const {
+    return watchdog_.duration_s * kNanosecondsPerSecond;
+  }
+
+  const Watchdog& watchdog_;
+  State state_ = State::kNone;
+  bool was_ours_ = false;
+  OrderLoss loss_ = OrderLoss::kNone;  ///< of the newest order
+  bool runs_out_ = false;              ///< the device's timer shows less than one refresh interval
+  Command command_ = Command::kIdle;
+  PowerOrder order_;
+  std::int64_t since_ns_ = 0;  ///< when it was written whole
+  std::int64_t fed_ns_ = 0;
+};
+
+}  // namespace bess

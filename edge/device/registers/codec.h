@@ -1,0 +1,33 @@
+// An order -> the registers to write. Pure integer functions over the map: what cannot be expressed
+// is refused, nothing wraps.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/core/base/status.h"
+#include "edge/core/control/power_order.h"
+#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_codec.h"
+#include "edge/device/registers/register_map.h"
+
+namespace bess {
+
+/// What a write needs beside the order.
+struct WriteContext {
+  const LivePoints* live = nullptr;  ///< null: the map's assumed scale factors, no live limits
+  bool clamp = true;  ///< cut to live limits; not in proofs: what fits uncut fits cut
+  const LivePoints* saved = nullptr;  ///< null or unknown there: the map's fallback
+  std::int64_t heartbeat = 0;
+};
+
+/// charge, idle or discharge, by the sign of the power.
+Command command_of(std::int32_t power_w);
+
+/// Registers of one block write for an order.
+Status encode_block(const RegisterMap& map, const BlockWrite& write, const PowerOrder& order,
+                    RegisterBlock& out, const WriteContext& context = {});
+
+/// kOk when every command of the map can express an order of this power.
+Status check_expressible(const RegisterMap& map, const PowerOrder& order);
+
+}  // namespace bess

@@ -1,0 +1,293 @@
+// The checks that need the whole map: roles present, references resolved, watchdog really fed by
+// the commands, and the proof that the stated power range goes into the registers.
+#include <algorithm>
+
+#include "edge/device/registers/codec.h"
+#include "edge/device/registers/map_file.h"
+#include "edge/device/registers/map_reader.h"
+
+namespace bess {
+namespace {
+
+bool contains(const auto& list, std::int8_t point) {
+  return std::find(list.begin(), list.end(), point) != list.end();
+}
+
+/// A point of that name is the power unless the map says otherwise.
+void complete_power(RegisterMap& map, std::string_view name, StaticVector<PowerCase, 4>& cases) {
+  const int point = find_point(map, name);
+  if (!cases.empty() || point < 0) return;
+  PowerCase always;
+  always.terms.push_back({.point = static_cast<std::int8_t>(point)});
+  cases.push_back(always);
+}
+
+/// Everything that state and commands look at is read every cycle, whether listed or not.
+void measure_also(RegisterMap& map, std::int8_t point) {
+  if (point < 0 || contains(map.measure, point)) return;
+  map.measure.push_back(point);  // fits: there is room for every point once
+}
+
+void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
+  for (const PowerCase& c : cases) {
+    measure_also(map, c.when.point);
+    for (const PowerCase::Term& term : c.terms) measure_also(map, term.point);
+  }
+}
+
+bool keeps_from_harm(const RegisterMap& map, std::int8_t point) {
+  const auto name = map.points[point].name.view();
+  for (const std::string_view known :
+       {"temperature_min", "temperature_max", "charge_power_max", "discharge_power_max"}) {
+    if (name == known) return true;
+  }
+  return point == map.off_grid.point ||
+         std::any_of(map.alarms.begin(), map.alarms.end(),
+                     [&](const Condition& alarm) { return alarm.point == point; });
+}
+
+bool is_power(const RegisterMap& map, std::int8_t point) {
+  return std::any_of(map.measured_power.begin(), map.measured_power.end(), [&](const PowerCase& c) {
+    return c.when.point == point ||
+           std::any_of(c.terms.begin(), c.terms.end(),
+                       [&](const PowerCase::Term& term) { return term.point == point; });
+  });
+}
+
+/// What the map lists, its power and its alarms decide what is ordered. The rest only tells what
+/// order is in force, or warns.
+void complete_measure(RegisterMap& map) {
+  for (const Condition& c : map.alarms) measure_also(map, c.point);
+  measure_also(map, map.off_grid.point);
+  measure_also(map, map.alive.point);
+  measure_power(map, map.measured_power);
+  for (const std::int8_t point : map.measure) {
+    if (is_power(map, point) || !(keeps_from_harm(map, point) || map.points[point].optional)) {
+      map.required.push_back(point);
+    } else {
+      map.protective.push_back(point);
+    }
+  }
+  for (const Condition& c : map.warnings) measure_also(map, c.point);
+  for (const Condition& c : map.active) measure_also(map, c.point);
+  measure_also(map, map.watchdog.remaining);
+  measure_power(map, map.order_power);
+  for (const RegisterPoint& p : map.points) {
+    for (const std::int8_t scale : {p.scale_from, p.percent_of, p.clamp_to}) {
+      measure_also(map, scale);
+      if (scale >= 0 && !contains(map.scales, scale)) map.scales.push_back(scale);
+    }
+  }
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        measure_also(map, value.plus);
+        if (value.plus >= 0 && !contains(map.scales, value.plus)) map.scales.push_back(value.plus);
+      }
+    }
+  }
+}
+
+bool writes_argument(const RegisterMap& map, Command command, Argument wanted) {
+  for (const BlockWrite& write : map.sequence(command).writes) {
+    for (const WriteValue& value : write.values) {
+      if (value.argument == wanted) return true;
+    }
+  }
+  return false;
+}
+
+bool is_fed_by(const RegisterMap& map, Command command) {
+  using enum Watchdog::Kind;
+  const bool duration = writes_argument(map, command, Argument::kDuration) ||
+                        writes_argument(map, command, Argument::kDurationMinutes);
+  switch (map.watchdog.kind) {
+    case kDuration:
+    case kRevertTimer:
+      return duration;
+    case kHeartbeat:
+      return writes_argument(map, command, Argument::kHeartbeat);
+    case kNone:
+    case kRewrite:
+      break;
+  }
+  return true;
+}
+
+/// A watchdog that no command feeds would end every order, or never end one.
+void check_watchdog(TomlTable& root, const RegisterMap& map) {
+  for (const Command command : {Command::kCharge, Command::kIdle, Command::kDischarge}) {
+    if (is_fed_by(map, command) || is_fed_by(map, Command::kEnable)) continue;
+    root.fail("watchdog",
+              "is not fed: charge, idle and discharge (or enable) must write "
+              "\"duration\", \"duration_minutes\" or \"heartbeat\"");
+  }
+  const bool refreshes = !map.sequence(Command::kRefresh).writes.empty();
+  if (refreshes && !is_fed_by(map, Command::kRefresh)) {
+    root.fail("command", "refresh must feed the watchdog: write its duration or heartbeat");
+  }
+}
+
+void check_roles(TomlTable& root, const RegisterMap& map) {
+  const int soc = find_point(map, "soc");
+  if (soc < 0 || !contains(map.required, static_cast<std::int8_t>(soc))) {
+    root.fail("state", "measure must hold a point \"soc\": the controller needs it");
+  }
+  if (map.measured_power.empty()) {
+    root.fail("point",
+              "\"battery_power\" is missing: the controller needs it (or measured_power in "
+              "[state])");
+  }
+  for (const std::int8_t point : map.measure) {
+    if (map.points[point].type != RegisterType::kText) continue;
+    root.fail("state", "measures " + quoted(map.points[point].name.view()) +
+                           ", which is a text: use it in [[identity]] only");
+  }
+}
+
+bool is_told(const RegisterMap& map, int point) {
+  const auto looks_at = [point](const Condition& c) { return c.point == point; };
+  return looks_at(map.off_grid) || std::any_of(map.alarms.begin(), map.alarms.end(), looks_at) ||
+         std::any_of(map.warnings.begin(), map.warnings.end(), looks_at);
+}
+
+bool is_written(const RegisterMap& map, int point) {
+  return std::any_of(std::begin(map.command), std::end(map.command), [&](const auto& sequence) {
+    return std::any_of(
+        sequence.writes.begin(), sequence.writes.end(), [&](const BlockWrite& write) {
+          return std::any_of(write.values.begin(), write.values.end(),
+                             [&](const WriteValue& value) { return value.point == point; });
+        });
+  });
+}
+
+/// Nothing else may rely on a point that a device need not have.
+void check_optional(TomlTable& root, const RegisterMap& map) {
+  for (int point = 0; point < map.points.size(); ++point) {
+    const RegisterPoint& p = map.points[point];
+    const bool is_used = is_told(map, point) || is_power(map, static_cast<std::int8_t>(point));
+    if (!p.optional || (is_used && !is_written(map, point))) continue;
+    root.fail("point", quoted(p.name.view()) +
+                           " is optional: only alarms, warnings, off_grid and "
+                           "measured_power may look at it");
+  }
+  for (const RegisterPoint& p : map.points) {
+    for (const std::int8_t other : {p.scale_from, p.percent_of, p.clamp_to}) {
+      if (other < 0 || !map.points[other].optional) continue;
+      root.fail("point", quoted(p.name.view()) + " needs " + quoted(map.points[other].name.view()) +
+                             ", which is optional");
+    }
+  }
+}
+
+/// "saved" without a fallback would restore 0; a saved point that nobody restores is a mistake.
+void check_saved(TomlTable& root, const RegisterMap& map) {
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        const bool listed =
+            std::any_of(map.saved.begin(), map.saved.end(),
+                        [&](const SavedPoint& saved) { return saved.point == value.point; });
+        if (value.argument != Argument::kSaved || listed) continue;
+        root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
+                                 ", which is not in its list save");
+      }
+    }
+  }
+  for (const SavedPoint& saved : map.saved) {
+    if (map.points[saved.point].register_count() <= kPointRegistersMax) continue;
+    root.fail("command", "cannot save a text");
+  }
+}
+
+void check_addresses(TomlTable& root, const RegisterMap& map) {
+  for (int i = 0; i < map.points.size(); ++i) {
+    const RegisterPoint& p = map.points[i];
+    const std::int64_t end = std::int64_t{p.address} + p.register_count();
+    if (end > 65'536) root.fail("point", quoted(p.name.view()) + " lies beyond address 65535");
+  }
+}
+
+/// A meter is its grid power.
+void check_meter(TomlTable& root, RegisterMap& map) {
+  if (!measure_grid_power(map)) {
+    root.fail("point",
+              "\"grid_power\" is missing: it is what a meter is for (or grid_power in [state])");
+  }
+  check_addresses(root, map);
+}
+
+/// Flash that has a budget must still be able to release when the budget is used up.
+void check_reserve(TomlTable& root, const RegisterMap& map) {
+  int worn = 0;
+  for (const RegisterPoint& p : map.points) worn += p.eeprom ? 1 : 0;
+  int release = 0;
+  for (const BlockWrite& write : map.sequence(Command::kRelease).writes) {
+    release += write.eeprom ? 1 : 0;
+  }
+  if (worn > 0 && map.writes.eeprom_writes_per_day == 0) {
+    root.fail("writes", "eeprom_writes_per_day is missing: some points have storage = \"eeprom\"");
+  }
+  if (map.writes.eeprom_writes_per_day > 0 && map.writes.reserve < release) {
+    root.fail("writes", "reserve must be at least " + std::to_string(release) +
+                            ": that many writes a release takes");
+  }
+}
+
+/// The time that goes out with every order: a power that the registers hold is not to be blamed for
+/// it.
+void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
+  const std::string told = "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
+  const LivePoints assumed = assumed_live_points(map, false);
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        const bool in_minutes = value.argument == Argument::kDurationMinutes;
+        if (!in_minutes && value.argument != Argument::kDuration) continue;
+        const RegisterPoint& p = map.points[value.point];
+        const std::int64_t time =
+            in_minutes ? (map.watchdog.duration_s + 59) / 60 : map.watchdog.duration_s;
+        Scaling scaling;
+        RegisterBlock block;
+        if (!live_scaling(map, assumed, value.point, scaling)) continue;
+        if (encode(p, time, Rounding::kNearest, block, scaling) == Status::kOk) continue;
+        root.fail("watchdog", told + std::to_string(time) + (in_minutes ? " min" : " s") +
+                                  ", which the point " + quoted(p.name.view()) +
+                                  " cannot express (min, max, type)");
+      }
+    }
+  }
+}
+
+/// Nothing may wrap later: both ends of the stated power range are encoded once here.
+void prove_power_range(TomlTable& root, const RegisterMap& map) {
+  for (const std::int32_t power_w : {map.charge_w_max, -map.discharge_w_max, 0}) {
+    const PowerOrder order{.power_w = power_w, .duration_s = map.watchdog.duration_s};
+    if (check_expressible(map, order) != Status::kOk) {
+      root.fail("power",
+                "states " + std::to_string(power_w) + " W, which the registers cannot express");
+    }
+  }
+}
+
+}  // namespace
+
+bool measure_grid_power(RegisterMap& map) {
+  measure_power(map, map.grid_power);
+  return !map.grid_power.empty();
+}
+
+void check_map(TomlTable& root, RegisterMap& map) {
+  if (!root.ok()) return;
+  complete_power(map, "battery_power", map.measured_power);
+  complete_power(map, "grid_power", map.grid_power);
+  complete_measure(map);
+  if (map.is_meter) return check_meter(root, map);
+  for (const auto check :
+       {check_roles, check_optional, check_watchdog, check_saved, check_addresses, check_reserve,
+        prove_watchdog_duration, prove_power_range}) {
+    if (root.ok()) check(root, map);
+  }
+}
+
+}  // namespace bess

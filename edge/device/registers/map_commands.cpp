@@ -1,0 +1,230 @@
+// [command]: every command as an ordered list of steps. A step is one request:
+//   "point = value"                     one write
+//   ["point = value", "point = value"]  one atomic write of neighbouring registers
+//   { write = ..., function = 6, read_back = "tolerance", tolerance = 50 }
+#include "edge/device/registers/map_reader.h"
+#include "edge/device/registers/point_codec.h"
+
+namespace bess {
+namespace {
+
+struct NamedArgument {
+  std::string_view name;
+  Argument argument;
+};
+
+constexpr NamedArgument kArguments[] = {{"power", Argument::kPower},
+                                        {"charge_power", Argument::kChargePower},
+                                        {"discharge_power", Argument::kDischargePower},
+                                        {"soc_limit", Argument::kSocLimit},
+                                        {"soc_min", Argument::kSocMin},
+                                        {"soc_max", Argument::kSocMax},
+                                        {"duration", Argument::kDuration},
+                                        {"duration_minutes", Argument::kDurationMinutes},
+                                        {"heartbeat", Argument::kHeartbeat},
+                                        {"rating", Argument::kRating},
+                                        {"saved", Argument::kSaved}};
+
+std::string argument_names() {
+  std::string names;
+  for (const NamedArgument& known : kArguments) {
+    names += (names.empty() ? "" : ", ") + std::string(known.name);
+  }
+  return names;
+}
+
+/// "[-] argument [/ whole number]", and behind it "+ point"
+bool parse_argument(std::string_view text, WriteValue& value) {
+  if (text.starts_with('-')) {
+    value.sign = -1;
+    text.remove_prefix(1);
+  }
+  const std::size_t slash = text.find('/');
+  if (slash != std::string_view::npos) {
+    std::string_view divisor = text.substr(slash + 1);
+    while (divisor.starts_with(' ')) divisor.remove_prefix(1);
+    if (divisor.size() != 1 || divisor[0] < '2' || divisor[0] > '9') return false;
+    value.divisor = static_cast<std::uint8_t>(divisor[0] - '0');
+    text = text.substr(0, slash);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+  }
+  for (const NamedArgument& known : kArguments) {
+    if (known.name != text) continue;
+    value.argument = known.argument;
+    return true;
+  }
+  return false;
+}
+
+bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view text,
+                      const RegisterMap& map, WriteValue& value) {
+  const MapPhrase phrase = split_phrase(text);
+  if (phrase.op != "=") {
+    table.fail_at(at, "a step must say \"point = value\"");
+    return false;
+  }
+  value.point = require_point(table, at, phrase.left, map);
+  if (value.point < 0) return false;
+  std::string_view written = phrase.right;
+  constexpr std::string_view kPlus = " + ";
+  if (const std::size_t plus = written.find(kPlus); plus != std::string_view::npos) {
+    value.plus = require_point(table, at, written.substr(plus + kPlus.size()), map);
+    if (value.plus < 0) return false;
+    written = written.substr(0, plus);
+  }
+  if (parse_value(map, value.point, written, value.constant)) return true;
+  value.constant = 0;
+  if (!parse_argument(written, value)) {
+    table.fail_at(at, quoted(written) + " is no number, no name of " + quoted(phrase.left) +
+                          " and none of: " + argument_names());
+    return false;
+  }
+  const RegisterPoint& point = map.points[value.point];
+  if (value.argument != Argument::kRating || point.percent_of >= 0) return true;
+  table.fail_at(at, "\"rating\" needs a point with percent_of");
+  return false;
+}
+
+/// Points of one request must lie side by side, in the order given.
+bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
+                  const WriteValue& value, BlockWrite& write) {
+  const RegisterPoint& point = map.points[value.point];
+  if (!write.values.empty()) {
+    const RegisterPoint& before = map.points[write.values[write.values.size() - 1].point];
+    if (point.address != before.address + before.register_count() || point.model != before.model ||
+        point.unit_group != before.unit_group) {
+      table.fail_at(at, quoted(point.name.view()) +
+                            " does not follow the point before it: a block write needs "
+                            "neighbouring registers");
+      return false;
+    }
+  }
+  if (point.mask != 0 || point.type == RegisterType::kText) {
+    table.fail_at(at,
+                  quoted(point.name.view()) + " cannot be written: it is a text or a bit field");
+    return false;
+  }
+  if (write.values.try_push_back(value)) return true;
+  table.fail_at(at, "these are too many points for one write");
+  return false;
+}
+
+void finish_write(TomlTable& table, const TomlValue& at, const RegisterMap& map,
+                  BlockWrite& write) {
+  int registers = 0;
+  for (const WriteValue& value : write.values) {
+    const RegisterPoint& point = map.points[value.point];
+    registers += point.register_count();
+    write.eeprom = write.eeprom || point.eeprom;
+  }
+  if (registers == 0) return table.fail_at(at, "a write needs at least one \"point = value\"");
+  if (registers > kBlockRegistersMax) table.fail_at(at, "these are too many registers for a write");
+  write.address = map.points[write.values[0].point].address;
+  if (write.function == 6 && registers != 1) table.fail_at(at, "function 6 writes one register");
+}
+
+void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map,
+                 BlockWrite& write) {
+  const auto read_one = [&](const TomlValue& item) {
+    const auto* text = item.as<std::string>();
+    WriteValue value;
+    if (text == nullptr) {
+      table.fail_at(item, "a step must say \"point = value\"");
+    } else if (parse_assignment(table, item, *text, map, value)) {
+      append_value(table, item, map, value, write);
+    }
+  };
+  if (const auto* list = node.as<TomlArray>()) {
+    for (const TomlValue& item : *list) read_one(item);
+  } else {
+    read_one(node);
+  }
+}
+
+/// 6 as a map's default means: single registers by function 6, blocks by 16.
+std::uint8_t default_function(const RegisterMap& map, const BlockWrite& write,
+                              const MapDefaults& defaults) {
+  const bool single =
+      write.values.size() == 1 && map.points[write.values[0].point].register_count() == 1;
+  return defaults.write_function == 6 && single ? 6 : 16;
+}
+
+void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defaults,
+                const RegisterMap& map, CommandSequence& sequence) {
+  BlockWrite write;
+  const bool has_options = node.as<TomlMembers>() != nullptr;
+  TomlTable step{&node, table.file(), "write", table.error()};
+  const TomlValue* values = has_options ? step.node("write") : &node;
+  if (values == nullptr) return step.require("write");
+  read_values(table, *values, map, write);
+  if (!table.ok() || write.values.empty()) return finish_write(table, node, map, write);
+  if (has_options) {
+    std::int32_t function = default_function(map, write, defaults);
+    int read_back = 0;
+    step.integer("function", function, 6, 16);
+    step.choice("read_back", read_back, {"exact", "tolerance", "none"});
+    step.integer("tolerance", write.tolerance, 1, 1'000'000);
+    if (function != 6 && function != 16) step.fail("function", "must be 6 or 16");
+    write.function = static_cast<std::uint8_t>(function);
+    write.read_back = static_cast<ReadBack>(read_back);
+    if (write.read_back == ReadBack::kTolerance) step.require("tolerance");
+    step.finish();
+  } else {
+    write.function = default_function(map, write, defaults);
+  }
+  finish_write(table, node, map, write);
+  if (!sequence.writes.try_push_back(write)) table.fail_at(node, "is one write too many");
+}
+
+void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& defaults,
+                   const RegisterMap& map, CommandSequence& sequence) {
+  const TomlValue* node = table.node(key);
+  if (node == nullptr) return;
+  const auto* steps = node->as<TomlArray>();
+  if (steps == nullptr) return table.fail(key, "must be a list of steps in [ ]");
+  for (const TomlValue& step : *steps) {
+    read_write(table, step, defaults, map, sequence);
+    if (!table.ok()) return;
+  }
+}
+
+void read_saved(TomlTable& table, RegisterMap& map) {
+  for_each_text(table, "save", [&](std::string_view text, const TomlValue& at) {
+    const MapPhrase phrase = split_phrase(text);
+    SavedPoint saved{.point = require_point(table, at, phrase.left, map)};
+    if (saved.point < 0) return;
+    if (phrase.op != "=" || !parse_value(map, saved.point, phrase.right, saved.fallback)) {
+      return table.fail_at(at, "save must say \"point = value to restore when it is unknown\"");
+    }
+    if (!map.saved.try_push_back(saved)) table.fail("save", "holds too many points");
+  });
+}
+
+}  // namespace
+
+void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap& map) {
+  constexpr std::string_view kNames[kCommandCount] = {"charge",  "idle",   "discharge",
+                                                      "release", "enable", "refresh"};
+  TomlTable table = map_child(root, "command");
+  read_saved(table, map);
+  read_conditions(table, "precondition", map, map.precondition);
+  if (table.has("order")) {  // the three differ only in their arguments
+    read_sequence(table, "order", defaults, map, map.command[0]);
+    map.command[1] = map.command[2] = map.command[0];
+  }
+  static_cast<void>(table.node("order"));
+  for (int c = 0; c < kCommandCount; ++c) {
+    if (table.has(kNames[c])) {
+      map.command[c] = CommandSequence{};
+      read_sequence(table, kNames[c], defaults, map, map.command[c]);
+    }
+    static_cast<void>(table.node(kNames[c]));  // a known key, whether given or not
+    const bool required = c <= static_cast<int>(Command::kRelease);
+    if (required && table.ok() && map.command[c].writes.empty()) {
+      table.fail(kNames[c], "is missing: a map commands charge, idle, discharge and release");
+    }
+  }
+  table.finish();
+}
+
+}  // namespace bess

@@ -1,0 +1,19 @@
+// Loads a register map from its TOML file (format: edge/device/maps/README.md) and proves that it
+// is consistent: names known, blocks contiguous, watchdog fed, power limits expressible.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "edge/device/registers/register_map.h"
+
+namespace bess {
+
+/// `variant` selects one of the file's variants; empty = its first. False with one line in `error`.
+bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
+                       std::string& error);
+
+/// From now on the map's grid point is read with its measurements: false when it has none.
+bool measure_grid_power(RegisterMap& map);
+
+}  // namespace bess

@@ -1,0 +1,198 @@
+#include "edge/prices/fetch/day_ahead_feed.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+#include "edge/prices/fetch/fetch.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+
+namespace {
+
+constexpr std::string_view kHead =
+    "# bess day-ahead 1: quarter-hour, hundredths of EUR/MWh, received\n";
+constexpr std::size_t kUtcBytes = 20;
+constexpr std::size_t kLineBytesMax = 2 * kUtcBytes + 12;
+constexpr std::size_t kFileBytesMax =
+    kHead.size() + DayAheadBook::kPricesMax * kLineBytesMax + sizeof "# crc32=01234567\n";
+
+/// One reader and one writer, at different times: before the loop, and the fetching thread.
+char* file_text() {
+  static char text[kFileBytesMax];
+  return text;
+}
+
+/// False for a line that none of ours is.
+bool parse_line(std::string_view line, KnownPrice& price) {
+  const std::size_t first = line.find(' ');
+  const std::size_t last = line.rfind(' ');
+  if (first == line.npos || first == last) return false;
+  const std::string_view centi = line.substr(first + 1, last - first - 1);
+  const auto read =
+      std::from_chars(centi.data(), centi.data() + centi.size(), price.centi_eur_per_mwh);
+  return read.ec == std::errc{} && read.ptr == centi.data() + centi.size() &&
+         parse_utc(line.substr(0, first), price.utc_s) &&
+         parse_utc(line.substr(last + 1), price.received_utc_s);
+}
+
+}  // namespace
+
+bool keep_day_ahead(const char* path, const DayAheadBook& book) {
+  char* const text = file_text();
+  std::size_t size = kHead.copy(text, kHead.size());
+  for (const KnownPrice& price : book.prices()) {
+    if (price.utc_s == 0 || price.is_assumed) continue;
+    size += static_cast<std::size_t>(std::snprintf(
+        text + size, kFileBytesMax - size, "%s %d %s\n", utc_text(price.utc_s).c_str(),
+        price.centi_eur_per_mwh, utc_text(price.received_utc_s).c_str()));
+  }
+  const FixedText<31> end = checksum_end({text, size}, kCommentChecksum);
+  size += end.view().copy(text + size, kFileBytesMax - size);
+  return replace_file_durably(path, {text, size});
+}
+
+int restore_day_ahead(const char* path, DayAheadBook& book) {
+  char* const text = file_text();
+  const ssize_t size = read_beginning(path, {text, kFileBytesMax}, Links::kRefused);
+  if (size <= 0) return 0;
+  std::string_view rest(text, static_cast<std::size_t>(size));
+  if (!rest.starts_with(kHead) || check_text(rest, kCommentChecksum) != TextState::kIntact)
+    return 0;
+  rest = without_checksum(rest, kCommentChecksum).substr(kHead.size());
+  int prices = 0;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    KnownPrice price;
+    if (parse_line(rest.substr(0, end), price) && book.restore(price)) ++prices;
+    rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
+  }
+  return prices;
+}
+
+namespace {
+
+constexpr std::int64_t kShortestPauseS = 60;
+constexpr int kDoublingsMax = 5;  // to half an hour
+constexpr std::int64_t kLongestPauseS = 1'800;
+constexpr std::int64_t kBeforePublicationS = 600;
+
+FixedText<10> date_text(std::int64_t midnight_utc_s) {
+  const LocalMinute day = local_minute_of(midnight_utc_s);
+  char text[48];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02d", day.year, day.month, day.day);
+  return {static_cast<const char*>(text)};
+}
+
+}  // namespace
+
+std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings) {
+  switch (status) {
+    case Status::kNotConnected:
+      if (settings.file.empty()) break;
+      return "the file is not there or cannot be read (is [outlook] file right, who writes it?)";
+    case Status::kMalformed:
+      return "not the JSON that [outlook] describes, or times that do not rise by quarter-hours "
+             "(are rows_field, time_field and price_field right?)";
+    case Status::kNoRow:
+      return "no price of yesterday, today or tomorrow (are time_field, price_field and the dates "
+             "of url right?)";
+    case Status::kImplausible:
+      return "contradicts what was published before, repeats the day before, or is one price all "
+             "day: refused";
+    default:
+      break;
+  }
+  return price_status_text(status);
+}
+
+DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days) {
+  constexpr std::string_view kToday = "{today}";
+  constexpr std::string_view kTomorrow = "{tomorrow}";
+  const FixedText<10> today = date_text(days.today_utc_s);
+  const FixedText<10> tomorrow = date_text(days.tomorrow_utc_s);
+  char text[640];
+  std::size_t size = 0;
+  const auto add = [&](std::string_view part) {
+    size += part.copy(text + size, sizeof text - size);
+  };
+  while (!url.empty()) {
+    const bool is_today = url.starts_with(kToday);
+    if (is_today || url.starts_with(kTomorrow)) {
+      add(is_today ? today.view() : tomorrow.view());
+      url.remove_prefix(is_today ? kToday.size() : kTomorrow.size());
+    } else {
+      add(url.substr(0, 1));
+      url.remove_prefix(1);
+    }
+  }
+  return {std::string_view(text, size)};
+}
+
+DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields) {
+  DayAheadAnswer parsed = parse_day_ahead_json(
+      answer,
+      {.rows = fields.rows.view(), .time = fields.time.view(), .price = fields.price.view()});
+  if (!parsed.trouble.empty()) return {.status = Status::kMalformed, .reason = parsed.trouble};
+  DayAheadLayout layout = lay_out_day_ahead(std::move(parsed.rows));
+  // Two prices for one time are ambiguous.
+  if (!layout.trouble.empty() || layout.contradiction_utc_s != 0) {
+    return {
+        .status = Status::kMalformed,
+        .reason = layout.trouble.empty()
+                      ? "two prices of " + std::string(utc_text(layout.contradiction_utc_s).view())
+                      : layout.trouble};
+  }
+  return {.status = Status::kOk, .days = std::move(layout.days)};
+}
+
+DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
+                            const StopRequested& stop_requested) {
+  if (settings.file.empty()) {
+    const DayAheadUrl url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
+    FetchResult fetched =
+        fetch(settings.http, url.c_str(), settings.http.timeout_ms, stop_requested);
+    if (fetched.status != Status::kOk) return {fetched.status, std::move(fetched.reason)};
+    return read_day_ahead(fetched.body, settings.fields);
+  }
+  constexpr std::size_t kAnswerBytesMax = 256 * 1024;
+  std::string answer(kAnswerBytesMax, 0);
+  const ssize_t size = read_beginning(settings.file.c_str(), answer, Links::kFollowed);
+  if (size < 0) return {.status = Status::kNotConnected};
+  answer.resize(static_cast<std::size_t>(size));
+  if (answer.size() == kAnswerBytesMax) return {.status = Status::kTooLarge};
+  return read_day_ahead(answer, settings.fields);
+}
+
+std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+                       std::int64_t now_utc_s) {
+  const OutlookDays days = outlook_days_around(now_utc_s);
+  if (!book.has_all(days.today_utc_s, days.tomorrow_utc_s, now_utc_s)) return now_utc_s;
+  const bool has_tomorrow = book.has_all(days.tomorrow_utc_s, days.end_utc_s, now_utc_s);
+  return settings.ask_offset_s - kBeforePublicationS +
+         publication_utc_s(has_tomorrow ? days.tomorrow_utc_s : days.today_utc_s);
+}
+
+std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+                            std::int64_t now_utc_s, std::int64_t last_utc_s, int tries) {
+  const std::int64_t due = due_utc_s(book, settings, now_utc_s);
+  const std::int64_t pause_s =
+      std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax));
+  // A clock that was stepped back must not keep it from asking.
+  const bool may_ask_at_once = last_utc_s == 0 || last_utc_s > now_utc_s;
+  return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
+}
+
+bool DayAheadInquiry::take(const DayAheadAsked& asked, const OutlookSettings& settings,
+                           std::int64_t now_utc_s) {
+  const std::uint32_t changes_before = book.changes();
+  status = asked.status == Status::kOk ? book.take(asked.days, now_utc_s) : asked.status;
+  last_utc_s = now_utc_s;
+  tries = due_utc_s(book, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
+  return book.changes() != changes_before;
+}
+
+}  // namespace bess

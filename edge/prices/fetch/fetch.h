@@ -1,0 +1,68 @@
+// One answer of a price server, and how that ended in the edge's own terms.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <stop_token>
+#include <string>
+
+#include "edge/core/base/status.h"
+#include "edge/prices/record/price_settings.h"
+#include "shared/host/http_client.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+// Waiting in a thread of bess-prices.
+
+/// So long by the wall, or until a stop is requested, a tenth of a second later at most.
+inline void pause(std::int64_t wall_ns, const std::stop_token& stop) {
+  constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
+  for (; wall_ns > 0 && !stop.stop_requested(); wall_ns -= kSliceNs) {
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + std::min(wall_ns, kSliceNs));
+  }
+}
+
+// When to ask for the row of a minute: as soon as the source usually has it, and no more often than
+// it allows. Pure; seconds of the edge's clock behind the tick.
+
+class AskTiming {
+ public:
+  /// Of the first request of a cycle.
+  [[nodiscard]] std::int32_t first_s() const { return delay_s_; }
+  [[nodiscard]] static std::int32_t spacing_s() { return kPriceWait_s / kPriceRequests; }
+
+  /// How a cycle went: whether its first request found the row, whether one was refused as too
+  /// many. A source that refuses is not tried earlier again.
+  void learn(bool is_found_at_once, bool is_refused) {
+    constexpr int kCyclesBeforeEarlier = 30;
+    constexpr std::int32_t kLaterS = 3, kLeastLeftS = 2;
+    has_refused_ = has_refused_ || is_refused;
+    if (!is_found_at_once) {
+      delay_s_ = std::min(delay_s_ + kLaterS, kPriceWait_s - kLeastLeftS);
+      good_cycles_ = 0;
+    } else if (!has_refused_ && delay_s_ > 0 && ++good_cycles_ >= kCyclesBeforeEarlier) {
+      --delay_s_;
+      good_cycles_ = 0;
+    }
+  }
+
+ private:
+  std::int32_t delay_s_ = 0;
+  int good_cycles_ = 0;
+  bool has_refused_ = false;
+};
+
+struct FetchResult {
+  Status status = Status::kNotConnected;
+  std::string body{};    ///< of kOk
+  std::string reason{};  ///< of anything else, one line with the remedy
+  double wait_s = 0;     ///< what the server asked for
+};
+
+/// A GET of `url` with the settings' secrets, authorities and, where it is less, time-out.
+FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
+                  const StopRequested& stop_requested);
+
+}  // namespace bess

@@ -1,0 +1,223 @@
+#include "edge/prices/fetch/outlook_fetcher.h"
+
+#include <algorithm>
+
+#include "edge/core/control/level_start.h"
+#include "edge/prices/fetch/day_ahead_feed.h"
+#include "edge/prices/fetch/fetch.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_reader.h"
+#include "shared/local_time.h"
+#include "shared/price_level.h"
+
+namespace bess {
+
+namespace {
+
+/// What one decision can move the trailing level by, and a cent for rounding.
+constexpr std::int32_t kLevelMoveMaxCenti =
+    (PriceLevel::kMaxCenti - PriceLevel::kMinCenti) / static_cast<int>(PriceLevel::kDecisions) + 2;
+static_assert(kLevelMoveMaxCenti < kPlannedLevelCenti, "two plans would not suffice");
+
+/// What is published from the tick's quarter-hour on.
+void describe(const OutlookDays& days, std::int64_t tick_utc_s, OutlookOffer& offer) {
+  const std::int64_t now = tick_utc_s - tick_utc_s % kSecondsPerQuarterHour;
+  offer.is_published = days.day_ahead_centi[days.index_of(now)] != kDayAheadUnknown;
+  offer.known_quarter_hours = 0;
+  offer.dearest = offer.cheapest = {};
+  for (std::int64_t t = now; t < days.end_utc_s; t += kSecondsPerQuarterHour) {
+    const std::int32_t centi = days.day_ahead_centi[days.index_of(t)];
+    if (centi == kDayAheadUnknown) continue;
+    const bool is_first = offer.known_quarter_hours++ == 0;
+    if (is_first || centi > offer.dearest.centi_eur_per_mwh) offer.dearest = {t, centi};
+    if (is_first || centi < offer.cheapest.centi_eur_per_mwh) offer.cheapest = {t, centi};
+  }
+}
+
+}  // namespace
+
+OutlookPlanner::OutlookPlanner(const OutlookModel& model, OutlookBoard& board)
+    : model_(model), board_(board) {
+  board.model = &model;
+}
+
+/// An hour that the clock leaves out has the row of the one before it.
+void OutlookPlanner::plan_usual_day(std::int64_t utc_s, std::int32_t level_centi) {
+  const OutlookDays days = outlook_days_around(utc_s);
+  const Made& made = plan_of(days, planned_level_centi(level_centi), nullptr);
+  UsualDay& usual = board_.usual;
+  usual.level_centi = made.level_centi;
+  int quarter_hour = 0;
+  for (std::int64_t t = days.today_utc_s; t < days.tomorrow_utc_s; t += kSecondsPerQuarterHour) {
+    const int now = local_minute_of(t).quarter_hour;
+    const BreakEvenRow& row = made.plan.row_at(t);
+    while (quarter_hour < now) usual.rows[quarter_hour++] = row;
+    usual.rows[now] = row;
+    quarter_hour = std::max(quarter_hour, now + 1);
+  }
+}
+
+const OutlookPlanner::Made& OutlookPlanner::plan_of(const OutlookDays& days,
+                                                    std::int32_t level_centi, const Made* needed) {
+  for (const Made& made : made_) {
+    if (made.is_of(days, level_centi)) return made;
+  }
+  Made& place = &made_[0] == needed ? made_[1] : made_[0];
+  place.plan.make(model_, days, level_centi);
+  place.days = days;
+  place.level_centi = level_centi;
+  place.is_made = true;
+  ++plans_made_;
+  return place;
+}
+
+int OutlookPlanner::plan(const Wanted& wanted, const OutlookDays& days) {
+  const int made_before = plans_made_;
+  const std::int64_t tick_utc_s = wanted.tick_utc_s;
+  OutlookOffer& offer = board_.offers.draft();
+  offer.first_tick_utc_s = tick_utc_s;
+  offer.feed = wanted.feed;
+  const std::int64_t left = (days.tomorrow_utc_s - tick_utc_s) / kSecondsPerStep;
+  offer.ticks = static_cast<int>(std::min<std::int64_t>(left, OutlookOffer::kTicks));
+  const std::int32_t low_centi = planned_level_centi(wanted.level_centi - kLevelMoveMaxCenti);
+  const std::int32_t high_centi = planned_level_centi(wanted.level_centi + kLevelMoveMaxCenti);
+  const Made* needed = nullptr;
+  for (const Made& made : made_) {  // of two that are needed, none may go for the other
+    if (made.is_of(days, high_centi)) needed = &made;
+  }
+  offer.levels = low_centi == high_centi ? 1 : 2;
+  for (int i = 0; i < offer.levels; ++i) {
+    const Made& made = plan_of(days, i == 0 ? low_centi : high_centi, needed);
+    needed = &made;
+    offer.level_centi[i] = made.level_centi;
+    for (int tick = 0; tick < offer.ticks; ++tick) {
+      offer.rows[i][tick] = made.plan.row_at(tick_utc_s + tick * kSecondsPerStep);
+    }
+  }
+  describe(days, tick_utc_s, offer);
+  board_.offers.post();
+  return plans_made_ - made_before;
+}
+
+namespace {
+
+void say(JournalLevel level, const std::string& text) {
+  write_journal_line(level, "bess-prices: outlook: " + text);
+}
+
+/// The first tick at or after an instant.
+std::int64_t tick_from(std::int64_t utc_s) {
+  return (utc_s + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep;
+}
+
+}  // namespace
+
+OutlookFetcher::OutlookFetcher(const EdgeConfig& config, const OutlookModel& model,
+                               PricePublisher& publisher, const std::stop_token& stop)
+    : config_(config),
+      publisher_(publisher),
+      stop_(stop),
+      kept_path_(state_file(config, kDayAheadFileName).view()),
+      planner_(model, board_) {}
+
+void OutlookFetcher::start(std::int32_t start_centi) {
+  start_centi_ = start_centi;
+  const std::int64_t now = now_utc_s();
+  const int kept = restore_day_ahead(kept_path_.c_str(), inquiry_.book);
+  fetch(now);
+  say(JournalLevel::kNotice,
+      std::to_string(kept) + " day-ahead prices kept; asked for more: " +
+          std::string(day_ahead_status_text(inquiry_.status, config_.outlook)));
+  const Decision decision = next_decision();
+  planner_.plan_usual_day(now, decision.level_centi);
+  plan(decision);
+}
+
+OutlookFetcher::Decision OutlookFetcher::next_decision() const {
+  Decision next{tick_from(now_utc_s()), start_centi_};
+  LogReader log;
+  FileMessage ignored;
+  CycleRecord newest;
+  if (!log.open(config_.log, ignored) || !log.newest(newest)) return next;
+  const PriceLevel level = level_from_log(newest.price_level, now_utc_s());
+  if (level.is_known()) next.level_centi = level.centi_eur_per_mwh();
+  // A controller that runs decides some seconds behind its tick: until then its plan stays.
+  constexpr std::int64_t kLateSMax = 90;
+  const std::int64_t after_newest_s = newest.utc_s + kSecondsPerStep;
+  const std::int64_t now = now_utc_s();
+  const bool is_awaited =
+      after_newest_s + kLateSMax > now && after_newest_s <= now + kSecondsPerStep;
+  if (is_awaited) next.tick_utc_s = after_newest_s;
+  return next;
+}
+
+void OutlookFetcher::plan_for_ever() {
+  constexpr std::int64_t kLookNs = kNanosecondsPerSecond / 2;
+  Decision planned;
+  std::uint64_t planned_answers = 0;
+  while (!stop_.stop_requested()) {
+    const Decision next = next_decision();
+    std::uint64_t answers = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      answers = answers_;
+    }
+    if (next != planned || answers != planned_answers) plan(next);
+    planned = next;
+    planned_answers = answers;
+    wait(kLookNs);
+  }
+}
+
+void OutlookFetcher::plan(const Decision& decision) {
+  OutlookDays days;
+  Status status = Status::kOk;
+  {
+    const std::lock_guard lock(mutex_);
+    days = inquiry_.book.days_at(decision.tick_utc_s);
+    status = inquiry_.status;
+  }
+  planner_.plan(
+      {.tick_utc_s = decision.tick_utc_s, .level_centi = decision.level_centi, .feed = status},
+      days);
+  publisher_.publish_outlook(board_);
+}
+
+/// Looks up often: the clock may be stepped.
+void OutlookFetcher::fetch_for_ever() {
+  constexpr std::int64_t kLookNs = 10 * kNanosecondsPerSecond;
+  while (!stop_.stop_requested()) {
+    wait(kLookNs);
+    const std::int64_t now = now_utc_s();
+    // Only this thread writes the inquiry from here on: it reads it without the lock.
+    if (!inquiry_.is_due(config_.outlook, now)) continue;
+    const Status before = inquiry_.status;
+    fetch(now);
+    if (inquiry_.status != before) {
+      say(inquiry_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
+          "day-ahead prices: " +
+              std::string(day_ahead_status_text(inquiry_.status, config_.outlook)));
+    }
+  }
+}
+
+void OutlookFetcher::fetch(std::int64_t now_utc_s) {
+  const DayAheadAsked asked =
+      ask_day_ahead(config_.outlook, now_utc_s, [this] { return stop_.stop_requested(); });
+  {
+    const std::lock_guard lock(mutex_);
+    const bool is_new = inquiry_.take(asked, config_.outlook, now_utc_s);
+    is_kept_ = is_kept_ && !is_new;
+    ++answers_;
+  }
+  if (is_kept_) return;
+  is_kept_ = keep_day_ahead(kept_path_.c_str(), inquiry_.book);
+  if (!is_kept_) say(JournalLevel::kWarning, kept_path_ + " cannot be written");
+}
+
+void OutlookFetcher::wait(std::int64_t simulated_ns) const {
+  constexpr std::int64_t kLeastNs = 1'000'000;
+  pause(std::max(config_.clock.wall_ns(simulated_ns), kLeastNs), stop_);
+}
+
+}  // namespace bess

@@ -1,0 +1,174 @@
+#include "edge/prices/fetch/price_fetcher.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "edge/prices/fetch/history_pages.h"
+#include "edge/records/log/journal.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+void PricePublisher::publish_outlook(OutlookBoard& board) {
+  const std::lock_guard lock(mutex_);
+  if (outlook_ == nullptr) outlook_ = std::make_unique<PublishedOutlook>();
+  outlook_->offer = board.offers.latest();
+  outlook_->usual = board.usual;
+  ++prices_.outlook_number;
+  write();
+}
+
+void PricePublisher::write() {
+  prices_.written_monotonic_ns = clock_ns(CLOCK_MONOTONIC);
+  std::vector<char> file(kPublishedBytesMax);
+  const std::size_t size = encode_published(prices_, outlook_.get(), file);
+  const bool is_written = replace_file(path_.c_str(), {file.data(), size});
+  if (is_written == is_failing_) {
+    write_journal_line(
+        is_written ? JournalLevel::kNotice : JournalLevel::kError,
+        "bess-prices: " + path_ +
+            (is_written ? " is written again"
+                        : std::string(" cannot be written: ") + std::strerror(errno)));
+  }
+  is_failing_ = !is_written;
+}
+
+namespace {
+
+constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
+constexpr double kPauseOfTheBusyS = 60;  ///< where a server refuses and does not say for how long
+
+std::string text_of(const std::string& reason, Status status) {
+  return reason.empty() ? std::string(status_text(status)) : reason;
+}
+
+}  // namespace
+
+PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
+  Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0).c_str());
+  // A server that knows no pages may refuse them; one that is busy or gone is not asked twice.
+  const bool may_know_no_pages =
+      answer.status == Status::kHttpError || answer.status == Status::kMalformed;
+  return may_know_no_pages ? ask(watch) : answer;
+}
+
+PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) const {
+  const FetchResult fetched = get(url, config_.price.feed.http.timeout_ms);
+  Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
+  if (fetched.status != Status::kOk) return answer;
+  auto [status, rows, items] = parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
+  answer.status = status;
+  answer.passed_over = items - static_cast<int>(rows.size());
+  std::ranges::stable_sort(rows, {}, &PriceRow::minute_utc_s);
+  for (const PriceRow& row : rows) watch.observe(row);
+  if (!rows.empty()) answer.newest = rows.back();
+  return answer;
+}
+
+FetchResult PriceSource::get(const std::string& url, std::int32_t timeout_ms) const {
+  return fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
+}
+
+PriceAnswer PriceSource::fetch_page(const char* url, std::int32_t timeout_ms) const {
+  const FetchResult fetched = get(url, timeout_ms);
+  if (fetched.status != Status::kOk) return {.status = fetched.status};
+  return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
+}
+
+PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {
+  PublishedHistory found{.is_done = true};
+  if (config.price.history.hours == 0) return found;
+  const auto history =
+      std::make_unique<PriceHistory>(config.price.history.hours, source.now_utc_s());
+  found.status = fetch_history(source, config.price.feed, config.price.history, source, *history);
+  found.hours = history->hours_covered();
+  found.rows = history->rows();
+  found.level = history->level();
+  return found;
+}
+
+void PriceFetcher::run(const std::function<bool()>& is_over) {
+  const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+  static_cast<void>(publish(source_.ask_first(unit_), begin_ns));
+  std::int64_t served_utc_s = 0;
+  while (!stop_.stop_requested()) {
+    const std::int64_t tick_utc_s = std::max(
+        source_.now_utc_s() / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
+    // Begun long after a tick: what it waited for was asked for at the start.
+    const bool is_waited_for = served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + kPriceWait_s;
+    const bool is_new = tick_utc_s > served_utc_s && is_waited_for;
+    if (is_new) serve(tick_utc_s);
+    served_utc_s = tick_utc_s;
+    if (is_over()) return;
+    if (!sleep_until(tick_utc_s + kSecondsPerStep)) return;
+  }
+}
+
+void PriceFetcher::serve(std::int64_t tick_utc_s) {
+  const std::int64_t minute_utc_s = tick_utc_s - 60;
+  bool is_refused = false;
+  bool is_found = false;
+  for (int i = 0; i < kPriceRequests && !is_found; ++i) {
+    const std::int64_t at_utc_s =
+        std::max(tick_utc_s + timing_.first_s() + i * timing_.spacing_s(), not_before_utc_s_);
+    if (at_utc_s >= tick_utc_s + kPriceWait_s && i > 0) break;
+    if (at_utc_s >= tick_utc_s + kSecondsPerStep || !sleep_until(at_utc_s)) break;
+    const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+    const PriceSource::Answer answer = publish(source_.ask(unit_), begin_ns);
+    is_found = answer.status == Status::kOk && answer.newest.minute_utc_s >= minute_utc_s;
+    is_refused = is_refused || answer.status == Status::kServerBusy;
+    const bool has_learnt = answer.status == Status::kOk || answer.status == Status::kNoRow;
+    if (i == 0 && has_learnt) timing_.learn(is_found, false);
+  }
+  if (is_refused) timing_.learn(true, true);
+  publisher_.publish([&](PublishedPrices& prices) { prices.served_minute_utc_s = minute_utc_s; });
+}
+
+PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64_t begin_ns) {
+  const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+  if (answer.status == Status::kOk && unit_.is_doubtful()) {
+    answer.status = Status::kDoubtfulUnit;
+    answer.reason = status_text(answer.status);
+  }
+  if (answer.status == Status::kServerBusy) {
+    const double pause_s = answer.wait_s > 0 ? answer.wait_s : kPauseOfTheBusyS;
+    not_before_utc_s_ = source_.now_utc_s() + static_cast<std::int64_t>(pause_s) + 1;
+  }
+  if (answer.status != told_) {
+    const bool is_well = answer.status == Status::kOk;
+    write_journal_line(is_well ? JournalLevel::kNotice : JournalLevel::kWarning,
+                       "bess-prices: prices: " +
+                           (is_well ? std::string("ok") : text_of(answer.reason, answer.status)));
+    told_ = answer.status;
+  }
+  publisher_.publish([&](PublishedPrices& prices) {
+    ++prices.answers;
+    prices.status = answer.status;
+    prices.rows_passed_over = answer.passed_over;
+    if (answer.status != Status::kOk) return;
+    prices.row = answer.newest;
+    prices.received_monotonic_ns = now_ns;
+    prices.fetch_us = static_cast<std::int32_t>((now_ns - begin_ns) / 1'000);
+  });
+  return answer;
+}
+
+bool PriceFetcher::sleep_until(std::int64_t utc_s) const {
+  constexpr std::int64_t kSliceNs = kSecondNs / 10;
+  const ScaledClock& clock = config_.clock;
+  std::int64_t left_before_ns = INT64_MAX - kSecondNs;
+  while (!stop_.stop_requested()) {
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t left_ns = clock.monotonic_ns_at(utc_s * kSecondNs) - now_ns;
+    if (left_ns <= 0 || left_ns > left_before_ns + kSecondNs) return true;
+    left_before_ns = left_ns;
+    sleep_until_monotonic(now_ns + std::min(left_ns, kSliceNs));
+  }
+  return false;
+}
+
+}  // namespace bess

@@ -1,0 +1,150 @@
+#include "edge/prices/record/price_reader.h"
+
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "edge/records/log/whole_file.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kSilentS = 3 * kSecondsPerStep;  ///< it publishes in every cycle
+constexpr std::int64_t kClockToleranceS = 5;
+
+/// Milliseconds until an instant, rounded up, from 0 to `most`.
+int ms_until(std::int64_t monotonic_ns, int most) {
+  const std::int64_t left_ns = monotonic_ns - clock_ns(CLOCK_MONOTONIC);
+  return static_cast<int>(std::clamp<std::int64_t>((left_ns + 999'999) / 1'000'000, 0, most));
+}
+
+}  // namespace
+
+PriceReader::PriceReader(const Settings& settings, const ScaledClock& clock)
+    : settings_(settings), clock_(clock), notices_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  board_.model = settings.model;
+}
+
+PriceReader::~PriceReader() {
+  if (notices_ >= 0) close(notices_);
+}
+
+void PriceReader::request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
+  wanted_minute_utc_s_ = minute_utc_s;
+}
+
+bool PriceReader::wait(std::int64_t until_monotonic_ns) {
+  while (true) {
+    read();
+    const bool is_served = published_.served_minute_utc_s >= wanted_minute_utc_s_ ||
+                           published_.row.minute_utc_s >= wanted_minute_utc_s_;
+    if (reading_ == Status::kOk && is_served) return true;
+    if (clock_ns(CLOCK_MONOTONIC) >= until_monotonic_ns) return false;
+    await_change(until_monotonic_ns);
+  }
+}
+
+PriceReport PriceReader::latest() {
+  read();
+  PriceReport report = newest_.report();
+  const std::int64_t silent_ns = clock_ns(CLOCK_MONOTONIC) - published_.written_monotonic_ns;
+  const bool is_silent = silent_ns > clock_.wall_ns(kSilentS * kNanosecondsPerSecond);
+  if (reading_ != Status::kOk) {
+    report.status = reading_;
+  } else if (is_silent) {
+    report.status = Status::kNoFetcher;
+  }
+  return report;
+}
+
+template <typename IsThere>
+bool PriceReader::await(std::int64_t patience_ns, const IsThere& is_there) {
+  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + patience_ns;
+  while (true) {
+    read();
+    if (reading_ == Status::kOk && is_there()) return true;
+    if (clock_ns(CLOCK_MONOTONIC) >= until_ns) return false;
+    await_change(until_ns);
+  }
+}
+
+Status PriceReader::first_answer(std::int64_t patience_ns) {
+  static_cast<void>(await(patience_ns, [&] { return published_.answers > 0; }));
+  return latest().status;
+}
+
+PublishedHistory PriceReader::await_history(std::int64_t patience_ns) {
+  const bool is_there = await(patience_ns, [&] { return published_.history.is_done; });
+  if (is_there) return published_.history;
+  return {.status = reading_ == Status::kOk ? Status::kTimeout : reading_};
+}
+
+OutlookBoard* PriceReader::await_outlook(std::int64_t patience_ns) {
+  if (settings_.model == nullptr) return nullptr;
+  static_cast<void>(await(patience_ns, [&] { return taken_outlook_ > 0; }));
+  return &board_;
+}
+
+void PriceReader::await_change(std::int64_t until_monotonic_ns) {
+  constexpr int kUnwatchedMs = 10, kWatchedMs = 1'000;
+  if (notices_ >= 0 && watch_ < 0) {
+    watch_ = inotify_add_watch(notices_, folder_of(settings_.path.c_str()).c_str(), IN_MOVED_TO);
+    if (watch_ >= 0) return;  // it may have come before the watch
+  }
+  pollfd waiting{.fd = watch_ < 0 ? -1 : notices_, .events = POLLIN, .revents = 0};
+  const int most_ms = watch_ < 0 ? kUnwatchedMs : kWatchedMs;
+  if (poll(&waiting, 1, ms_until(until_monotonic_ns, most_ms)) <= 0) return;
+  alignas(inotify_event) char events[1'024];
+  while (::read(notices_, events, sizeof events) > 0) {
+    const auto* const event = reinterpret_cast<const inotify_event*>(events);
+    if ((event->mask & IN_IGNORED) != 0) watch_ = -1;  // the folder was replaced
+  }
+}
+
+void PriceReader::read() {
+  const ssize_t size = read_beginning(settings_.path.c_str(), bytes_, Links::kRefused);
+  if (size < 0) {
+    reading_ = Status::kNoFetcher;
+    return;
+  }
+  const std::span<const char> bytes(bytes_, static_cast<std::size_t>(size));
+  PublishedPrices published;
+  reading_ = decode_published(bytes, published);
+  if (reading_ != Status::kOk) return;
+  take(published);
+  const bool has_plan = settings_.model != nullptr && published.outlook_number != 0 &&
+                        published.outlook_number != taken_outlook_;
+  if (!has_plan || decode_outlook(bytes, outlook_) != Status::kOk) return;
+  taken_outlook_ = published.outlook_number;
+  board_.usual = outlook_.usual;
+  board_.offers.draft() = outlook_.offer;
+  board_.offers.post();
+}
+
+/// What a sound bess-prices never says of a row.
+Status PriceReader::refusal_of(const PublishedPrices& published) const {
+  if (published.status != Status::kOk) return published.status;
+  const PriceRow& row = published.row;
+  const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
+  const bool is_row =
+      row.minute_utc_s > 0 && row.minute_utc_s % 60 == 0 &&
+      row.minute_utc_s + 60 <= now_utc_s + kClockToleranceS &&
+      std::abs(std::int64_t{row.price_centi_eur_per_mwh}) <= kPlausiblePriceMaxCentiEurPerMwh;
+  return is_row ? Status::kOk : Status::kImplausible;
+}
+
+void PriceReader::take(const PublishedPrices& published) {
+  published_ = published;
+  if (published.answers == 0 || published.answers == taken_answers_) return;
+  taken_answers_ = published.answers;
+  // A later instant than now is another machine's, or a lie: what came is new at most.
+  const std::int64_t received_ns =
+      std::min(published.received_monotonic_ns, clock_ns(CLOCK_MONOTONIC));
+  newest_.publish(refusal_of(published), published.row, received_ns, published.fetch_us);
+}
+
+}  // namespace bess

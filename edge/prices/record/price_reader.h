@@ -1,0 +1,63 @@
+// The prices that bess-prices publishes, as the control loop takes them: read on the control thread
+// with a deadline, nothing allocated. Whatever happens to bess-prices, the newest row ages here.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/core/control/control_types.h"
+#include "edge/core/control/outlook.h"
+#include "edge/prices/record/newest_row.h"
+#include "edge/prices/record/published_prices.h"
+#include "shared/fixed_text.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+class PriceReader {
+ public:
+  struct Settings {
+    FixedText<639> path;
+    const OutlookModel* model = nullptr;  ///< of a student by outlook
+  };
+  PriceReader(const Settings& settings, const ScaledClock& clock);
+  PriceReader(const PriceReader&) = delete;
+  PriceReader& operator=(const PriceReader&) = delete;
+  ~PriceReader();
+
+  // As ControlLoop asks (control_loop.h); bess-prices begins at the tick by itself.
+  void request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+               std::int64_t deadline_monotonic_ns);
+  bool wait(std::int64_t until_monotonic_ns);
+  PriceReport latest();
+
+  /// Waits for a first answer, at most so long on the wall; its status.
+  Status first_answer(std::int64_t patience_ns);
+  /// Waits for what the last hours say of the price level.
+  PublishedHistory await_history(std::int64_t patience_ns);
+  /// Waits for a plan; null where the student's context is another.
+  OutlookBoard* await_outlook(std::int64_t patience_ns);
+
+ private:
+  void read();
+  void take(const PublishedPrices& published);
+  [[nodiscard]] Status refusal_of(const PublishedPrices& published) const;
+  void await_change(std::int64_t until_monotonic_ns);
+  template <typename IsThere>
+  bool await(std::int64_t patience_ns, const IsThere& is_there);
+
+  const Settings settings_;
+  const ScaledClock clock_;
+  NewestRow newest_;
+  OutlookBoard board_;
+  PublishedPrices published_;
+  PublishedOutlook outlook_;
+  Status reading_ = Status::kNoFetcher;  ///< kOk: there is a sound record
+  std::int64_t wanted_minute_utc_s_ = 0;
+  std::int64_t taken_answers_ = -1;
+  std::int64_t taken_outlook_ = 0;
+  int notices_ = -1;  ///< inotify
+  int watch_ = -1;
+  char bytes_[kPublishedBytesMax];
+};
+
+}  // namespace bess

@@ -1,0 +1,72 @@
+#include "edge/prices/record/published_prices.h"
+
+#include <cstring>
+#include <type_traits>
+
+#include "shared/crc32.h"
+
+namespace bess {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<PublishedPrices>);
+static_assert(std::is_trivially_copyable_v<PublishedOutlook>);
+
+bool is_status(Status status) { return static_cast<int>(status) < kStatusCount; }
+
+std::uint32_t checksum_of(std::span<const char> bytes) {
+  Crc32 crc;
+  crc.add_bytes(bytes.data(), bytes.size());
+  return crc.value();
+}
+
+template <typename Part>
+std::size_t put(const Part& part, std::span<char> at) {
+  std::memcpy(at.data(), &part, sizeof part);
+  const std::uint32_t sum = checksum_of(at.first(sizeof part));
+  std::memcpy(at.data() + sizeof part, &sum, sizeof sum);
+  return sizeof part + sizeof sum;
+}
+
+template <typename Part>
+bool take(std::span<const char> at, Part& part) {
+  std::uint32_t sum = 0;
+  if (at.size() < sizeof part + sizeof sum) return false;
+  std::memcpy(&sum, at.data() + sizeof part, sizeof sum);
+  if (sum != checksum_of(at.first(sizeof part))) return false;
+  std::memcpy(&part, at.data(), sizeof part);
+  return true;
+}
+
+}  // namespace
+
+std::size_t encode_published(const PublishedPrices& prices, const PublishedOutlook* outlook,
+                             std::span<char> file) {
+  const std::size_t size = put(prices, file);
+  return outlook == nullptr ? size : size + put(*outlook, file.subspan(size));
+}
+
+Status decode_published(std::span<const char> file, PublishedPrices& prices) {
+  std::uint32_t format = 0;
+  if (file.size() < sizeof format) return Status::kMalformed;
+  std::memcpy(&format, file.data(), sizeof format);
+  if (format != PublishedPrices::kFormat) return Status::kOtherVersion;
+  PublishedPrices found;
+  if (!take(file, found) || !is_status(found.status) || !is_status(found.history.status)) {
+    return Status::kMalformed;
+  }
+  prices = found;
+  return Status::kOk;
+}
+
+Status decode_outlook(std::span<const char> file, PublishedOutlook& outlook) {
+  if (file.size() < kPublishedPricesBytes || !take(file.subspan(kPublishedPricesBytes), outlook)) {
+    return Status::kMalformed;
+  }
+  const OutlookOffer& offer = outlook.offer;
+  const bool is_sound = is_status(offer.feed) && offer.ticks >= 0 &&
+                        offer.ticks <= OutlookOffer::kTicks && offer.levels >= 0 &&
+                        offer.levels <= OutlookOffer::kLevels;
+  return is_sound ? Status::kOk : Status::kMalformed;
+}
+
+}  // namespace bess

@@ -1,0 +1,146 @@
+#include "edge/records/account/earnings.h"
+
+#include <cmath>
+
+#include "shared/host/text.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// In CSV and JSON, of a day and of all together.
+struct Column {
+  const char* name;
+  int decimals;
+  double (*of)(const DayAccount&);
+};
+using D = DayAccount;
+constexpr Column kColumns[] = {
+    {"earned_eur", 4, [](const D& d) { return d.earned_eur(); }},
+    {"charged_kwh", 3, [](const D& d) { return d.charged_kwh(); }},
+    {"discharged_kwh", 3, [](const D& d) { return d.discharged_kwh(); }},
+    {"full_cycles", 4, [](const D& d) { return d.full_cycles(); }},
+    {"cycles", 0, [](const D& d) { return double(d.cycles()); }},
+    {"driven_cycles", 0, [](const D& d) { return double(d.driven_cycles()); }},
+    {"valued_cycles", 0, [](const D& d) { return double(d.valued_cycles()); }},
+    {"mean_price_eur_per_mwh", 2, [](const D& d) { return d.money().mean_price_eur_per_mwh(); }},
+    {"first_soc_percent", 2, [](const D& d) { return d.first_soc_percent(); }},
+    {"last_soc_percent", 2, [](const D& d) { return d.last_soc_percent(); }},
+    {"quarter_hours", 0, [](const D& d) { return double(d.money().quarter_hours); }},
+    {"settled_quarter_hours", 0, [](const D& d) { return double(d.money().published); }},
+    {"validated_quarter_hours", 0, [](const D& d) { return double(d.money().validated); }},
+    {"unpriced_quarter_hours", 0, [](const D& d) { return double(d.money().unpriced); }},
+    {"unseen_kwh", 3, [](const D& d) { return d.unseen_kwh(); }},
+    {"estimated_eur", 4, [](const D& d) { return d.money().estimated_eur; }},
+};
+
+void set_columns(Json& json, const DayAccount& account) {
+  for (const Column& column : kColumns) {
+    json.set(column.name, Decimals{column.of(account), column.decimals});
+  }
+}
+
+std::string table_line(const std::string& name, const DayAccount& account) {
+  const double driven_percent =
+      account.is_empty() ? 0 : 100.0 * account.driven_cycles() / account.cycles();
+  return formatted("%-10s  %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n", name.c_str(),
+                   account.earned_eur(), account.charged_kwh(), account.discharged_kwh(),
+                   account.full_cycles(), driven_percent, account.money().mean_price_eur_per_mwh());
+}
+
+std::string money_text(const DayAccount& all) {
+  const QuarterHourMoney& money = all.money();
+  std::string text = formatted("earned by quarter-hours: of %d, %d at the settled price",
+                               money.quarter_hours, money.published);
+  if (money.published > 0) add_formatted(text, " (%d validated)", money.validated);
+  if (money.published + money.unpriced < money.quarter_hours) {
+    add_formatted(text, ", the others at the last of their minutes: %+.2f EUR is an estimate",
+                  money.estimated_eur);
+  }
+  if (money.unpriced > 0) add_formatted(text, ", %d without any", money.unpriced);
+  if (all.unseen_kwh() > 0) {
+    add_formatted(text, "\n%.2f kWh flowed while nobody looked, by the state of charge",
+                  all.unseen_kwh());
+  }
+  return text + "\n";
+}
+
+/// What kept the student from deciding.
+Json stops_json(const DayAccount& all) {
+  Json reasons = Json::list();
+  for (std::size_t i = 0; i < all.cycles_by_reason().size(); ++i) {
+    const auto reason = static_cast<Reason>(i);
+    if (all.cycles_by_reason()[i] == 0 || reason == Reason::kStudent) continue;
+    reasons.add(Json::object({{"reason", reason_name(reason)},
+                              {"cycles", all.cycles_by_reason()[i]},
+                              {"not_driven", all.not_driven_by_reason()[i]}}));
+  }
+  return Json::object({{"driven_share", Decimals{all.driven_share(), 4}},
+                       {"missing_cycles", all.missing_cycles()},
+                       {"by_reason", std::move(reasons)}});
+}
+
+Json day_json(const DayAccount& day) {
+  Json json = Json::object({{"date", day.date()},
+                            {"start_utc", utc_text(day.start_utc_s()).view()},
+                            {"line", day.line()},
+                            {"interventions", day.interventions()}});
+  set_columns(json, day);
+  json.set("stops", stops_json(day));
+  return json;
+}
+
+}  // namespace
+
+Earnings::Earnings(std::vector<DayAccount> days) : days_(std::move(days)) {
+  for (const DayAccount& day : days_) together_.add(day);
+}
+
+std::string Earnings::text() const {
+  std::string text =
+      "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  EUR/MWh\n";
+  for (const DayAccount& day : days_) text += table_line(day.date(), day);
+  if (days_.size() > 1) text += table_line("together", together_);
+  text += money_text(together_);
+  add_formatted(
+      text,
+      "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
+      "%+.2f EUR with the same charge at both ends\n",
+      std::fabs(together_.stored_kwh()), together_.stored_kwh() < 0 ? "less" : "more",
+      std::fabs(together_.stored_eur()), together_.earned_eur() + together_.stored_eur());
+  add_formatted(text, "driven %.1f %% of the time", 100 * together_.driven_share());
+  if (together_.missing_cycles() > 0) {
+    add_formatted(text, "; %d cycles have no record", together_.missing_cycles());
+  }
+  const std::string others = together_.interventions_text();
+  if (!others.empty()) text += "\ncycles that the student did not decide: " + others;
+  return text + "\n";
+}
+
+std::string Earnings::csv() const {
+  std::string text = "date";
+  for (const Column& column : kColumns) text += std::string(",") + column.name;
+  for (const DayAccount& day : days_) {
+    text += "\n" + day.date();
+    for (const Column& column : kColumns) {
+      const double value = column.of(day);
+      text += std::isnan(value) ? "," : formatted(",%.*f", column.decimals, value);
+    }
+  }
+  return text + "\n";
+}
+
+Json Earnings::json() const {
+  Json days = Json::list();
+  for (const DayAccount& day : days_) days.add(day_json(day));
+  Json all = Json::object();
+  set_columns(all, together_);
+  all.set("stored_kwh", Decimals{together_.stored_kwh(), 3});
+  all.set("stored_eur", Decimals{together_.stored_eur(), 4});
+  all.set("earned_at_equal_soc_eur", Decimals{together_.earned_eur() + together_.stored_eur(), 4});
+  all.set("stops", stops_json(together_));
+  all.set("days", std::move(days));
+  return all;
+}
+
+}  // namespace bess

@@ -1,0 +1,483 @@
+#include "edge/records/log/event_log.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "edge/records/log/journal.h"
+#include "edge/records/log/log_text.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+
+bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line) {
+  if (record.mode == Mode::kStopping) return false;  // it asks for no hold; the next run goes on
+  const HoldReport now = record.hold;
+  const HoldReport before = std::exchange(before_, now);
+  if (now.unreadable) {
+    if (before.unreadable) return false;
+    line.add(
+        "hold: the file hold in [state] folder is not one that bess-edge hold wrote, or ends "
+        "later than it may: not followed; give it again, or bess-edge hold --release");
+    return true;
+  }
+  if (now.held) {
+    const bool is_same =
+        before.held && before.power_w == now.power_w && before.until_utc_s == now.until_utc_s;
+    if (is_same) return false;
+    line.add("hold: %d W until %s%s", now.power_w, utc_text(now.until_utc_s).c_str(),
+             is_in_control ? "" : " (read-only: nothing is written)");
+    return true;
+  }
+  if (before.held) {
+    const bool is_early = record.utc_s < std::int64_t{before.until_utc_s};
+    line.add("hold: %s; the prices decide again", is_early ? "released" : "over");
+    return true;
+  }
+  if (before.unreadable) line.add("hold: none; the prices decide again");
+  return before.unreadable;
+}
+
+bool MeterLines::add_trust_line(const CycleRecord& record, TextBuffer& line) {
+  if (record.mode == Mode::kStopping) return false;  // nothing was measured; the next run goes on
+  const MeterTrust& trust = record.site.trust;
+  if (std::exchange(was_mismatch_, trust.is_mismatch) == trust.is_mismatch) return false;
+  if (trust.is_mismatch) {
+    line.add(
+        "meter: it does not step with the battery: frozen, inverted, late, of another phase or "
+        "ratio, or the battery's measured power is wrong; as good as lost, tried again from %s on",
+        utc_text(trust.pause_until_utc_s).c_str());
+  } else {
+    line.add("meter: it steps with the battery again, and is believed");
+  }
+  return true;
+}
+
+bool MeterLines::add_house_line(const CycleRecord& record, TextBuffer& line) {
+  if (record.mode == Mode::kStopping) return false;
+  const bool is_implausible = record.site.house_is_implausible;
+  if (std::exchange(was_implausible_, is_implausible) == is_implausible) return false;
+  if (is_implausible) {
+    line.add(
+        "meter: grid %d W less battery %d W leaves the house a load below zero: a sign, the phase "
+        "or the place of the meter is wrong; where panels do that, set [meter] pv_w_max",
+        record.site.grid_power_w, record.measurement.power_w);
+  } else {
+    line.add("meter: the house's load is plausible again");
+  }
+  return true;
+}
+
+namespace {
+
+/// Of a number as records have it: 1 + index, 0 = none.
+const char* name_of(const RunIdentity& identity, int number) {
+  const bool is_known = number > 0 && number <= identity.point_names.size();
+  return is_known ? identity.point_names[number - 1].c_str() : "a register";
+}
+
+}  // namespace
+
+bool ReadingLines::add_lost_line(const CycleRecord& record, const RunIdentity& identity,
+                                 TextBuffer& line) {
+  const std::int16_t now = record.measurement.lost_point;
+  const std::int16_t before = std::exchange(lost_, now);
+  if (record.mode == Mode::kStopping || now == before) return false;
+  line.add(
+      now != 0 ? "battery: %s could not be read, or is not plausible" : "battery: %s is read again",
+      name_of(identity, now != 0 ? now : before));
+  return true;
+}
+
+bool ReadingLines::add_cut_line(const CycleRecord& record, const RunIdentity& identity,
+                                TextBuffer& line) {
+  if (!record.has_measurement) return false;
+  const std::int16_t now = record.measurement.cut_point;
+  if (std::exchange(cut_, now) == now || now == 0) return false;
+  line.add("battery: %s is beyond its range, and taken for the end of it (SoC %.2f %%)",
+           name_of(identity, now), record.measurement.soc_e4 / 100.0);
+  return true;
+}
+
+namespace {
+
+/// Of the run folder's ring: the eight hours that supervision judges again at a start.
+constexpr std::int64_t kRunRecords = 256;
+
+bool append_line(int fd, const char* text, std::size_t size) {
+  char line[kLogLineBytes + 1];
+  std::memcpy(line, text, size);
+  line[size] = '\n';
+  errno = ENOSPC;  // what a short write means
+  return ::write(fd, line, size + 1) == static_cast<ssize_t>(size + 1);
+}
+
+bool is_unusual(const PriceReport& price) {
+  constexpr std::int32_t kUsualCenti = kUnusualPriceMaxEurPerMwh * kCentiPerEur;
+  return price.has_row && (price.price_centi_eur_per_mwh > kUsualCenti ||
+                           price.price_centi_eur_per_mwh < -kUsualCenti);
+}
+
+JournalLevel level_of(const CycleRecord& record) {
+  const bool is_ordered_stop = record.reason == Reason::kStopRequested;
+  const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
+  const bool is_well = record.battery_status == Status::kOk && !record.price.step_held &&
+                       !record.price_frozen && !is_unusual(record.price) &&
+                       record.site.meter_status == Status::kOk && !record.site.trust.is_mismatch &&
+                       record.site.limit_status == Status::kOk;
+  return is_trouble || !is_well ? JournalLevel::kWarning : JournalLevel::kInfo;
+}
+
+}  // namespace
+
+EventLog::~EventLog() {
+  if (thread_.is_running()) {
+    ending_ = true;
+    queue_.wake();
+    thread_.join();
+  }
+  if (csv_fd_ >= 0) close(csv_fd_);
+}
+
+bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identity,
+                    FileMessage& error) {
+  settings_ = settings;
+  stored_.status.identity = identity;
+  const auto may_go_on = [this](bool opened) {
+    const bool is_disk = !opened && is_disk_trouble(errno);
+    if (is_disk) totals_.disk_is_failing = true;
+    return opened || is_disk;
+  };
+  open_run_ring();
+  if (!may_go_on(open_ring(error)) || !may_go_on(open_csv(error))) return false;
+  tell_of_damage(ring_, settings_.ring.c_str());
+  totals_.log_number = newer_ring().newest_number();
+  if (!may_go_on(publish_metrics(settings.metrics.c_str()))) {
+    return fail_with_errno(settings.metrics.c_str(), "cannot write the metrics here", error);
+  }
+  if (!may_go_on(publish_status(settings.status))) {
+    return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
+  }
+  publish_in_memory();
+  tell_of_disk(totals_.disk_is_failing, nullptr);
+  tell_of_run_folder();
+  thread_.start<&EventLog::run>(this);
+  return true;
+}
+
+/// A log that has no room to grow goes on at its size; the next start tries again.
+bool EventLog::open_ring(FileMessage& error) {
+  const std::int64_t capacity = settings_.ring_days * kStepsPerDay;
+  if (!ring_.open(settings_.ring.c_str(), capacity, error)) return false;
+  if (ring_.capacity() != capacity) totals_.disk_is_failing = true;
+  return true;
+}
+
+/// What fails here is tried again with every record.
+void EventLog::open_run_ring() {
+  if (settings_.run_ring.empty()) return;
+  FileMessage ignored;
+  if (!run_ring_.open(settings_.run_ring.c_str(), kRunRecords, ignored)) {
+    totals_.run_folder_is_failing = true;
+    return;
+  }
+  tell_of_damage(run_ring_, settings_.run_ring.c_str());
+}
+
+void EventLog::tell_of_damage(const RingLog& ring, const char* path) const {
+  if (!ring.damage().is_any()) return;
+  char text[1'024];
+  TextBuffer line(text);
+  describe_damage(ring.damage(), path, line);
+  write_journal_line(JournalLevel::kError, line.view());
+}
+
+bool EventLog::open_csv(FileMessage& error) {
+  const char* const path = settings_.csv.c_str();
+  if (settings_.csv.empty()) return true;
+  csv_fd_ = ::open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (csv_fd_ >= 0 && head_csv()) return true;
+  return fail_with_errno(path, "cannot write the log here", error);
+}
+
+/// The names of the columns, where nothing stands before them.
+bool EventLog::head_csv() {
+  if (csv_has_head_) return true;
+  struct stat info {};
+  const bool is_empty = fstat(csv_fd_, &info) == 0 && info.st_size == 0;
+  char line[kLogLineBytes];
+  csv_has_head_ = !is_empty || append_line(csv_fd_, line, format_csv_header(line));
+  return csv_has_head_;
+}
+
+void EventLog::write(const CycleRecord& record) {
+  if (queue_.push(record)) {
+    ++handed_over_;
+  } else {
+    ++dropped_;
+  }
+}
+
+bool EventLog::drain(std::int64_t wall_ns_max) const {
+  constexpr std::int64_t kSliceNs = 2'000'000;
+  const std::int64_t deadline_ns = clock_ns(CLOCK_MONOTONIC) + wall_ns_max;
+  while (kept_.load() < handed_over_) {
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    if (now_ns >= deadline_ns) return false;
+    sleep_until_monotonic(now_ns + kSliceNs);
+  }
+  return true;
+}
+
+void EventLog::run() {
+  CycleRecord record;
+  while (true) {
+    if (queue_.wait_and_pop(record)) {
+      keep(record);
+      ++kept_;
+    } else if (ending_) {
+      return;
+    }
+  }
+}
+
+/// The rings first, status last: whoever is told of a record finds it in a ring, a next run as
+/// well.
+void EventLog::keep(const CycleRecord& record) {
+  const std::uint64_t number = newer_ring().newest_number() + 1;
+  const std::int64_t dropped = dropped_;
+  totals_.disk_is_slow = dropped > totals_.records_dropped;
+  totals_.records_dropped = dropped;
+  totals_.count(record);
+  totals_.log_number = number;
+  keep_in_memory(record, number);
+  keep_on_disk(record, number);
+  tell_of_run_folder();
+}
+
+void EventLog::keep_in_memory(const CycleRecord& record, std::uint64_t number) {
+  if (settings_.run_ring.empty()) return;
+  totals_.run_folder_is_failing = !append_to_run_ring(record, number);
+  publish_in_memory();
+}
+
+/// Whatever a disk does here, even if it never answers again: memory knows the record.
+void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
+  const std::int64_t failures_before = totals_.disk_failures;
+  char line[kLogLineBytes];
+  const std::size_t size = format_log_line(record, line);
+  if (!append_to_ring(record, number)) ++totals_.disk_failures;
+  tell_of_hold(record);
+  tell_of_readings(record);
+  tell_of_meter(record);
+  write_journal_line(level_of(record), {line, size});
+  tell_of_trip(record);
+  if (!append_to_csv(record)) ++totals_.disk_failures;
+  if (!publish_metrics(settings_.metrics.c_str())) ++totals_.disk_failures;
+  const bool was_failing = totals_.disk_is_failing;
+  totals_.disk_is_failing = totals_.disk_failures > failures_before;
+  if (!publish_status(settings_.status)) {
+    ++totals_.disk_failures;
+    totals_.disk_is_failing = true;
+  }
+  if (totals_.disk_is_failing || was_failing) publish_in_memory();
+  tell_of_disk(totals_.disk_is_failing, &record);
+}
+
+/// On the journal, once each time: what a person has to end.
+void EventLog::tell_of_trip(const CycleRecord& record) {
+  if (record.is_tripped == was_tripped_) return;
+  was_tripped_ = record.is_tripped;
+  char line[160];
+  const int size = std::snprintf(
+      line, sizeof line, "tripped: %s; the battery is in its own mode until bess-edge clear",
+      reason_name(record.trip.reason).data());
+  write_journal_line(record.is_tripped ? JournalLevel::kError : JournalLevel::kNotice,
+                     record.is_tripped ? std::string_view(line, static_cast<std::size_t>(size))
+                                       : "cleared: a person lets the battery be driven again");
+}
+
+bool EventLog::append_to_run_ring(const CycleRecord& record, std::uint64_t number) {
+  FileMessage ignored;
+  const bool is_open =
+      run_ring_.is_open() || run_ring_.open(settings_.run_ring.c_str(), kRunRecords, ignored);
+  return is_open && run_ring_.append(record, number);
+}
+
+/// A log that the disk refused at the start is tried again.
+bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
+  FileMessage ignored;
+  if (ring_.is_open() && !ring_.is_at(settings_.ring.c_str()) && !follow_the_folder()) return false;
+  return (ring_.is_open() || open_ring(ignored)) && catch_up(number) &&
+         ring_.append(record, number);
+}
+
+/// The state folder is another one: unmounted, mounted, replaced. An empty one, or one that this
+/// run has written to, is gone on with. The log of others may hold a trip: the next start has to
+/// read it.
+bool EventLog::follow_the_folder() {
+  RingLog there;
+  FileMessage ignored;
+  CycleRecord newest;
+  CycleRecord ours;
+  const bool is_log = there.open_to_read(settings_.ring.c_str(), ignored) && there.newest(newest);
+  const std::uint64_t number = there.newest_number();
+  const bool is_known = is_log && (ring_.read(number, ours) || run_ring_.read(number, ours)) &&
+                        ours.utc_s == newest.utc_s;
+  if (is_log && !is_known) {
+    if (std::exchange(is_ending_run_, true)) return false;
+    write_journal_line(JournalLevel::kError,
+                       "the state folder now holds another log, of a disk that was mounted late or "
+                       "replaced: this run ends, so that the next start knows what is in it");
+    kill(getpid(), SIGTERM);
+    return false;
+  }
+  write_journal_line(JournalLevel::kError,
+                     is_log ? "the state folder is back where it was: its log goes on"
+                            : "the decision log is gone from its place, was its disk unmounted? A "
+                              "new one begins there");
+  return open_ring(ignored);
+}
+
+/// What the disk refused for a while, as far as memory still has it.
+bool EventLog::catch_up(std::uint64_t number) {
+  const std::uint64_t first = ring_.newest_number() + 1;
+  if (first >= number) return true;
+  std::uint64_t kept = 0;
+  CycleRecord record;
+  const bool has_memory = run_ring_.is_open();
+  for (std::uint64_t n = std::max(first, run_ring_.oldest_number()); has_memory && n < number;
+       ++n) {
+    if (!run_ring_.read(n, record)) continue;
+    if (!ring_.append(record, n)) return false;
+    ++kept;
+  }
+  char text[160];
+  TextBuffer line(text);
+  line.add(
+      "the decision log goes on: %llu records that it missed are taken from memory, %llu are lost",
+      static_cast<unsigned long long>(kept),
+      static_cast<unsigned long long>(number - first - kept));
+  write_journal_line(JournalLevel::kWarning, line.view());
+  return true;
+}
+
+bool EventLog::append_to_csv(const CycleRecord& record) {
+  if (settings_.csv.empty()) return true;
+  FileMessage ignored;
+  if (csv_fd_ < 0 ? !open_csv(ignored) : !head_csv()) return false;
+  char line[kLogLineBytes];
+  return append_line(csv_fd_, line, format_csv_line(record, line));
+}
+
+/// What the controller does all the same; before its first cycle nobody knows.
+void EventLog::add_what_goes_on(const CycleRecord* record, TextBuffer& line) const {
+  if (record == nullptr) {
+    line.add("What follows says whether the battery is driven");
+  } else if (record->is_tripped) {
+    line.add("The battery stays released: tripped, %s", reason_name(record->trip.reason).data());
+  } else if (!identity_.control) {
+    line.add("The battery is read on");
+  } else if (record->mode == Mode::kRunning) {
+    line.add("The battery is driven on");
+  } else {
+    line.add("The battery is not driven now: %s", reason_name(record->reason).data());
+  }
+}
+
+/// On the journal, once each time: the files that would tell of it cannot be written.
+void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
+  if (is_failing == was_failing_) return;
+  was_failing_ = is_failing;
+  char text[256];
+  TextBuffer line(text);
+  if (is_failing) {
+    line.add(
+        "the files of [state], [log] or [metrics] cannot be written, is the disk full or "
+        "read-only? ");
+    add_what_goes_on(record, line);
+  } else {
+    line.add("the files of [state], [log] and [metrics] are written again");
+  }
+  write_journal_line(JournalLevel::kWarning, line.view());
+}
+
+void EventLog::tell_of_hold(const CycleRecord& record) {
+  char text[256];
+  TextBuffer line(text);
+  if (!hold_lines_.add_line(record, identity_.control, line)) return;
+  write_journal_line(record.hold.unreadable ? JournalLevel::kWarning : JournalLevel::kNotice,
+                     line.view());
+}
+
+void EventLog::tell_of_readings(const CycleRecord& record) {
+  char text[256];
+  TextBuffer lost(text);
+  if (reading_lines_.add_lost_line(record, identity_, lost)) {
+    const bool is_trouble = record.measurement.lost_point != 0;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, lost.view());
+  }
+  TextBuffer cut(text);
+  if (reading_lines_.add_cut_line(record, identity_, cut)) {
+    write_journal_line(JournalLevel::kWarning, cut.view());
+  }
+}
+
+void EventLog::tell_of_meter(const CycleRecord& record) {
+  char text[320];
+  TextBuffer trust(text);
+  if (meter_lines_.add_trust_line(record, trust)) {
+    const bool is_trouble = record.site.trust.is_mismatch;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, trust.view());
+  }
+  TextBuffer house(text);
+  if (meter_lines_.add_house_line(record, house)) {
+    const bool is_trouble = record.site.house_is_implausible;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, house.view());
+  }
+}
+
+void EventLog::tell_of_run_folder() {
+  if (totals_.run_folder_is_failing == was_run_failing_) return;
+  was_run_failing_ = totals_.run_folder_is_failing;
+  write_journal_line(JournalLevel::kWarning,
+                     was_run_failing_
+                         ? "the files of [state] run_folder cannot be written: if the disk dies as "
+                           "well, nobody can be told how things are"
+                         : "the files of [state] run_folder are written again");
+}
+
+void EventLog::publish_in_memory() {
+  if (settings_.run_ring.empty()) return;
+  const bool has_metrics = publish_metrics(settings_.run_metrics.c_str());
+  const bool has_status = publish_status(settings_.run_status);
+  if (!has_metrics || !has_status) totals_.run_folder_is_failing = true;
+}
+
+bool EventLog::publish_metrics(const char* path) {
+  TextBuffer metrics(metrics_text_);
+  format_prometheus(stored_.status, metrics);
+  return replace_or_remove_file(path, metrics.view());
+}
+
+bool EventLog::publish_status(const FixedText<511>& path) {
+  stored_.status.written_monotonic_ms = clock_ns(CLOCK_MONOTONIC) / 1'000'000;
+  const bool is_stored = write_status(stored_status_path(path).c_str(), stored_);
+  const int error = errno;
+  TextBuffer status(status_text_);
+  format_status_json(stored_.status, status);
+  const bool is_told = replace_or_remove_file(path.c_str(), status.view());
+  if (!is_stored) errno = error;
+  return is_stored && is_told;
+}
+
+}  // namespace bess

@@ -1,0 +1,161 @@
+// The log of the controller. The control thread hands over one record a cycle and never waits; a
+// log thread of its own, on a static stack, writes it everywhere:
+//   CycleRecord -> queue -> log thread -> run folder (memory): short ring, metrics, status
+//                                      -> stdout (journal), ring log, CSV, metrics, status
+// The run folder comes first: what is in it holds, however the disk dies. A disk may stand still
+// for seconds: 64 records, two hours, fit into the queue; what does not fit is dropped and counted.
+// After `open` neither thread allocates here.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "edge/core/control/control_types.h"
+#include "edge/core/memory/plain_thread.h"
+#include "edge/records/log/handover_queue.h"
+#include "edge/records/log/ring_log.h"
+#include "edge/records/log/run_status.h"
+#include "edge/records/log/text_buffer.h"
+#include "edge/records/log/whole_file.h"
+#include "shared/fixed_text.h"
+
+namespace bess {
+
+// Lines of the journal on holds, on a meter and on readings of the battery, one for each change.
+// Written by the log thread; nothing allocates.
+
+// An operator's hold: a line when it begins, when it changes, when it is over, and once when its
+// file cannot be read.
+class HoldLines {
+ public:
+  /// Appends the line that this cycle is worth; false when it is worth none.
+  bool add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line);
+
+ private:
+  HoldReport before_{};
+};
+
+// A meter that is not to be believed: a line when it is found, and when it agrees again; the same
+// of a house load that cannot be.
+class MeterLines {
+ public:
+  /// Appends the line that this cycle is worth; false when it is worth none.
+  bool add_trust_line(const CycleRecord& record, TextBuffer& line);
+  bool add_house_line(const CycleRecord& record, TextBuffer& line);
+
+ private:
+  bool was_mismatch_ = false;
+  bool was_implausible_ = false;
+};
+
+// A reading that is missing or beyond its range: a line when it begins and when it is over.
+class ReadingLines {
+ public:
+  /// Appends the line that this cycle is worth; false when it is worth none.
+  bool add_lost_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
+  bool add_cut_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
+
+ private:
+  std::int16_t lost_ = 0;
+  std::int16_t cut_ = 0;
+};
+
+struct EventLogSettings {
+  FixedText<511> ring;
+  FixedText<511> status;
+  FixedText<511> metrics;
+  FixedText<511> csv;  ///< empty = none
+  // In the run folder, on a memory file system; all empty = none.
+  FixedText<511> run_ring;
+  FixedText<511> run_status;
+  FixedText<511> run_metrics;
+  std::int64_t ring_days = 35;  ///< of 720 records
+};
+
+class EventLog {
+ public:
+  EventLog() = default;
+  EventLog(const EventLog&) = delete;
+  EventLog& operator=(const EventLog&) = delete;
+  ~EventLog();
+
+  /// Opens the files, publishes a first status and starts the log thread. False with one line. A
+  /// disk that is full, read-only or broken is told and no reason to fail: what it refuses is tried
+  /// again with every record.
+  bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
+  /// The newest record of earlier runs, for counters that a restart must take over; false = none.
+  /// Only before the first `write`.
+  bool newest(CycleRecord& record) const { return newer_ring().newest(record); }
+  /// The record that many before the newest; false = there is none, or it is torn. As `newest`.
+  bool read_back(std::int64_t records, CycleRecord& record) const {
+    const std::uint64_t newest = newer_ring().newest_number();
+    const auto back = static_cast<std::uint64_t>(records);
+    return back < newest &&
+           (ring_.read(newest - back, record) || run_ring_.read(newest - back, record));
+  }
+  /// The two logs, for what one of them knows alone. Only before the first `write`.
+  [[nodiscard]] const RingLog& ring() const { return ring_; }
+  [[nodiscard]] const RingLog& run_ring() const { return run_ring_; }
+
+  /// From the control thread; never waits.
+  void write(const CycleRecord& record);
+  /// Waits until everything handed over is written, or until the limit: for the end of the process.
+  bool drain(std::int64_t wall_ns_max) const;
+
+ private:
+  static constexpr std::size_t kQueueRecords = 64;
+
+  bool open_ring(FileMessage& error);
+  void open_run_ring();
+  void tell_of_damage(const RingLog& ring, const char* path) const;
+  [[nodiscard]] const RingLog& newer_ring() const {
+    return run_ring_.newest_number() > ring_.newest_number() ? run_ring_ : ring_;
+  }
+  bool open_csv(FileMessage& error);
+  bool head_csv();
+  void run();
+  void keep(const CycleRecord& record);
+  void tell_of_trip(const CycleRecord& record);
+  void keep_in_memory(const CycleRecord& record, std::uint64_t number);
+  void keep_on_disk(const CycleRecord& record, std::uint64_t number);
+  bool append_to_run_ring(const CycleRecord& record, std::uint64_t number);
+  bool append_to_ring(const CycleRecord& record, std::uint64_t number);
+  bool follow_the_folder();
+  bool catch_up(std::uint64_t number);
+  bool append_to_csv(const CycleRecord& record);
+  void publish_in_memory();
+  [[nodiscard]] bool publish_metrics(const char* path);
+  [[nodiscard]] bool publish_status(const FixedText<511>& path);
+  void tell_of_disk(bool is_failing, const CycleRecord* record);
+  void add_what_goes_on(const CycleRecord* record, TextBuffer& line) const;
+  void tell_of_run_folder();
+  void tell_of_hold(const CycleRecord& record);
+  void tell_of_readings(const CycleRecord& record);
+  void tell_of_meter(const CycleRecord& record);
+
+  EventLogSettings settings_;
+  StoredStatus stored_;
+  const RunIdentity& identity_ = stored_.status.identity;
+  RunTotals& totals_ = stored_.status.totals;
+  RingLog ring_;
+  RingLog run_ring_;
+  int csv_fd_ = -1;
+  bool was_tripped_ = false;
+  bool csv_has_head_ = false;
+  bool was_failing_ = false;
+  bool was_run_failing_ = false;
+  bool is_ending_run_ = false;
+  HoldLines hold_lines_;
+  MeterLines meter_lines_;
+  ReadingLines reading_lines_;
+  HandoverQueue<CycleRecord, kQueueRecords> queue_;
+  std::int64_t handed_over_ = 0;
+  std::atomic<std::int64_t> kept_{0};
+  std::atomic<std::int64_t> dropped_{0};
+  std::atomic<bool> ending_{false};
+  char status_text_[kStatusBytes];
+  char metrics_text_[kMetricsBytes];
+  PlainThread thread_;
+};
+
+}  // namespace bess

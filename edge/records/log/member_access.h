@@ -1,0 +1,99 @@
+// One member of a struct as an integer, behind plain functions, so that one loop writes them all.
+// A member is named by its path from the struct:
+//   member<&CycleRecord::price, &PriceReport::fetch_us>()
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "edge/records/log/stable_codes.h"
+
+namespace bess {
+
+/// What the integer means: itself, 0 or 1, seconds since 1970, an enumerator's stable code.
+enum class MemberKind : std::uint8_t { kNumber, kFlag, kUtc, kName };
+
+template <typename Source>
+struct MemberAccess {
+  MemberKind kind;
+  std::size_t bytes;  ///< on disk
+  std::int64_t (*read)(const Source&);
+  bool (*set)(Source&, std::int64_t);       ///< false: a code of a later program
+  const char* (*name_of)(std::int64_t);     ///< of a code; null when the kind is another
+  bool (*exists)(const Source&) = nullptr;  ///< null: always
+
+  /// The value means something only while the flag at this path is set, or the enumerator at it is
+  /// not the first.
+  template <auto... kFlagPath>
+  [[nodiscard]] constexpr MemberAccess given() const {
+    MemberAccess conditional = *this;
+    conditional.exists = [](const Source& source) -> bool {
+      return static_cast<bool>((source.*....*kFlagPath));
+    };
+    return conditional;
+  }
+};
+
+namespace detail {
+
+template <typename Source, typename Member>
+Source source_of(Member Source::*);
+template <auto kFirst, auto...>
+struct PathStart {
+  using Source = decltype(source_of(kFirst));
+};
+
+}  // namespace detail
+
+/// The struct that a path starts from.
+template <auto... kPath>
+using SourceOf = typename detail::PathStart<kPath...>::Source;
+
+template <auto... kPath>
+std::int64_t read_member(const SourceOf<kPath...>& source) {
+  const auto& value = (source.*....*kPath);
+  if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+    return code_of(value);
+  } else {
+    return static_cast<std::int64_t>(value);
+  }
+}
+
+template <auto... kPath>
+bool set_member(SourceOf<kPath...>& source, std::int64_t integer) {
+  auto& value = (source.*....*kPath);
+  using Value = std::remove_reference_t<decltype(value)>;
+  if constexpr (std::is_enum_v<Value>) {
+    return set_by_code(integer, value);
+  } else {
+    value = static_cast<Value>(integer);
+    return true;
+  }
+}
+
+template <auto... kPath>
+consteval auto member() {
+  using Source = SourceOf<kPath...>;
+  using Value = std::remove_reference_t<decltype((std::declval<Source&>().*....*kPath))>;
+  MemberAccess<Source> access{MemberKind::kNumber, sizeof(Value), read_member<kPath...>,
+                              set_member<kPath...>, nullptr};
+  if constexpr (std::is_same_v<Value, bool>) access.kind = MemberKind::kFlag;
+  if constexpr (std::is_enum_v<Value>) {
+    static_assert(sizeof(Value) == 1, "a code is one byte on disk");
+    access.kind = MemberKind::kName;
+    access.name_of = name_of_code<Value>;
+  }
+  return access;
+}
+
+/// For seconds since 1970, written as a time.
+template <auto... kPath>
+consteval auto utc_member() {
+  auto access = member<kPath...>();
+  access.kind = MemberKind::kUtc;
+  return access;
+}
+
+}  // namespace bess

@@ -1,0 +1,414 @@
+#include "edge/records/log/ring_log.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include "shared/crc32.h"
+
+namespace bess {
+
+void describe_damage(const RingDamage& damage, const char* path, TextBuffer& line) {
+  line.add("%s is damaged", path);
+  if (damage.is_set_aside) {
+    line.add(": nothing in it can be understood; it is set aside as .old, a new one begins");
+    return;
+  }
+  if (damage.header == RingDamage::Header::kFromCopy) {
+    line.add("; its header was broken, its copy counts");
+  } else if (damage.header == RingDamage::Header::kFromRecords) {
+    line.add("; header and copy were broken; they are rebuilt from the records");
+  }
+  const auto broken = static_cast<long long>(damage.broken_records);
+  if (broken > 0) line.add("; %lld %s lost", broken, broken == 1 ? "record is" : "records are");
+  if (damage.missing_records > 0) {
+    line.add("; its end is cut off: the places of %lld records are gone",
+             static_cast<long long>(damage.missing_records));
+  }
+  if (damage.newest_lost > 0) {
+    line.add("; perhaps %lld of the newest: the last one before counts",
+             static_cast<long long>(damage.newest_lost));
+  }
+}
+
+namespace {
+
+constexpr std::int64_t kHeaderBytes = 4'096;
+constexpr std::int64_t kHeaderCopyAt = 2'048;
+constexpr char kMagic[8] = {'B', 'E', 'S', 'S', 'R', 'I', 'N', 'G'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderUsedBytes = 28;  // magic, version, record bytes, capacity, CRC
+
+void put(std::uint8_t* bytes, std::uint64_t value, int count) {
+  for (int i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+}
+
+std::uint64_t take(const std::uint8_t* bytes, int count) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < count; ++i) value |= std::uint64_t{bytes[i]} << (8 * i);
+  return value;
+}
+
+void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_bytes,
+                 std::int64_t capacity) {
+  std::memcpy(header, kMagic, sizeof kMagic);
+  put(header + 8, kVersion, 4);
+  put(header + 12, record_bytes, 4);
+  put(header + 16, static_cast<std::uint64_t>(capacity), 8);
+  Crc32 crc;
+  crc.add_bytes(header, 24);
+  put(header + 24, crc.value(), 4);
+}
+
+/// Neither as it was written (perhaps by a later program), nor a place that was never written to.
+bool is_broken(std::span<const std::uint8_t> stored) {
+  return !is_intact(stored) &&
+         std::any_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte != 0; });
+}
+
+FixedText<643> beside(const char* path, const char* ending) {
+  char text[644];
+  std::snprintf(text, sizeof text, "%s%s", path, ending);
+  return {text};
+}
+
+}  // namespace
+
+RingLog::~RingLog() { close_file(); }
+
+void RingLog::close_file() {
+  if (fd_ >= 0) close(fd_);
+  fd_ = -1;
+  is_read_only_ = false;
+}
+
+std::int64_t RingLog::offset_of(std::uint64_t number) const {
+  return kHeaderBytes + static_cast<std::int64_t>(number % static_cast<std::uint64_t>(capacity_)) *
+                            static_cast<std::int64_t>(record_bytes_);
+}
+
+std::int64_t RingLog::file_bytes() const {
+  return kHeaderBytes + capacity_ * static_cast<std::int64_t>(record_bytes_);
+}
+
+bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
+  damage_ = {};
+  const int opened = ::open(path, O_RDWR | O_CLOEXEC);
+  if (opened < 0 && errno == EROFS) return open_read_only(path, capacity, error);
+  if (opened < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
+  close_file();
+  fd_ = opened;
+  damage_.was_absent = fd_ < 0;
+  const bool is_sound = fd_ >= 0 && understand(capacity);
+  if (fd_ >= 0 && !is_sound) set_aside(path);
+  const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
+  if (takes_records) mend();
+  if (takes_records && capacity_ == capacity) return true;
+  const std::int64_t capacity_before = std::exchange(capacity_, capacity);
+  if (replace(path, error)) return true;
+  if (takes_records && is_disk_trouble(errno)) {
+    capacity_ = capacity_before;
+    return true;
+  }
+  const int cause = errno;
+  close_file();
+  errno = cause;
+  return false;
+}
+
+/// On a read-only disk nothing can be added, but what earlier runs left is known. Always false.
+bool RingLog::open_read_only(const char* path, std::int64_t capacity, FileMessage& error) {
+  if (fd_ < 0) {  // else it is known from before: nothing has been added to it
+    fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+    damage_.was_absent = fd_ < 0;
+    damage_.is_set_aside = fd_ >= 0 && !understand(capacity);
+    if (damage_.is_set_aside) close_file();
+    is_read_only_ = fd_ >= 0;
+  }
+  errno = EROFS;
+  return fail_with_errno(path, "cannot open the log", error);
+}
+
+bool RingLog::open_to_read(const char* path, FileMessage& error) {
+  fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (fd_ < 0) return fail_with_errno(path, "cannot open the log", error);
+  const bool has_header = read_header(0) || read_header(kHeaderCopyAt);
+  if ((has_header && find_newest_by_number()) || understand(0)) return true;
+  close_file();
+  char line[700];
+  std::snprintf(line, sizeof line,
+                "%s: is not a decision log of this program; the next start sets it aside", path);
+  static_cast<void>(error.assign(line));
+  return false;
+}
+
+/// Of no use to anybody but a person, whether there is room for another one or not.
+void RingLog::set_aside(const char* path) {
+  damage_.is_set_aside = true;
+  const FixedText<643> aside = beside(path, ".old");
+  if (rename(path, aside.c_str()) == 0) close_file();
+}
+
+/// The new file is there as a whole before the old one loses its name.
+bool RingLog::replace(const char* path, FileMessage& error) {
+  const FixedText<643> new_path = beside(path, ".new");
+  const int made = make_whole(new_path.c_str());
+  if (made < 0) return fail_with_errno(new_path.c_str(), "cannot make the log", error);
+  const bool is_free = fd_ < 0 || rename(path, beside(path, ".old").c_str()) == 0;
+  if (!is_free || rename(new_path.c_str(), path) != 0) {
+    fail_with_errno(path, "cannot set aside the log", error);
+    close(made);
+    unlink(new_path.c_str());
+    return false;
+  }
+  close_file();
+  fd_ = made;
+  record_bytes_ = kRecordBytes;
+  sync_folder_of(path);
+  return true;
+}
+
+/// At its full size, with its header and the newest record that is known, on the disk: what a
+/// restart needs is never in one process alone. Negative with errno set, and nothing left.
+int RingLog::make_whole(const char* path) const {
+  const int made = make_afresh(path);
+  if (made < 0) return -1;
+  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
+  int cause = posix_fallocate(made, 0, size);  // a full disk must show now, not in a month
+  errno = ENOSPC;                              // what a short write means
+  if (cause == 0 && write_header(made) && write_newest(made) && fsync(made) == 0) return made;
+  if (cause == 0) cause = errno;
+  close(made);
+  unlink(path);
+  errno = cause;
+  return -1;
+}
+
+/// By its header, the header's copy, or the records. `likely_capacity` 0: not known.
+bool RingLog::understand(std::int64_t likely_capacity) {
+  if (read_header(0) || read_header(kHeaderCopyAt)) {
+    const Scan scan = find_newest();
+    damage_.broken_records = scan.broken;
+    damage_.missing_records = scan.missing;
+  } else if (find_geometry(likely_capacity)) {
+    damage_.header = RingDamage::Header::kFromRecords;
+  } else {
+    return false;
+  }
+  damage_.newest_lost = 0;
+  while (damage_.newest_lost < damage_.broken_records + damage_.missing_records &&
+         is_lost_at(newest_number_ + 1 + static_cast<std::uint64_t>(damage_.newest_lost))) {
+    ++damage_.newest_lost;
+  }
+  return true;
+}
+
+bool RingLog::read_header(std::int64_t offset) {
+  std::uint8_t header[kHeaderUsedBytes];
+  if (pread(fd_, header, sizeof header, offset) != static_cast<ssize_t>(sizeof header)) {
+    return false;
+  }
+  const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
+  record_bytes_ = take(header + 12, 4) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
+  std::uint8_t expected[kHeaderUsedBytes];
+  fill_header(expected, record_bytes_, capacity);
+  const std::int64_t most = (INT64_MAX - kHeaderBytes) / static_cast<std::int64_t>(kRecordBytes);
+  if (std::memcmp(header, expected, sizeof header) != 0 || capacity < 1 || capacity > most) {
+    return false;
+  }
+  struct stat info {};
+  capacity_ = capacity;
+  if (offset != 0) damage_.header = RingDamage::Header::kFromCopy;
+  return fstat(fd_, &info) == 0;
+}
+
+/// Without a header: the size of the file says how many records it has, and each record by its
+/// number in which place it must lie.
+bool RingLog::find_geometry(std::int64_t likely_capacity) {
+  struct stat info {};
+  if (fstat(fd_, &info) != 0 || info.st_size <= kHeaderBytes) return false;
+  const auto by_size = [&](std::size_t record_bytes) {
+    return Geometry{record_bytes,
+                    (info.st_size - kHeaderBytes) / static_cast<std::int64_t>(record_bytes)};
+  };
+  if (fits({kRecordBytes, likely_capacity}) || fits(by_size(kRecordBytes)) ||
+      fits(by_size(kOlderRecordBytes))) {
+    return true;
+  }
+  newest_number_ = 0;
+  damage_.broken_records = damage_.missing_records = 0;
+  return false;
+}
+
+/// Also a log in which nothing stands yet, at the size that it would have.
+bool RingLog::fits(const Geometry& geometry) {
+  if (geometry.capacity < 1) return false;
+  record_bytes_ = geometry.record_bytes;
+  capacity_ = geometry.capacity;
+  newest_number_ = 0;
+  const Scan scan = find_newest();
+  damage_.broken_records = scan.broken;
+  damage_.missing_records = scan.missing;
+  const bool is_empty = scan.whole == 0 && scan.broken == 0 && scan.missing == 0;
+  return scan.misplaced == 0 && (scan.whole > 0 || is_empty);
+}
+
+/// Headers as they must be, the file at its full size. Where the disk refuses, the next start tries
+/// again.
+void RingLog::mend() {
+  const bool is_written = write_header(fd_);
+  const bool is_long = damage_.missing_records == 0 || posix_fallocate(fd_, 0, file_bytes()) == 0;
+  const bool is_kept = damage_.is_any() && is_written && is_long && fdatasync(fd_) == 0;
+  static_cast<void>(is_kept);
+}
+
+/// Into a new file of `capacity_`.
+bool RingLog::write_newest(int fd) const {
+  if (newest_number_ == 0) return true;
+  RecordBytes bytes;
+  encode_record(newest_, newest_number_, bytes);
+  const auto slot =
+      static_cast<std::int64_t>(newest_number_ % static_cast<std::uint64_t>(capacity_));
+  const std::int64_t offset = kHeaderBytes + slot * static_cast<std::int64_t>(kRecordBytes);
+  return pwrite(fd, bytes.data(), bytes.size(), offset) == static_cast<ssize_t>(bytes.size());
+}
+
+bool RingLog::write_header(int fd) const {
+  std::uint8_t header[kHeaderUsedBytes];
+  std::uint8_t there[kHeaderUsedBytes];
+  fill_header(header, kRecordBytes, capacity_);
+  for (const std::int64_t offset : {std::int64_t{0}, kHeaderCopyAt}) {
+    constexpr auto kSize = static_cast<ssize_t>(sizeof header);
+    const bool is_there = pread(fd, there, sizeof there, offset) == kSize &&
+                          std::memcmp(there, header, sizeof header) == 0;
+    if (!is_there && pwrite(fd, header, sizeof header, offset) != kSize) return false;
+  }
+  return true;
+}
+
+/// By the numbers at the records' heads alone, little of the work of looking at each: who asks
+/// wants an answer at once. False where the one that is newest by them is not whole, where anything
+/// cannot be read, and in an empty log: then each record is looked at.
+bool RingLog::find_newest_by_number() {
+  constexpr std::int64_t kSlotsOfChunk = 64;
+  std::uint8_t chunk[static_cast<std::size_t>(kSlotsOfChunk) * kRecordBytes];
+  const auto record_bytes = static_cast<std::int64_t>(record_bytes_);
+  std::uint64_t newest = 0;
+  for (std::int64_t slot = 0; slot < capacity_;) {
+    const std::int64_t count = std::min(kSlotsOfChunk, capacity_ - slot);
+    const ssize_t bytes = pread(fd_, chunk, static_cast<std::size_t>(count * record_bytes),
+                                kHeaderBytes + slot * record_bytes);
+    if (bytes != count * record_bytes) return false;
+    for (std::int64_t i = 0; i < count; ++i, ++slot) {
+      const std::uint64_t number = take(chunk + i * record_bytes, 8);
+      const bool is_in_place =
+          number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
+      if (is_in_place && number > newest) newest = number;
+    }
+  }
+  if (newest == 0 || !read(newest, newest_)) return false;
+  newest_number_ = newest;
+  return true;
+}
+
+/// What the disk cannot read costs the records that lie there.
+RingLog::Scan RingLog::find_newest() {
+  constexpr std::int64_t kSlotsOfChunk = 64;
+  std::uint8_t chunk[static_cast<std::size_t>(kSlotsOfChunk) * kRecordBytes];
+  const auto record_bytes = static_cast<std::int64_t>(record_bytes_);
+  Scan scan;
+  std::int64_t slots_at_once = kSlotsOfChunk;
+  for (std::int64_t slot = 0; slot < capacity_;) {
+    const std::int64_t left = capacity_ - slot;
+    const std::int64_t wanted = slots_at_once < left ? slots_at_once : left;
+    const ssize_t bytes = pread(fd_, chunk, static_cast<std::size_t>(wanted * record_bytes),
+                                kHeaderBytes + slot * record_bytes);
+    const std::int64_t count = bytes / record_bytes;
+    if (bytes >= 0 && count == 0) {
+      scan.missing = left;
+      return scan;
+    }
+    if (bytes < 0 && slots_at_once > 1) {  // one by one, from here on
+      slots_at_once = 1;
+      continue;
+    }
+    if (bytes < 0) {
+      ++scan.broken;
+      ++slot;
+      continue;
+    }
+    for (std::int64_t i = 0; i < count; ++i, ++slot) {
+      look_at({chunk + i * record_bytes, record_bytes_}, slot, scan);
+    }
+  }
+  return scan;
+}
+
+void RingLog::look_at(std::span<const std::uint8_t> stored, std::int64_t slot, Scan& scan) {
+  CycleRecord record;
+  std::uint64_t number = 0;
+  if (!decode_record(stored, record, number)) {
+    scan.broken += is_broken(stored) ? 1 : 0;
+  } else if (number % static_cast<std::uint64_t>(capacity_) != static_cast<std::uint64_t>(slot)) {
+    ++scan.misplaced;
+  } else {
+    ++scan.whole;
+    if (number <= newest_number_) return;
+    newest_number_ = number;
+    newest_ = record;
+  }
+}
+
+/// Whether what stood in the place of this record is gone.
+bool RingLog::is_lost_at(std::uint64_t number) const {
+  RecordBytes bytes;
+  const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
+  const auto stored = std::span<const std::uint8_t>(bytes).first(record_bytes_);
+  return got != static_cast<ssize_t>(record_bytes_) || is_broken(stored);
+}
+
+bool RingLog::is_at(const char* path) const {
+  struct stat ours {};
+  struct stat there {};
+  if (stat(path, &there) != 0) return errno != ENOENT;  // a disk that does not answer has not moved
+  return fstat(fd_, &ours) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
+bool RingLog::append(const CycleRecord& record, std::uint64_t number) {
+  RecordBytes bytes;
+  encode_record(record, number, bytes);
+  const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), offset_of(number));
+  if (written != static_cast<ssize_t>(bytes.size()) || fdatasync(fd_) != 0) return false;
+  newest_number_ = number;
+  newest_ = record;
+  return true;
+}
+
+bool RingLog::newest(CycleRecord& record) const {
+  if (newest_number_ == 0) return false;
+  record = newest_;
+  return true;
+}
+
+std::uint64_t RingLog::oldest_number() const {
+  const auto capacity = static_cast<std::uint64_t>(capacity_);
+  return newest_number_ > capacity ? newest_number_ - capacity + 1 : 1;
+}
+
+bool RingLog::read(std::uint64_t number, CycleRecord& record) const {
+  if (fd_ < 0) return false;
+  RecordBytes bytes;
+  const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
+  std::uint64_t found = 0;
+  return got == static_cast<ssize_t>(record_bytes_) &&
+         decode_record(std::span(bytes).first(record_bytes_), record, found) && found == number;
+}
+
+}  // namespace bess

@@ -1,0 +1,238 @@
+// An explanation in words and as JSON. Every number stands in both.
+#include <cstdio>
+
+#include "edge/core/control/policy.h"
+#include "edge/records/why/explanation.h"
+#include "shared/host/text.h"
+#include "shared/local_text.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+double eur(std::int64_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
+double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
+
+const char* doing(std::int32_t power_w) {
+  return power_w > 0 ? "charging" : power_w < 0 ? "discharging" : "resting at";
+}
+
+bool is_students(const CycleRecord& record) { return record.reason == Reason::kStudent; }
+
+void add_head(const CycleRecord& record, std::string& text) {
+  add_formatted(text, "%s local, cycle %lld: ", local_text(record.utc_s).c_str(),
+                static_cast<long long>(record.cycle));
+  if (is_stop_reason(record.reason)) {
+    add_formatted(text, "not driven, %s\n", mode_name(record.mode).data());
+  } else {
+    add_formatted(text, "%s %d W\n", doing(record.ordered_power_w),
+                  std::abs(record.ordered_power_w));
+  }
+}
+
+void add_decider(const Explanation& explanation, const std::string& end, std::string& text) {
+  const CycleRecord& record = explanation.record;
+  if (is_students(record)) {
+    text += "decided    by the student";
+  } else {
+    add_formatted(text, "decided    by the guard: %s", reason_name(record.reason).data());
+  }
+  add_formatted(text, ", since %s (%d cycle%s)", local_text(explanation.since_utc_s).c_str(),
+                explanation.cycles, explanation.cycles == 1 ? "" : "s");
+  if (!end.empty()) text.append("; ").append(end);
+  text += '\n';
+  if (!is_students(record) && record.has_student_action) {
+    add_formatted(text, "student    would %s\n", action_name(record.student_action).data());
+  }
+}
+
+void add_price(const Explanation& explanation, std::string& text) {
+  const CycleRecord& record = explanation.record;
+  if (!record.price.has_row) {
+    text += "price      none\n";
+    return;
+  }
+  add_formatted(text, "price      %.2f EUR/MWh, %d s old",
+                eur(record.price.price_centi_eur_per_mwh), record.price_age_s);
+  if (record.price_stands_in) {
+    add_formatted(text, ", decided on as %.2f", eur(record.stand_in_centi_eur_per_mwh));
+  }
+  if (explanation.has_margins) {
+    text.append("; it ").append(price_margins_text(explanation.margins));
+  }
+  text += '\n';
+}
+
+void add_soc(const Explanation& explanation, std::string& text) {
+  const CycleRecord& record = explanation.record;
+  if (!record.has_measurement) {
+    text += "SoC        not measured\n";
+    return;
+  }
+  add_formatted(text, "SoC        %.1f %%", percent(record.measurement.soc_e4));
+  if (explanation.has_margins) {
+    const Margins& at = explanation.margins;
+    // The class falls with SoC, and the log has the one of this SoC.
+    text += record.outlook.source == OutlookSource::kNone ? "; at this price it "
+                                                          : "; at this price and class it ";
+    if (at.charges_at_some_soc)
+      add_formatted(text, "charges up to %.2f %%", percent(at.charge_up_to_soc_e4));
+    if (at.charges_at_some_soc && at.discharges_at_some_soc) text += " and ";
+    if (at.discharges_at_some_soc) {
+      add_formatted(text, "discharges from %.2f %%", percent(at.discharge_from_soc_e4));
+    }
+    if (!at.charges_at_some_soc && !at.discharges_at_some_soc) text += "rests at any SoC";
+  }
+  text += '\n';
+}
+
+void add_level(const CycleRecord& record, std::string& text) {
+  if (record.context_class == 0 || student_context().kind != ContextKind::kLevel) return;
+  add_formatted(text, "level      %.2f EUR/MWh, class %d of %d\n",
+                eur(record.price_level.centi_eur_per_mwh()), record.context_class,
+                kContextClassCount);
+}
+
+/// "tomorrow 07:00 (180.20)"
+std::string moment_text(const PricedQuarterHour& moment, std::int64_t now_utc_s) {
+  const bool is_today = local_day_number(local_minute_of(moment.utc_s)) ==
+                        local_day_number(local_minute_of(now_utc_s));
+  return formatted("%s %s (%.2f)", is_today ? "today" : "tomorrow",
+                   local_clock_text(moment.utc_s).c_str(), eur(moment.centi_eur_per_mwh));
+}
+
+void add_outlook(const CycleRecord& record, std::string& text) {
+  const OutlookReport& outlook = record.outlook;
+  if (outlook.source == OutlookSource::kNone) return;
+  add_formatted(text, "outlook    %s: a plan would charge below %.2f EUR/MWh",
+                outlook_source_name(outlook.source).data(), eur(outlook.break_even_centi));
+  if (outlook.known_quarter_hours > 0) {
+    text += " because " + moment_text(outlook.dearest, record.utc_s) + " is dear and " +
+            moment_text(outlook.cheapest, record.utc_s) + " cheap";
+  } else {
+    text += " as is usual at this hour and level: no day-ahead price is published";
+  }
+  add_formatted(text, "; class %d of %d\n", record.context_class, kContextClassCount);
+}
+
+void add_limits(const CycleRecord& record, const ControlSettings& settings, std::string& text) {
+  const GuardSettings& guard = settings.guard;
+  add_formatted(text, "always     charging at or below %d, discharging at or above %d EUR/MWh\n",
+                guard.thresholds.low_eur_per_mwh, guard.thresholds.high_eur_per_mwh);
+  add_formatted(text, "limits     full at %.1f %%, empty at %.1f %%", percent(guard.soc_max_e4),
+                percent(guard.soc_min_e4));
+  if (record.reserve_soc_e4 > 0)
+    add_formatted(text, ", reserve %.1f %%", percent(record.reserve_soc_e4));
+  add_formatted(text, "; %.2f", record.throughput.soc_moved_e4 / (2.0 * kSocFullE4));
+  if (settings.cycles_per_day_max_e4 > 0) {
+    add_formatted(text, " of %.2f", settings.cycles_per_day_max_e4 / 10'000.0);
+  }
+  text += " full cycles today";
+  if (settings.reversals_per_hour_max > 0) {
+    add_formatted(text, ", %d of %d changes of direction in the last hour",
+                  record.reversals.in_hour, settings.reversals_per_hour_max);
+  }
+  text += '\n';
+}
+
+Json outlook_json(const OutlookReport& outlook) {
+  if (outlook.source == OutlookSource::kNone) return Json::null();
+  const auto moment = [&](const PricedQuarterHour& at) {
+    if (outlook.known_quarter_hours == 0) return Json::null();
+    return Json::object({{"utc", utc_text(at.utc_s).view()},
+                         {"eur_per_mwh", Decimals{eur(at.centi_eur_per_mwh), 2}}});
+  };
+  return Json::object({{"source", outlook_source_name(outlook.source)},
+                       {"break_even_eur_per_mwh", Decimals{eur(outlook.break_even_centi), 2}},
+                       {"known_quarter_hours", outlook.known_quarter_hours},
+                       {"dearest", moment(outlook.dearest)},
+                       {"cheapest", moment(outlook.cheapest)}});
+}
+
+}  // namespace
+
+std::string price_margins_text(const Margins& at) {
+  std::string text = formatted("charges up to %.2f", eur(at.charge_up_to_centi));
+  if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
+    add_formatted(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
+                  eur(at.discharge_from_centi - 1));
+  }
+  add_formatted(text, ", discharges from %.2f", eur(at.discharge_from_centi));
+  return text;
+}
+
+Json margins_json(const Margins& at) {
+  const auto soc_or_null = [](bool exists, std::int32_t soc_e4) {
+    return exists ? Json(Decimals{percent(soc_e4), 2}) : Json::null();
+  };
+  return Json::object(
+      {{"charge_up_to_eur_per_mwh", Decimals{eur(at.charge_up_to_centi), 2}},
+       {"discharge_from_eur_per_mwh", Decimals{eur(at.discharge_from_centi), 2}},
+       {"charge_up_to_soc_percent", soc_or_null(at.charges_at_some_soc, at.charge_up_to_soc_e4)},
+       {"discharge_from_soc_percent",
+        soc_or_null(at.discharges_at_some_soc, at.discharge_from_soc_e4)}});
+}
+
+std::string explanation_text(const Explanation& explanation, const ControlSettings& settings) {
+  const CycleRecord& record = explanation.record;
+  std::string text;
+  add_head(record, text);
+  add_decider(explanation, what_ends(record, settings), text);
+  add_price(explanation, text);
+  add_soc(explanation, text);
+  add_level(record, text);
+  add_outlook(record, text);
+  add_limits(record, settings, text);
+  if (explanation.is_other_student) {
+    text +=
+        "note       another version decided then: this program's student would do otherwise, and "
+        "the prices and "
+        "states of charge above are its own\n";
+  }
+  return text;
+}
+
+Json explanation_json(const Explanation& explanation, const ControlSettings& settings) {
+  const CycleRecord& record = explanation.record;
+  const GuardSettings& guard = settings.guard;
+  const bool has_price = record.price.has_row;
+  Json json = Json::object({{"utc", utc_text(record.utc_s).view()},
+                            {"local", local_text(record.utc_s).view()},
+                            {"cycle", record.cycle},
+                            {"mode", mode_name(record.mode)},
+                            {"ordered_power_w", record.ordered_power_w},
+                            {"reason", reason_name(record.reason)},
+                            {"since_utc", utc_text(explanation.since_utc_s).view()},
+                            {"cycles_with_reason", explanation.cycles},
+                            {"ends", what_ends(record, settings)}});
+  json.set("student",
+           record.has_student_action ? Json(action_name(record.student_action)) : Json::null());
+  json.set("price_eur_per_mwh",
+           has_price ? Json(Decimals{eur(record.price.price_centi_eur_per_mwh), 2}) : Json::null());
+  json.set("price_age_s", has_price ? Json(record.price_age_s) : Json::null());
+  json.set("soc_percent", record.has_measurement
+                              ? Json(Decimals{percent(record.measurement.soc_e4), 2})
+                              : Json::null());
+  json.set("level_eur_per_mwh",
+           record.context_class == 0
+               ? Json::null()
+               : Json(Decimals{eur(record.price_level.centi_eur_per_mwh()), 2}));
+  json.set("context_class", record.context_class);
+  json.set("outlook", outlook_json(record.outlook));
+  json.set("margins", explanation.has_margins ? margins_json(explanation.margins) : Json::null());
+  json.set("is_other_student", explanation.is_other_student);
+  json.set(
+      "thresholds",
+      Json::object({{"charge_at_or_below_eur_per_mwh", guard.thresholds.low_eur_per_mwh},
+                    {"discharge_at_or_above_eur_per_mwh", guard.thresholds.high_eur_per_mwh}}));
+  json.set("limits",
+           Json::object({{"soc_max_percent", Decimals{percent(guard.soc_max_e4), 2}},
+                         {"soc_min_percent", Decimals{percent(guard.soc_min_e4), 2}},
+                         {"reserve_soc_percent", Decimals{percent(record.reserve_soc_e4), 2}},
+                         {"full_cycles_today",
+                          Decimals{record.throughput.soc_moved_e4 / (2.0 * kSocFullE4), 4}},
+                         {"reversals_in_hour", record.reversals.in_hour}}));
+  return json;
+}
+
+}  // namespace bess

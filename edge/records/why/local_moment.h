@@ -1,0 +1,56 @@
+// A moment as a person says it, on the market's wall clock: 14:32, the newest one that has been;
+// today 14:32; yesterday 14:32; yesterday, at this time of day; 2026-11-23 14:32; 2h, so long ago;
+// or, to be exact where an hour comes twice, UTC: 2026-11-23T13:32:00Z.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "edge/records/why/explanation.h"
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+
+/// False when it is none of these.
+inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int64_t& utc_s) {
+  if (parse_utc(text, utc_s)) return true;
+  std::int64_t ago_s = 0;
+  if (text == "yesterday") text = "1d";
+  if (parse_duration(text, ago_s)) {
+    utc_s = now_utc_s - ago_s;
+    return true;
+  }
+  CivilTime wall{};
+  for (const std::string_view day : {"today ", "yesterday "}) {
+    if (!text.starts_with(day)) continue;
+    std::string_view clock = text.substr(day.size());
+    const LocalMinute date = local_minute_of(now_utc_s - (day[0] == 'y' ? kSecondsPerDay : 0));
+    wall.year = date.year;
+    wall.month = date.month;
+    wall.day = date.day;
+    if (!detail::take_clock(clock, wall) || !clock.empty()) return false;
+    utc_s = utc_from_local(wall);
+    return true;
+  }
+  std::string_view clock = text;
+  if (detail::take_clock(clock, wall) && clock.empty()) {
+    for (const std::int64_t day_of : {now_utc_s, now_utc_s - kSecondsPerDay}) {
+      const LocalMinute day = local_minute_of(day_of);
+      wall.year = day.year;
+      wall.month = day.month;
+      wall.day = day.day;
+      utc_s = utc_from_local(wall);
+      if (utc_s <= now_utc_s) return true;
+    }
+    return true;
+  }
+  if (!detail::take_date(text, wall)) return false;
+  if (!detail::take(text, ' ') && !detail::take(text, 'T')) return false;
+  if (!detail::take_clock(text, wall) || !text.empty()) return false;
+  utc_s = utc_from_local(wall);
+  return true;
+}
+
+}  // namespace bess

@@ -1,0 +1,151 @@
+#include "edge/records/why/next_decision.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "edge/core/control/policy.h"
+#include "edge/records/why/explanation.h"
+#include "shared/host/text.h"
+#include "shared/local_text.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+Action decide_at(const LatticeState& state, std::int32_t price_centi,
+                 const PriceThresholds& thresholds) {
+  if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
+  if (price_centi >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
+  return decide_with_student(state);
+}
+
+/// At the next tick, if price and SoC stay.
+LatticeState state_at(const CycleRecord& newest, std::int64_t utc_s) {
+  const LocalMinute then = local_minute_of(utc_s);
+  return make_lattice_state(then, student_context_class(then, context_centi_of(newest)),
+                            newest.measurement.soc_e4, decided_price_centi(newest));
+}
+
+void add_metric(const char* name, const char* help, double value, std::string& text) {
+  add_formatted(text, "# HELP %s %s\n# TYPE %s gauge\n%s %.2f\n", name, help, name, name, value);
+}
+
+/// Reserves begin and end on whole minutes.
+std::vector<ReserveChange> changes_ahead(const ReservePlan& plan, std::int64_t now_utc_s) {
+  std::vector<ReserveChange> changes;
+  std::int16_t before_e4 = reserve_soc_e4_at(plan, local_minute_of(now_utc_s));
+  const std::int64_t first_s = (now_utc_s / 60 + 1) * 60;
+  for (std::int64_t utc_s = first_s; utc_s <= now_utc_s + kSecondsPerDay; utc_s += 60) {
+    const std::int16_t soc_e4 = reserve_soc_e4_at(plan, local_minute_of(utc_s));
+    if (soc_e4 != before_e4) changes.push_back({utc_s, soc_e4});
+    before_e4 = soc_e4;
+  }
+  return changes;
+}
+
+const char* doing(Action action) {
+  switch (action) {
+    case Action::kDischarge:
+      return "discharging";
+    case Action::kIdle:
+      return "resting";
+    case Action::kCharge:
+      break;
+  }
+  return "charging";
+}
+
+std::string ahead_text(const NextDecision& next) {
+  std::string text;
+  for (const ReserveChange& change : next.reserve_changes) {
+    text += text.empty() ? "" : ", ";
+    text += change.soc_e4 > 0 ? formatted("reserve SoC %.1f %% from ", change.soc_e4 / 100.0)
+                              : std::string("no reserve from ");
+    text += local_clock_text(change.utc_s).c_str();
+  }
+  if (next.full_charge_in_days < 0) return text;
+  text += text.empty() ? "" : ", ";
+  return text + (next.full_charge_in_days == 0
+                     ? std::string("a full charge is due")
+                     : formatted("a full charge in %d days", next.full_charge_in_days));
+}
+
+}  // namespace
+
+NextDecision find_next_decision(const CycleRecord& newest, std::int64_t now_utc_s,
+                                const ControlSettings& settings) {
+  NextDecision next;
+  next.utc_s = (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
+  next.has_action = newest.has_measurement && newest.price.has_row;
+  if (next.has_action) {
+    const LatticeState state = state_at(newest, next.utc_s);
+    const std::int32_t price_centi = decided_price_centi(newest);
+    const PriceThresholds& thresholds = settings.guard.thresholds;
+    next.action = decide_at(state, price_centi, thresholds);
+    next.margins = find_margins(state, price_centi, thresholds, decide_with_student);
+    next.power_w = power_sign(next.action) * settings.guard.power_w;
+  }
+  if (newest.reason != Reason::kStudent) {
+    next.reason = reason_name(newest.reason);
+    next.ends = what_ends(newest, settings);
+  }
+  if (!settings.reserve.empty()) next.reserve_changes = changes_ahead(settings.reserve, now_utc_s);
+  if (settings.full_charge_every_days > 0) {
+    next.full_charge_in_days =
+        std::max(0, settings.full_charge_every_days - newest.days_since_full);
+  }
+  return next;
+}
+
+std::string next_decision_text(const NextDecision& next) {
+  std::string text = std::string("next       ") + local_clock_text(next.utc_s).c_str();
+  if (next.has_action) {
+    text += std::string(", ") + doing(next.action);
+    if (next.power_w != 0) text += formatted(" %d W", std::abs(next.power_w));
+    text += " if price and SoC stay";
+  } else {
+    text += ", without a price or a measurement nothing is driven";
+  }
+  if (!next.reason.empty()) {
+    text += "; " + next.reason + " stands above it";
+    if (!next.ends.empty()) text += ", " + next.ends;
+  }
+  text += '\n';
+  const std::string ahead = ahead_text(next);
+  return ahead.empty() ? text : text + "ahead      " + ahead + "\n";
+}
+
+std::string next_decision_metrics(const NextDecision& next) {
+  std::string text;
+  if (!next.has_action) return text;
+  const auto eur = [](std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; };
+  add_metric("bess_charge_up_to_eur_per_mwh",
+             "Price up to which the student would charge at the next tick, at this SoC.",
+             eur(next.margins.charge_up_to_centi), text);
+  add_metric("bess_discharge_from_eur_per_mwh",
+             "Price from which the student would discharge at the next tick, at this SoC.",
+             eur(next.margins.discharge_from_centi), text);
+  return text;
+}
+
+Json next_decision_json(const NextDecision& next) {
+  Json reserves = Json::list();
+  for (const ReserveChange& change : next.reserve_changes) {
+    reserves.add(Json::object({{"utc", utc_text(change.utc_s).view()},
+                               {"soc_percent", Decimals{change.soc_e4 / 100.0, 2}}}));
+  }
+  Json json = Json::object({{"utc", utc_text(next.utc_s).view()},
+                            {"local", local_text(next.utc_s).view()},
+                            {"reason", next.reason},
+                            {"ends", next.ends}});
+  json.set("action", next.has_action ? Json(action_name(next.action)) : Json::null());
+  json.set("power_w", next.has_action ? Json(next.power_w) : Json::null());
+  json.set("margins", next.has_action ? margins_json(next.margins) : Json::null());
+  json.set("reserve_changes", std::move(reserves));
+  json.set("full_charge_in_days",
+           next.full_charge_in_days < 0 ? Json::null() : Json(next.full_charge_in_days));
+  return json;
+}
+
+}  // namespace bess

@@ -1,0 +1,8 @@
+// Elia's JSON exports, records of both API versions.
+#include "tests/checks/fuzz/market_promises.h"
+#include "workstation/data/market/feed/market_files.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  bess::check_market_reader(bess::parse_market_json, bess::text_of(data, size));
+  return 0;
+}

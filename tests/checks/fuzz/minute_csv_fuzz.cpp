@@ -1,0 +1,7 @@
+// The exchange format between markets and everything that learns: minute files.
+#include "tests/checks/fuzz/market_promises.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  bess::check_minute_reader(bess::text_of(data, size));
+  return 0;
+}

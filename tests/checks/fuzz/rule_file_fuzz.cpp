@@ -1,0 +1,34 @@
+// Rule files of an operator.
+#include "shared/host/user_error.h"
+#include "tests/checks/fuzz/fuzz_target.h"
+#include "workstation/correction/rules/rule_conflicts.h"
+#include "workstation/correction/rules/rule_file.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace bess;
+  std::string written;
+  RuleSet rules;
+  try {
+    rules = parse_rules(text_of(data, size), "fuzz");
+    written = format_rules(rules);
+  } catch (const UserError&) {
+    return 0;
+  }
+  must(format_rules(parse_rules(written, "written")) == written,
+       "what is written reads back to the same");
+  for (const ContextKind kind : {ContextKind::kMonth, ContextKind::kLevel}) {
+    try {
+      require_consistent(rules, {}, kind);
+    } catch (const UserError&) {
+      continue;
+    }
+    // What can be obeyed leaves something to do everywhere.
+    const ImpliedRanges implied(rules, kind);
+    for (int n = 0; n < 200; ++n) {
+      const int price = kLatticePriceMinEurPerMwh + n * 37 % kPriceCount;
+      must(implied.at(n * 7 % kQuarterHourCount, 1 + n % 12, n * 13 % kSocCount, price).set() != 0,
+           "some action is left");
+    }
+  }
+  return 0;
+}

@@ -1,6 +1,0 @@
-// The control loop as bess-edge instantiates it, in an object of its own for the object proofs.
-#include "edge/program/controller.h"
-#include "edge/program/real_world.h"
-
-template class bess::ControlLoop<bess::ModbusBattery, bess::RealWorld::Prices, bess::EdgeClock,
-                                 bess::Controller<bess::RealWorld>::Site>;

@@ -1,8 +1,0 @@
-// Elia's JSON exports, records of both API versions.
-#include "tests/fuzz/market_promises.h"
-#include "workstation/market/feed/market_files.h"
-
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  bess::check_market_reader(bess::parse_market_json, bess::text_of(data, size));
-  return 0;
-}

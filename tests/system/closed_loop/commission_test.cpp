@@ -1,0 +1,342 @@
+// The sign check against the simulator's physics: what passes, what is refused, and that the
+// battery is free again on every way out.
+#include "edge/device/battery/commission.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+/// A meter at the connection, and a house that may move.
+struct CommissionMeter {
+  [[nodiscard]] static bool exists() { return true; }
+  Status read(const BatteryMeasurement&, std::int32_t& grid_power_w) {
+    if (is_silent) return Status::kTimeout;
+    battery.physics.advance(battery.clock.now_ns);
+    grid_power_w = static_cast<std::int32_t>(
+        shown(house_w(battery.clock.now_ns / kNanosecondsPerSecond) + battery.physics.power_w()));
+    return Status::kOk;
+  }
+  FakeBattery& battery;
+  std::function<double(double)> shown = [](double grid_w) { return grid_w; };
+  std::function<double(std::int64_t)> house_w = [](std::int64_t) { return 400.0; };
+  bool is_silent = false;
+};
+
+struct CommissionSite {
+  explicit CommissionSite(double soc = 0.3) : battery(clock, soc) {}
+  CommissionResult commission(const CommissionSettings& settings = {}) {
+    return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
+  }
+  CommissionResult commission_with(const CommissionMeter& meter) {
+    return SignCheck<FakeBattery, FakeClock, CommissionMeter>({}, battery, clock, meter).run();
+  }
+  void expect_refused(CommissionVerdict verdict) {
+    EXPECT_EQ(commission().verdict, verdict) << commission_text(verdict);
+    EXPECT_FALSE(battery.physics.dispatch_active());
+  }
+  [[nodiscard]] std::vector<int> ordered() const {
+    std::vector<int> watts;
+    for (const PowerOrder& order : battery.orders) watts.push_back(order.power_w);
+    return watts;
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+};
+
+TEST(Commission, DrivesABatteryBothWays) {
+  CommissionSite site(0.3);
+  const std::int64_t start_ns = site.clock.now_ns;
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_TRUE(result.charge.is_tested && result.discharge.is_tested);
+  EXPECT_EQ(result.charge.measured_power_w, 500);
+  EXPECT_EQ(result.discharge.measured_power_w, -500);
+  EXPECT_EQ(result.charge.speed.dynamics.dead_time_s, 0);
+  EXPECT_EQ(ramp_w_per_s(result.charge.speed), 0);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, -4'000, 4'000, 0}));
+  EXPECT_EQ(site.battery.releases, 1);
+  EXPECT_EQ((site.clock.now_ns - start_ns) / kNanosecondsPerSecond,
+            10 + 30 + 10 + 30 + 10 + 3 * 8 + 10);
+}
+
+TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
+  CommissionSite full(1.0);
+  const CommissionResult discharged = full.commission();
+  EXPECT_EQ(discharged.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(discharged.charge.is_tested);
+  EXPECT_EQ(discharged.discharge.measured_power_w, -500);
+  EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0, -4'000, 0}));
+  CommissionSite empty(0.1);
+  const CommissionResult charged = empty.commission();
+  EXPECT_EQ(charged.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(charged.discharge.is_tested);
+  CommissionSite between(0.5);
+  EXPECT_EQ(between.commission({.soc_min_e4 = 4'950, .soc_max_e4 = 5'050}).verdict,
+            CommissionVerdict::kNoRoom);
+  EXPECT_TRUE(between.battery.orders.empty());
+}
+
+/// 4029 W were once measured for 500, and "the sign is right".
+TEST(Commission, RefusesMorePowerThanOrderedAndEndsItAtOnce) {
+  for (const double gain : {8.06, 1.5, -8.0}) {
+    CommissionSite site;
+    site.battery.physics.set_habits({.gain = gain});
+    const std::int64_t start_ns = site.clock.now_ns;
+    site.expect_refused(gain > 0 ? CommissionVerdict::kTooMuch : CommissionVerdict::kWrongSign);
+    EXPECT_LE(site.clock.now_ns - start_ns, 13 * kNanosecondsPerSecond);
+  }
+}
+
+TEST(Commission, TheOtherDirectionIsLookedAtAsWell) {
+  struct OneWay : FakeBattery {
+    using FakeBattery::FakeBattery;
+    Status read(BatteryMeasurement& m) {
+      const Status status = FakeBattery::read(m);
+      if (m.power_w < 0) m.power_w = -m.power_w;  // a map that reads a magnitude
+      return status;
+    }
+  };
+  FakeClock clock;
+  OneWay battery(clock, 0.3);
+  const CommissionResult result = SignCheck<OneWay, FakeClock>({}, battery, clock).run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kWrongSign);
+  EXPECT_EQ(result.ordered_power_w, -500);
+  EXPECT_FALSE(battery.physics.dispatch_active());
+}
+
+TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
+  CommissionSite site;
+  site.battery.physics.set_habits({.gain = 0.55});
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kTooLittle);
+  EXPECT_EQ(result.wanted_tolerance_w, 300);  // 225 W are missing
+  CommissionSettings told;
+  told.response.tolerance_w = 300;
+  CommissionSite again;
+  again.battery.physics.set_habits({.gain = 0.55});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+}
+
+TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
+  CommissionSite quick;
+  quick.battery.physics.set_habits({.delay_s = 5});
+  const CommissionResult passed = quick.commission();
+  EXPECT_EQ(passed.verdict, CommissionVerdict::kPassed);
+  EXPECT_NEAR(passed.charge.speed.dynamics.dead_time_s, 5, 1.001);
+  EXPECT_NEAR(static_cast<double>(passed.charge.came_ms), 5'000, 1'001);
+  CommissionSite late;
+  late.battery.physics.set_habits({.delay_s = 25});
+  const CommissionResult refused = late.commission();
+  EXPECT_EQ(refused.verdict, CommissionVerdict::kSlow);
+  EXPECT_GE(refused.wanted_settle_s, 25);
+  EXPECT_LE(refused.wanted_settle_s, 32);
+  EXPECT_EQ(refused.wanted_ramp_w_max, 0);
+  CommissionSettings told;
+  told.response.settle_s = refused.wanted_settle_s;
+  CommissionSite again;
+  again.battery.physics.set_habits({.delay_s = 25});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+}
+
+/// 500 W are there in 17 s; a reversal of 8 kW takes 267 s, longer than any map may say.
+TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
+  CommissionSite site;
+  site.battery.physics.set_habits({.ramp_w_per_s = 30});
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kSlow);
+  EXPECT_NEAR(ramp_w_per_s(result.charge.speed), 30, 2);
+  EXPECT_EQ(result.wanted_settle_s, 100);
+  EXPECT_NEAR(result.wanted_ramp_w_max, 2'400, 200);
+  CommissionSettings told;
+  told.response.settle_s = result.wanted_settle_s;
+  told.step_w_max = result.wanted_ramp_w_max;
+  CommissionSite again;
+  again.battery.physics.set_habits({.ramp_w_per_s = 30});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+  CommissionSite brisk;
+  brisk.battery.physics.set_habits({.ramp_w_per_s = 200});  // 500 W in 2.5 s, 8 kW in 40
+  const CommissionResult seen = brisk.commission();
+  EXPECT_EQ(seen.verdict, CommissionVerdict::kSlow);
+  EXPECT_NEAR(ramp_w_per_s(seen.discharge.speed), 200, 10);
+  EXPECT_NEAR(seen.wanted_settle_s, 45, 2);  // 37 s and a fifth
+  EXPECT_EQ(seen.wanted_ramp_w_max, 0);
+}
+
+/// At 11 % nothing larger than 500 W is discharged, and charged only up to what the room leaves.
+TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
+  CommissionSite site(0.12);
+  site.battery.physics.set_time_constant(5);
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
+  EXPECT_TRUE(result.charge.speed.has_two);
+  EXPECT_FALSE(result.charge.speed.is_doubtful);
+  EXPECT_FALSE(result.discharge.speed.has_two);
+  EXPECT_TRUE(result.discharge.speed.is_doubtful);
+  CommissionSite bound(0.5);
+  bound.battery.physics.set_time_constant(5);
+  EXPECT_EQ(bound.commission({.drives_further = false}).verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(bound.ordered(), (std::vector{0, 500, 0, -500, 0}));
+}
+
+TEST(Commission, TheConnectionBoundsTheLargerSteps) {
+  CommissionSite site(0.5);
+  const CommissionResult result = SignCheck<FakeBattery, FakeClock, CommissionMeter>(
+                                      {.import_w_max = 3'000, .export_w_max = 900}, site.battery,
+                                      site.clock, {.battery = site.battery})
+                                      .run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  // 400 W of house: 2600 W are left to charge, 1300 W to discharge.
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 1'300, -1'300, 1'300, 0}));
+}
+
+/// Near its limits it holds back: that is no ramp, and says nothing of its speed.
+TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
+  CommissionSite site(0.5);
+  site.battery.physics.set_derating(0.4);
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_TRUE(result.charge.is_held_back);
+  EXPECT_EQ(result.charge.further_measured_w, 1'600);
+  EXPECT_FALSE(result.charge.speed.has_two);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
+}
+
+TEST(Commission, AnAlarmThatComesMeanwhileEndsIt) {
+  struct Alarming : FakeBattery {
+    using FakeBattery::FakeBattery;
+    Status read(BatteryMeasurement& m) {
+      const Status status = FakeBattery::read(m);
+      m.alarm = physics.power_w() != 0;
+      return status;
+    }
+  };
+  FakeClock clock;
+  Alarming battery(clock, 0.3);
+  const CommissionResult result = SignCheck<Alarming, FakeClock>({}, battery, clock).run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kAlarm);
+  EXPECT_EQ(battery.releases, 1);
+  EXPECT_EQ(battery.orders.size(), 2U);
+}
+
+// --- the meter -----------------------------------------------------------------------------------
+
+TEST(Commission, AMeterThatFollowsPasses) {
+  CommissionSite site;
+  const CommissionResult result = site.commission_with({.battery = site.battery});
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(result.meter, MeterVerdict::kFollows);
+  EXPECT_EQ(result.meter_percent, 100);
+  EXPECT_EQ(result.rest_house_w, 400);
+  CommissionSite full(1.0);
+  EXPECT_EQ(full.commission_with({.battery = full.battery}).meter, MeterVerdict::kFollows);
+  CommissionSite kettle;  // goes on in one of the four steps
+  CommissionMeter meter{.battery = kettle.battery};
+  const std::int64_t on_s = kettle.clock.now_ns / kNanosecondsPerSecond + 60;
+  meter.house_w = [on_s](std::int64_t utc_s) { return utc_s < on_s ? 400.0 : 2'400.0; };
+  EXPECT_EQ(kettle.commission_with(meter).verdict, CommissionVerdict::kPassed);
+}
+
+TEST(Commission, AMeterThatDoesNotFollowIsRefused) {
+  const std::function<double(double)> liars[] = {
+      [](double) { return 400.0; }, [](double w) { return -w; }, [](double w) { return 0.1 * w; },
+      [](double w) { return 10 * w; }, [](double w) { return 0.65 * w; }};
+  for (const auto& lie : liars) {
+    CommissionSite site;
+    const CommissionResult result = site.commission_with({.battery = site.battery, .shown = lie});
+    EXPECT_EQ(result.verdict, CommissionVerdict::kMeterMismatch) << result.meter_percent;
+    EXPECT_EQ(site.battery.releases, 1);
+  }
+  CommissionSite silent;
+  const CommissionResult lost =
+      silent.commission_with({.battery = silent.battery, .is_silent = true});
+  EXPECT_EQ(lost.verdict, CommissionVerdict::kMeterLost);
+  EXPECT_EQ(lost.status, Status::kTimeout);
+}
+
+TEST(Commission, AHouseThatMovesTooMuchIsNoReasonToAccuse) {
+  CommissionSite site;
+  CommissionMeter meter{.battery = site.battery};
+  meter.house_w = [](std::int64_t utc_s) { return static_cast<double>(utc_s * 7'919 % 13) * 300; };
+  EXPECT_EQ(site.commission_with(meter).verdict, CommissionVerdict::kMeterRestless);
+}
+
+TEST(Commission, RefusesAWrongSign) {
+  CommissionSite site;
+  site.battery.inverted = true;
+  site.expect_refused(CommissionVerdict::kWrongSign);
+}
+
+TEST(Commission, RefusesABatteryThatDoesNothing) {
+  CommissionSite site;
+  site.battery.physics =
+      SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.3, site.clock.now_ns);
+  site.expect_refused(CommissionVerdict::kDoesNotFollow);
+}
+
+TEST(Commission, RefusesAnAlarmWithoutOrderingAnything) {
+  CommissionSite site;
+  site.battery.alarm = true;
+  site.expect_refused(CommissionVerdict::kAlarm);
+  EXPECT_TRUE(site.battery.orders.empty());
+}
+
+TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
+  CommissionSite site;
+  site.battery.physics.start_dispatch(1'000, 1.0, 3'600);
+  EXPECT_EQ(site.commission().verdict, CommissionVerdict::kForeignOrder);
+  EXPECT_TRUE(site.battery.orders.empty());
+  EXPECT_EQ(site.battery.releases, 0);  // it is not ours to release
+}
+
+TEST(Commission, RefusesPowerAtRest) {
+  CommissionSite site;
+  site.battery.offset_w = 400;
+  site.expect_refused(CommissionVerdict::kNotAtRest);
+  EXPECT_EQ(site.battery.orders.size(), 1U);  // only the 0 W
+}
+
+TEST(Commission, SaysWhyTheLinkFailed) {
+  CommissionSite site;
+  site.battery.link = false;
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kNoLink);
+  EXPECT_EQ(result.status, Status::kTimeout);
+}
+
+TEST(Commission, AnInterruptReleases) {
+  CommissionSite site;
+  site.clock.stop = true;
+  site.expect_refused(CommissionVerdict::kInterrupted);
+}
+
+TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
+  CommissionSite site;
+  site.battery.failing_releases = 3;
+  CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(site.battery.physics.dispatch_active());
+  site.battery.inverted = true;
+  site.battery.failing_releases = 1'000;
+  result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kWrongSign);
+  EXPECT_EQ(result.release_status, Status::kTimeout);
+}
+
+TEST(Commission, FeedsTheWatchdogMeanwhile) {
+  CommissionSite site;
+  site.battery.refresh_s = 9;
+  EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(site.battery.refreshed_ns.size(), 4 * 1U + 2 * 3U);  // 10 s of rest, 30 s of driving
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,484 @@
+// The real control loop against the battery model and a fake clock: whole days in milliseconds,
+// with faults from one named seed, and invariants that hold whatever bus, market and clock do.
+#include "edge/core/loop/control_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+ControlSettings in_control() { return {.control = true, .guard = {}}; }
+
+struct Plant {
+  explicit Plant(double soc = 0.5, ControlSettings settings = in_control())
+      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {}
+  CycleRecord cycle() {
+    CycleRecord record;
+    EXPECT_TRUE(loop.run_cycle(record));
+    return record;
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  Loop loop;
+};
+
+TEST(ClosedLoop, ADayEndsWhereTheOrdersLead) {
+  set_market_time_zone();
+  Plant plant;
+  double soc = 0.5;
+  for (int i = 0; i < kStepsPerDay; ++i) {
+    const CycleRecord record = plant.cycle();
+    EXPECT_EQ(record.mode, Mode::kRunning);
+    EXPECT_EQ(record.price_age_s, 0);
+    EXPECT_EQ(record.missed_ticks, 0);
+    soc = battery_step(kHouse, soc, record.ordered_power_w, kHoursPerStep).soc_frac;
+  }
+  plant.battery.physics.advance((plant.clock.now_ns / 120'000'000'000 + 1) * 120'000'000'000);
+  EXPECT_NEAR(plant.battery.physics.soc_frac(), soc, 1e-9);
+  EXPECT_EQ(plant.battery.orders.size(), std::size_t{kStepsPerDay});
+}
+
+TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -20'000; };
+  EXPECT_EQ(plant.cycle().ordered_power_w, 4'000);
+  plant.prices.outage = true;
+  std::vector<Mode> modes;
+  std::vector<std::int32_t> powers;
+  for (int i = 0; i < 270; ++i) {  // nine hours, as in January 2024
+    const CycleRecord record = plant.cycle();
+    modes.push_back(record.mode);
+    powers.push_back(record.ordered_power_w);
+  }
+  // The row of the last good minute is 2, then 4 minutes old: still usable; then the safe state.
+  EXPECT_EQ(powers[1], 4'000);
+  EXPECT_EQ(modes[2], Mode::kHolding);
+  EXPECT_EQ(powers[2], 0);
+  EXPECT_EQ(modes[4], Mode::kHolding);  // 240 s held
+  EXPECT_EQ(modes[5], Mode::kSafe);     // 360 s: released
+  EXPECT_EQ(modes.back(), Mode::kSafe);
+  EXPECT_EQ(plant.battery.releases, 1);  // once, not every cycle
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  plant.prices.outage = false;
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+}
+
+TEST(ClosedLoop, ReadOnlyNeverWrites) {
+  Plant plant(0.5, ControlSettings{});
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(plant.cycle().written);
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_TRUE(plant.battery.orders.empty());
+  EXPECT_EQ(plant.battery.releases, 0);
+}
+
+TEST(ClosedLoop, StopOrdersZeroAndReleases) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -20'000; };
+  plant.cycle();
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_EQ(plant.battery.orders.back().power_w, 0);
+  EXPECT_EQ(plant.battery.releases, 1);
+  EXPECT_EQ(record.mode, Mode::kStopping);
+  EXPECT_EQ(record.reason, Reason::kStopRequested);
+}
+
+TEST(ClosedLoop, StopWithoutLinkSaysSo) {
+  Plant plant;
+  plant.cycle();
+  plant.battery.link = false;
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kTimeout);
+}
+
+TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
+  Plant plant;
+  plant.prices.outage = true;
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(plant.cycle().mode, Mode::kStart);
+  plant.clock.synchronised = false;
+  plant.prices.outage = false;
+  EXPECT_EQ(plant.cycle().reason, Reason::kClock);
+  EXPECT_TRUE(plant.battery.orders.empty());
+  plant.clock.synchronised = true;
+  EXPECT_EQ(plant.cycle().mode, Mode::kRunning);
+}
+
+TEST(ClosedLoop, CountsTheTicksThatAnOverrunSkipped) {
+  Plant plant;
+  plant.cycle();
+  plant.clock.now_ns += 500 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().missed_ticks, 4);
+}
+
+TEST(ClosedLoop, ARestartTakesOverWhatTheBatteryIsDoing) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.battery.physics.start_dispatch(4'000, 1.0, 300);  // the order of the run before
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.measurement.order_power_w, 4'000);
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_EQ(plant.battery.orders.size(), 1U);
+  EXPECT_EQ(plant.battery.orders[0].power_w, 4'000);  // no step in power in between
+}
+
+TEST(ClosedLoop, ARestartWithoutAPriceHoldsZeroAndReleasesTheOldOrder) {
+  Plant plant;
+  plant.prices.outage = true;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  EXPECT_EQ(plant.cycle().mode, Mode::kHolding);
+  EXPECT_EQ(plant.battery.orders.back().power_w, 0);
+  for (int i = 0; i < 4; ++i) plant.cycle();
+  EXPECT_EQ(plant.battery.releases, 1);
+}
+
+TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
+  Plant plant;
+  plant.prices.outage = true;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.cycle();
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+}
+
+TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_EQ(plant.battery.releases, 1);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+}
+
+TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutAWatchdog) {
+  Plant plant;
+  plant.cycle();
+  CycleRecord record;
+  EXPECT_FALSE(plant.loop.hand_over(record));
+}
+
+TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
+  Plant plant;
+  plant.cycle();
+  plant.battery.failing_releases = 3;
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  Plant unreachable;  // gives up in the end
+  unreachable.cycle();
+  unreachable.battery.link = false;
+  const std::int64_t start_ns = unreachable.clock.now_ns;
+  unreachable.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kTimeout);
+  EXPECT_LE(unreachable.clock.now_ns - start_ns, 90 * kNanosecondsPerSecond);
+}
+
+TEST(ClosedLoop, AStopWithADeadManTriesOnceAndSaysWhatFailed) {
+  ControlSettings settings = in_control();
+  settings.has_watchdog = true;
+  for (const bool has_link : {true, false}) {
+    Plant plant(0.5, settings);
+    plant.cycle();
+    plant.battery.link = has_link;
+    plant.battery.failing_releases = 100;
+    const std::int64_t start_ns = plant.clock.now_ns;
+    CycleRecord record;
+    plant.loop.stop(record);
+    EXPECT_EQ(record.battery_status, Status::kTimeout) << "also where its 0 W was taken";
+    EXPECT_LT(plant.clock.now_ns - start_ns, 5 * kNanosecondsPerSecond);
+  }
+}
+
+TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
+  Plant plant;
+  plant.battery.refresh_s = 30;
+  plant.cycle();
+  EXPECT_TRUE(plant.battery.refreshed_ns.empty());  // nothing was in force before the first order
+  plant.cycle();
+  ASSERT_GE(plant.battery.refreshed_ns.size(), 3U);
+  const std::int64_t first_ns = plant.battery.refreshed_ns[0];
+  EXPECT_EQ(plant.battery.refreshed_ns[1] - first_ns, 30 * kNanosecondsPerSecond);
+  EXPECT_EQ(plant.battery.refreshed_ns[2] - first_ns, 60 * kNanosecondsPerSecond);
+}
+
+TEST(ClosedLoop, NothingIsFedWithoutAnOrderOrInReadOnly) {
+  ControlSettings settings = in_control();
+  settings.control = false;
+  Plant reader(0.5, settings);
+  Plant safe;
+  reader.battery.refresh_s = safe.battery.refresh_s = 30;
+  safe.prices.outage = true;
+  for (int i = 0; i < 5; ++i) {
+    reader.cycle();
+    safe.cycle();
+  }
+  EXPECT_TRUE(reader.battery.refreshed_ns.empty());
+  EXPECT_TRUE(safe.battery.refreshed_ns.empty());
+}
+
+TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
+  set_market_time_zone();
+  ControlSettings settings = in_control();
+  settings.cycles_per_day_max_e4 = 5'000;  // half a cycle: 100 % of charge moved
+  Plant plant(0.5, settings);
+  plant.prices.price = [&](std::int64_t minute_utc_s) {
+    return minute_utc_s / 7'200 % 2 == 0 ? -60'000 : 160'000;  // two hours each way
+  };
+  std::int32_t moved_e4_max = 0;
+  bool spent = false, reopened = false;
+  for (int i = 0; i < 2 * kStepsPerDay; ++i) {
+    const CycleRecord record = plant.cycle();
+    moved_e4_max = std::max(moved_e4_max, record.throughput.soc_moved_e4);
+    if (record.reason == Reason::kCycleBudget) {
+      EXPECT_EQ(record.ordered_power_w, 0);
+      spent = true;
+    }
+    reopened = reopened || (spent && record.ordered_power_w != 0);
+  }
+  EXPECT_TRUE(spent);
+  EXPECT_TRUE(reopened);
+  EXPECT_GE(moved_e4_max, 10'000);
+  EXPECT_LE(moved_e4_max, 10'000 + 350);  // one 2-minute step of 4 kW at the most
+}
+
+TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
+  set_market_time_zone();
+  ControlSettings settings = in_control();
+  settings.cycles_per_day_max_e4 = 5'000;
+  Plant plant(0.5, settings);
+  plant.loop.take_over({.throughput = {.local_day = 20'230'325, .soc_moved_e4 = 10'000}});
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  EXPECT_EQ(plant.cycle().reason, Reason::kCycleBudget);
+}
+
+/// Cycles from one run to the next, killed after each, until one finds what `fault` did to the
+/// battery.
+int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  std::vector<CycleRecord> log;
+  for (int run = 1; run <= 20; ++run) {
+    Loop loop(in_control(), plant.battery, plant.prices, plant.clock);
+    for (const CycleRecord& record : log) loop.recall(record);
+    if (!log.empty()) {
+      const CycleRecord& newest = log.back();
+      loop.take_over({.utc_s = newest.utc_s, .ordered_power_w = newest.ordered_power_w},
+                     newest.is_tripped ? std::optional(newest.trip) : std::nullopt);
+    }
+    for (int i = 0; i < cycles_per_run; ++i) {
+      fault(plant.battery, static_cast<int>(log.size()));
+      CycleRecord record;
+      EXPECT_TRUE(loop.run_cycle(record));
+      log.push_back(record);
+      if (record.is_tripped) return static_cast<int>(log.size());
+    }
+  }
+  return 99;
+}
+
+TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
+  const auto inverted = [](FakeBattery& battery, int) { battery.inverted = true; };
+  const auto every_other = [](FakeBattery& battery, int cycle) {
+    battery.inverted = cycle % 2 == 1;
+  };
+  EXPECT_EQ(runs_until_trip(20, inverted), 3);
+  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order that it finds is as old as the log says
+  EXPECT_EQ(runs_until_trip(2, inverted), 3);
+  EXPECT_LE(runs_until_trip(1, every_other), 6);
+}
+
+TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.battery.inverted = true;
+  std::vector<CycleRecord> log;
+  for (int i = 0; i < 2; ++i) log.push_back(plant.cycle());
+  ASSERT_FALSE(log.back().is_tripped);  // short of it by one reading
+  Loop next(in_control(), plant.battery, plant.prices, plant.clock);
+  Loop forgetful(in_control(), plant.battery, plant.prices, plant.clock);
+  for (const CycleRecord& record : log) next.recall(record);
+  CycleRecord record;
+  ASSERT_TRUE(next.run_cycle(record));
+  EXPECT_FALSE(record.is_tripped);  // an order of unknown age proves nothing
+  ASSERT_TRUE(next.run_cycle(record));
+  EXPECT_TRUE(record.is_tripped);
+  ASSERT_TRUE(forgetful.run_cycle(record));
+  EXPECT_FALSE(record.is_tripped);
+}
+
+TEST(ClosedLoop, AFailedReadingKeepsItsCauseThoughTheOrderSucceeds) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.cycle();
+  plant.battery.is_implausible = true;
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kLink);
+  EXPECT_EQ(record.mode, Mode::kHolding);
+  EXPECT_TRUE(record.written);  // 0 W
+  EXPECT_EQ(record.battery_status, Status::kImplausible);
+}
+
+TEST(ClosedLoop, ThePriceIsLoggedAsOldAsAtTheWrite) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.prices.arrives_after_ns = 7 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().price_age_s, 7);
+}
+
+TEST(ClosedLoop, ATripOfTheRunBeforeHoldsUntilItIsCleared) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.loop.take_over({}, Trip{.reason = Reason::kUncontrolledPower, .utc_s = 7});
+  for (int i = 0; i < 5; ++i) {
+    const CycleRecord record = plant.cycle();
+    EXPECT_EQ(record.reason, Reason::kUncontrolledPower);
+    EXPECT_TRUE(record.is_tripped);
+    EXPECT_EQ(record.trip.utc_s, 7);
+  }
+  EXPECT_TRUE(plant.battery.orders.empty());
+  plant.loop.clear_trip();
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+  EXPECT_FALSE(record.is_tripped);
+}
+
+TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
+  Plant plant;
+  plant.battery.refuses_orders = true;  // external control is switched off on the device
+  plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
+  EXPECT_EQ(plant.cycle().reason, Reason::kOrdersFail);  // tried again after a pause
+  plant.battery.refuses_orders = false;
+  plant.battery.offset_w = 0;
+  CycleRecord record;
+  for (int i = 0; i < 5; ++i) record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kStudent);
+  EXPECT_TRUE(record.written);
+}
+
+TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.battery.refuses_orders = true;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
+}
+
+TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
+  Plant plant(1.0);
+  plant.battery.physics =
+      SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.5, plant.clock.now_ns);
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.cycle();
+  EXPECT_EQ(plant.cycle().unanswered_orders, 1);
+  EXPECT_EQ(plant.cycle().reason, Reason::kNoAnswer);
+}
+
+TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
+  Plant plant;
+  plant.prices.price = [&](std::int64_t) {
+    plant.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
+    return -60'000;
+  };
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kLink);  // the reading is as old as the price
+  EXPECT_TRUE(plant.battery.orders.empty());
+}
+
+TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldReading) {
+  Plant plant;
+  plant.prices.price = [&](std::int64_t) { return -60'000; };
+  plant.prices.arrives_after_ns = 300 * kNanosecondsPerSecond;  // fresh, the reading is not
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kLink);
+  EXPECT_TRUE(plant.battery.orders.empty());
+}
+
+TEST(ClosedLoop, CountsOrdersThatComeTooLateOrNotAtAll) {
+  Plant plant;
+  EXPECT_EQ(plant.cycle().deadline_misses, 0);
+  plant.battery.read_takes_ns = 70 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().deadline_misses, 1);
+  plant.battery.read_takes_ns = 0;
+  EXPECT_EQ(plant.cycle().deadline_misses, 1);
+  plant.battery.link = false;
+  EXPECT_EQ(plant.cycle().deadline_misses, 2);
+}
+
+/// Toggles every fault at random; `chance` per cycle.
+void disturb(Plant& plant, std::mt19937_64& random) {
+  const auto toggle = [&](bool& fault, double on, double off) {
+    const double u = std::uniform_real_distribution<>(0, 1)(random);
+    fault = fault ? u >= off : u < on;
+  };
+  bool link_down = !plant.battery.link;
+  bool unsynchronised = !plant.clock.synchronised;
+  toggle(link_down, 0.02, 0.2);
+  toggle(unsynchronised, 0.005, 0.3);
+  toggle(plant.battery.alarm, 0.01, 0.3);
+  toggle(plant.prices.outage, 0.03, 0.15);
+  plant.battery.link = !link_down;
+  plant.clock.synchronised = !unsynchronised;
+}
+
+void expect_invariants(const Plant& plant, const CycleRecord& record, double soc_start) {
+  const double soc = plant.battery.physics.soc_frac();
+  EXPECT_LE(soc, std::max(kHouse.soc_max_frac, soc_start) + 1e-12);
+  EXPECT_GE(soc, std::min(kHouse.soc_min_frac, soc_start) - 1e-12);
+  EXPECT_LE(std::abs(record.ordered_power_w), 4'000);
+  if (is_stop_reason(record.reason)) {
+    EXPECT_EQ(record.ordered_power_w, 0);
+  }
+  if (record.price_age_s > 240 + ControlSettings{}.price_wait_s) {  // 240 s at the tick
+    EXPECT_EQ(record.ordered_power_w, 0);
+  }
+  if (record.mode == Mode::kSafe && record.written) {
+    EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  }
+}
+
+TEST(ClosedLoop, InvariantsHoldThroughRandomFaults) {
+  constexpr std::uint64_t kSeed = 20'240'122;
+  std::mt19937_64 random(kSeed);
+  for (int day = 0; day < 60; ++day) {
+    const double soc_start = std::uniform_real_distribution<>(0.05, 1.0)(random);
+    Plant plant(soc_start);
+    plant.prices.price = [&](std::int64_t) {
+      return std::uniform_int_distribution<std::int32_t>(-80'000, 180'000)(random);
+    };
+    int cycles_without_link = 0;
+    for (int i = 0; i < kStepsPerDay; ++i) {
+      disturb(plant, random);
+      const CycleRecord record = plant.cycle();
+      expect_invariants(plant, record, soc_start);
+      cycles_without_link = plant.battery.link ? 0 : cycles_without_link + 1;
+      // The watchdog: without a link nothing is exchanged after 300 s.
+      if (cycles_without_link > 4) {
+        EXPECT_FALSE(plant.battery.physics.dispatch_active());
+      }
+      if (HasFailure()) FAIL() << "seed " << kSeed << " day " << day << " cycle " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess

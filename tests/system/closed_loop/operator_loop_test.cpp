@@ -1,0 +1,118 @@
+// Holds, reserve, full charges and the spread of starts in the real control loop, on a fake clock.
+#include <gtest/gtest.h>
+
+#include "edge/core/loop/control_loop.h"
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+struct Site {
+  explicit Site(double soc, const ControlSettings& settings)
+      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {
+    set_market_time_zone();
+    loop.follow_holds(holds);
+  }
+  explicit Site(double soc = 0.5) : Site(soc, {.control = true, .guard = {}}) {}
+  CycleRecord cycle() {
+    CycleRecord record;
+    EXPECT_TRUE(loop.run_cycle(record));
+    return record;
+  }
+  void hold(std::int32_t power_w, std::int64_t seconds) {
+    const std::int64_t now_utc_s = clock.now_ns / kNanosecondsPerSecond;
+    holds.publish(
+        {.power_w = power_w, .until_utc_s = static_cast<std::uint32_t>(now_utc_s + seconds)});
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  HoldMailbox holds;
+  Loop loop;
+};
+
+TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
+  Site site;
+  site.prices.price = [](std::int64_t) { return -20'000; };
+  site.holds.publish({.unreadable = true});
+  const CycleRecord record = site.cycle();
+  EXPECT_TRUE(record.hold.unreadable);
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+}
+
+TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
+  Site site(0.5, ControlSettings{});
+  site.hold(-500, 3'600);
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.ordered_power_w, -500);
+  EXPECT_EQ(record.reason, Reason::kHeld);
+  EXPECT_FALSE(record.written);
+  EXPECT_TRUE(site.battery.orders.empty());
+}
+
+TEST(LoopWithAReserve, KeepsItWhateverThePriceAndTellsTheBattery) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.reserve.push_back({.soc_e4 = 4'000});
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t) { return 200'000; };
+  CycleRecord record;
+  for (int i = 0; i < 60; ++i) record = site.cycle();
+  EXPECT_EQ(record.reason, Reason::kReserve);
+  EXPECT_EQ(record.reserve_soc_e4, 4'000);
+  EXPECT_EQ(record.ordered_power_w, 0);
+  EXPECT_NEAR(site.battery.physics.soc_frac(), 0.4, 1e-6);  // the device stops there itself
+  for (const PowerOrder& order : site.battery.orders) EXPECT_EQ(order.soc_min_e4, 4'000);
+}
+
+TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.reserve.push_back({.soc_e4 = 500});
+  Site site(0.5, settings);
+  site.cycle();
+  EXPECT_EQ(site.battery.orders.back().soc_min_e4, 1'000);
+}
+
+/// Waves that never fill it: from the day on which it is due, the battery goes to full, once.
+TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
+  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  settings.full_charge_every_days = 3;
+  settings.guard.soc_max_e4 = 10'000;
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t minute_utc_s) {  // dear: the student sells, or rests
+    const auto cents = static_cast<std::int32_t>(minute_utc_s / 60 % 97);  // it is not frozen
+    return (minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000) + cents;
+  };
+  int due_cycles = 0;
+  std::int32_t fullest_e4 = 0;
+  for (int i = 0; i < 6 * kStepsPerDay && fullest_e4 < FullCharge::kFullE4; ++i) {
+    const CycleRecord record = site.cycle();
+    if (record.measurement.soc_e4 > fullest_e4) fullest_e4 = record.measurement.soc_e4;
+    if (record.reason != Reason::kFullCharge) continue;
+    ++due_cycles;
+    EXPECT_GE(record.days_since_full, 3);
+    EXPECT_GE(record.ordered_power_w, 0);
+    EXPECT_LE(record.ordered_power_w, 2'000);
+  }
+  EXPECT_GT(due_cycles, 0);
+  EXPECT_GE(fullest_e4, FullCharge::kFullE4);
+  EXPECT_EQ(site.cycle().days_since_full, 0);
+}
+
+TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
+  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  settings.full_charge_every_days = 3;
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t) { return 5'000; };
+  site.loop.take_over(
+      {.utc_s = kDayStartS, .price_level = PriceLevel::starting_at(8'000), .days_since_full = 3});
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.days_since_full, 3);
+  EXPECT_EQ(record.reason, Reason::kFullCharge);
+  EXPECT_EQ(record.ordered_power_w, 2'000);
+}
+
+}  // namespace
+}  // namespace bess

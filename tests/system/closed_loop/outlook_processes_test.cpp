@@ -1,0 +1,118 @@
+// bess-edge with a student by outlook built in, on a market that publishes day-ahead prices: what
+// is planned when they come in time, what over a restart while they stay away, and the seal.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/edge_answer.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kHour = 3'600;
+constexpr std::int64_t kPublishedS = SimulatedSite::kStartS + 11 * kHour;  // 13:00 in Brussels
+
+/// Three local days of hours, dear in the evening.
+std::string day_ahead() {
+  std::ostringstream text;
+  text << "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
+  const std::int64_t first = SimulatedSite::kStartS - 25 * kHour;
+  for (std::int64_t t = first; t < SimulatedSite::kStartS + 70 * kHour; t += 900) {
+    const std::int64_t hour = t / kHour;
+    text << utc_text(t).view() << ',' << 50 + hour % 24 * 4 + hour / 24 % 3 << ",60,\n";
+  }
+  return text.str();
+}
+
+class OutlookSite : public testing::Test {
+ protected:
+  static constexpr std::int32_t kScale = 300;
+
+  OutlookSite() : site_(kScale) {
+    setenv("BESS_EDGE_UNDER_TEST", BESS_OUTLOOK_EDGE, 1);
+    site_.clock.start_utc_s = kPublishedS - 40 * 60;
+    site_.start_clock();
+    site_.start_battery({"--map", BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml"});
+  }
+  enum class Publishes { kDayAhead, kNothing };
+  void start_market(Publishes publishes, int port = 0) {
+    std::vector<std::string> options;
+    if (publishes == Publishes::kDayAhead) {
+      options = {"--day-ahead", site_.folder.write("ahead.csv", day_ahead())};
+    }
+    site_.start_market(options, SimulatedSite::minute_prices(13 * 60), port);
+  }
+  std::string configure() {
+    const std::string config = site_.commission();
+    std::ofstream(config, std::ios::app)
+        << "[outlook]\nurl = \"http://127.0.0.1:" << site_.market_port
+        << "/price?bzn=BE&start={today}&end={tomorrow}\"\n";
+    return config;
+  }
+  static void run(const std::string& config, int cycles) {
+    const Said said = edge({"--config", config, "--cycles", std::to_string(cycles)});
+    EXPECT_EQ(said.exit_code, 0) << said.text;
+  }
+  [[nodiscard]] std::vector<CsvRow> cycles() const {
+    std::vector<CsvRow> rows = read_csv(site_.folder.file("edge.csv"));
+    std::erase_if(rows, [](const CsvRow& row) { return row.at("mode") != "running"; });
+    return rows;
+  }
+  static int count(const std::vector<CsvRow>& rows, const char* source) {
+    return static_cast<int>(std::ranges::count_if(
+        rows, [&](const CsvRow& row) { return row.at("outlook") == source; }));
+  }
+
+  SimulatedSite site_;
+};
+
+TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
+  start_market(Publishes::kDayAhead);
+  run(configure(), 40);
+  const std::vector<CsvRow> rows = cycles();
+  ASSERT_GT(rows.size(), 30U);
+  EXPECT_GT(count(rows, "planned"), static_cast<int>(rows.size()) * 3 / 4);
+  EXPECT_EQ(count(rows, "usual"), 0);
+  EXPECT_EQ(count(rows, "missing"), 0);
+  int before_one = 0;
+  int with_tomorrow = 0;
+  for (const CsvRow& row : rows) {
+    if (row.at("outlook") != "planned") continue;
+    const bool knows_tomorrow = std::stoi(row.at("outlook_quarter_hours")) > 96;
+    const bool is_after_one = row.at("utc") >= std::string(utc_text(kPublishedS).view());
+    EXPECT_TRUE(is_after_one || !knows_tomorrow) << row.at("utc");
+    // A slow machine fetches it some cycles late; what is known stays known.
+    EXPECT_TRUE(knows_tomorrow || with_tomorrow == 0) << row.at("utc");
+    before_one += is_after_one ? 0 : 1;
+    with_tomorrow += knows_tomorrow ? 1 : 0;
+  }
+  EXPECT_GT(before_one, 0);
+  EXPECT_GT(with_tomorrow, 0);
+}
+
+/// What came before is kept on the disk, on the day of 92 quarter-hours too.
+TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
+  start_market(Publishes::kDayAhead);
+  const int port = site_.market_port;
+  const std::string config = configure();
+  run(config, 8);
+  site_.market.reset();
+  start_market(Publishes::kNothing, port);
+  run(config, 8);
+  const std::vector<CsvRow> rows = cycles();
+  EXPECT_EQ(rows.back().at("outlook"), "planned");
+  EXPECT_EQ(rows.back().at("day_ahead_status"), "http_error");
+}
+
+TEST_F(OutlookSite, WithoutAnyItPlansOnWhatIsUsual) {
+  start_market(Publishes::kNothing);
+  run(configure(), 12);
+  const std::vector<CsvRow> rows = cycles();
+  EXPECT_GT(count(rows, "usual"), static_cast<int>(rows.size()) / 2);
+  EXPECT_EQ(count(rows, "planned"), 0);
+  for (const CsvRow& row : rows) EXPECT_NE(row.at("student_action"), "none") << row.at("utc");
+}
+
+}  // namespace
+}  // namespace bess

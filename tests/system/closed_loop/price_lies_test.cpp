@@ -1,0 +1,140 @@
+// A price source that lies, before the real control loop: what it can do to the battery is bounded.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <deque>
+#include <vector>
+
+#include "edge/app/program/take_over.h"
+#include "edge/core/loop/control_loop.h"
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+constexpr std::int32_t kExtremeCenti = 1'000'000;
+
+/// Dear and cheap in turns, beyond every threshold: the most that a source can ask for.
+struct Liar {
+  Liar() : battery(clock, 0.5), prices(clock) {
+    prices.price = [](std::int64_t minute_utc_s) {
+      return minute_utc_s / kSecondsPerStep % 2 == 0 ? kExtremeCenti : -kExtremeCenti;
+    };
+  }
+  std::vector<CycleRecord> run(Loop& loop, int cycles) {
+    std::vector<CycleRecord> records(static_cast<std::size_t>(cycles));
+    for (CycleRecord& record : records) EXPECT_TRUE(loop.run_cycle(record));
+    return records;
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+};
+
+/// Changes of sign among the last orders of an hour, counted without the loop's help.
+int most_reversals_in_an_hour(const std::vector<CycleRecord>& records) {
+  std::vector<int> reversals;
+  int direction = 0;
+  for (const CycleRecord& record : records) {
+    const int now = record.ordered_power_w > 0 ? 1 : record.ordered_power_w < 0 ? -1 : 0;
+    reversals.push_back(now != 0 && now == -direction ? 1 : 0);
+    if (now != 0) direction = now;
+  }
+  int most = 0;
+  for (std::size_t end = 0; end < reversals.size(); ++end) {
+    int sum = 0;
+    for (std::size_t i = 0; i < kStepsPerHour && i <= end; ++i) sum += reversals[end - i];
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+TEST(PriceLies, ReversalsStayUnderTheCapWhateverThePricesAsk) {
+  Liar liar;
+  Loop loop({.control = true, .guard = {}}, liar.battery, liar.prices, liar.clock);
+  const std::vector<CycleRecord> records = liar.run(loop, 10 * kStepsPerHour);
+  EXPECT_EQ(most_reversals_in_an_hour(records), 20);  // the default
+  int capped = 0;
+  for (const CycleRecord& record : records) {
+    if (record.reason != Reason::kReversalCap) continue;
+    EXPECT_EQ(record.ordered_power_w, 0);
+    EXPECT_EQ(record.mode, Mode::kRunning);
+    ++capped;
+  }
+  EXPECT_GT(capped, 20);
+}
+
+TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
+  Liar liar;
+  std::vector<CycleRecord> records;
+  CycleRecord before;
+  for (int run = 0; run < 20; ++run) {
+    Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 6}, liar.battery,
+              liar.prices, liar.clock);
+    loop.take_over(before);
+    for (const CycleRecord& record : liar.run(loop, 5)) records.push_back(record);
+    before.reversals = records.back().reversals;
+    before.utc_s = records.back().utc_s;
+  }
+  EXPECT_EQ(most_reversals_in_an_hour(records), 6);
+}
+
+/// The loop before a source that hangs: the same price under new stamps.
+struct Hung {
+  Hung() : battery(clock, 0.5), prices(clock) {
+    prices.price = [this](std::int64_t) { return centi; };
+  }
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  std::int32_t centi = 9'000;
+};
+
+TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
+  Hung hung;
+  Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
+  CycleRecord record;
+  for (int cycle = 0; cycle < 92; ++cycle) {
+    ASSERT_TRUE(loop.run_cycle(record));
+    EXPECT_EQ(record.standing_price.unchanged_s, cycle * kSecondsPerStep);
+    EXPECT_EQ(record.price_frozen, cycle >= 15) << cycle;
+    EXPECT_EQ(record.reason == Reason::kFrozenPrice, cycle >= 90) << cycle;
+    if (cycle >= 90) {
+      EXPECT_EQ(record.ordered_power_w, 0);
+    }
+  }
+  EXPECT_EQ(record.mode, Mode::kHolding);
+  hung.centi += 1;
+  ASSERT_TRUE(loop.run_cycle(record));
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_FALSE(record.price_frozen);
+  EXPECT_EQ(record.standing_price.unchanged_s, 0);
+}
+
+struct Logged {
+  bool read_back(std::int64_t ago, CycleRecord& record) const {
+    if (ago >= std::ssize(newest_first)) return false;
+    record = newest_first[static_cast<std::size_t>(ago)];
+    return true;
+  }
+  std::deque<CycleRecord> newest_first;
+};
+
+/// 20 runs of ten minutes: each takes over what the one before logged.
+TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
+  Hung hung;
+  CycleRecord record;
+  for (int run = 0; run < 20; ++run) {
+    Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
+    loop.take_over(take_over_of(record, record.price_level));
+    for (int cycle = 0; cycle < 5; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
+    EXPECT_EQ(record.reason == Reason::kFrozenPrice, run >= 18) << run;
+    if (run % 2 == 0) loop.stop(record);  // else killed
+  }
+}
+
+}  // namespace
+}  // namespace bess

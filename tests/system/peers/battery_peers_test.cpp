@@ -1,0 +1,124 @@
+// bess-sim's battery between independent masters (pymodbus, mbpoll), one for each shipped map: what
+// they order flows, what they read is that, and the energy of the simulator's own record is power
+// times time, worked out by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tests/support/peer_programs.h"
+#include "tests/support/shipped_maps.h"
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kTolerance = 0.001;
+
+class BatteryPeers : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string missing = missing_peer("pymodbus", {kMbpoll});
+    if (!missing.empty()) GTEST_SKIP() << missing;
+  }
+  static std::vector<std::string> map_options(const MapVariant& m) {
+    std::vector<std::string> options = {"--map", shipped_map(m.map), "--clients-max", "4"};
+    if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
+    return options;
+  }
+  static std::vector<std::string> master(const SimulatedSite& site, const MapVariant& m,
+                                         int scale) {
+    return {kPython,       BESS_SOURCE_DIR "/tests/system/peers/master_peer.py",
+            "--map",       m.map,
+            "--variant",   m.variant,
+            "--port",      std::to_string(site.battery_port),
+            "--scale",     std::to_string(scale),
+            "--start-s",   std::to_string(SimulatedSite::kStartS),
+            "--anchor-ns", std::to_string(site.anchor_ns())};
+  }
+};
+
+class EveryMapsPeers : public BatteryPeers, public ::testing::WithParamInterface<MapVariant> {};
+
+TEST_P(EveryMapsPeers, WhatTheyOrderFlowsAndIsCounted) {
+  constexpr int kScale = 60;
+  SimulatedSite site(kScale);
+  std::vector<std::string> options = map_options(GetParam());
+  options.insert(options.end(), {"--soc", "0.43"});
+  site.start_battery(options);
+  ChildProcess peer(master(site, GetParam(), kScale));
+  double soc_permille = 0;
+  ASSERT_EQ(std::sscanf(peer.read_line().c_str(), "soc %lf", &soc_permille), 1) << peer.read_all();
+  EXPECT_DOUBLE_EQ(soc_permille, 430);
+  struct Order {
+    double watts, from_s, to_s, pymodbus_w, mbpoll_w;
+  };
+  std::vector<Order> orders;
+  for (int i = 0; i < 2; ++i) {
+    Order o{};
+    ASSERT_EQ(
+        std::sscanf(peer.read_line().c_str(), "order %lf from %lf to %lf pymodbus %lf mbpoll %lf",
+                    &o.watts, &o.from_s, &o.to_s, &o.pymodbus_w, &o.mbpoll_w),
+        5)
+        << peer.read_all();
+    EXPECT_EQ(o.pymodbus_w, o.watts);
+    EXPECT_EQ(o.mbpoll_w, o.watts);
+    orders.push_back(o);
+  }
+  EXPECT_EQ(peer.wait(), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
+  int minutes = 0;
+  for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
+    std::int64_t minute_s = 0;
+    ASSERT_TRUE(parse_utc(row.at("minute_utc"), minute_s));
+    for (const Order& o : orders) {
+      if (static_cast<double>(minute_s) < o.from_s || static_cast<double>(minute_s) + 60 > o.to_s)
+        continue;
+      ++minutes;
+      EXPECT_NEAR(std::stod(row.at("energy_wh")), o.watts / 60,
+                  kTolerance * std::abs(o.watts) / 60);
+    }
+  }
+  EXPECT_GE(minutes, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Maps, EveryMapsPeers, ::testing::ValuesIn(kShippedMapVariants), [](const auto& info) {
+      return std::string(info.param.map) +
+             (*info.param.variant == '\0' ? "" : std::string("_") + info.param.variant);
+    });
+
+/// 2 kW for 2 h, -1.5 kW for 2 h, 4 kW for 1 h, -3.6 kW for 1 h: 8000 Wh in, 6600 Wh out. The
+/// battery loses the square root of its round trip (90 %) each way: SoC 0.2 + 8000 * 0.948683 /
+/// 8000 - 6600 / 0.948683 / 8000 = 0.279057.
+TEST_F(BatteryPeers, TheEnergyOfADayIsTheHandCalculation) {
+  constexpr int kScale = 7'200;  // a day in 12 s
+  SimulatedSite site(kScale);
+  std::vector<std::string> options = map_options({"alphaess", "block"});
+  options.insert(options.end(), {"--soc", "0.2"});
+  site.start_battery(options);
+  std::vector<std::string> day = master(site, {"alphaess", "block"}, kScale);
+  day.push_back("--day");
+  ChildProcess peer(day);
+  EXPECT_THAT(peer.read_all(), HasSubstr("day over"));
+  EXPECT_EQ(peer.wait(), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
+  double charged_wh = 0;
+  double discharged_wh = 0;
+  double soc = 0;
+  for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
+    const double energy_wh = std::stod(row.at("energy_wh"));
+    (energy_wh > 0 ? charged_wh : discharged_wh) += energy_wh;
+    soc = std::stod(row.at("soc"));
+  }
+  EXPECT_NEAR(charged_wh, 8'000, kTolerance * 8'000);
+  EXPECT_NEAR(discharged_wh, -6'600, kTolerance * 6'600);
+  EXPECT_NEAR(soc, 0.279057, kTolerance * 0.279057);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,146 @@
+// The control loop against the battery of the trial, in moved time: orders from prices or from a
+// hold, a fault that begins at a tick, and what came of it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "edge/app/program/take_over.h"
+#include "edge/core/loop/control_loop.h"
+#include "shared/host/minute_file.h"
+#include "tests/system/trial/trial_battery.h"
+
+namespace bess::trial {
+
+/// What the prices, or a hold, make the controller order.
+enum class Orders : std::uint8_t {
+  kCharge,
+  kDischarge,
+  kZero,
+  kAlternating,
+  kPairs,
+  kRealDay,
+  kHours
+};
+/// kHours, 40 minutes each way, is for faults that take days.
+std::string_view orders_name(Orders orders);
+
+struct TrialPrices {
+  void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
+    wanted_utc_s = minute_utc_s;
+  }
+  static bool wait(std::int64_t) { return true; }
+  [[nodiscard]] PriceReport latest() const {
+    return {.has_row = true,
+            .minute_utc_s = wanted_utc_s,
+            .price_centi_eur_per_mwh = price_centi_eur_per_mwh,
+            .status = Status::kOk};
+  }
+  std::int64_t wanted_utc_s = 0;
+  std::int32_t price_centi_eur_per_mwh = 0;
+};
+
+/// What a run leaves behind for the next one.
+struct TrialLog {
+  static constexpr std::size_t kRecordsMax = 500;  ///< more than a start reads again
+  bool read_back(std::int64_t records_ago, CycleRecord& record) const {
+    if (records_ago >= std::ssize(records)) return false;
+    record = records[records.size() - 1 - static_cast<std::size_t>(records_ago)];
+    return true;
+  }
+  std::deque<CycleRecord> records;
+};
+
+class TrialSite {
+ public:
+  using Loop = ControlLoop<TrialBattery, TrialPrices, TrialClock>;
+
+  TrialSite(const BatteryNature& nature, double soc_frac, const ControlSettings& settings,
+            std::uint64_t seed);
+  TrialSite(const TrialSite&) = delete;
+  TrialSite& operator=(const TrialSite&) = delete;
+
+  /// The cycle of the next tick, with such orders.
+  CycleRecord cycle(Orders orders);
+  /// With an operator's hold.
+  CycleRecord cycle_held(std::int32_t power_w);
+  [[nodiscard]] std::int64_t next_tick_utc_s() const;
+
+  TrialClock clock;
+  TrialBattery battery;
+  TrialPrices prices;
+  HoldMailbox holds;
+
+  /// Killed between two cycles, and started again with what its newest record kept.
+  void kill_and_restart();
+  void clear_trip() { loop_->clear_trip(); }
+  /// The next of the steps that a time server and people make, somewhere in the next cycle.
+  void step_clock();
+
+ private:
+  CycleRecord run();
+  void start();
+
+  ControlSettings settings_;
+  std::optional<Loop> loop_;
+  TrialLog log_;
+  std::int64_t cycles_ = 0;
+  std::size_t clock_steps_ = 0;
+};
+
+/// The settings of a controller of such a battery.
+ControlSettings trial_settings(const HonestVariant& variant);
+
+struct FaultCase {
+  const TrialFault* fault = nullptr;
+  FaultTimes times{};
+  Orders orders = Orders::kCharge;
+  double soc_frac = 0.45;
+  bool is_killed = false;  ///< the controller, after each cycle
+  int step_every = 0;      ///< the clock is stepped after so many cycles; 0 = never
+  int cycles_max = 0;      ///< 0 = fault_cycles_max
+};
+
+/// A fault is found when the battery is stopped for it.
+struct FaultResult {
+  int cycles = 0;                    ///< begun since the fault, that which finds it included
+  Reason reason = Reason::kStudent;  ///< kStudent: not found
+  bool is_trip = false;
+  double wrong_wh = 0;
+  double wrong_until_told_wh = 0;  ///< until the sum of it was worth a line of `status`; 0 = never
+  int driven_after = 0;     ///< of the next thirty cycles, those with an order that is not 0 W
+  int weak_answers = 0;     ///< the most that were told
+  int told_cycles = 0;      ///< until energy was told that does not arrive, or is lost; 0 = never
+  ResponseFindings told{};  ///< the last of it
+};
+
+/// Two hours; of real prices a day.
+constexpr int fault_cycles_max(Orders orders) { return orders == Orders::kRealDay ? 720 : 60; }
+inline constexpr int kCyclesAfter = 30;
+
+FaultResult try_fault(const FaultCase& c);
+
+struct HonestDays {
+  int cycles = 0;
+  int driven = 0;  ///< with an order that is not 0 W
+  int trips = 0;   ///< each cleared at once
+  Reason first_trip = Reason::kStudent;
+  int first_trip_cycle = 0;
+  std::int32_t wrong_energy_e6_max = 0;
+  double moved_wh = 0;
+};
+
+/// After so many cycles each; 0 = never.
+struct Disturbances {
+  int kill_every = 0;  ///< the controller
+  int step_every = 0;  ///< the clock is stepped
+};
+HonestDays live_honest_days(const HonestVariant& variant, int days, const Disturbances& often = {});
+
+/// The yardstick of tests/data.
+const MinuteSeries& real_prices();
+
+}  // namespace bess::trial

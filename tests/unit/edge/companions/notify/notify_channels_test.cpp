@@ -1,0 +1,216 @@
+// Channels that hang, beside ones that do not: the whole program with a command that sleeps and a
+// broker that comes and goes. What is reported, when, how often, and what survives a kill.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shared/host/child_process.h"
+#include "shared/scaled_clock.h"
+#include "tests/support/said.h"
+#include "tests/support/tokens.h"
+#include "tests/unit/edge/companions/notify/notify_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+double seconds_now() { return static_cast<double>(clock_ns(CLOCK_MONOTONIC)) / 1e9; }
+
+class Channels : public Mqtt {
+ protected:
+  void SetUp() override {
+    Mqtt::SetUp();
+    settings_.every_s = 1;
+  }
+  void use_stuck_command() {
+    settings_.command = "echo x >>" + folder_.file("command_began") + "; sleep 1000";
+  }
+  /// The same settings as a file.
+  std::string config() {
+    std::string text = "[battery]\nname = \"garage\"\n[notify]\nevery_s = 1\nafter_s = " +
+                       std::to_string(settings_.after_s) + "\nprogram = \"" + settings_.program +
+                       "\"\n";
+    if (!settings_.command.empty()) text += "command = '" + settings_.command + "'\n";
+    text += "mqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n";
+    return folder_.write("edge.toml", text);
+  }
+  /// The program between a broker and somebody who listens.
+  struct Running {
+    explicit Running(Channels& at)
+        : broker(at.folder_, at.port()),
+          all(std::make_unique<Listener>(at.port(), "bess/#")),
+          notify({BESS_NOTIFY_PROGRAM, "--config", at.config()}) {
+      EXPECT_EQ(all->await("/status", "online"), "online");
+    }
+    /// Seconds that it takes to end.
+    double stop() {
+      const double begin_s = seconds_now();
+      notify.signal(SIGTERM);
+      EXPECT_EQ(notify.wait(), 0);
+      return seconds_now() - begin_s;
+    }
+    Broker broker;
+    std::unique_ptr<Listener> all;
+    ChildProcess notify;
+  };
+  /// Waits until a file has this many lines; false after half a minute.
+  bool await_lines(const std::string& name, std::size_t count) const {
+    for (int i = 0; i < 600; ++i) {
+      if (count_of(text_of_file(folder_.file(name)), "\n") >= count) return true;
+      usleep(50'000);
+    }
+    return false;
+  }
+};
+
+TEST_F(Channels, AnAlarmReachesTheGoodChannelWithinARoundWhateverTheCommandIsAt) {
+  use_stuck_command();
+  Running running(*this);
+  set_status("degraded", R"("WARN: the first")");
+  ASSERT_NE(running.all->await("/event", "the first"), "");
+  ASSERT_TRUE(await_lines("command_began", 1));  // and it stays at it
+  for (const char* name : {"the second", "the third"}) {
+    const double begin_s = seconds_now();
+    set_status("degraded", std::string(R"("WARN: )") + name + "\"");
+    ASSERT_NE(running.all->await("/event", std::string("WARN: ") + name), "");
+    EXPECT_LT(seconds_now() - begin_s, 1 + 5) << "a round, and what a busy machine adds";
+  }
+  EXPECT_LT(running.stop(), 10);
+  EXPECT_EQ(running.all->await("/status", "offline"), "offline");
+}
+
+/// In moved time, exactly: seen from 5 to 45 s, it lasted between 40 and 50 s.
+TEST_F(Channels, FortyFiveSecondsAreFortyFiveSeconds) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  settings_.every_s = 5;
+  Notifier notifier(settings_);
+  whole_round(notifier, kNow);
+  set_status("degraded", R"("WARN: an outage")");
+  for (int s = 5; s <= 45; s += 5) whole_round(notifier, kNow + s);
+  set_status("ok");
+  whole_round(notifier, kNow + 50);
+  EXPECT_THAT(all.await("/event", "over"), HasSubstr("an outage (lasted 45 s)"));
+}
+
+/// The broker stands still, goes away, and is there again: each event comes once and in order, and
+/// the command is run meanwhile.
+TEST_F(Channels, ABrokerThatComesAndGoesIsToldEverythingOnce) {
+  use_command();
+  Running running(*this);
+  running.broker.freeze();
+  set_status("degraded", R"("WARN: one")");
+  ASSERT_TRUE(await_lines("told", 1));
+  EXPECT_THAT(told(), HasSubstr("ALARM: WARN: one"));
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // several tries
+  running.broker.thaw();
+  ASSERT_NE(running.all->await("/event", "WARN: one"), "");
+  // Without an acknowledgement it is repeated.
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  running.broker.stop();
+  set_status("ok");
+  for (int i = 0; i < 600 && count_of(told(), "over: WARN: one") == 0; ++i) usleep(50'000);
+  EXPECT_THAT(told(), HasSubstr("over: WARN: one"));
+  running.broker.start();
+  running.all = std::make_unique<Listener>(port(), "bess/#");
+  ASSERT_NE(running.all->await("/event", "over"), "");
+  set_status("degraded", R"("WARN: two")");
+  ASSERT_NE(running.all->await("/event", "WARN: two"), "");
+  EXPECT_EQ(running.all->count("/event"), 2U);  // since it is there again
+  running.broker.freeze();                      // which does not hold up the end
+  set_status("degraded", R"("WARN: three")");
+  EXPECT_TRUE(await_lines("told", 4));
+  EXPECT_LT(running.stop(), 20);
+  running.broker.thaw();
+}
+
+/// A command that hangs is killed at its deadline, with all that it started, and run again.
+TEST_F(Channels, ACommandThatHangsIsKilledAndRunAgain) {
+  settings_.mqtt.host = "";
+  settings_.command_ms_max = 300;
+  settings_.command = "[ -e " + folder_.file("well") + " ] || { echo $$ >>" +
+                      folder_.file("command_began") + "; sleep 1000; }; echo x >>" +
+                      folder_.file("told");
+  set_status("degraded", R"("WARN: a trouble")");
+  Notifier notifier(settings_);
+  whole_round(notifier, kNow);
+  EXPECT_EQ(pending().size(), 1U);
+  const pid_t pid = std::stoi(text_of_file(folder_.file("command_began")));
+  EXPECT_NE(kill(pid, 0), 0) << "it is gone";
+  static_cast<void>(folder_.write("well", ""));
+  whole_round(notifier, kNow + 30);
+  EXPECT_EQ(told(), "x\n");
+  EXPECT_TRUE(pending().empty());
+}
+
+/// Killed again and again while its command takes its time: no alarm is lost, and the file is whole
+/// each time.
+TEST_F(Channels, AKillLosesNothing) {
+  settings_.command = "echo x >>" + folder_.file("command_began") +
+                      "; sleep 0.3; echo \"$BESS_TITLE\" >>" + folder_.file("told");
+  const std::string file = config();
+  constexpr int kKills = 6;
+  for (int i = 0; i < kKills; ++i) {
+    set_status("degraded",
+               "\"WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i)) + "\"");
+    ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
+    ASSERT_TRUE(await_lines("command_began", static_cast<std::size_t>(i) + 1));
+    usleep(static_cast<useconds_t>(74'000 * i));
+    notify.signal(SIGKILL);
+    notify.wait();
+  }
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
+  for (int i = 0; i < kKills; ++i) {
+    const std::string headline =
+        "ALARM: WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i));
+    for (int wait = 0; wait < 600 && count_of(told(), headline) == 0; ++wait) usleep(50'000);
+    EXPECT_GE(count_of(told(), headline), 1U) << headline;
+  }
+  EXPECT_EQ(notify.signal(SIGTERM), true);
+  EXPECT_EQ(notify.wait(), 0);
+  EXPECT_EQ(count_of(text_of_file(folder_.file("notify/told.json")), "\"version\""), 1U);
+}
+
+/// What the program says on one run.
+Said run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
+  return answer_of(std::move(arguments));
+}
+
+TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
+  const std::string file = config();
+  {
+    Running first(*this);
+    const Said second = run({"--config", file, "--once"});
+    EXPECT_EQ(second.exit_code, 1);
+    EXPECT_THAT(second.text, Names("[notify] folder " + std::to_string(first.notify.pid()) + " " +
+                                   folder_.file("notify/lock")));
+    // These may, and leave what the first one published.
+    EXPECT_EQ(run({"--config", file, "--check"}).exit_code, 0);
+    EXPECT_EQ(run({"--config", file, "--test"}).exit_code, 0);
+    EXPECT_NE(first.all->await("/event", "\"key\":\"test\""), "");
+    Listener later(port(), "bess/v1/garage/status");
+    EXPECT_EQ(later.await("/status", "o"), "online");
+    EXPECT_EQ(first.all->count("/status"), 1U);
+    first.notify.signal(SIGKILL);
+    first.notify.wait();
+    EXPECT_EQ(first.all->await("/status", "offline"), "offline") << "by the broker";
+  }
+  EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed one holds nothing
+}
+
+/// Where nothing can be kept, something must be told all the same, and that too.
+TEST_F(Channels, ANotifierThatCannotLockStillTells) {
+  const std::string file =
+      folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
+                                     settings_.program + "\"\n");
+  set_status("degraded", R"("WARN: a trouble")");
+  const Said said = run({"--config", file, "--once"});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_THAT(said.text, AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
+                               HasSubstr("ALARM: WARN: a trouble")));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,306 @@
+// Whole rounds of the notifier: a status that changes, a command that is a script, and a real
+// broker on loopback. Time is an argument.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "edge/records/account/settled_prices.h"
+#include "shared/host/child_process.h"
+#include "shared/host/text.h"
+#include "tests/unit/edge/companions/notify/notify_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
+  use_command();
+  set_status("degraded", kReason);
+  for (int s = 0; s <= 1'200; s += 30) round_of_its_own(settings_, kNow + s);  // each a restart
+  EXPECT_EQ(count_of(told(), "Subject: "), 1U);
+  EXPECT_THAT(told(),
+              HasSubstr("Subject: [bess garage] ALARM: WARN: mode is safe, reason no_price"));
+  set_status("ok");
+  for (int s = 1'230; s <= 2'400; s += 30) round_of_its_own(settings_, kNow + s);
+  EXPECT_EQ(count_of(told(), "Subject: "), 2U);
+  EXPECT_THAT(told(), HasSubstr("over: WARN: mode is safe, reason no_price (lasted 20 min)"));
+}
+
+/// Raised and cleared in a drawn order, while the command fails and the notifier starts again
+/// whenever they like: each alarm and each end is told once, in turns, and none is missing.
+TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
+  constexpr std::uint32_t kSeed = 20'261'128;
+  constexpr int kKinds = 4;
+  const std::string kinds = "ABCD";
+  settings_.after_s = 0;
+  settings_.command = "[ ! -e " + folder_.file("fails") +
+                      " ] && echo \"$BESS_SEVERITY $BESS_KEY\" >>" + folder_.file("told");
+  std::mt19937 random(kSeed);
+  std::array<bool, kKinds> is_there{};
+  std::array<int, kKinds> changes{};
+  auto notifier = std::make_unique<Notifier>(settings_);
+  const auto round = [&](int s) {
+    std::string reasons;
+    for (int kind = 0; kind < kKinds; ++kind) {
+      if (!is_there[kind]) continue;
+      reasons += (reasons.empty() ? "\"WARN: " : ", \"WARN: ") + kinds.substr(kind, 1) + "\"";
+    }
+    set_status("degraded", reasons);
+    whole_round(*notifier, kNow + s);
+  };
+  for (int s = 0; s < 100; ++s) {
+    const int kind = static_cast<int>(random() % kKinds);
+    is_there[kind] = !is_there[kind];
+    ++changes[kind];
+    if (random() % 4 == 0) static_cast<void>(folder_.write("fails", ""));
+    if (random() % 3 == 0) std::filesystem::remove(folder_.file("fails"));
+    if (random() % 5 == 0) notifier.reset(), notifier = std::make_unique<Notifier>(settings_);
+    round(s);
+  }
+  std::filesystem::remove(folder_.file("fails"));
+  round(100);
+  EXPECT_TRUE(pending().empty());
+  for (int kind = 0; kind < kKinds; ++kind) {
+    const std::string key = kinds.substr(kind, 1);
+    std::string expected;
+    for (int i = 0; i < changes[kind]; ++i) {
+      expected += (i % 2 == 0 ? "alarm " : "over ") + key + "\n";
+    }
+    std::string of_kind;
+    std::string all = told();
+    for (std::string_view rest = all; !rest.empty();) {
+      const std::string line(take_line(rest));
+      if (line.ends_with(" " + key)) of_kind += line + "\n";
+    }
+    EXPECT_EQ(of_kind, expected) << key;
+  }
+}
+
+/// The oldest go when more wait than are kept, and the journal has each of them.
+TEST_F(Rounds, TheQueueForTheCommandIsBounded) {
+  settings_.after_s = 0;
+  settings_.command = "exit 75";
+  std::string reasons = "\"WARN: first\"";
+  for (std::size_t i = 0; i < Notifier::kPendingMax; ++i) {
+    reasons += ", \"WARN: " + std::string(1 + i / 20, 'a') + std::string(1 + i % 20, 'b') + "\"";
+  }
+  set_status("degraded", reasons);
+  round_of_its_own(settings_, kNow);
+  ASSERT_EQ(pending().size(), Notifier::kPendingMax);
+  EXPECT_EQ(pending().front().key, "ab");
+}
+
+TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
+  use_command();
+  settings_.program = write_script("bess-edge", R"(case "$*" in
+"earned today --json --config edge.toml") cat )" + folder_.file("today") +
+                                                    R"(;;
+"earned yesterday --json --config edge.toml")
+  echo '{"days": [{"date": "2023-03-27", "line": "2023-03-27: +0.77 EUR"}]}';;
+*) cat )" + folder_.file("status.json") + ";;\nesac");
+  const auto cycle = [&](std::int64_t utc_s, const std::string& today) {
+    static_cast<void>(folder_.write("today", R"({"days": [{"date": ")" + today + R"("}]})"));
+    set_status("ok", "", utc_s);
+    round_of_its_own(settings_, utc_s);
+  };
+  cycle(kNow, "2023-03-27");
+  cycle(kNow + 120, "2023-03-27");
+  EXPECT_EQ(told(), "") << "days before the first look were not watched";
+  cycle(kNow + 86'400, "2023-03-28");
+  cycle(kNow + 86'520, "2023-03-28");
+  EXPECT_EQ(count_of(told(), "Subject: "), 1U);
+  EXPECT_THAT(told(), HasSubstr("day 2023-03-27: +0.77 EUR"));
+}
+
+/// A day late is no trouble, four are one, and its end is told.
+TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
+  use_command();
+  settings_.after_s = 0;
+  settings_.settled_file = folder_.file("notify/settled.csv");
+  round_of_its_own(settings_, kNow);
+  EXPECT_THAT(told(), HasSubstr("ALARM: no settled price has come yet: bess-prices --settle"));
+  const auto settle_until = [&](std::int64_t utc_s) {
+    SettledPrices prices;
+    prices.put(std::vector<SettledQuarter>{{utc_s / 900 * 900 - 900, 80}});
+    EXPECT_NE(folder_.write("notify/settled.csv", prices.text()), "");
+  };
+  settle_until(kNow - 2 * 86'400);
+  round_of_its_own(settings_, kNow + 600);
+  EXPECT_THAT(told(), HasSubstr("over: no settled price has come yet"));
+  settle_until(kNow - 4 * 86'400);
+  round_of_its_own(settings_, kNow + 1'200);
+  EXPECT_THAT(told(), HasSubstr("ALARM: no settled price is newer than 2023-03-22T23:45:00Z"));
+  EXPECT_EQ(count_of(told(), "Subject: "), 3U);
+}
+
+/// A card wears by writing.
+TEST_F(Rounds, WhatHasNotChangedIsNotWritten) {
+  Notifier notifier(settings_);
+  whole_round(notifier, kNow);
+  EXPECT_FALSE(std::filesystem::exists(settings_.memories[0]));
+  set_status("degraded", kReason);
+  whole_round(notifier, kNow + 30);
+  set_status("ok");
+  whole_round(notifier, kNow + 60);
+  whole_round(notifier, kNow + 330);
+  const auto last = std::filesystem::last_write_time(settings_.memories[0]);
+  for (int s = 360; s < 960; s += 30) whole_round(notifier, kNow + s);
+  EXPECT_EQ(std::filesystem::last_write_time(settings_.memories[0]), last);
+}
+
+TEST_F(Mqtt, TheStateIsRetainedTheEventComesOnceAndTheEndIsOffline) {
+  Broker broker(folder_, port());
+  Listener all(port(), "#");
+  {
+    set_status("degraded", kReason);
+    Notifier notifier(settings_);
+    whole_round(notifier, kNow);
+    whole_round(notifier, kNow + 30);
+    EXPECT_EQ(all.await("bess/v1/garage/status", "online"), "online");
+    EXPECT_THAT(all.await("bess/v1/garage/event", "alarm"), HasSubstr("reason no_price"));
+    EXPECT_NE(all.await("bess/v1/garage/alarms", "no_price"), "");
+    EXPECT_THAT(all.await("homeassistant/device/bess_garage/config", "components"),
+                HasSubstr("\"unique_id\":\"bess_garage_soc\""));
+    Listener later(port(), "bess/v1/garage/#");  // retained: who comes later knows at once
+    EXPECT_THAT(later.await("/state", "health"), HasSubstr("\"health\":\"degraded\""));
+    EXPECT_EQ(later.await("/status", "o"), "online");
+  }
+  EXPECT_EQ(all.await("/status", "offline"), "offline");
+  EXPECT_EQ(all.count("/event"), 1U);
+}
+
+/// No broker at the start, and one that restarts without a memory: everything is there again.
+TEST_F(Mqtt, ComesBackWithItsRetainedValues) {
+  set_status("degraded", kReason);
+  Notifier notifier(settings_);
+  whole_round(notifier, kNow);  // nobody listens
+  Broker broker(folder_, port());
+  {
+    Listener all(port(), "#");
+    EXPECT_EQ(all.await("/status", "online"), "online");
+    EXPECT_NE(all.await("/state", "health"), "");
+    whole_round(notifier, kNow + 30);
+    EXPECT_NE(all.await("/event", "alarm"), "");
+  }
+  broker.stop();
+  broker.start();
+  Listener again(port(), "#");
+  EXPECT_EQ(again.await("/status", "online"), "online");
+  EXPECT_NE(again.await("/config", "components"), "");
+}
+
+/// The money of today and of yesterday is the program's own answer.
+TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
+  Broker broker(folder_, port());
+  settings_.program = write_script("bess-edge", R"(case "$1 $2" in
+"earned today") cat )" + folder_.file("today") + R"(;;
+"earned yesterday") echo '{"days": [{"date": "2023-03-27", "earned_eur": 0.125, "cycles": 9}]}';;
+*) cat )" + folder_.file("status.json") + ";;\nesac");
+  const auto cycle = [&](std::int64_t utc_s, const char* today) {
+    static_cast<void>(folder_.write("today", today));
+    set_status("ok", "", utc_s);
+    round_of_its_own(settings_, utc_s);
+  };
+  cycle(kNow, R"({"days": [{"date": "2023-03-27", "start_utc": "2023-03-26T22:00:00Z",
+    "charged_kwh": 0.3, "discharged_kwh": 0.625, "earned_eur": 0.019}]})");
+  Listener now(port(), "bess/v1/garage/#");
+  EXPECT_THAT(now.await("/state", "charged_kwh"),
+              AllOf(HasSubstr("\"charged_kwh\":0.300,"), HasSubstr("\"discharged_kwh\":0.625,"),
+                    HasSubstr("\"earned_today_eur\":0.02,"),
+                    HasSubstr("\"today_since_utc\":\"2023-03-26T22:00:00Z\"")));
+  cycle(kNow + 86'400, R"({"days": [{"date": "2023-03-28"}]})");
+  Listener later(port(), "bess/v1/garage/day");
+  EXPECT_EQ(later.await("/day", "earned_eur"),
+            R"({"date":"2023-03-27","earned_eur":0.125,"cycles":9})");
+}
+
+/// A hold and its end by the broker, where the key allows it: one at a time, in order, never one
+/// that was given when nobody was here, and nothing else.
+TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
+  Broker broker(folder_, port());
+  Listener all(port(), "#");
+  all.publish("bess/v1/garage/hold/set", "ON", true);  // retained, before the notifier comes
+  ASSERT_EQ(all.await("/hold/set", "ON"), "ON");
+  const std::string calls = folder_.file("calls");
+  const std::string program =
+      write_script("ordered", "[ $1 = hold ] && { echo \"$@\" >>" + calls +
+                                  "; [ $2 != 9999 ]; exit; }; cat " + folder_.file("status.json"));
+  const std::string config = folder_.write(
+      "edge.toml", "[battery]\nname = \"garage\"\npower_w = 5000\n[notify]\nprogram = \"" +
+                       program + "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " +
+                       std::to_string(port()) + "\nmqtt_orders = true\n");
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
+  EXPECT_THAT(all.await("/config", "_hold\""),
+              AllOf(HasSubstr("\"min\":-5000,\"max\":5000"),
+                    HasSubstr("\"command_topic\":\"bess/v1/garage/hold_power/set\"")));
+  ASSERT_NE(all.await("/state", "\"hold_power_w\":0"), "");
+  all.publish("bess/v1/garage/hold_power/set", "-1500");
+  EXPECT_NE(all.await("/state", "\"hold_power_w\":-1500"), "") << "noted for the next hold";
+  for (const char* bad : {"on", "", "ON; rm -rf /", "{\"power_w\":1}"}) {
+    all.publish("bess/v1/garage/hold/set", bad);
+    all.publish("bess/v1/garage/hold_power/set", bad);
+  }
+  for (const char* power :
+       {"1.5", "1e3", " 1", "99999999999", "5001", "-5001", "NaN", "--release"}) {
+    all.publish("bess/v1/garage/hold_power/set", power);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // eight wait at most
+  }
+  all.publish("bess/v1/garage/hold_power/set", std::string(100'000, '9'));
+  all.publish("bess/v1/garage/release/set", "ON");
+  const auto await_calls = [&](const std::string& wanted) {
+    for (int i = 0; i < 500 && text_of_file(calls) != wanted; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return text_of_file(calls);
+  };
+  const std::string end = " --config " + config + "\n";
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // eight wait at most
+  all.publish("bess/v1/garage/hold/set", "ON");
+  EXPECT_EQ(await_calls("hold -1500 --for 60m" + end), "hold -1500 --for 60m" + end);
+  all.publish("bess/v1/garage/hold/set", "OFF");
+  const std::string both = "hold -1500 --for 60m" + end + "hold --release" + end;
+  EXPECT_EQ(await_calls(both), both);
+}
+
+class Program : public Rounds {};
+
+TEST_F(Program, CommandLine) {
+  const std::string config = folder_.write("edge.toml", "[battery]\nname = \"garage\"\n[notify]\n");
+  const auto run = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
+    ChildProcess child(arguments);
+    const std::string text = child.read_all();
+    return std::pair(child.wait(), text);
+  };
+  EXPECT_EQ(run({"--nonsense"}).first, 2);
+  EXPECT_EQ(run({"--config"}).first, 2);
+  EXPECT_EQ(run({"--help"}).first, 0);
+  EXPECT_EQ(run({"--config", "/no/such"}).first, 1);
+  EXPECT_EQ(run({"--config", config, "--check"}),
+            std::pair(0, "node       garage, every 30 s, reported after 300 s\nasks       " +
+                             std::filesystem::path(BESS_NOTIFY_PROGRAM).parent_path().string() +
+                             "/bess-edge status --config " + config +
+                             "\ncommand    none\nmqtt       none\n"));
+  EXPECT_THAT(run({"--config", config, "--once"}).second, HasSubstr("names no channel"));
+}
+
+TEST_F(Program, ATestMessageGoesToEveryChannelAndSaysWhichFails) {
+  use_command();
+  const std::string keys = "[notify]\ncommand = '";
+  const std::string good = folder_.write("good.toml", keys + settings_.command + "'\n");
+  ChildProcess sent({BESS_NOTIFY_PROGRAM, "--config", good, "--test"});
+  EXPECT_EQ(sent.read_all(), "bess-notify: command: sent\n");
+  EXPECT_EQ(sent.wait(), 0);
+  EXPECT_THAT(told(), HasSubstr("test: bess-notify can reach you by command"));
+  const std::string bad = folder_.write("bad.toml", keys + "/bin/false'\n");
+  ChildProcess refused({BESS_NOTIFY_PROGRAM, "--config", bad, "--test"});
+  EXPECT_THAT(refused.read_all(), HasSubstr("command: failed with exit code 1"));
+  EXPECT_EQ(refused.wait(), 1);
+}
+
+}  // namespace
+}  // namespace bess

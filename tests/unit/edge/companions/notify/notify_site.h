@@ -1,0 +1,99 @@
+// What the tests of whole rounds stand on: a site without a controller, whose status is a file and
+// whose alarm command writes into another.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+
+#include "edge/companions/notify/notifier.h"
+#include "shared/utc_text.h"
+#include "tests/support/mqtt_broker.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+
+inline constexpr std::int64_t kNow = 1'679'875'320;  // 2023-03-27T00:02:00Z, 02:02 in Brussels
+
+inline std::size_t count_of(const std::string& text, const std::string& piece) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(piece); at != text.npos; at = text.find(piece, at + 1)) ++count;
+  return count;
+}
+
+/// A site without a controller: its status is a file, its command writes into another.
+class Rounds : public ::testing::Test {
+ protected:
+  Rounds() {
+    signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read what it is given
+    settings_.config_path = "edge.toml";
+    settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
+    settings_.memories = {folder_.file("notify/told.json")};
+    settings_.name = "garage";
+    settings_.id = "garage";
+    settings_.after_s = 300;
+    set_status("ok");
+  }
+
+  std::string write_script(const char* name, const std::string& body) {
+    const std::string path = folder_.write(name, "#!/bin/sh\n" + body + "\n");
+    EXPECT_EQ(chmod(path.c_str(), 0755), 0);
+    return path;
+  }
+  void use_command() {
+    settings_.command = "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + folder_.file("told");
+  }
+  void set_status(const std::string& health, const std::string& reasons = "",
+                  std::int64_t utc_s = kNow) {
+    const std::string beside = folder_.write(
+        "status.new", R"({"health": ")" + health + R"(", "health_reasons": [)" + reasons +
+                          R"(], "last": {"utc": ")" + utc_text(utc_s).c_str() +
+                          R"(", "mode": "safe", "reason": "no_price"},)" +
+                          R"( "totals": {"cycles": 9}})");
+    std::filesystem::rename(beside, folder_.file("status.json"));  // a round may look at any time
+  }
+  /// What the command has not taken, as it was kept.
+  [[nodiscard]] std::deque<Message> pending() const {
+    std::vector<std::string> losses;
+    return read_notifier_state(settings_.memories, losses).pending;
+  }
+  [[nodiscard]] std::string told() const { return text_of_file(folder_.file("told")); }
+
+  const TemporaryFolder folder_;
+  NotifySettings settings_;
+};
+
+inline constexpr const char* kReason = R"("WARN: mode is safe, reason no_price")";
+
+/// A round, and what the channels make of it.
+inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {
+  notifier.run_round(now_utc_s);
+  EXPECT_TRUE(notifier.finish(std::chrono::minutes(2)));
+}
+
+/// The same by a notifier that has just started, and ends.
+inline void round_of_its_own(const NotifySettings& settings, std::int64_t now_utc_s) {
+  Notifier notifier(settings);
+  whole_round(notifier, now_utc_s);
+}
+
+class Mqtt : public Rounds {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
+    settings_.mqtt = {.host = "127.0.0.1",
+                      .port = Broker::free_port(),
+                      .ca_file = "",
+                      .user = "",
+                      .password = ""};
+    settings_.after_s = 0;
+  }
+  [[nodiscard]] std::uint16_t port() const {
+    return static_cast<std::uint16_t>(settings_.mqtt.port);
+  }
+};
+
+}  // namespace bess

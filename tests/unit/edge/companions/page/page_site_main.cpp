@@ -1,0 +1,14 @@
+// page_site: a site to look at with bess-page, until its input ends; prints its configuration's
+// path.
+#include <cstdio>
+
+#include "tests/unit/edge/companions/page/page_site.h"
+
+int main() {
+  const bess::PageSite site;
+  std::printf("%s\n", site.config().c_str());
+  std::fflush(stdout);
+  while (std::getchar() != EOF) {
+  }
+  return ::testing::Test::HasFailure() ? 1 : 0;
+}

@@ -1,0 +1,75 @@
+// How soon faults that come and go are found, and what is forgiven.
+#include "edge/core/supervision/leaky_count.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace bess {
+namespace {
+
+/// Readings until it is found when every `period`th one is bad, the first among them; 0: never.
+constexpr int readings_to_find(int period) {
+  LeakyCount count;
+  for (int reading = 0; reading < 1'000; ++reading) {
+    if (reading % period == 0) {
+      count.bad();
+    } else {
+      count.good();
+    }
+    if (count.is_found()) return reading + 1;
+  }
+  return 0;
+}
+
+static_assert(readings_to_find(1) == 2);
+
+TEST(LeakyCount, FindsWhatIsBadAtLeastEveryThirdTime) {
+  EXPECT_EQ(readings_to_find(1), 2);
+  EXPECT_EQ(readings_to_find(2), 3);
+  EXPECT_EQ(readings_to_find(3), 7);
+}
+
+TEST(LeakyCount, ForgivesOneBadReadingInFourOrMore) {
+  for (const int period : {4, 5, 6, 60}) EXPECT_EQ(readings_to_find(period), 0) << period;
+}
+
+TEST(LeakyCount, OneBadReadingIsNeverEnough) {
+  LeakyCount count;
+  count.bad();
+  EXPECT_FALSE(count.is_found());
+  for (int good = 0; good < 3; ++good) count.good();
+  EXPECT_EQ(count, LeakyCount{});
+  count.good();
+  EXPECT_EQ(count.level, 0) << "what was good for long excuses nothing in advance";
+}
+
+TEST(LeakyCount, WhatWasBadForADayIsForgivenLikeWhatWasBadTwice) {
+  LeakyCount day, twice;
+  for (int reading = 0; reading < 1'440; ++reading) day.bad();
+  twice.bad();
+  twice.bad();
+  EXPECT_EQ(day, twice);
+  day.good();
+  EXPECT_TRUE(day.is_found());
+  day.good();
+  EXPECT_FALSE(day.is_found());
+}
+
+TEST(LeakyCount, ForgetsAndTakesUpWhatWasWrittenDown) {
+  LeakyCount count;
+  count.bad();
+  count.bad();
+  LeakyCount restored;
+  restored.restore(count.level);
+  EXPECT_EQ(restored, count);
+  count.forget();
+  EXPECT_EQ(count.level, 0);
+  for (const auto& [logged, level] : {std::pair{-1, 0}, {32'767, 6}, {-32'768, 0}, {4, 4}}) {
+    restored.restore(static_cast<std::int16_t>(logged));
+    EXPECT_EQ(restored.level, level) << logged;
+  }
+}
+
+}  // namespace
+}  // namespace bess

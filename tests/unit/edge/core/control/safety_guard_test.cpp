@@ -1,0 +1,295 @@
+// The guard: one case per reason, then the precedence between them.
+#include "edge/core/control/safety_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/support/guard_inputs.h"
+
+namespace bess {
+namespace {
+
+GuardDecision decide_once(const GuardInputs& in) { return SafetyGuard(GuardSettings{}).decide(in); }
+
+TEST(SafetyGuard, PassesTheStudentThroughWhenAllIsWell) {
+  for (const Action action : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
+    const GuardDecision decision = decide_once(healthy(action));
+    EXPECT_EQ(decision.reason, Reason::kStudent);
+    EXPECT_EQ(decision.power_w, power_sign(action) * 4'000);
+  }
+}
+
+struct StopCase {
+  const char* name;
+  std::function<void(GuardInputs&)> spoil;
+  Reason reason;
+  std::int32_t power_w;
+};
+
+/// In order of precedence: a case further up must win over every case below it.
+std::vector<StopCase> cases() {
+  return {
+      {"clock", [](GuardInputs& in) { in.clock_ok = false; }, Reason::kClock, 0},
+      {"link", [](GuardInputs& in) { in.link_ok = false; }, Reason::kLink, 0},
+      {"alarm", [](GuardInputs& in) { in.measurement.alarm = true; }, Reason::kAlarm, 0},
+      {"hot", [](GuardInputs& in) { in.measurement.temperature_max_deci_c = 501; },
+       Reason::kTemperature, 0},
+      {"cold", [](GuardInputs& in) { in.measurement.temperature_min_deci_c = -1; },
+       Reason::kTemperature, 0},
+      {"off grid", [](GuardInputs& in) { in.measurement.off_grid = true; }, Reason::kOffGrid, 0},
+      {"wrong direction", [](GuardInputs& in) { in.supervision = Reason::kWrongDirection; },
+       Reason::kWrongDirection, 0},
+      {"jumping SoC", [](GuardInputs& in) { in.supervision = Reason::kSocJump; }, Reason::kSocJump,
+       0},
+      {"no price", [](GuardInputs& in) { in.has_price = false; }, Reason::kNoPrice, 0},
+      {"old price", [](GuardInputs& in) { in.price_minute_utc_s = kNow - 360; }, Reason::kPriceAge,
+       0},
+      {"soc full", [](GuardInputs& in) { in.measurement.soc_e4 = 10'000; }, Reason::kSocFull, 0},
+      {"cycle budget", [](GuardInputs& in) { in.cycle_budget_spent = true; }, Reason::kCycleBudget,
+       0},
+      {"reversal cap", [](GuardInputs& in) { in.barred_direction = 1; }, Reason::kReversalCap, 0},
+      {"power limit", [](GuardInputs& in) { in.measurement.charge_w_max = 1'500; },
+       Reason::kPowerLimit, 1'500},
+      {"outside limit", [](GuardInputs& in) { in.site.limit_charge(2'000, Reason::kOutsideLimit); },
+       Reason::kOutsideLimit, 2'000},
+      {"import limit", [](GuardInputs& in) { in.site.limit_charge(2'500, Reason::kImportLimit); },
+       Reason::kImportLimit, 2'500},
+      {"quarter-hour peak",
+       [](GuardInputs& in) { in.site.limit_charge(3'000, Reason::kQuarterHourPeak); },
+       Reason::kQuarterHourPeak, 3'000},
+  };
+}
+
+/// At a restart the order in force may be another controller's, or a register's nonsense.
+TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
+  SafetyGuard guard({.ramp_w_max = 1'000});
+  GuardInputs in = healthy(Action::kCharge);
+  for (const std::int32_t previous_w : {10'000, INT32_MAX, INT32_MIN, -10'000}) {
+    in.previous_power_w = previous_w;
+    const GuardDecision decision = guard.decide(in);
+    EXPECT_LE(std::abs(decision.power_w), 4'000) << previous_w;
+  }
+}
+
+TEST(SafetyGuard, EachReason) {
+  for (const StopCase& c : cases()) {
+    GuardInputs in = healthy(Action::kCharge);
+    c.spoil(in);
+    const GuardDecision decision = decide_once(in);
+    EXPECT_EQ(decision.reason, c.reason) << c.name;
+    EXPECT_EQ(decision.power_w, c.power_w) << c.name;
+  }
+}
+
+TEST(SafetyGuard, PrecedenceOfEveryPair) {
+  const std::vector<StopCase> all = cases();
+  for (std::size_t high = 0; high < all.size(); ++high) {
+    for (std::size_t low = high + 1; low < all.size(); ++low) {
+      GuardInputs in = healthy(Action::kCharge);
+      all[low].spoil(in);
+      all[high].spoil(in);
+      EXPECT_EQ(decide_once(in).reason, all[high].reason) << all[high].name << " " << all[low].name;
+    }
+  }
+}
+
+TEST(SafetyGuard, ThresholdsOverruleTheStudentButNotTheSocLimits) {
+  GuardInputs cheap = healthy(Action::kDischarge);
+  cheap.price_centi_eur_per_mwh = -50'000;
+  EXPECT_EQ(decide_once(cheap).power_w, 4'000);
+  EXPECT_EQ(decide_once(cheap).reason, Reason::kPriceLow);
+  cheap.measurement.soc_e4 = 10'000;
+  EXPECT_EQ(decide_once(cheap).power_w, 0);
+  EXPECT_EQ(decide_once(cheap).reason, Reason::kSocFull);
+
+  GuardInputs dear = healthy(Action::kIdle);
+  dear.price_centi_eur_per_mwh = 150'000;
+  EXPECT_EQ(decide_once(dear).power_w, -4'000);
+  EXPECT_EQ(decide_once(dear).reason, Reason::kPriceHigh);
+  dear.measurement.soc_e4 = 1'000;
+  EXPECT_EQ(decide_once(dear).power_w, 0);
+  EXPECT_EQ(decide_once(dear).reason, Reason::kSocEmpty);
+}
+
+TEST(SafetyGuard, ThresholdsAreExactToTheCent) {
+  GuardInputs in = healthy(Action::kIdle);
+  in.price_centi_eur_per_mwh = -49'999;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  in.price_centi_eur_per_mwh = 149'999;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+
+  SafetyGuard widest({.thresholds = {.low_eur_per_mwh = -15'000, .high_eur_per_mwh = 15'000}});
+  in.price_centi_eur_per_mwh = -1'500'000;
+  EXPECT_EQ(widest.decide(in).reason, Reason::kPriceLow);
+  in.price_centi_eur_per_mwh = 1'499'999;
+  EXPECT_EQ(widest.decide(in).reason, Reason::kStudent);
+}
+
+TEST(SafetyGuard, AgreementIsNotAnIntervention) {
+  GuardInputs in = healthy(Action::kCharge);
+  in.price_centi_eur_per_mwh = -60'000;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  EXPECT_EQ(decide_once(in).power_w, 4'000);
+}
+
+TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
+  SafetyGuard guard{GuardSettings{}};
+  GuardInputs in = healthy(Action::kCharge);
+  const auto power_at = [&](std::int32_t soc_e4) {
+    in.measurement.soc_e4 = soc_e4;
+    return guard.decide(in).power_w;
+  };
+  EXPECT_EQ(power_at(9'990), 4'000);
+  EXPECT_EQ(power_at(10'000), 0);
+  EXPECT_EQ(power_at(9'950), 0);      // not yet back inside by the hysteresis
+  EXPECT_EQ(power_at(9'949), 4'000);  // open again
+  in.student_action = Action::kDischarge;
+  EXPECT_EQ(power_at(1'000), 0);
+  EXPECT_EQ(power_at(1'050), 0);
+  EXPECT_EQ(power_at(1'051), -4'000);
+}
+
+/// However extreme the price: it is what a source that lies would send.
+TEST(SafetyGuard, AReversalTooManyIsNotFollowedBeyondTheThresholdsEither) {
+  GuardInputs in = healthy(Action::kIdle);
+  in.price_centi_eur_per_mwh = 1'000'000;
+  in.barred_direction = -1;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kReversalCap);
+  in.price_centi_eur_per_mwh = -1'000'000;
+  EXPECT_EQ(decide_once(in).power_w, 4'000);
+  in.barred_direction = 1;
+  in.student_action = Action::kIdle;
+  in.price_centi_eur_per_mwh = 5'000;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent) << "0 W needs no reversal";
+}
+
+TEST(SafetyGuard, PriceAgeAndQuarterHour) {
+  GuardInputs in = healthy();
+  in.price_minute_utc_s = kNow - 60 - 240;  // exactly four minutes after its end: still good
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  in.price_minute_utc_s -= 60;
+  EXPECT_EQ(decide_once(in).reason, Reason::kPriceAge);
+  in.price_minute_utc_s = kNow + 120;  // from the future
+  EXPECT_EQ(decide_once(in).reason, Reason::kPriceAge);
+
+  GuardSettings patient;
+  patient.price_age_s_max = 1'800;
+  in.price_minute_utc_s = kNow - 120 - 900;  // first minute of the preceding quarter-hour
+  EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kStudent);
+  in.price_minute_utc_s -= 60;
+  EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
+}
+
+TEST(SafetyGuard, WhatAnOldPriceHasBecomeStandsInForItsTimeAlone) {
+  GuardSettings settings;
+  settings.stand_in_s_max = 3'600;
+  const SafetyGuard guard(settings);
+  GuardInputs in = healthy(Action::kDischarge);
+  const auto aged = [&](std::int64_t age_s) {
+    in.price_minute_utc_s = kNow - 60 - age_s;
+    return guard.may_stand_in(in);
+  };
+  EXPECT_FALSE(aged(240)) << "it is traded on";
+  EXPECT_TRUE(aged(241));
+  EXPECT_TRUE(aged(3'840));
+  EXPECT_FALSE(aged(3'841));
+  EXPECT_FALSE(aged(-61)) << "a row of the future";
+  EXPECT_FALSE(SafetyGuard(GuardSettings{}).may_stand_in(in)) << "off by default";
+
+  EXPECT_FALSE(aged(3'841));
+  in.price_stands_in = true;  // whoever says so
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kPriceAge);
+  EXPECT_TRUE(aged(3'840));
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kStandIn);
+  EXPECT_EQ(SafetyGuard(settings).decide(in).power_w, -settings.power_w);
+  in.price_is_frozen = true;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kFrozenPrice);
+  in.price_is_frozen = false;
+  in.has_price = false;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kNoPrice);
+}
+
+TEST(SafetyGuard, APriceOfTwoQuarterHoursAgoMayStandInHoweverYoung) {
+  GuardSettings settings;
+  settings.price_age_s_max = 1'800;
+  settings.stand_in_s_max = 600;
+  GuardInputs in = healthy(Action::kCharge);
+  in.price_minute_utc_s = kNow - 120 - 960;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kPriceQuarterHour);
+  in.price_stands_in = SafetyGuard(settings).may_stand_in(in);
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kStandIn);
+}
+
+TEST(SafetyGuard, AFrozenPriceIsNoneWhateverItSays) {
+  for (const std::int32_t centi : {0, 9'000, 9'999'900, -9'999'900}) {
+    GuardInputs in = healthy(Action::kCharge);
+    in.price_centi_eur_per_mwh = centi;
+    in.price_is_frozen = true;
+    EXPECT_EQ(decide_once(in).reason, Reason::kFrozenPrice) << centi;
+    EXPECT_EQ(decide_once(in).power_w, 0) << centi;
+    in.held = true;
+    in.held_power_w = 2'000;
+    EXPECT_EQ(decide_once(in).reason, Reason::kHeld) << "a hold needs no price";
+  }
+}
+
+TEST(SafetyGuard, ALostMeterLeavesNeitherDirection) {
+  for (const Action action : {Action::kCharge, Action::kDischarge}) {
+    GuardInputs in = healthy(action);
+    in.site.forbid(Reason::kMeterLost);
+    EXPECT_EQ(decide_once(in).power_w, 0);
+    EXPECT_EQ(decide_once(in).reason, Reason::kMeterLost);
+  }
+}
+
+TEST(SafetyGuard, ExportIsCutAndNeverTurnedIntoCharging) {
+  GuardInputs in = healthy(Action::kDischarge);
+  in.site.limit_discharge(800, Reason::kExportLimit);
+  EXPECT_EQ(decide_once(in).power_w, -800);
+  EXPECT_EQ(decide_once(in).reason, Reason::kExportLimit);
+  in.site.limit_discharge(-5'000, Reason::kExportLimit);
+  EXPECT_EQ(decide_once(in).power_w, 0);
+}
+
+TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
+  GuardInputs in = healthy(Action::kCharge);
+  in.site.relief_w = 1'200;
+  EXPECT_EQ(decide_once(in).power_w, -1'200);
+  EXPECT_EQ(decide_once(in).reason, Reason::kQuarterHourPeak);
+  in.measurement.discharge_w_max = 500;
+  EXPECT_EQ(decide_once(in).power_w, -500);
+  in.measurement.soc_e4 = 1'000;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kSocEmpty);
+  in = healthy(Action::kDischarge);  // the student gives more than that anyway
+  in.site.relief_w = 1'200;
+  EXPECT_EQ(decide_once(in).power_w, -4'000);
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+}
+
+/// Between two ticks an order is only ever taken off.
+TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
+  const SafetyGuard guard{GuardSettings{}};
+  GuardInputs in = healthy(Action::kCharge);
+  in.previous_power_w = 1'000;
+  EXPECT_EQ(guard.rechecked_power_w(in), 1'000);
+  in.site.limit_charge(300, Reason::kImportLimit);
+  EXPECT_EQ(guard.rechecked_power_w(in), 300);
+  in.site.relief_w = 700;
+  EXPECT_EQ(guard.rechecked_power_w(in), -700);
+}
+
+TEST(SafetyGuard, NegativeLiveLimitsMeanZero) {
+  GuardInputs in = healthy(Action::kDischarge);
+  in.measurement.discharge_w_max = -5;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kPowerLimit);
+}
+
+}  // namespace
+}  // namespace bess

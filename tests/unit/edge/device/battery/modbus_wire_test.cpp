@@ -1,0 +1,70 @@
+// The wire to a device that says nothing, while signals come.
+#include "edge/device/battery/modbus_wire.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <time.h>
+
+#include "edge/device/battery/modbus_frame.h"
+#include "shared/file_descriptor.h"
+#include "shared/scaled_clock.h"
+#include "tests/support/loopback_socket.h"
+
+namespace bess {
+namespace {
+
+int alarms = 0;
+
+std::int64_t monotonic_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * kNanosecondsPerSecond + now.tv_nsec;
+}
+
+/// A signal each millisecond, which breaks off what waits.
+class Alarms {
+ public:
+  Alarms() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { ++alarms; };
+    sigaction(SIGALRM, &action, &before_);
+    const itimerval each{{0, 1'000}, {0, 1'000}};
+    setitimer(ITIMER_REAL, &each, nullptr);
+  }
+  ~Alarms() {
+    const itimerval none{};
+    setitimer(ITIMER_REAL, &none, nullptr);
+    sigaction(SIGALRM, &before_, nullptr);
+  }
+
+ private:
+  struct sigaction before_ {};
+};
+
+TEST(ModbusWire, ASignalIsNoLostConnection) {
+  sockaddr_in address = loopback_address();
+  const FileDescriptor listener(bind_socket(address));
+  ASSERT_EQ(listen(listener.get(), 1), 0);
+  BatteryLinkSettings settings;
+  settings.port = ntohs(address.sin_port);
+  ModbusWire wire(settings, 1'000);
+  ASSERT_EQ(wire.open(), Status::kOk);
+  const Alarms each_millisecond;
+  ModbusFrame frame;
+  alarms = 0;
+  EXPECT_EQ(wire.receive(8, monotonic_ns() + 60'000'000, frame), Status::kTimeout);
+  EXPECT_GT(alarms, 3);
+  EXPECT_EQ(frame.size, 0);
+}
+
+TEST(ModbusWire, TheSpeedsOfSerialLinesAndNoneBeside) {
+  for (const std::int32_t baud :
+       {1'200, 2'400, 4'800, 9'600, 19'200, 38'400, 57'600, 115'200, 230'400}) {
+    EXPECT_TRUE(is_serial_speed(baud)) << baud;
+    EXPECT_FALSE(is_serial_speed(baud - 1) || is_serial_speed(baud + 1)) << baud;
+  }
+}
+
+}  // namespace
+}  // namespace bess

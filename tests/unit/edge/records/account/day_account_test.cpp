@@ -1,0 +1,135 @@
+// The daily line: money by hand, and its text to the letter.
+#include "edge/records/account/day_account.h"
+
+#include <gtest/gtest.h>
+
+#include "edge/records/account/account_days.h"
+
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kDay = 20'231'126;
+
+CycleRecord cycle(std::int32_t power_w, std::int32_t price_centi,
+                  Reason reason = Reason::kStudent) {
+  CycleRecord record;
+  record.mode = Mode::kRunning;
+  record.reason = reason;
+  record.has_measurement = true;
+  record.measurement.power_w = power_w;
+  record.price.has_row = true;
+  record.price.price_centi_eur_per_mwh = price_centi;
+  return record;
+}
+
+/// Of records two minutes apart, from noon of the day.
+DayAccount account_of(std::vector<CycleRecord> records, const MoneyTerms& terms = {}) {
+  set_market_time_zone();
+  DayBook book(kDay, kDay, terms);
+  std::int64_t utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
+  for (CycleRecord& record : records) {
+    record.utc_s = utc_s += kSecondsPerStep;
+    record.price.minute_utc_s = utc_s - 60;
+    book.add(record);
+  }
+  return book.accounts().at(0);
+}
+
+/// Half an hour at 4 kW in at -50, half an hour out at 200 EUR/MWh: 2 kWh each, 0.10 + 0.40 EUR.
+TEST(DayAccount, CountsMoneyAsAMeterWould) {
+  std::vector<CycleRecord> records(15, cycle(4'000, -5'000));
+  records.insert(records.end(), 15, cycle(-4'000, 20'000));
+  const DayAccount day = account_of(records);
+  EXPECT_NEAR(day.charged_kwh(), 2, 1e-9);
+  EXPECT_NEAR(day.discharged_kwh(), 2, 1e-9);
+  EXPECT_NEAR(day.earned_eur(), 0.10 + 0.40, 1e-9);
+  EXPECT_EQ(day.cycles(), 30);
+  EXPECT_EQ(day.interventions(), 0);
+}
+
+TEST(DayAccount, TheLineIsThis) {
+  std::vector<CycleRecord> records(15, cycle(-4'000, 20'000));
+  records.insert(records.end(), 3, cycle(0, 0, Reason::kSocEmpty));
+  CycleRecord blind = cycle(0, 0, Reason::kLink);
+  blind.has_measurement = false;
+  records.push_back(blind);
+  CycleRecord last = cycle(0, 0, Reason::kHeld);
+  last.throughput = {.local_day = kDay, .soc_moved_e4 = 5'000};
+  records.push_back(last);
+  CycleRecord stop = last;
+  stop.mode = Mode::kStopping;
+  records.push_back(stop);
+  EXPECT_EQ(
+      account_of(records).line(),
+      "2023-11-26: +0.40 EUR (0 of 3 quarter-hours at the settled price, an estimate in the "
+      "others), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
+      "soc_empty 3, held 1)");
+}
+
+/// An order holds from when it was written, which the price's age tells; a release is none.
+TEST(DayAccount, ASampleIsARecordsOwn) {
+  CycleRecord record = cycle(-7, 100);
+  ExchangeSample taken;
+  record.price.minute_utc_s = -60;
+  record.price_age_s = 5;
+  record.written = true;
+  ASSERT_TRUE(sample_of(record, taken));
+  EXPECT_EQ(taken.power_w, -7);
+  EXPECT_TRUE(taken.is_ordered);
+  EXPECT_NEAR(taken.written_after_s, 5.5, 1e-6);
+  record.mode = Mode::kSafe;
+  ASSERT_TRUE(sample_of(record, taken));
+  EXPECT_FALSE(taken.is_ordered);
+  record.has_measurement = false;
+  EXPECT_FALSE(sample_of(record, taken));
+}
+
+/// Three ticks without a record, and a clock that was stepped back, which leaves none out.
+TEST(DayAccount, TicksWithoutARecordCount) {
+  set_market_time_zone();
+  const MoneyTerms terms;
+  DayBook book(kDay, kDay, terms);
+  const std::int64_t noon_utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
+  for (const int tick : {-400, 0, 1, 5, 2}) {  // the first is of the day before
+    CycleRecord record = cycle(0, 0, Reason::kPriceAge);
+    record.mode = Mode::kHolding;
+    record.utc_s = noon_utc_s + tick * kSecondsPerStep;
+    book.add(record);
+  }
+  const DayAccount day = book.accounts().at(0);
+  EXPECT_EQ(day.cycles(), 4);
+  EXPECT_EQ(day.missing_cycles(), 3);
+  EXPECT_EQ(day.driven_share(), 0);
+  EXPECT_EQ(day.not_driven_by_reason()[static_cast<std::size_t>(Reason::kPriceAge)], 4);
+}
+
+TEST(DayAccount, TheThroughputOfAnotherDayIsNotThisDays) {
+  DayAccount day(kDay);
+  CycleRecord first = cycle(0, 0);
+  first.throughput = {.local_day = kDay - 1, .soc_moved_e4 = 20'000};
+  day.add(first);
+  EXPECT_EQ(day.full_cycles(), 0);
+  EXPECT_FALSE(day.is_empty());
+  EXPECT_TRUE(DayAccount(kDay).is_empty());
+}
+
+/// In summer, in winter, and on the two days of the clock changes.
+TEST(DayAccount, BeginsAtLocalMidnight) {
+  set_market_time_zone();
+  const auto starts = [](std::int32_t day) {
+    return std::string(utc_text(DayAccount(day).start_utc_s()).view());
+  };
+  EXPECT_EQ(starts(20'230'115), "2023-01-14T23:00:00Z");
+  EXPECT_EQ(starts(20'230'326), "2023-03-25T23:00:00Z");
+  EXPECT_EQ(starts(20'230'327), "2023-03-26T22:00:00Z");
+  EXPECT_EQ(starts(20'230'701), "2023-06-30T22:00:00Z");
+  EXPECT_EQ(starts(20'231'029), "2023-10-28T22:00:00Z");
+  EXPECT_EQ(starts(20'231'030), "2023-10-29T23:00:00Z");
+  EXPECT_EQ(starts(20'240'101), "2023-12-31T23:00:00Z");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,88 @@
+// The file of settled prices: written, read back, damaged; what is newer counts, and what is
+// validated stays so. And the keys that money is counted by.
+#include "edge/records/account/settled_prices.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kSettledQuarter = 1'679'785'200;
+constexpr PriceState kAsPublished = PriceState::kPublished, kAsValidated = PriceState::kValidated;
+
+TEST(SettledPrices, AreWhatWasWritten) {
+  SettledPrices prices;
+  const SettledQuarter some[] = {{kSettledQuarter + 900, -999.99, kAsPublished},
+                                 {kSettledQuarter, 131.07, kAsValidated}};
+  prices.put(some);
+  SettledPrices read;
+  ASSERT_TRUE(read.parse(prices.text()));
+  EXPECT_EQ(read.quarters(), prices.quarters());
+  ASSERT_NE(read.find(kSettledQuarter + 899), nullptr);
+  EXPECT_EQ(read.find(kSettledQuarter + 899)->eur_per_mwh, 131.07);
+  EXPECT_EQ(read.find(kSettledQuarter - 1), nullptr);
+  EXPECT_EQ(read.find(kSettledQuarter + 1'800), nullptr);
+  EXPECT_THAT(prices.text(), HasSubstr("2023-03-25T23:00:00Z,131.07,validated\n"));
+}
+
+TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {
+  SettledPrices prices;
+  const SettledQuarter first[] = {{kSettledQuarter, 10, kAsPublished},
+                                  {kSettledQuarter + 900, 20, kAsValidated}};
+  const SettledQuarter then[] = {{kSettledQuarter, 11, kAsPublished},
+                                 {kSettledQuarter + 900, 21, kAsPublished}};
+  const SettledQuarter last[] = {{kSettledQuarter, 12, kAsValidated},
+                                 {kSettledQuarter + 900, 22, kAsValidated}};
+  prices.put(first);
+  EXPECT_EQ(prices.first_open(kSettledQuarter), kSettledQuarter);
+  EXPECT_EQ(prices.first_open(kSettledQuarter + 900), kSettledQuarter + 1'800);
+  prices.put(then);
+  EXPECT_EQ(prices.find(kSettledQuarter)->eur_per_mwh, 11);
+  EXPECT_EQ(prices.find(kSettledQuarter + 900)->eur_per_mwh, 20);
+  prices.put(last);
+  EXPECT_EQ(prices.find(kSettledQuarter + 900)->eur_per_mwh, 22);
+  EXPECT_EQ(prices.first_open(kSettledQuarter), kSettledQuarter + 1'800);
+  prices.drop_before(kSettledQuarter + 1);
+  EXPECT_EQ(prices.quarters().size(), 1u);
+}
+
+/// A card that forgets: every byte of the file, one after the other.
+TEST(SettledPrices, ADamagedFileIsNotBelieved) {
+  SettledPrices prices;
+  const SettledQuarter some[] = {{kSettledQuarter, 131.07, kAsValidated},
+                                 {kSettledQuarter + 900, 5, kAsPublished}};
+  prices.put(some);
+  const std::string text = prices.text();
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string broken = text;
+    broken[i] = static_cast<char>(broken[i] ^ 1);
+    EXPECT_FALSE(prices.parse(broken)) << i;
+    EXPECT_TRUE(prices.quarters().empty());
+    EXPECT_FALSE(prices.parse(std::string_view(text).substr(0, i))) << i;
+  }
+  const TemporaryFolder folder;
+  EXPECT_EQ(prices.read(folder.file("none.csv")), "");
+  EXPECT_THAT(prices.read(folder.write("settled.csv", text + "x")), HasSubstr("is damaged"));
+  EXPECT_EQ(prices.read(folder.write("settled.csv", text)), "");
+  EXPECT_EQ(prices.quarters().size(), 2u);
+}
+
+TEST(MoneySettings, AreReadOutOfTheWholeConfiguration) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("edge.toml", "[battery]\ncapacity_wh = 5000\n");
+  TomlValue document;
+  std::string error;
+  ASSERT_TRUE(parse_toml_file(path, document, error)) << error;
+  TomlTable root(&document, path, "", error);
+  const MoneySettings money = read_money_settings(root);
+  EXPECT_EQ(money.capacity_wh, 5'000);
+  EXPECT_EQ(money.settled_file, folder.file("state/settled.csv"));
+}
+
+}  // namespace
+}  // namespace bess

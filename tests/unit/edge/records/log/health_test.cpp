@@ -1,0 +1,131 @@
+// From the published status to ok, degraded or not running: a table.
+#include "edge/records/log/health.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/tokens.h"
+
+namespace bess {
+namespace {
+
+/// Of a run that is well.
+struct Well {
+  Well() {
+    status.totals.cycles = 1;
+    last.mode = Mode::kRunning;
+    last.reason = Reason::kStudent;
+    last.battery_status = last.price.status = Status::kOk;
+  }
+  [[nodiscard]] Health health() const { return assess_health(in); }
+
+  RunStatus status;
+  CycleRecord& last = status.totals.last;
+  HealthInputs in{.is_running = true, .status = &status, .is_of_this_run = true, .age_ms = 119'000};
+};
+
+/// README: more than five readings in a row.
+TEST(Health, OkUpToTheBounds) {
+  Well well;
+  well.last.unanswered_orders = 5;
+  well.last.findings.wrong_energy_e6 = 49'999;
+  const Health health = well.health();
+  EXPECT_EQ(health.level, HealthLevel::kOk);
+  EXPECT_TRUE(health.reasons.empty());
+}
+
+/// Each by itself is one reason, which names its numbers, and no two are the same.
+TEST(Health, EveryTroubleHasItsReason) {
+  struct Case {
+    void (*spoil)(Well&);
+    const char* codes;
+  };
+  const Case cases[] = {
+      {[](Well& w) { w.in.is_running = false; }, "CRITICAL bess-edge"},
+      {[](Well& w) { w.in.is_of_this_run = false; }, "WARN"},
+      {[](Well& w) { w.in.age_ms = 240'001; }, "WARN 240 120"},
+      {[](Well& w) { w.in.age_ms = 480'001; }, "CRITICAL 480 120"},
+      {[](Well& w) { w.in.update_trouble = "1.0; 2.0 it hangs"; }, "WARN 1.0; 2.0 it hangs"},
+      {[](Well& w) { w.in.wear.used_life_percent = 100; }, "WARN 100 %"},
+      {[](Well& w) { w.in.wear.spare_level = 2; }, "WARN 80 %"},
+      {[](Well& w) { w.in.wear.spare_level = 3; }, "CRITICAL 90 %"},
+      {[](Well& w) { w.in.wear.file_system_errors = 3; }, "WARN 3"},
+      {[](Well& w) { w.last.findings.energy_share_percent = 54; }, "WARN 54 % capacity_wh"},
+      {[](Well& w) { w.last.findings.rest_loss_w = 390; }, "WARN 390 W"},
+      {[](Well& w) { w.last.findings.rest_loss_w = -800; }, "WARN 800 W"},
+      {[](Well& w) { w.last.findings.ramp_w_per_s = 30; }, "WARN 30 W/s bess-edge commission"},
+      {[](Well& w) { w.last.findings.wrong_energy_e6 = 66'000; }, "WARN 6 %"},
+      {[](Well& w) { w.last.findings.locked_readings = 31; }, "WARN 31"},
+      {[](Well& w) { w.last.site.meter_status = Status::kTimeout; }, "WARN meter timeout"},
+      {[](Well& w) { w.last.site.trust.is_mismatch = true; }, "WARN meter"},
+      {[](Well& w) { w.last.site.house_is_implausible = true, w.last.site.grid_power_w = -631; },
+       "WARN meter -631 [meter] pv_w_max"},
+      {[](Well& w) { w.last.site.limit_status = Status::kTimeout; }, "WARN 0 W"},
+      {[](Well& w) { w.last.site.limit_status = Status::kMalformed; }, "WARN [limits]"},
+      {[](Well& w) { w.last.mode = Mode::kSafe; }, "WARN safe student"},
+      {[](Well& w) { w.last.battery_status = Status::kTimeout; }, "WARN battery timeout"},
+      {[](Well& w) { w.last.price.status = Status::kNoRow; }, "WARN prices no_row"},
+      {[](Well& w) { w.last.unanswered_orders = 6; }, "WARN 6"},
+      {[](Well& w) { w.last.weak_answers = 2; }, "WARN 2 power_w"},
+      {[](Well& w) { w.last.measurement.warning = true; }, "WARN"},
+      {[](Well& w) { w.last.lost_orders = {.judged = 30, .lost = 10, .is_found = true}; },
+       "WARN 10 30"},
+      {[](Well& w) { w.status.totals.disk_is_slow = true; }, "WARN"},
+      {[](Well& w) { w.status.totals.disk_is_failing = true; }, "WARN"},
+      {[](Well& w) { w.in.disk_is_full = true; }, "WARN"},
+      {[](Well& w) {
+         w.last.price.step_held = true, w.last.price.held_centi_eur_per_mwh = 900'000;
+       },
+       "WARN 9000.00"},
+      {[](Well& w) {
+         w.last.price.has_row = w.last.price_frozen = true;
+         w.last.price.price_centi_eur_per_mwh = 5'550;
+         w.last.standing_price.unchanged_s = 1'800;
+       },
+       "WARN frozen_price 55.50 30"},
+      {[](Well& w) {
+         w.last.price.has_row = true, w.last.price.price_centi_eur_per_mwh = -2'590'754;
+       },
+       "WARN -25907.54 15000"},
+      {[](Well& w) { w.in.is_of_this_run = false, w.in.unknown = "process 12"; },
+       "CRITICAL process 12"},
+      {[](Well& w) { w.status.totals.run_folder_is_failing = true; }, "WARN [state] run_folder"},
+      {[](Well& w) { w.last.hold.unreadable = true; }, "WARN bess-edge hold"},
+      {[](Well& w) { w.in.cycles_behind = 10; }, "WARN 10"},
+  };
+  std::set<std::string> told;
+  for (const Case& c : cases) {
+    Well well;
+    c.spoil(well);
+    const Health health = well.health();
+    EXPECT_EQ(health.level, well.in.is_running ? HealthLevel::kDegraded : HealthLevel::kNotRunning);
+    ASSERT_EQ(health.reasons.size(), 1U) << c.codes;
+    EXPECT_THAT(health.reasons[0], Names(c.codes));
+    EXPECT_TRUE(told.insert(health.reasons[0]).second) << health.reasons[0];
+  }
+}
+
+/// A controller that hangs on a full disk must not look as if only the disk were full.
+TEST(Health, TheAgeIsToldBesideTheDisk) {
+  Well well;
+  well.in.cycles_behind = 10;
+  well.in.age_ms = 481'000;
+  const Health health = well.health();
+  ASSERT_EQ(health.reasons.size(), 2U);
+  EXPECT_THAT(health.reasons[0], Names("CRITICAL 481"));
+  EXPECT_THAT(health.reasons[1], Names("WARN 10"));
+}
+
+TEST(Health, StaleStartsBeyondTwoCadencesWhateverTheTimeScale) {
+  Well well;
+  well.status.identity.cadence_ms = 133;
+  well.in.age_ms = 266;
+  EXPECT_EQ(well.health().level, HealthLevel::kOk);
+  well.in.age_ms = 267;
+  EXPECT_EQ(well.health().level, HealthLevel::kDegraded);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# flash_look_ahead.sh SOURCE FOLDER: what tools/flash ssh asks of the new program on the machine,
+# with a stand-in for it: settings that are refused, a machine without settings. Exit 77 = skipped.
+set -euo pipefail
+source=$(realpath "$1") folder=$2
+# shellcheck source=tests/unit/tools/script_test.sh
+. "$source/tests/unit/tools/script_test.sh"
+need dpkg-deb
+enter_folder
+# shellcheck source=tests/unit/tools/made_up_package.sh
+. "$source/tests/unit/tools/made_up_package.sh"
+mkdir bin maps
+printf '#!/bin/sh\n[ -e "%s/runs" ]\n' "$folder" >bin/systemctl
+chmod 755 bin/systemctl
+# The new program: says what the test put there, and notes how it was asked.
+program="#!/bin/sh
+echo \"\$*\" >>$folder/asked
+case \"\$1\" in
+  --version) exit 0 ;;
+  status) cat $folder/status; echo somebody else speaks >&2; exit 1 ;;
+esac
+exit \$(cat $folder/check_code)"
+spoil="mkdir ../bin; printf '%s\n' '$program' >../bin/bess-edge; chmod 755 ../bin/bess-edge"
+package=$(made_up_package packages all 2.0)
+touch edge.toml
+look_ahead() {
+  : >asked
+  code=0
+  PATH=$folder/bin:$PATH sh "$source/tools/delivery/flashing/look_ahead.sh" "$package" \
+    "${settings:-edge.toml}" maps "$@" >out 2>err || code=$?
+}
+echo 0 >check_code
+echo '{"health": "ok"}' >status
+touch runs
+look_ahead
+[ $code -eq 0 ] || fail "a machine that is well: exit code $code, $(cat err)"
+
+echo 'bess-edge: edge.toml:3: no such key' >status
+look_ahead
+[ $code -eq 1 ] || fail "settings that are refused: exit code $code"
+grep -q "somebody else speaks" err || fail "what the new program said is lost: $(cat err)"
+rm runs  # no controller: the new program tries battery and price itself, which may be away
+echo 1 >check_code
+look_ahead
+[ $code -eq 0 ] || fail "no controller: exit code $code"
+grep -q "not content yet" err || fail "a check that fails is not told: $(cat err)"
+grep -q -- "^--config edge.toml --check$" asked || fail "it was not checked: $(cat asked)"
+
+settings=absent.toml look_ahead
+[ $code -eq 0 ] || fail "no settings: exit code $code"
+[ ! -s asked ] || fail "no settings, and yet asked: $(cat asked)"
+
+[ $failures -eq 0 ] || exit 1
+rm -rf "$folder"
+echo "look ahead: settings"

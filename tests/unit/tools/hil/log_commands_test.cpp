@@ -1,0 +1,257 @@
+// The same days three times: `bess-train log compare` from the log's CSV and the settled prices,
+// `bess-sim settle` from the battery's own record, `bess-train evaluate` from the prices alone. A
+// month, and three days with a gap, a clock change and restarts, each day by itself as well. And
+// the same log replayed, and as a statement.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "edge/records/account/account_days.h"
+#include "shared/host/json.h"
+#include "shared/host/run_program.h"
+#include "shared/host/text.h"
+#include "shared/local_day.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/tools/hil/real_minutes.h"
+#include "tools/hil_runner/run/run_scenario.h"
+
+namespace bess {
+namespace {
+
+constexpr double kApart = 0.01;
+constexpr double kCapacityMwh = 0.008;
+constexpr const char* kNames[] = {"rbc:20:120", "compiled", "foresight"};
+
+/// A day without a controller for half an hour and without prices for twelve minutes; the day of
+/// the clock change, with a stop, a kill, and a start before the next tick each; one with none of
+/// it.
+constexpr const char* kThreeDays = R"(title = "Three days"
+time = "virtual"
+start_utc = "2023-03-24T23:00:00Z"
+minutes = 4264
+[battery]
+map = "alphaess"
+[prices]
+missing = [[600, 612]]
+file = ")";
+constexpr const char* kTheirEvents = R"("
+[[event]]
+at_min = 360.5
+does = "edge_kill"
+[[event]]
+at_min = 394
+does = "edge_start"
+[[event]]
+at_min = 2000.5
+does = "edge_stop"
+[[event]]
+at_min = 2001
+does = "edge_start"
+[[event]]
+at_min = 2400.5
+does = "edge_kill"
+[[event]]
+at_min = 2401
+does = "edge_start"
+)";
+
+constexpr const char* kMonth = R"(title = "March"
+time = "virtual"
+start_utc = "2023-02-28T23:00:00Z"
+minutes = 44584
+[battery]
+map = "alphaess"
+[prices]
+file = ")";
+
+/// In EUR, by the names of policies.
+struct Judged {
+  std::map<std::string, double> paid, at_equal_charge;
+};
+
+struct Days {
+  std::int32_t first, behind;  ///< as 20230325; the second is no longer one of them
+  std::string from, to;
+};
+
+/// A run in virtual time, and what the three programs make of it.
+class SameDays {
+ public:
+  explicit SameDays(const std::string& scenario, const std::string& costs = "")
+      : folder_("/dev/shm") {  // a record waits for its disk
+    set_market_time_zone();
+    prices_ = read_minute_file(kRealMinutes);
+    Outcome outcome = run_scenario(read_scenario(folder_.write("days.toml", scenario)), true, {});
+    EXPECT_TRUE(outcome.skipped.empty()) << outcome.skipped;
+    EXPECT_TRUE(outcome.passed()) << complaint(outcome);
+    evidence_ = std::move(outcome.evidence);
+    char line[kLogLineBytes];
+    std::string log = std::string(line, format_csv_header(line)) + "\n";
+    for (const CycleRecord& cycle : evidence_.log)
+      log.append(line, format_csv_line(cycle, line)).append("\n");
+    log_ = folder_.write("log.csv", log);
+    settled_ = folder_.write("settled.csv", terms_of(prices_).settled.text());
+    train_ = folder_.write("train.toml",
+                           "[battery]\npower_w = 4000\ncapacity_wh = 8000\n[costs]\n" + costs);
+  }
+
+  [[nodiscard]] std::string log_command(const std::string& name, const Days& days,
+                                        std::vector<std::string> options) const {
+    options.insert(options.begin(),
+                   {BESS_TRAIN_PROGRAM, "log", name, log_, "--from", days.from, "--to", days.to});
+    const ProgramResult said = run_and_hear(options, 60);
+    EXPECT_TRUE(said.is_well()) << said.complaint();
+    return said.output;
+  }
+
+  [[nodiscard]] Judged compared(const Days& days) const {
+    const std::string said = log_command(
+        "compare", days,
+        {"--config", train_, "--settled", settled_, "--json", "--policy", kNames[0], kNames[1]});
+    Judged judged;
+    std::string_view rest = said;
+    while (!rest.empty()) {
+      const Json json = Json::parse(std::string(take_line(rest)));
+      const std::string name(json.value()["policy"].text());
+      judged.paid[name] = number(json.value()["paid_eur"]);
+      judged.at_equal_charge[name] = judged.paid[name] + number(json.value()["charge_eur"]);
+    }
+    EXPECT_EQ(judged.paid.size(), 4u) << said;
+    return judged;
+  }
+
+  /// On the same prices, in the minutes in which the log has one; the days before give their level.
+  [[nodiscard]] Judged evaluated(const Days& days) const {
+    write_minute_file(folder_.file("traded.csv"), traded(days), "");
+    double soc_frac = -1;
+    for (const CycleRecord& r : evidence_.log) {
+      const bool is_first =
+          soc_frac < 0 && r.has_measurement && local_day_at(r.utc_s) >= days.first;
+      if (is_first) soc_frac = r.measurement.soc_e4 / 1e4;
+    }
+    const ProgramResult said = run_and_hear(
+        {BESS_TRAIN_PROGRAM, "evaluate", "--prices", folder_.file("traded.csv"), "--split", "all",
+         "--carry-soc", "--config", train_, "--initial-soc", formatted("%.4f", soc_frac), "--json",
+         "--policy", kNames[0], kNames[1], kNames[2]},
+        60);
+    EXPECT_TRUE(said.is_well()) << said.complaint();
+    Judged judged;
+    std::string_view rest = said.output;
+    for (const char* name : kNames) {
+      const Json json = Json::parse(std::string(take_line(rest)));
+      const double mwh_days = number(json.value()["days"]) * kCapacityMwh;
+      const double together = number(json.value()["profit_eur_per_day_per_mwh"]) * mwh_days;
+      judged.at_equal_charge[name] = together;
+      judged.paid[name] =
+          together - number(json.value()["charge_value_eur_per_day_per_mwh"]) * mwh_days;
+    }
+    return judged;
+  }
+
+  [[nodiscard]] double settled_eur(const Days& days) const {
+    return settled_by_record(evidence_, prices_, DayAccount(days.first).start_utc_s(),
+                             DayAccount(days.behind).start_utc_s())
+        .profit_eur;
+  }
+
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+  static double number(JsonValue value) { return value.number().value_or(std::nan("")); }
+
+ private:
+  [[nodiscard]] MinuteSeries traded(const Days& days) const {
+    std::set<std::int64_t> minutes;
+    for (const CycleRecord& r : evidence_.log) {
+      const std::int32_t day = local_day_at(r.utc_s);
+      const bool has_price = r.price.has_row && r.utc_s - r.price.minute_utc_s <= 300;
+      const bool is_cycle = r.mode != Mode::kStopping && has_price;
+      if (is_cycle && day >= days.first && day < days.behind) {
+        minutes.insert({r.utc_s, r.utc_s + 60});
+      }
+    }
+    MinuteSeries series = prices_;
+    for (std::size_t m = 0; m < series.size(); ++m) {
+      if (!minutes.contains(series.utc_s(m))) series.settled[m] = std::nan("");
+    }
+    return series;
+  }
+
+  const TemporaryFolder folder_;
+  std::string log_, settled_, train_;
+  MinuteSeries prices_;
+  Evidence evidence_;
+};
+
+void expect_close(double got, double wanted, const std::string& what) {
+  std::printf("  %-46s %9.4f %9.4f  %+.3f %%\n", what.c_str(), got, wanted,
+              100 * (got / wanted - 1));
+  EXPECT_NEAR(got, wanted, kApart * std::fabs(wanted)) << what;
+}
+
+void expect_alike(const SameDays& same, const Days& days) {
+  const Judged compared = same.compared(days);
+  std::printf("%s to %s\n", days.from.c_str(), days.to.c_str());
+  expect_close(compared.paid.at("this battery"), same.settled_eur(days), "this battery, settle");
+  const Judged judged = same.evaluated(days);
+  for (const std::string name : kNames) {
+    expect_close(compared.paid.at(name), judged.paid.at(name), name + " paid, evaluate");
+    expect_close(compared.at_equal_charge.at(name), judged.at_equal_charge.at(name),
+                 name + " with its charge, evaluate");
+  }
+}
+
+const Days kMarch{20'230'301, 20'230'401, "2023-03-01", "2023-03-31"};
+const Days kAllThree{20'230'325, 20'230'328, "2023-03-25", "2023-03-27"};
+const Days kClockChange{20'230'326, 20'230'327, "2023-03-26", "2023-03-26"};
+
+TEST(LogCommands, CompareIsWhatSettleAndEvaluateSayOfAMonth) {
+  const SameDays month(std::string(kMonth) + kRealMinutes + "\"\n");
+  expect_alike(month, kMarch);
+  expect_alike(month, {20'230'326, 20'230'401, "2023-03-26", "2023-03-31"});
+  // The student that drove it would drive it so again.
+  const std::string replayed =
+      month.log_command("replay", kMarch, {"--student", "compiled", "--json", "--limit", "0"});
+  const Json json = Json::parse(replayed);
+  EXPECT_EQ(json.value()["differing"].number(), 0);
+  EXPECT_GT(SameDays::number(json.value()["compared"]), 22'000);
+}
+
+TEST(LogCommands, CompareIsThatOfDaysWithAGapAClockChangeAndRestarts) {
+  const SameDays days(std::string(kThreeDays) + kRealMinutes + kTheirEvents);
+  expect_alike(days, {20'230'325, 20'230'326, "2023-03-25", "2023-03-25"});
+  expect_alike(days, kClockChange);
+  expect_alike(days, {20'230'327, 20'230'328, "2023-03-27", "2023-03-27"});
+  expect_alike(days, kAllThree);
+}
+
+/// With a contract that lets none of them trade as before; the statement takes it from the battery.
+TEST(LogCommands, TakeTheContractFromAllAlike) {
+  const SameDays days(std::string(kThreeDays) + kRealMinutes + kTheirEvents,
+                      "import_adder_eur_per_mwh = 20\nexport_fee_eur_per_mwh = 3\n"
+                      "export_percent = 4\n");
+  const Judged compared = days.compared(kClockChange);
+  const Judged judged = days.evaluated(kClockChange);
+  for (const std::string name : kNames) {
+    expect_close(compared.paid.at(name), judged.paid.at(name), name + " less the contract");
+  }
+  EXPECT_LT(judged.paid.at("foresight"), 6.5);  // of 7.24
+  const std::string said =
+      days.log_command("statement", kClockChange,
+                       {"--config", days.file("train.toml"), "--settled", days.file("settled.csv"),
+                        "--output", days.file("bill.html")});
+  EXPECT_NE(said.find(formatted("2023-03-26 to 2023-03-26, %+.2f EUR net of ",
+                                compared.paid.at("this battery"))),
+            std::string::npos)
+      << said;
+  const std::string page = text_of_file(days.file("bill.html"));
+  EXPECT_NE(page.find("on top of what is taken</th><td>20 EUR/MWh</td>"), std::string::npos);
+  EXPECT_NE(page.find("<tr class=\"sum\">"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bess

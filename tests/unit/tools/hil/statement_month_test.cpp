@@ -1,0 +1,232 @@
+// The statement of a month against the battery's own record of what flowed, and against bess-sim
+// settle: a month of real prices in virtual time with the clock change in it, undisturbed, and with
+// a gap, restarts and a meter that is cut off.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_account.h"
+#include "edge/records/account/earnings.h"
+#include "edge/records/log/ring_log.h"
+#include "shared/host/json.h"
+#include "shared/host/minute_file.h"
+#include "shared/host/run_program.h"
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/tools/hil/real_minutes.h"
+#include "tools/hil_runner/run/run_scenario.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kFirstDay = 20'230'301, kLastDay = 20'230'331;
+constexpr double kOfTheMoney = 0.001;
+
+/// From midnight to midnight in Brussels, 31 days less the hour of the clock change; and a cycle
+/// more, which tells the power of the last.
+constexpr int kMonthMinutes = (31 * 24 - 1) * 60 + 4;
+
+std::string month_of(const std::string& parts) {
+  return "title = \"March\"\ntime = \"virtual\"\nstart_utc = \"2023-02-28T23:00:00Z\"\nminutes = " +
+         std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kRealMinutes + "\"\n" + parts;
+}
+
+/// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve
+/// hours without the meter, a day of a battery that is slow, noisy and slow near its ends.
+constexpr const char* kDisturbed = R"([battery]
+map = "alphaess"
+[house]
+seed = 7
+[meter]
+map = "simulator"
+[edge]
+meter = "import_w_max = 9000"
+[meter_fault]
+kinds = ["silence"]
+from_min = 10080
+to_min = 10800
+[battery_fault]
+kinds = ["slow-and-noisy", "throttle"]
+from_min = 36000
+to_min = 37440
+[[event]]
+at_min = 4000.5
+does = "edge_kill"
+[[event]]
+at_min = 4400
+does = "edge_start"
+[[event]]
+at_min = 20000.5
+does = "edge_stop"
+[[event]]
+at_min = 20003
+does = "edge_start"
+[[event]]
+at_min = 30000.5
+does = "edge_kill"
+[[event]]
+at_min = 30001
+does = "edge_start"
+)";
+
+/// Each order's power for as long as it was in force; only what still fits flows. In each direction
+/// by itself, where the record has one number a minute.
+struct Directions {
+  double charged_wh = 0, discharged_wh = 0;
+};
+Directions by_hand(const Scenario& scenario, const Evidence& evidence) {
+  const BatteryParameters& p = scenario.battery.physics;
+  Directions sums;
+  double soc = scenario.battery.soc_frac;
+  for (std::size_t i = 0; i + 1 < evidence.orders.size(); ++i) {
+    const DispatchEvent& order = evidence.orders[i];
+    const double hours = static_cast<double>(evidence.orders[i + 1].utc_ns - order.utc_ns) / 3.6e12;
+    BatteryParameters limited = p;
+    limited.soc_min_frac = 0.1;  // comes with the order
+    const BatteryStep step = battery_step(limited, soc, order.power_w, hours);
+    (step.power_w > 0 ? sums.charged_wh : sums.discharged_wh) += std::fabs(step.power_w) * hours;
+    soc = step.soc_frac;
+  }
+  return sums;
+}
+
+struct Month {
+  Scenario scenario;
+  Outcome outcome;
+  MinuteSeries prices;
+  MoneyTerms terms;
+  Account record;
+
+  [[nodiscard]] Earnings statement() const {
+    DayBook book(kFirstDay, kLastDay, terms);
+    for (const CycleRecord& cycle : outcome.evidence.log) book.add(cycle);
+    return Earnings(book.accounts());
+  }
+};
+
+Month run_month(const std::string& parts) {
+  set_market_time_zone();
+  const TemporaryFolder folder;
+  Month month{.scenario = read_scenario(folder.write("march.toml", month_of(parts))),
+              .outcome = {},
+              .prices = read_minute_file(kRealMinutes),
+              .terms = {},
+              .record = {}};
+  month.outcome = run_scenario(month.scenario, true, {});
+  EXPECT_TRUE(month.outcome.skipped.empty()) << month.outcome.skipped;
+  month.terms = terms_of(month.prices);
+  month.record =
+      settled_by_record(month.outcome.evidence, month.prices, DayAccount(kFirstDay).start_utc_s(),
+                        DayAccount(20'230'401).start_utc_s());
+  return month;
+}
+
+/// One process runs all tests of a suite: a map's month is simulated once.
+const Month& undisturbed(const std::string& map) {
+  static std::map<std::string, Month> months;
+  const auto found = months.find(map);
+  if (found != months.end()) return found->second;
+  return months.emplace(map, run_month("[battery]\nmap = \"" + map + "\"\n")).first->second;
+}
+
+/// Each reading for two minutes, at the settled price: what a log says at first sight.
+double by_readings_eur(const Month& month) {
+  double eur = 0;
+  const std::int64_t begin_utc_s = DayAccount(kFirstDay).start_utc_s();
+  for (const CycleRecord& cycle : month.outcome.evidence.log) {
+    if (cycle.mode == Mode::kStopping || cycle.utc_s <= begin_utc_s) continue;
+    for (const std::int64_t minute_utc_s : {cycle.utc_s - 120, cycle.utc_s - 60}) {
+      const SettledQuarter* const price = month.terms.settled.find(minute_utc_s);
+      if (price == nullptr) continue;
+      eur -= cycle_energy_wh(cycle) / 2 / kWattsPerMegawatt * price->eur_per_mwh;
+    }
+  }
+  return eur;
+}
+
+void tell(const char* name, const DayAccount& statement, const Month& month) {
+  const double net_wh = month.record.charged_wh - month.record.discharged_wh;
+  const double told_wh = 1'000 * (statement.charged_kwh() - statement.discharged_kwh());
+  std::printf("%-12s by readings alone %+.3f %%\n", name,
+              100 * (by_readings_eur(month) / month.record.profit_eur - 1));
+  std::printf(
+      "%-12s %.4f EUR, record %.4f (%+.3f %%); net energy %+.1f Wh of %.0f; unseen %.2f kWh\n",
+      name, statement.money().earned_eur, month.record.profit_eur,
+      100 * (statement.money().earned_eur / month.record.profit_eur - 1), told_wh - net_wh,
+      month.record.charged_wh, statement.unseen_kwh());
+}
+
+/// On maps whose SoC is fine, and one that shows whole percents; that know their capacity or not.
+TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
+  for (const std::string map : {"alphaess", "sunspec_124", "huawei_luna2000", "victron_ess3"}) {
+    const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
+    const Month& month = undisturbed(map);
+    EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
+    const DayAccount statement = month.statement().together();
+    tell(map.c_str(), statement, month);
+    const QuarterHourMoney money = statement.money();
+    EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
+    EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
+    EXPECT_EQ(money.published, money.quarter_hours);
+    EXPECT_EQ(money.unpriced, 0);
+    EXPECT_EQ(statement.unseen_kwh(), 0);
+  }
+}
+
+TEST(StatementOfAMonth, CountsBothDirections) {
+  const Month& month = undisturbed("alphaess");
+  const DayAccount statement = month.statement().together();
+  const Directions hand = by_hand(month.scenario, month.outcome.evidence);
+  std::printf("charged %.3f kWh, by hand %.3f; discharged %.3f, by hand %.3f\n",
+              statement.charged_kwh(), hand.charged_wh / 1'000, statement.discharged_kwh(),
+              hand.discharged_wh / 1'000);
+  EXPECT_NEAR(statement.charged_kwh(), hand.charged_wh / 1'000, hand.charged_wh / 1e6);
+  EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
+}
+
+/// From its ring and the notifier's file, by the program, in the few MB that it has.
+TEST(StatementOfAMonth, IsWhatTheProgramSays) {
+  const Month& month = undisturbed("alphaess");
+  const TemporaryFolder folder("/dev/shm");  // each record waits for its disk
+  RingLog ring;
+  FileMessage error;
+  std::filesystem::create_directories(folder.file("state"));
+  std::filesystem::create_directories(folder.file("notify"));
+  ASSERT_TRUE(ring.open(folder.file("state/decisions.ring").c_str(), 35 * 720, error));
+  for (const CycleRecord& cycle : month.outcome.evidence.log) ASSERT_TRUE(ring.append(cycle));
+  ASSERT_NE(folder.write("state/settled.csv", month.terms.settled.text()), "");
+  const std::string config =
+      folder.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
+                                "/edge/device/maps/alphaess.toml\"\n"
+                                "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
+  const ProgramResult said =
+      run_and_hear({BESS_EDGE_PROGRAM, "earned", "2023-03", "--json", "--config", config}, 60);
+  ASSERT_TRUE(said.is_well()) << said.complaint();
+  const Json json = Json::parse(said.output);
+  const DayAccount statement = month.statement().together();
+  EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), statement.money().earned_eur, 1e-4);
+  EXPECT_NEAR(json.value()["charged_kwh"].number().value_or(0), statement.charged_kwh(), 1e-3);
+  EXPECT_EQ(json.value()["validated_quarter_hours"].number(), 31 * 96 - 4);
+  EXPECT_EQ(json.value()["stops"]["missing_cycles"].number(), 0);
+}
+
+TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
+  const Month month = run_month(kDisturbed);
+  const Earnings earnings = month.statement();
+  const DayAccount& statement = earnings.together();
+  tell("disturbed", statement, month);
+  EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
+              kOfTheMoney * month.record.profit_eur);
+  EXPECT_GT(statement.unseen_kwh(), 0);
+  EXPECT_LT(statement.unseen_kwh(), 2);
+  EXPECT_EQ(earnings.days().size(), 31u);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,118 @@
+#include "workstation/correction/distillation/distil.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/student_nets.h"
+#include "workstation/correction/student/correct_and_prove.h"
+#include "workstation/policy/rl/network_input.h"
+
+namespace bess {
+namespace {
+
+constexpr Support kSupport{-30, 30, 11};
+
+Teacher untrained_teacher(Method method, std::uint64_t seed) {
+  const MlpShape shape = teacher_shape(method, kSupport);
+  return {
+      method,     kSupport, shape, PriceMap(even_price_table()), initial_parameters(shape, seed),
+      "untrained"};
+}
+
+Matrix some_visited(int count, std::uint64_t seed) {
+  Random random(seed);
+  const PriceMap map(even_price_table());
+  Matrix visited(kNetworkInputs, count);
+  for (int c = 0; c < count; ++c) {
+    const LatticeState s = random_state(random);
+    write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
+                                map(s.price_eur_per_mwh)),
+                random.uniform(), visited.col(c).data());
+  }
+  return visited;
+}
+
+DistilOptions tiny_options() {
+  DistilOptions options;
+  options.epochs = 12;
+  options.steps_per_epoch = 4;
+  options.lattices_per_epoch = 8;
+  options.lattice_prices = 8;
+  options.lattice_socs = 6;
+  options.visited_per_epoch = 512;
+  options.seed = 5;
+  return options;
+}
+
+const std::atomic<bool> kGoesOn{false};
+
+TEST(Distiller, PlainDistillationFollowsTheTeacher) {
+  for (const Method method : {Method::kDqn, Method::kC51}) {
+    SCOPED_TRACE(method_name(method));
+    const Teacher teacher = untrained_teacher(method, 7);
+    const Matrix visited = some_visited(400, 8);
+    DistilOptions options = tiny_options();
+    options.correct = false;
+    options.omega = 1;
+    options.temperature_eur_per_h = 2000;
+    Distiller distiller(teacher, visited, options);
+    distiller.run(30, {}, 1, kGoesOn);
+    const auto& curve = distiller.curve();
+    ASSERT_EQ(curve.size(), 30U);
+    EXPECT_EQ(curve.front().epoch, 1);
+    EXPECT_EQ(curve.back().epoch, 30);
+    EXPECT_LT(curve.back().visited_loss, 0.5 * curve.front().visited_loss);
+    EXPECT_EQ(curve.back().correction_loss, 0) << "no layer, no correction loss";
+  }
+}
+
+TEST(Distiller, CorrectedLossFalls) {
+  const Teacher teacher = untrained_teacher(Method::kDqn, 7);
+  const Matrix visited = some_visited(400, 8);
+  const DistilOptions options = tiny_options();
+  Distiller distiller(teacher, visited, options);
+  distiller.run(30, {}, 1, kGoesOn);
+  const auto& curve = distiller.curve();
+  EXPECT_GT(curve.front().correction_loss, 0);
+  EXPECT_LT(curve.back().correction_loss, 0.2 * curve.front().correction_loss);
+}
+
+TEST(Distiller, SameSeedAndThreadsGiveTheSameBits) {
+  const Teacher teacher = untrained_teacher(Method::kC51, 9);
+  const Matrix visited = some_visited(200, 10);
+  for (const int threads : {1, 3}) {
+    SCOPED_TRACE(threads);
+    DistilOptions options = tiny_options();
+    options.threads = threads;
+    const std::vector<LatticeState> counterexamples{{3, 40, 6, 0, -500}, {14, 95, 12, 200, 1500}};
+    Parameters results[2];
+    for (Parameters& result : results) {
+      Distiller distiller(teacher, visited, options);
+      distiller.run(3, {}, 1, kGoesOn);
+      distiller.run(2, counterexamples, 1.4, kGoesOn);
+      result = distiller.parameters();
+    }
+    EXPECT_TRUE(std::ranges::equal(results[0], results[1]));
+    EXPECT_TRUE(results[0].allFinite());
+  }
+}
+
+TEST(Distiller, InterruptionReturns) {
+  const Teacher teacher = untrained_teacher(Method::kDqn, 9);
+  const Matrix visited = some_visited(50, 10);
+  const std::atomic<bool> interrupted{true};
+  DistilOptions options = tiny_options();
+  options.epochs = 1'000'000;
+  Distiller distiller(teacher, visited, options);
+  const Parameters before = distiller.parameters();
+  distiller.run(options.epochs, {}, 1, interrupted);
+  EXPECT_TRUE(distiller.curve().empty());
+  EXPECT_EQ(distiller.parameters(), before);
+  const CorrectionResult result = correct_and_prove(teacher, visited, options, interrupted);
+  EXPECT_TRUE(result.rounds.empty()) << "no proof after an interruption";
+  EXPECT_FALSE(std::holds_alternative<ProvedStudent>(result.verdict));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,224 @@
+#include "workstation/correction/distillation/isotonic.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "workstation/base/random.h"
+
+namespace bess {
+namespace {
+
+using testing::Pointwise;
+using Values = std::vector<double>;
+
+Values project(int rows, int columns, const Values& y, const RowBounds& bounds = {}) {
+  Values x(y.size());
+  IsotonicProjection(rows, columns).project(y, bounds, x);
+  return x;
+}
+
+/// Exact: not by a tolerance.
+bool feasible(int rows, int columns, const Values& x, const RowBounds& bounds) {
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const double value = x[i * columns + j];
+      if (!std::isfinite(value)) return false;
+      if (i + 1 < rows && value < x[(i + 1) * columns + j]) return false;
+      if (j + 1 < columns && value < x[i * columns + j + 1]) return false;
+      if (i < bounds.lower_rows && value < bounds.lower) return false;
+      if (i >= rows - bounds.upper_rows && value > bounds.upper) return false;
+    }
+  }
+  return true;
+}
+
+Values random_lattice(int cells, Random& random, double spread = 1) {
+  Values y(static_cast<std::size_t>(cells));
+  for (double& value : y) value = spread * random.normal();
+  return y;
+}
+
+/// None, lower only, upper only, both; up to half of the rows at each end.
+RowBounds random_bounds(int rows, int kind, Random& random) {
+  RowBounds bounds;
+  const auto some_rows = [&] { return 1 + static_cast<int>(random.index((rows + 1) / 2)); };
+  if ((kind & 1) != 0) bounds.lower_rows = some_rows();
+  if ((kind & 2) != 0) bounds.upper_rows = std::min(some_rows(), rows - bounds.lower_rows);
+  bounds.lower = random.normal() * 0.7 + 0.5;
+  bounds.upper = bounds.lower - 0.05 - random.uniform();
+  return bounds;
+}
+
+struct HandCase {
+  const char* name;
+  int rows, columns;
+  RowBounds bounds;
+  Values y, x;
+};
+
+TEST(Isotonic, HandCases) {
+  const RowBounds none;
+  const HandCase cases[] = {
+      {"one cell", 1, 1, none, {3}, {3}},
+      {"falling pair stays", 2, 1, none, {5, 1}, {5, 1}},
+      {"rising pair is averaged", 2, 1, none, {0, 10}, {5, 5}},
+      {"clipping is not the projection", 2, 1, {1, 8, 0, 0}, {0, 10}, {8, 8}},
+      {"the same from above", 2, 1, {0, 0, 1, 2}, {0, 10}, {2, 2}},
+      {"loose bound", 2, 1, {1, 4, 0, 0}, {0, 10}, {5, 5}},
+      {"the bound pulls its row alone", 2, 1, {1, 8, 0, 0}, {0, 3}, {8, 3}},
+      {"two bounded rows", 3, 1, {2, 6, 0, 0}, {0, 9, 8}, {6, 6, 6}},
+      {"both ends", 2, 1, {1, 1, 1, -1}, {-3, 4}, {1, -1}},
+      {"both ends, a free row between", 3, 1, {1, 1, 1, -1}, {0, 5, 0}, {2.5, 2.5, -1}},
+      {"one row", 1, 4, none, {1, 3, 2, 0}, {2, 2, 2, 0}},
+      {"one row, bounded below", 1, 3, {1, 1, 0, 0}, {4, 0, -2}, {4, 1, 1}},
+      {"one row, bounded above", 1, 3, {0, 0, 1, 1}, {4, 0, 2}, {1, 1, 1}},
+      {"one column", 4, 1, none, {1, 3, 2, 0}, {2, 2, 2, 0}},
+      {"square, one rising", 2, 2, none, {1, 2, 3, 4}, {2.5, 2.5, 2.5, 2.5}},
+      {"square, off-diagonal", 2, 2, none, {4, 1, 3, 2}, {4, 1.5, 3, 1.5}},
+      {"constant", 2, 3, none, {7, 7, 7, 7, 7, 7}, {7, 7, 7, 7, 7, 7}},
+      {"constant below its bound", 2, 2, {1, 9, 0, 0}, {7, 7, 7, 7}, {9, 9, 7, 7}},
+      {"ties", 3, 2, none, {2, 2, 2, 2, 1, 1}, {2, 2, 2, 2, 1, 1}},
+  };
+  for (const HandCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    EXPECT_THAT(project(c.rows, c.columns, c.y, c.bounds),
+                Pointwise(testing::DoubleNear(1e-12), c.x));
+  }
+}
+
+/// Constant input of every size is one level set: rounding of long sums must not split it for ever.
+TEST(Isotonic, ConstantInputOfAnySize) {
+  for (const int side : {16, 64, 256, 700}) {
+    SCOPED_TRACE(side);
+    const Values y(static_cast<std::size_t>(side * side), 0.1);
+    const Values x = project(side, side, y);
+    EXPECT_NEAR(*std::ranges::min_element(x), 0.1, 1e-9);
+    EXPECT_NEAR(*std::ranges::max_element(x), 0.1, 1e-9);
+  }
+}
+
+/// A random cut t_i that does not grow with the row: the cells left of it are an upper set.
+std::vector<int> random_staircase(int rows, int columns, Random& random) {
+  std::vector<int> cut(static_cast<std::size_t>(rows));
+  for (int& t : cut) t = static_cast<int>(random.index(columns + 1));
+  std::ranges::sort(cut, std::greater{});
+  return cut;
+}
+
+/// Variational inequality: x is the projection if and only if (x - y).d >= 0 for every feasible
+/// direction d. Raising an upper part of a set of equal cells, and lowering a lower part, generate
+/// all of them.
+TEST(Isotonic, EveryLatticeIsOptimal) {
+  Random random(103);
+  for (int round = 0; round < 40; ++round) {
+    SCOPED_TRACE(round);
+    const int rows = 1 + static_cast<int>(random.index(32));
+    const int columns = 1 + static_cast<int>(random.index(16));
+    const RowBounds bounds = random_bounds(rows, round % 4, random);
+    Values y = random_lattice(rows * columns, random);
+    for (int c = 0; c < rows * columns; ++c) {  // a trend, then some ties
+      y[c] -= round % 3 * 0.1 * (c / columns);
+      if (round % 5 == 4) y[c] = std::round(2 * y[c]) / 2;
+    }
+    const Values x = project(rows, columns, y, bounds);
+    ASSERT_TRUE(feasible(rows, columns, x, bounds));
+    const std::set<double> levels(x.begin(), x.end());
+    for (int direction = 0; direction < 60; ++direction) {
+      const std::vector<int> cut = random_staircase(rows, columns, random);
+      for (const double level : levels) {
+        double raise = 0;
+        double lower = 0;
+        bool may_raise = true;
+        bool may_lower = true;
+        for (int i = 0; i < rows; ++i) {
+          for (int j = 0; j < columns; ++j) {
+            const int c = i * columns + j;
+            if (x[c] != level) continue;
+            if (j < cut[i]) {
+              raise += x[c] - y[c];
+              may_raise &= i < rows - bounds.upper_rows || level < bounds.upper;
+            } else {
+              lower -= x[c] - y[c];
+              may_lower &= i >= bounds.lower_rows || level > bounds.lower;
+            }
+          }
+        }
+        if (may_raise) {
+          ASSERT_GE(raise, -1e-9) << "level " << level;
+        }
+        if (may_lower) {
+          ASSERT_GE(lower, -1e-9) << "level " << level;
+        }
+      }
+    }
+    for (int direction = 0; direction < 50; ++direction) {  // towards random feasible points
+      Values z(x.size());
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+          double value = random.normal() + 1 - 2.0 * i / rows;
+          if (i > 0) value = std::min(value, z[(i - 1) * columns + j]);
+          if (j > 0) value = std::min(value, z[i * columns + j - 1]);
+          z[i * columns + j] = value;
+        }
+      }
+      for (int c = 0; c < rows * columns; ++c) {
+        if (c / columns < bounds.lower_rows) z[c] = std::max(z[c], bounds.lower);
+        if (c / columns >= rows - bounds.upper_rows) z[c] = std::min(z[c], bounds.upper);
+      }
+      ASSERT_TRUE(feasible(rows, columns, z, bounds));
+      double along = 0;
+      for (std::size_t c = 0; c < x.size(); ++c) along += (x[c] - y[c]) * (z[c] - x[c]);
+      ASSERT_GE(along, -1e-9);
+    }
+  }
+}
+
+struct AdjointCase {
+  const char* name;
+  int rows, columns;
+  RowBounds bounds;
+};
+
+TEST(Isotonic, BackwardIsTheDerivative) {
+  const AdjointCase cases[] = {
+      {"free", 6, 5, {}},
+      {"lower", 6, 5, {2, 1.0, 0, 0}},
+      {"upper", 6, 5, {0, 0, 2, -0.6}},
+      {"both", 7, 4, {2, 0.6, 3, -0.4}},
+      {"one row", 1, 9, {}},
+      {"one column", 9, 1, {1, 0.5, 1, -0.5}},
+  };
+  constexpr double kStep = 1e-6;
+  Random random(105);
+  for (const AdjointCase& c : cases) {
+    for (int round = 0; round < 5; ++round) {
+      SCOPED_TRACE(c.name);
+      const int cells = c.rows * c.columns;
+      const Values y = random_lattice(cells, random);
+      const Values g = random_lattice(cells, random);
+      IsotonicProjection projection(c.rows, c.columns);
+      Values x(y.size());
+      projection.project(y, c.bounds, x);
+      Values gradient = g;
+      projection.backward(gradient, gradient);  // in place
+      for (int k = 0; k < cells; ++k) {
+        double loss[2];
+        for (const int side : {0, 1}) {
+          Values moved = y;
+          moved[k] += side == 1 ? kStep : -kStep;
+          const Values there = project(c.rows, c.columns, moved, c.bounds);
+          loss[side] = 0;
+          for (int n = 0; n < cells; ++n) loss[side] += g[n] * there[n];
+        }
+        EXPECT_NEAR(gradient[k], (loss[1] - loss[0]) / (2 * kStep), 1e-7) << "cell " << k;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess

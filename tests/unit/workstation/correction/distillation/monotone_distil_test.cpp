@@ -1,0 +1,229 @@
+// Distillation inside the bounds learns from its teacher, obeys the thresholds, and repeats to the
+// bit.
+#include "workstation/correction/distillation/monotone_distil.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/rule_sets.h"
+#include "tests/support/small_market.h"
+#include "tests/support/student_nets.h"
+#include "workstation/correction/student/certificate.h"
+#include "workstation/correction/student/correct_and_prove.h"
+#include "workstation/correction/student/student_policy.h"
+#include "workstation/data/env/context_fit.h"
+
+namespace bess {
+namespace {
+
+const std::atomic<bool> kRunning{false};
+
+struct School {
+  MarketSteps market = make_market_steps(small_series(), {});
+  Teacher teacher;
+  DistilOptions options;
+  Matrix visited;
+  LessonStates lessons;
+
+  School() : teacher(make_teacher()) {
+    options.epochs = 12;
+    options.seed = 5;
+    visited = visited_inputs(teacher, market, {}, options);
+    lessons = make_lessons(teacher, visited, options);
+  }
+  [[nodiscard]] Teacher make_teacher() const {
+    std::vector<double> prices;
+    for (const MarketStep& step : market.steps) prices.push_back(step.observed_eur_per_mwh);
+    return {Method::kSdp,
+            {},
+            {},
+            PriceMap::fit(prices),
+            {},
+            "program",
+            std::make_shared<const StochasticProgram>(market, market.days_of(Split::kTrain),
+                                                      BatteryParameters{}),
+            fit_context_classes(market, ContextKind::kLevel)};
+  }
+};
+
+const School& school() {
+  static const School school;
+  return school;
+}
+
+TEST(Lessons, TellWhatTheTeacherWouldDoAndWhatOthersLose) {
+  const LessonStates& lessons = school().lessons;
+  ASSERT_EQ(lessons.inputs.cols(), lessons.teacher_frac.cols());
+  ASSERT_GT(lessons.inputs.cols(), school().visited.cols());
+  MlpTile tile;
+  for (Eigen::Index c = 0; c < lessons.inputs.cols(); c += 997) {
+    const Matrix values = school().teacher.action_values(lessons.inputs.middleCols(c, 1), tile);
+    const auto best = static_cast<int>(argmax_action(values.data()));
+    EXPECT_EQ(lessons.regret(best, c), 0);
+    EXPECT_NEAR(lessons.teacher_frac.col(c).sum(), 1, 1e-5);
+    EXPECT_EQ(lessons.teacher_frac.col(c).maxCoeff(), lessons.teacher_frac(best, c));
+    EXPECT_GE(lessons.inputs.col(c).minCoeff(), 0);
+    EXPECT_LE(lessons.inputs.col(c).maxCoeff(), 1);
+  }
+}
+
+/// States in which the lesson's first choice is against the rules.
+int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOptions& options) {
+  const RuleLessons asked(rules, teacher.context.kind);
+  const LessonStates lessons = make_lessons(teacher, school().visited, options);
+  int broken = 0;
+  for (Eigen::Index c = 0; c < lessons.inputs.cols(); ++c) {
+    const ActionSet left = asked.actions_at(lessons.inputs.col(c).data(), teacher.price_map);
+    Eigen::Index first = 0;
+    lessons.teacher_frac.col(c).maxCoeff(&first);
+    broken += allows(left, static_cast<Action>(first)) ? 0 : 1;
+  }
+  return broken;
+}
+
+TEST(Lessons, ObeyTheRulesWhateverTheTeacher) {
+  const RuleSet rules = load_rules({example_rule_path("quiet_hours")});
+  for (const Method method : {Method::kSdp, Method::kC51, Method::kDqn}) {
+    SCOPED_TRACE(method_name(method));
+    Teacher teacher = school().teacher;
+    if (method != Method::kSdp) {
+      const Support support{.v_min = -15, .v_max = 15, .count = 51};
+      const MlpShape shape = teacher_shape(method, support);
+      teacher.method = method;
+      teacher.support = support;
+      teacher.shape = shape;
+      teacher.parameters = initial_parameters(shape, 1);
+      teacher.program = nullptr;
+    }
+    DistilOptions options = school().options;
+    EXPECT_GT(broken_lessons(teacher, rules, options), 1000) << "the teacher knows no rules";
+    options.rules = rules;
+    EXPECT_EQ(broken_lessons(teacher, rules, options), 0);
+  }
+}
+
+TEST(MonotoneDistiller, RegretFallsAndTheBoundsHold) {
+  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  const SignBounds bounds = SignBounds::monotone();
+  distiller.run(12, {}, kRunning,
+                [&](double) { EXPECT_TRUE(bounds.contain(distiller.parameters())); });
+  const auto& curve = distiller.curve();
+  ASSERT_EQ(curve.size(), 12U);
+  EXPECT_LT(curve.back().visited_loss, 0.5 * curve.front().visited_loss);
+}
+
+TEST(MonotoneDistiller, SameSeedAndThreadsGiveTheSameBits) {
+  for (const int threads : {1, 2}) {
+    DistilOptions options = school().options;
+    options.threads = threads;
+    Parameters results[2];
+    for (Parameters& result : results) {
+      MonotoneDistiller distiller(school().teacher, school().lessons, options);
+      distiller.run(2, {}, kRunning, [](double) {});
+      result = distiller.parameters();
+    }
+    EXPECT_EQ(results[0], results[1]);
+    EXPECT_TRUE(results[0].allFinite());
+  }
+}
+
+TEST(MonotoneDistiller, InterruptionReturns) {
+  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  const std::atomic<bool> interrupted{true};
+  int looks = 0;
+  distiller.run(1'000'000, {}, interrupted, [&](double) { ++looks; });
+  EXPECT_EQ(looks, 0);
+  EXPECT_TRUE(distiller.curve().empty());
+}
+
+/// What is left of the rules by a student that is learnt with them quickly.
+std::vector<DemandCount> counts_with_rules(const std::vector<const char*>& rules) {
+  DistilOptions options = school().options;
+  options.epochs = 60;
+  options.repair_epochs = 30;
+  options.repair_rounds = 3;
+  int n = 0;
+  for (const char* lines : rules) {
+    options.rules.rules.push_back(one_rule(lines, "rule " + std::to_string(++n)).rules[0]);
+  }
+  options.correction.thresholds = options.rules.thresholds(options.correction.thresholds);
+  const CorrectionResult result =
+      correct_and_prove(school().teacher, school().visited, options, kRunning);
+  const std::vector<DemandCount> counts = demand_counts(student_of(result.verdict).certificate);
+  EXPECT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict)) << broken_text(counts);
+  EXPECT_EQ(counts.size(), kPropertyCount + rules.size());
+  for (const DemandCount& count : counts) {
+    EXPECT_EQ(count.states > 0, count.binds_student) << count.text;
+  }
+  return counts;
+}
+
+// Every kind of rule that the README documents.
+
+TEST(CorrectAndProve, DemandsOnStatesAreLearntAndProved) {
+  const auto counts = counts_with_rules(
+      {"is = \"idle\"\nprice_min = 80\nprice_max = 100\nhours = \"01:00-05:00\"",
+       "is_not = \"charge\"\nprice_min = 300",
+       "is_not = \"discharge\"\nprice_max = 20\nsoc_max = 0.5",
+       "at_least = \"idle\"\nhours = \"17:00-20:00\"\nsoc_max = 0.3\nprice_max = 600",
+       "at_most = \"idle\"\nprice_min = 400\ncontext_classes = [11, 12]",
+       "charge_at_or_below = -200", "discharge_at_or_above = 900",
+       "power_max = 0.5\nhours = \"18:00-21:00\"\nenforce = true"});
+  EXPECT_FALSE(counts.back().binds_student) << "a power is the guard's alone";
+}
+
+TEST(CorrectAndProve, DirectionsAreLearntAndProved) {
+  counts_with_rules({"never_rises_with = \"minute\"", "never_falls_with = \"context_class\"",
+                     "never_falls_with = \"quarter_hour\"", "never_rises_with = \"soc\""});
+}
+
+TEST(CorrectAndProve, ToChargeOrDischargeWithoutARestIsLearntAndProved) {
+  counts_with_rules({"is_not = \"idle\"\nhours = \"17:00-20:00\""});
+}
+
+/// Thresholds inside the market's prices, where the teacher would often do something else.
+TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
+  DistilOptions options = school().options;
+  options.epochs = 60;
+  options.repair_epochs = 30;
+  options.correction.thresholds = {-20, 260};
+  const CorrectionResult result =
+      correct_and_prove(school().teacher, school().visited, options, kRunning,
+                        validation_score(school().market, {}, 0.5));
+  ASSERT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict));
+  EXPECT_LE(result.rounds.size(), 3U);
+  const StudentFile& file = student_of(result.verdict);
+  const StudentNet& net = file.net;
+  EXPECT_EQ(net.context, school().teacher.context);
+  const auto chosen =
+      std::ranges::find(result.checkpoints, CheckpointState::kChosen, &StudentCheckpoint::state);
+  ASSERT_NE(chosen, result.checkpoints.end());
+  EXPECT_EQ(chosen->validation_eur_per_day_per_mwh,
+            validation_score(school().market, {}, 0.5)(file).profit);
+  for (const StudentCheckpoint& other : result.checkpoints) {
+    if (other.round != chosen->round) {
+      EXPECT_EQ(other.state, CheckpointState::kDisobeys);
+    }
+    if (other.state == CheckpointState::kPassedOver) {
+      EXPECT_LE(other.validation_eur_per_day_per_mwh, chosen->validation_eur_per_day_per_mwh);
+    }
+  }
+  Random random(3);
+  for (int i = 0; i < 5'000; ++i) {
+    LatticeState s = random_state(random);
+    s.price_eur_per_mwh = static_cast<std::int16_t>(-500 + static_cast<int>(random.index(481)));
+    EXPECT_EQ(net.decide(s), Action::kCharge);
+    s.price_eur_per_mwh = static_cast<std::int16_t>(260 + static_cast<int>(random.index(1'241)));
+    EXPECT_EQ(net.decide(s), Action::kDischarge);
+  }
+  StudentPolicy student(net);
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  const auto days = school().market.days_of(Split::kTest);
+  const EvaluationOptions carried{.battery = {}, .carry_soc = true};
+  EXPECT_GT(evaluate(school().market, days, student, carried).profit_eur_per_day_per_mwh(),
+            evaluate(school().market, days, rule, carried).profit_eur_per_day_per_mwh());
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,172 @@
+// A student by outlook on its way through the chain: learnt by a program that plans on day-ahead
+// prices, monotone in its break-even price by construction, kept in files, and exported with the
+// integers of its plan.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/outlook_market.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
+#include "workstation/correction/distillation/monotone_distil.h"
+#include "workstation/correction/rules/properties.h"
+#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/student/correct_and_prove.h"
+#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_file.h"
+#include "workstation/data/env/evaluate.h"
+#include "workstation/policy/rl/train.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct School {
+  MarketSteps market = outlook_market({2025, 3, 1}, 31).steps();
+  Teacher teacher = train_teacher(market, {}, options(), [] { return false; }).teacher;
+
+  static TrainOptions options() {
+    TrainOptions o;
+    o.method = Method::kSdp;
+    o.context = ContextKind::kOutlook;
+    return o;
+  }
+  static DistilOptions lessons() {
+    DistilOptions o;
+    o.epochs = 30;
+    o.rules = with_outlook_rule({});
+    return o;
+  }
+  [[nodiscard]] StudentFile student() const {
+    const DistilOptions o = lessons();
+    const LessonStates states = make_lessons(teacher, visited_inputs(teacher, market, {}, o), o);
+    MonotoneDistiller distiller(teacher, states, o);
+    distiller.run(o.epochs, {}, false, [](double) {});
+    StudentFile file{};
+    file.net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
+    file.net.context = teacher.context;
+    file.outlook = teacher.book;
+    file.certificate.rules = o.rules;
+    return file;
+  }
+};
+
+const School& school() {
+  static const School made;
+  return made;
+}
+const StudentFile& student() {
+  static const StudentFile made = school().student();
+  return made;
+}
+
+Evaluation earned(Policy& policy) {
+  return evaluate(school().market, school().market.days_of(Split::kHeldOut), policy, {});
+}
+
+TEST(OutlookStudent, EarnsMostOfWhatItsTeacherDoes) {
+  TeacherPolicy teacher(school().teacher);
+  const auto policy = exported_policy(student());
+  EXPECT_GT(earned(*policy).profit_eur_per_day_per_mwh(),
+            0.9 * earned(teacher).profit_eur_per_day_per_mwh());
+}
+
+// The plan holds the break-even price from rising with SoC, and the net's action never falls with
+// it nor rises with SoC: so as a whole it does not rise with SoC either, nor with the price.
+TEST(OutlookStudent, AsAWholeNeverRisesWithSocOrPrice) {
+  const auto policy = exported_policy(student());
+  for (std::size_t i = 5000; i < school().market.steps.size(); i += 977) {
+    MarketStep step = school().market.steps[i];
+    for (double price = -300; price <= 600; price += 30) {
+      step.observed_eur_per_mwh = price;
+      Action before = Action::kCharge;
+      for (int soc = 0; soc < kSocCount; ++soc) {
+        const Action now = policy->decide(step, 0, static_cast<double>(soc) / (kSocCount - 1));
+        ASSERT_LE(now, before) << i << " " << price << " " << soc;
+        before = now;
+        step.observed_eur_per_mwh = price + 30;
+        ASSERT_LE(policy->decide(step, 0, static_cast<double>(soc) / (kSocCount - 1)), now);
+        step.observed_eur_per_mwh = price;
+      }
+    }
+  }
+}
+
+TEST(OutlookStudent, NeverFallsWithTheClassOverAQuarterHoursLattice) {
+  LatticeState state{7, 50, 1, 0, 0};
+  for (state.soc_index = 0; state.soc_index < kSocCount; state.soc_index += 8) {
+    for (int price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh; price += 3) {
+      state.price_eur_per_mwh = static_cast<std::int16_t>(price);
+      Action before = Action::kDischarge;
+      for (state.context_class = 1; state.context_class <= kContextClassCount;
+           ++state.context_class) {
+        const Action now = student().net.decide(state);
+        ASSERT_GE(now, before);
+        before = now;
+      }
+    }
+  }
+}
+
+TEST(OutlookStudent, IsReadBackFromItsFileAndDecidesTheSame) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("student.json");
+  save_student(path, student());
+  const StudentFile read = load_student(path);
+  ASSERT_NE(read.outlook, nullptr);
+  EXPECT_EQ(read.net.context, student().net.context);
+  EXPECT_EQ(read.certificate.rules.rules.size(), 1U);
+  const auto policy = exported_policy(student());
+  const auto again = exported_policy(read);
+  for (std::size_t i = 0; i < school().market.steps.size(); i += 1511) {
+    const MarketStep& step = school().market.steps[i];
+    ASSERT_EQ(policy->decide(step, 0, 0.6), again->decide(step, 0, 0.6));
+  }
+}
+
+TEST(OutlookStudent, ADamagedPlanIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("student.json");
+  save_student(path, student());
+  std::string text = read_file(path);
+  const std::size_t at = text.find("\"discount_q15\"");
+  ASSERT_NE(at, text.npos);
+  const std::size_t digit = text.find_first_of("0123456789", at + 15);
+  text[digit] = '1';
+  EXPECT_THAT(error_of([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
+}
+
+TEST(OutlookStudent, WhatItCannotDoIsSaid) {
+  const auto never = [] { return false; };
+  MarketSteps blind = school().market;
+  blind.day_ahead = nullptr;
+  EXPECT_THAT(error_of([&] { train_teacher(blind, {}, School::options(), never); }),
+              HasSubstr("--day-ahead"));
+  EXPECT_THAT(error_of([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
+              HasSubstr("--day-ahead"));
+  MlpTile tile;
+  EXPECT_THAT(
+      error_of([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
+      testing::Ne(""));
+  DistilOptions layer = School::lessons();
+  layer.method = CorrectionMethod::kLayer;
+  EXPECT_THAT(error_of([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
+              Names("[distil] method \"construction\""));
+  const RuleSet named =
+      parse_rules("[[rule]]\nname = \"dear\"\ncontext_classes = [3]\nis = \"idle\"\n", "mine.toml");
+  EXPECT_THAT(error_of([&] { with_outlook_rule(named); }), Names("mine.toml:1 \"dear\""));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,286 @@
+#include "workstation/correction/student/student_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <student_weights.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <sstream>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/rule_sets.h"
+#include "tests/support/student_nets.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
+#include "workstation/correction/student/certificate.h"
+
+namespace bess {
+namespace {
+
+StudentFile seeded_student() {
+  return {
+      seeded_net(21),
+      {.thresholds = {-450, 1200},
+       .states_checked = kLatticeStateCount,
+       .states_evaluated = 58'325'611,
+       .counts = {{true, 0, 1}, {true, 0, 20}, {true, 0, 1'000'000'000}, {true, 0, 2'000'000'000}}},
+      "seeded \"21\" \\ é\nline"};
+}
+
+std::string seeded_text() {
+  const TemporaryFolder folder;
+  save_student(folder.file("student.json"), seeded_student());
+  return read_file(folder.file("student.json"));
+}
+
+/// Text with the value of `key` replaced; the values of a student file stand one per line.
+std::string with(std::string text, const std::string& key, const std::string& value) {
+  const std::size_t begin = text.find('"' + key + "\":\t") + key.size() + 4;
+  const std::size_t end = text.find('\n', begin);
+  const bool comma = text[end - 1] == ',';
+  return text.replace(begin, end - begin, value + (comma ? "," : ""));
+}
+
+std::string without(std::string text, const std::string& key) {
+  const std::size_t begin = text.find('"' + key + "\":\t");
+  return text.erase(begin, text.find('\n', begin) + 1 - begin);
+}
+
+/// Text in which the certificate, too, stands on one line.
+std::string one_line_certificate(std::string text) {
+  const std::size_t begin = text.find("\"certificate\"");
+  const std::size_t end = text.find('}', begin);
+  std::replace(text.begin() + static_cast<std::ptrdiff_t>(begin),
+               text.begin() + static_cast<std::ptrdiff_t>(end), '\n', ' ');
+  return text;
+}
+
+std::string array_of(const std::string& first, int count) {
+  std::string text = '[' + first;
+  for (int i = 1; i < count; ++i) text += ",0";
+  return text + ']';
+}
+
+TEST(StudentFile, RoundTrip) {
+  const TemporaryFolder folder;
+  const StudentFile student = seeded_student();
+  for (const char* name : {"student.json", "student.json.gz", "new/folder/student.json"}) {
+    SCOPED_TRACE(name);
+    save_student(folder.file(name), student);
+    const StudentFile again = load_student(folder.file(name));
+    EXPECT_EQ(student_weights_hash(again.net), student_weights_hash(student.net));
+    EXPECT_EQ(again.certificate.thresholds, student.certificate.thresholds);
+    EXPECT_EQ(again.certificate.states_checked, 6'950'033'280);
+    EXPECT_EQ(again.certificate.states_evaluated, 58'325'611);
+    EXPECT_EQ(again.certificate.violations_of(1), 1);
+    EXPECT_EQ(again.certificate.violations_of(2), 20);
+    EXPECT_EQ(again.certificate.violations_of(3), 3'000'000'000);
+    EXPECT_EQ(again.provenance, student.provenance);
+  }
+}
+
+/// A rule of the student, one of the guard alone, and what a proof counted of both.
+StudentFile ruled_student(std::int64_t violations) {
+  StudentFile student = seeded_student();
+  student.certificate = {.thresholds = {-450, 1200}, .states_checked = kLatticeStateCount};
+  student.certificate.rules = one_rule("is = \"idle\"\nprice_min = 0\nprice_max = 9", "rest");
+  student.certificate.rules.rules.push_back(one_rule("power_max = 0.5\nenforce = true").rules[0]);
+  student.certificate.counts = {{}, {}, {}, {}, {true, 4711, violations}, {}};
+  return student;
+}
+
+/// A run reads its students from their files: what it shows of the rules comes from there.
+TEST(StudentFile, CountsOfRulesRoundTrip) {
+  const TemporaryFolder folder;
+  for (const std::int64_t violations : {0, 23'994}) {
+    save_student(folder.file("student.json"), ruled_student(violations));
+    const Certificate again = load_student(folder.file("student.json")).certificate;
+    EXPECT_EQ(again.covers_lattice_without_violation(), violations == 0);
+    const std::vector<DemandCount> counts = demand_counts(again);
+    ASSERT_EQ(counts.size(), kPropertyCount + 2);
+    EXPECT_EQ(counts[3].label(), "rule \"rest\"");
+    EXPECT_EQ(counts[3].states, 4711);
+    EXPECT_EQ(counts[3].violations, violations);
+    EXPECT_TRUE(counts[3].binds_student);
+    EXPECT_FALSE(counts[4].binds_student);
+    EXPECT_EQ(broken_text(counts), violations == 0 ? "" : "rule \"rest\": 23994");
+  }
+}
+
+/// They had the sum of all rules alone.
+TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
+  const TemporaryFolder folder;
+  for (const std::int64_t violations : {0, 5}) {
+    save_student(folder.file("student.json"), ruled_student(violations));
+    std::string text = read_file(folder.file("student.json"));
+    text = without(without(text, "rule_states"), "rule_violations");
+    const Certificate again = parse_student(text, "old.json").certificate;
+    EXPECT_EQ(again.covers_lattice_without_violation(), violations == 0);
+    EXPECT_EQ(again.rule_counts().size(), violations == 0 ? 2U : 0U) << "nobody knows which";
+  }
+}
+
+/// What the header tells people; a file of before knows less.
+TEST(StudentFile, DaysAndCyclesAreToldWhereTheyAreKnown) {
+  const TemporaryFolder folder;
+  const auto loaded = [&](const StudentFile& student) {
+    save_student(folder.file("student.json"), student);
+    return load_student(folder.file("student.json"));
+  };
+  StudentFile student = compiled_student();
+  EXPECT_FALSE(loaded(student).cycles_per_day);
+  EXPECT_FALSE(learnt_span(loaded(student).learnt_for));
+  student.learnt_for = {{"prices", "crc32 78d15778, 172740 minutes from 2022-12-31T23:00:00Z"}};
+  student.cycles_per_day = 4.48;
+  const auto span = learnt_span(loaded(student).learnt_for);
+  ASSERT_TRUE(span);
+  EXPECT_EQ(span->until_s - span->from_s, 60 * 172'740);
+  EXPECT_EQ(loaded(student).cycles_per_day, 4.48);
+  for (const char* const edited : {"", "today", "crc32 78d15778, 5 minutes from May"}) {
+    student.learnt_for = {{"prices", edited}};
+    EXPECT_FALSE(learnt_span(loaded(student).learnt_for)) << edited;
+  }
+  student.cycles_per_day = -1;
+  EXPECT_THROW(loaded(student), UserError);
+}
+
+/// Written before a file had counts: the thresholds stood beside the weights.
+TEST(StudentFile, Version1IsStillRead) {
+  const StudentFile student =
+      load_student(BESS_SOURCE_DIR "/tests/checks/fuzz/seeds/student_file_fuzz/version_1.json");
+  constexpr std::uint32_t kHashInTheFile = 374'446'160;
+  EXPECT_EQ(student_weights_hash(student.net), kHashInTheFile);
+  EXPECT_EQ(student.net.context, ContextClasses{}) << "by month, as all were";
+  EXPECT_EQ(student.certificate.thresholds, (PriceThresholds{-500, 1500}));
+  EXPECT_EQ(student.certificate.states_checked, 0);
+  EXPECT_FALSE(student.certificate.covers_lattice_without_violation());
+}
+
+struct Damage {
+  std::string name;
+  std::string text;
+  std::string names;
+};
+
+TEST(StudentFile, DamageIsRefused) {
+  const std::string good = seeded_text();
+  ASSERT_NO_THROW(static_cast<void>(parse_student(good, "good.json")));
+  StudentNet falling = seeded_net(21);
+  falling.price_map[100] = falling.price_map[99];
+  std::string falling_map = "[";
+  for (const int p : falling.price_map) falling_map += std::to_string(p) + ',';
+  falling_map.back() = ']';
+  std::vector<Damage> damages{
+      {"empty", "", "JSON"},
+      {"not JSON", "price,soc\n1,2\n", "JSON"},
+      {"an array", "[1,2,3]", "JSON"},
+      {"a number", "17", "JSON"},
+      {"other JSON", "{\"a\": 1}", "\"format\""},
+      {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" \"bess-student\""},
+      {"format of another type", with(good, "format", "3"), "format"},
+      {"newer version", with(good, "version", "6"), "6"},
+      {"rules are missing", with(good, "version", "4"), "rules"},
+      {"unknown context", with(good, "context", "\"week\""), "\"level\" \"month\""},
+      {"by level without edges", with(good, "context", "\"level\""), "\"level_edge_eur_per_mwh\""},
+      {"edges by month", with(good, "level_edge_eur_per_mwh", "[1,2,3,4,5,6,7,8,9,10,11]"),
+       "\"level_edge_eur_per_mwh\" 0"},
+      {"older version with a certificate", with(good, "version", "1"), "\"low_price_eur_per_mwh\""},
+      {"other architecture", with(good, "architecture_hash", "12345"), ""},
+      {"hash differs", with(good, "weights_hash", "12345"), ""},
+      {"a weight was edited", with(good, "layer3_bias", "[1,2,3]"), ""},
+      {"array too short", with(good, "layer3_bias", "[1,2]"), "\"layer3_bias\" 3"},
+      {"array too long", with(good, "layer3_bias", "[1,2,3,4]"), "\"layer3_bias\" 3"},
+      {"object for array", with(good, "layer3_bias", "{\"a\":1}"), "\"layer3_bias\" 3"},
+      {"number for array", with(good, "price_map", "5"), "\"price_map\" 2001"},
+      {"text in array", with(good, "layer3_bias", "[1,\"2\",3]"), "\"layer3_bias\" 32"},
+      {"null in array", with(good, "layer3_bias", "[1,null,3]"), "\"layer3_bias\" 32"},
+      {"fraction in array", with(good, "layer3_bias", "[1,2.5,3]"), "\"layer3_bias\" 32"},
+      {"beyond 32 bits", with(good, "layer3_bias", "[1,3000000000,3]"), "\"layer3_bias\" 32"},
+      {"huge", with(good, "layer3_bias", "[1,1e999,3]"), ""},
+      {"beyond 16 bits", with(good, "layer3_weight", array_of("40000", kStudentHidden2 * 3)),
+       "\"layer3_weight\" 16"},
+      {"below 16 bits", with(good, "layer3_weight", array_of("-32769", kStudentHidden2 * 3)),
+       "\"layer3_weight\" 16"},
+      {"shift 31", with(good, "relu1_shift", "[31]"), "31 0..30"},
+      {"shift -1", with(good, "relu2_shift", "[-1]"), "-1 0..30"},
+      {"flat price map", with(good, "price_map", falling_map), "16384"},
+      {"price map below 0", with(good, "price_map", array_of("-1", kPriceCount)), "16384"},
+      {"sums overflow", with(good, "layer3_bias", "[2147483647,0,0]"), "32"},
+      {"low price is a text", with(good, "low_price_eur_per_mwh", "\"-450\""),
+       "low_price_eur_per_mwh"},
+      {"low price is no integer", with(good, "low_price_eur_per_mwh", "-450.5"),
+       "\"low_price_eur_per_mwh\""},
+      {"low price is huge", with(good, "low_price_eur_per_mwh", "-1e300"),
+       "\"low_price_eur_per_mwh\""},
+      {"high price is implausible", with(good, "high_price_eur_per_mwh", "2147483647"),
+       "\"high_price_eur_per_mwh\""},
+      {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"),
+       "\"low_price_eur_per_mwh\""},
+      {"without certificate", without(one_line_certificate(good), "certificate"), "certificate"},
+      {"certificate is a number", with(one_line_certificate(good), "certificate", "1"),
+       "\"certificate\""},
+      {"empty certificate", with(one_line_certificate(good), "certificate", "{}"),
+       "\"low_price_eur_per_mwh\""},
+      {"half a state", with(good, "states_checked", "0.5"), "states_checked"},
+      {"fewer than no violation", with(good, "violations_property_2", "-1"),
+       "\"violations_property_2\""},
+      {"more states than can be counted", with(good, "states_evaluated", "1e300"),
+       "\"states_evaluated\""},
+      {"violations are a text", with(good, "violations_property_3", "\"0\""),
+       "violations_property_3"},
+      {"provenance is a number", with(good, "provenance", "1"), "provenance"},
+  };
+  std::istringstream keys(
+      "format version architecture_hash weights_hash provenance low_price_eur_per_mwh "
+      "high_price_eur_per_mwh states_checked "
+      "states_evaluated violations_property_1 violations_property_2 price_map context "
+      "level_edge_eur_per_mwh layer1_weight "
+      "layer1_bias relu1_shift layer2_weight layer2_bias relu2_shift layer3_weight");
+  for (std::string key; keys >> key;) {
+    damages.push_back({"without " + key, without(good, key), key});
+    damages.push_back({"null " + key, with(good, key, "null"), key});
+  }
+  for (std::size_t size = 0; size < good.rfind('}'); size += 997) {
+    damages.push_back({"cut at " + std::to_string(size), good.substr(0, size), "JSON"});
+  }
+  damages.push_back({"only the end is missing", good.substr(0, good.rfind('}')), "JSON"});
+  for (const Damage& d : damages) {
+    SCOPED_TRACE(d.name);
+    try {
+      static_cast<void>(parse_student(d.text, "some/student.json"));
+      ADD_FAILURE() << "accepted";
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), Names("some/student.json " + d.names));
+    }
+  }
+}
+
+TEST(StudentFile, EveryFlippedDigitIsNoticed) {
+  const std::string good = seeded_text();
+  const std::size_t first = good.find("\"price_map\"");
+  Random random(601);
+  for (int round = 0; round < 200; ++round) {
+    std::string text = good;
+    std::size_t at = first;
+    do {
+      at = first + random.index(good.size() - first);
+    } while (good[at] < '2' || good[at] > '8');  // digits only, never a leading zero
+    ++text[at];
+    if (text.compare(good.rfind('"', at) - 6, 6, "relu1_") == 0) continue;
+    EXPECT_THROW(static_cast<void>(parse_student(text, "flipped")), UserError) << at;
+  }
+}
+
+TEST(StudentFile, ANetThatCouldOverflowIsNotSaved) {
+  const TemporaryFolder folder;
+  StudentFile student = seeded_student();
+  student.net.layer1.bias[0] = std::numeric_limits<std::int32_t>::max();
+  EXPECT_THROW(save_student(folder.file("student.json"), student), UserError);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("student.json")));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,233 @@
+#include "workstation/correction/student/verify.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/student_nets.h"
+#include "workstation/correction/student/student_file.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kContextStates = std::int64_t{kSocCount} * kPriceCount;
+/// One context of the whole lattice: enough for nets that see price and SoC alone.
+constexpr int kOneContext = kContextCount;
+
+struct GridCase {
+  const char* name;
+  StudentNet net;
+  int minute_of_quarter_hour, quarter_hour, context_class;
+};
+
+TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
+  const GridCase cases[] = {
+      {"random", seeded_net(1), 0, 0, 1},
+      {"random, another", seeded_net(2), 7, 50, 6},
+      {"compiled student", compiled_student().net, 14, 95, 12},
+      {"adversarial", adversarial_net(1), 3, 20, 3},
+      {"adversarial, another", adversarial_net(2), 14, 0, 12},
+  };
+  for (const GridCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    ASSERT_LE(accumulator_bound(c.net), INT32_MAX);
+    std::vector<std::int8_t> bounded, exhaustive;
+    const std::int64_t some = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
+                                               c.context_class, false, bounded);
+    const std::int64_t all = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
+                                              c.context_class, true, exhaustive);
+    EXPECT_EQ(all, kContextStates);
+    EXPECT_LE(some, kContextStates);
+    EXPECT_TRUE(bounded == exhaustive);
+  }
+}
+
+/// Cheaper than whole grids: many contexts, a sample of states of each.
+TEST(Verify, BoundsAgreeWithTheNetOnManyContexts) {
+  Random random(501);
+  const StudentNet nets[] = {seeded_net(3), seeded_net(4), seeded_net(5), compiled_student().net};
+  for (int round = 0; round < 40; ++round) {
+    const StudentNet& net = nets[round % std::size(nets)];
+    LatticeState state = random_state(random);
+    std::vector<std::int8_t> grid;
+    fill_action_grid(net, state.minute_of_quarter_hour, state.quarter_hour, state.context_class,
+                     false, grid);
+    ASSERT_EQ(grid.size(), static_cast<std::size_t>(kContextStates));
+    for (int n = 0; n < 2000; ++n) {
+      const LatticeState other = random_state(random);
+      state.soc_index = other.soc_index;
+      state.price_eur_per_mwh = other.price_eur_per_mwh;
+      const int at =
+          state.soc_index * kPriceCount + state.price_eur_per_mwh - kLatticePriceMinEurPerMwh;
+      ASSERT_EQ(grid[at], static_cast<std::int8_t>(net.decide(state)));
+    }
+  }
+}
+
+TEST(Verify, BoundsSaveWork) {
+  std::vector<std::int8_t> grid;
+  EXPECT_LT(fill_action_grid(LinearNet{}.net(), 0, 0, 1, false, grid), kContextStates / 20);
+  EXPECT_LT(fill_action_grid(compiled_student().net, 5, 30, 4, false, grid), kContextStates / 4);
+}
+
+struct Counts {
+  std::int64_t low = 0, high = 0, order = 0;
+  friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+std::ostream& operator<<(std::ostream& out, const Counts& c) {
+  return out << c.low << " / " << c.high << " / " << c.order;
+}
+
+Counts counts_of(const Certificate& c) {
+  return {c.violations_of(1), c.violations_of(2), c.violations_of(3)};
+}
+
+/// Straight from the definitions, over one context.
+template <typename Decide>
+Counts brute_force(Decide decide, LatticeState state, int low, int high) {
+  std::vector<int> action;
+  action.reserve(kContextStates);
+  Counts counts;
+  for (int soc = 0; soc < kSocCount; ++soc) {
+    for (int price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh; ++price) {
+      state.soc_index = static_cast<std::int16_t>(soc);
+      state.price_eur_per_mwh = static_cast<std::int16_t>(price);
+      const Action decided = decide(state);
+      if (price <= low && decided != Action::kCharge) ++counts.low;
+      if (price >= high && decided != Action::kDischarge) ++counts.high;
+      const std::size_t at = action.size();
+      action.push_back(static_cast<int>(decided));
+      if (price > kLatticePriceMinEurPerMwh && action[at] > action[at - 1]) ++counts.order;
+      if (soc > 0 && action[at] > action[at - kPriceCount]) ++counts.order;
+    }
+  }
+  return counts;
+}
+
+/// A kept state must itself break a property, or begin a pair that does.
+bool is_violation(const StudentNet& net, const LatticeState& state, const VerifyOptions& options) {
+  const Action action = net.decide(state);
+  const PriceThresholds& thresholds = options.thresholds;
+  if (state.price_eur_per_mwh <= thresholds.low_eur_per_mwh && action != Action::kCharge) {
+    return true;
+  }
+  if (state.price_eur_per_mwh >= thresholds.high_eur_per_mwh && action != Action::kDischarge) {
+    return true;
+  }
+  LatticeState next = state;
+  if (state.price_eur_per_mwh < kLatticePriceMaxEurPerMwh) {
+    ++next.price_eur_per_mwh;
+    if (net.decide(next) > action) return true;
+  }
+  next = state;
+  if (state.soc_index < kSocCount - 1) {
+    ++next.soc_index;
+    if (net.decide(next) > action) return true;
+  }
+  return false;
+}
+
+struct CountCase {
+  const char* name;
+  LinearNet net;
+  int low, high;
+  bool breaks_low, breaks_high, breaks_order;
+};
+
+TEST(Verify, CountsMatchTheDefinitions) {
+  const CountCase cases[] = {
+      {"keeps all", {}, -500, 1500, false, false, false},
+      {"keeps all, falling in SoC too",
+       {.price_weight = 2, .soc_weight = 1, .charge_below = 17'000, .discharge_from = 30'000},
+       -500,
+       1500,
+       false,
+       false,
+       false},
+      {"never charges", {.charge_below = 0}, -500, 1500, true, false, false},
+      {"never discharges", {.discharge_from = 20'000}, -500, 1500, false, true, false},
+      {"rises with price", {.price_weight = -1, .offset = 16'000}, -500, 1500, true, true, true},
+      {"rises with SoC", {.soc_weight = -1, .offset = 17'000}, -500, 1500, true, false, true},
+      {"rises with SoC between the thresholds",
+       {.price_weight = 2, .soc_weight = -1, .offset = 3000},
+       -500,
+       1500,
+       false,
+       false,
+       true},
+      {"thresholds inside, kept", {}, -1, 1000, false, false, false},
+      {"thresholds inside, one beyond", {}, 0, 999, true, true, false},
+      {"thresholds outside",
+       {.charge_below = 0, .discharge_from = 20'000},
+       -501,
+       1501,
+       false,
+       false,
+       false},
+      {"thresholds far outside",
+       {.charge_below = 0, .discharge_from = 20'000},
+       -15'000,
+       15'000,
+       false,
+       false,
+       false},
+      {"all prices are low", {}, 1500, 1501, true, false, false},
+      {"all prices are high", {}, -501, -500, false, true, false},
+  };
+  for (const CountCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    const StudentNet net = c.net.net();
+    ASSERT_LE(accumulator_bound(net), INT32_MAX);
+    const VerifyOptions options{
+        .thresholds = {c.low, c.high}, .context_stride = kOneContext, .threads = 1};
+    const Certificate certificate = verify_student(net, options);
+    const auto answer = [&c](const LatticeState& s) { return c.net.action(s); };
+    EXPECT_EQ(counts_of(certificate), brute_force(answer, {0, 0, 1, 0, 0}, c.low, c.high));
+    EXPECT_EQ(certificate.violations_of(1) > 0, c.breaks_low);
+    EXPECT_EQ(certificate.violations_of(2) > 0, c.breaks_high);
+    EXPECT_EQ(certificate.violations_of(3) > 0, c.breaks_order);
+    EXPECT_EQ(certificate.thresholds, options.thresholds);
+    EXPECT_EQ(certificate.counterexamples.empty(), certificate.violations() == 0);
+    for (const LatticeState& state : certificate.counterexamples) {
+      ASSERT_TRUE(is_violation(net, state, options));
+    }
+  }
+}
+
+TEST(Verify, CountsOfASeededNetMatch) {
+  const StudentNet net = seeded_net(11);
+  const VerifyOptions options{
+      .thresholds = {-200, 700}, .context_stride = kContextCount / 2, .threads = 2};
+  Counts expected;
+  for (const LatticeState& context : {LatticeState{0, 0, 1, 0, 0}, LatticeState{0, 0, 7, 0, 0}}) {
+    const Counts part =
+        brute_force([&net](const LatticeState& s) { return net.decide(s); }, context, -200, 700);
+    expected.low += part.low;
+    expected.high += part.high;
+    expected.order += part.order;
+  }
+  EXPECT_EQ(counts_of(verify_student(net, options)), expected);
+}
+
+TEST(Verify, ThreadsDoNotChangeTheCounts) {
+  const StudentNet net = seeded_net(12);
+  VerifyOptions options{
+      .thresholds = {-100, 500}, .context_stride = 1571, .counterexamples_max = 100, .threads = 1};
+  const Certificate one = verify_student(net, options);
+  ASSERT_GT(one.violations(), 0);
+  EXPECT_LE(one.counterexamples.size(), 100U);
+  for (const int threads : {2, 3, 40}) {
+    SCOPED_TRACE(threads);
+    options.threads = threads;
+    const Certificate many = verify_student(net, options);
+    EXPECT_EQ(counts_of(many), counts_of(one));
+    EXPECT_EQ(many.states_checked, one.states_checked);
+    EXPECT_EQ(many.states_evaluated, one.states_evaluated);
+    for (const LatticeState& state : many.counterexamples) {
+      ASSERT_TRUE(is_violation(net, state, options));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,189 @@
+// Whether an answer is whole, by HTTP/1 and by HTTP/2 behind nghttpx, in the clear and packed: one
+// that is must be taken, one that was cut must be worth another try.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <zlib.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "shared/host/child_process.h"
+#include "tests/support/dated_certificate.h"
+#include "tests/support/test_server.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+/// A proxy that speaks HTTP/2 over TLS to its clients and HTTP/1.1 to the server behind it.
+class Http2Front {
+ public:
+  static constexpr const char* kProgram = "/usr/sbin/nghttpx";
+
+  explicit Http2Front(std::uint16_t backend)
+      : port_(free_port()),
+        process_({kProgram, "--conf=/dev/null", "--workers=1", "--errorlog-file=/dev/null",
+                  "--frontend=127.0.0.1," + std::to_string(port_),
+                  "--backend=127.0.0.1," + std::to_string(backend), certificate_.key(),
+                  certificate_.certificate()}) {
+    setenv("SSL_CERT_FILE", certificate_.ca().c_str(), 1);
+    for (int tries = 0; tries < 500 && !listens(); ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  Http2Front(const Http2Front&) = delete;
+  Http2Front& operator=(const Http2Front&) = delete;
+  ~Http2Front() { unsetenv("SSL_CERT_FILE"); }
+  [[nodiscard]] std::string url() const { return "https://127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  static std::uint16_t free_port() {
+    sockaddr_in place = loopback_address();
+    close(bind_socket(place));
+    return ntohs(place.sin_port);
+  }
+  [[nodiscard]] bool listens() const {
+    const sockaddr_in place = loopback_address(port_);
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const bool is_open = connect(fd, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
+    close(fd);
+    return is_open;
+  }
+
+  DatedCertificate certificate_{"IP:127.0.0.1", -DatedCertificate::kDayS, DatedCertificate::kDayS};
+  std::uint16_t port_;
+  ChildProcess process_;
+};
+
+enum class Packing { kNone, kGzip, kDeflate };
+enum class Framing { kLength, kChunks, kClosing };
+enum class Fault { kNone, kCutTransfer, kCutInside };
+
+/// The bytes that say `text` by a Content-Encoding.
+std::string packed(const std::string& text, Packing packing) {
+  if (packing == Packing::kNone) return text;
+  constexpr int kGzipWindow = 31, kZlibWindow = 15, kMemory = 8;
+  z_stream stream{};
+  deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED,
+               packing == Packing::kGzip ? kGzipWindow : kZlibWindow, kMemory, Z_DEFAULT_STRATEGY);
+  std::string bytes(deflateBound(&stream, text.size()), '\0');
+  std::string copy = text;
+  stream.next_in = reinterpret_cast<Bytef*>(copy.data());
+  stream.avail_in = static_cast<uInt>(copy.size());
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = static_cast<uInt>(bytes.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  bytes.resize(stream.total_out);
+  deflateEnd(&stream);
+  return bytes;
+}
+
+/// All bytes of an answer, after which the connection is closed.
+std::string answer_of(const std::string& text, Packing packing, Framing framing, Fault fault,
+                      std::mt19937& draws) {
+  std::string body = packed(text, packing);
+  // Nothing but the end is cut from time to time; the text before it is never a whole one.
+  const auto cut = [&] { return body.size() / 2 + draws() % (body.size() / 2 - 40); };
+  if (fault == Fault::kCutInside) body.resize(cut());
+  std::string head = "HTTP/1.1 200 OK\r\nConnection: close\r\n";
+  if (packing == Packing::kGzip) head += "Content-Encoding: gzip\r\n";
+  if (packing == Packing::kDeflate) head += "Content-Encoding: deflate\r\n";
+  if (framing == Framing::kChunks) head += "Transfer-Encoding: chunked\r\n";
+  if (framing == Framing::kLength) head += fmt::format("Content-Length: {}\r\n", body.size());
+  const std::size_t size = body.size();
+  if (fault == Fault::kCutTransfer) body.resize(cut());
+  if (framing == Framing::kChunks) {
+    body = fmt::format("{:x}\r\n", size) + body;
+    if (fault != Fault::kCutTransfer) body += "\r\n0\r\n\r\n";
+  }
+  return head + "\r\n" + body;
+}
+
+/// Long and without a pattern, so that half of what is packed is half of the text.
+std::string digits(std::mt19937& draws) {
+  std::string text;
+  while (text.size() < 4'000) text += std::to_string(draws());
+  return "1" + text;
+}
+
+struct TextCase {
+  const char* name;
+  std::string text;
+  bool tells_its_end;
+};
+
+/// What is said to a client that takes packed answers, and to one that takes none.
+struct Said {
+  std::string packed, plain;
+  bool answer(TestConnection& connection, const std::string& request) const {
+    const bool wants_plain = request.find("ccept-Encoding: identity") != request.npos;
+    connection.send(wants_plain ? plain : packed);
+    return false;
+  }
+};
+
+/// Every packing, framing, text and fault at `url`, whose answers come from `said`. A server that
+/// packs in any case leaves a text without an end of its own unclear.
+void expect_all(const std::string& url, Said& said, bool may_close) {
+  std::mt19937 draws(7);
+  const std::string row = "time;price\n2025-06-01T10:00:00Z;" + digits(draws);
+  const std::vector<TextCase> texts{{"JSON", "{\"price\":[\"" + digits(draws) + "\"]}", true},
+                                    {"JSON in lines", "[\n\"" + digits(draws) + "\",\n1\n]", true},
+                                    {"CSV", row + "\n", true},
+                                    {"CSV without its last line end", row, false}};
+  const std::atomic<bool> interrupted{false};
+  for (const Packing packing : {Packing::kNone, Packing::kGzip, Packing::kDeflate}) {
+    for (const Framing framing : {Framing::kLength, Framing::kChunks, Framing::kClosing}) {
+      for (const Fault fault : {Fault::kNone, Fault::kCutTransfer, Fault::kCutInside}) {
+        for (const TextCase& c : texts) {
+          if (framing == Framing::kClosing && !may_close) continue;
+          if (packing == Packing::kNone && fault == Fault::kCutInside) continue;
+          SCOPED_TRACE(fmt::format("{}, packing {}, framing {}, fault {}", c.name,
+                                   static_cast<int>(packing), static_cast<int>(framing),
+                                   static_cast<int>(fault)));
+          said.packed = answer_of(c.text, packing, framing, fault, draws);
+          const bool unpacks = draws() % 2 == 0;
+          const Fault plain_fault = fault == Fault::kCutInside ? Fault::kNone : fault;
+          said.plain = unpacks ? answer_of(c.text, Packing::kNone, framing, plain_fault, draws)
+                               : said.packed;
+          const HttpOutcome outcome = http_get(url, interrupted, {.deadline_s = 20});
+          const bool is_plain = packing == Packing::kNone || unpacks;
+          const bool can_tell = c.tells_its_end || (is_plain && framing != Framing::kClosing);
+          const bool is_taken = (unpacks ? plain_fault : fault) == Fault::kNone && can_tell;
+          EXPECT_EQ(outcome.kind,
+                    is_taken ? HttpOutcome::Kind::kDone : HttpOutcome::Kind::kTransient)
+              << outcome.reason;
+          EXPECT_TRUE(outcome.body == (is_taken ? c.text : "")) << outcome.body.size();
+        }
+      }
+    }
+  }
+}
+
+TEST(HttpWhole, ByHttp1) {
+  Said said;
+  const TestServer server([&said](TestConnection& connection, const std::string& request) {
+    return said.answer(connection, request);
+  });
+  expect_all("http://127.0.0.1:" + std::to_string(server.port()), said, true);
+}
+
+TEST(HttpWhole, ByHttp2) {
+  if (access(Http2Front::kProgram, X_OK) != 0) {
+    GTEST_SKIP() << "no nghttp2-proxy here; tools/setup --test installs it";
+  }
+  Said said;
+  const TestServer server([&said](TestConnection& connection, const std::string& request) {
+    EXPECT_THAT(request, HasSubstr("Via: 2 ")) << "not asked by HTTP/2";
+    return said.answer(connection, request);
+  });
+  const Http2Front front(server.port());
+  expect_all(front.url(), said, false);  // a proxy takes the end of a connection for the body's
+}
+
+}  // namespace
+}  // namespace bess

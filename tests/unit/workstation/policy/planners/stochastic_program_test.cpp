@@ -1,0 +1,84 @@
+// The stochastic program reaches the figures of the spikes [SPEC 8] and knows what it must know.
+#include "workstation/policy/planners/stochastic_program.h"
+
+#include <gtest/gtest.h>
+
+#include "shared/host/user_error.h"
+#include "tests/support/market_series.h"
+#include "tests/support/small_market.h"
+
+namespace bess {
+namespace {
+
+double profit(const MarketSteps& market, Split split, bool carry_soc, double level_weight,
+              const BatteryParameters& battery = {}) {
+  StochasticProgramPolicy policy(market, market.days_of(Split::kTrain), battery,
+                                 {.level_weight = level_weight});
+  return evaluate(market, market.days_of(split), policy,
+                  {.battery = battery, .carry_soc = carry_soc})
+      .profit_eur_per_day_per_mwh();
+}
+
+TEST(StochasticProgram, EarnsOnTheYardstickWhatTheSpikesEarn) {
+  const MarketSteps market = make_market_steps(read_yardstick(), {});
+  // By hour alone, as the spike is; by level at least as much, for values are found for each level.
+  EXPECT_NEAR(profit(market, Split::kValidation, false, 0), 464.6, 6);
+  EXPECT_NEAR(profit(market, Split::kValidation, true, 0), 450.9, 6);
+  EXPECT_GT(profit(market, Split::kValidation, false, 0.6), 491.7);
+  EXPECT_GT(profit(market, Split::kValidation, true, 0.6), 481.5);
+}
+
+TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  const StochasticProgram program(market, market.days_of(Split::kTrain), {});
+  constexpr int kPoints = StochasticProgram::kSocPoints;
+  for (std::size_t i = 0; i < market.steps.size(); i += 997) {
+    float value[kPoints];
+    program.values(StochasticProgram::situation_of(market.steps[i]), value);
+    for (int p = 2; p < kPoints; ++p) {
+      const float concave = value[p] - 2 * value[p - 1] + value[p - 2];
+      EXPECT_LT(concave, 0.01F * std::fabs(value[kPoints - 1] - value[0])) << i << ' ' << p;
+    }
+  }
+}
+
+TEST(StochasticProgram, DoesNotBuyAboveWhatIsUsualAtTheLevel) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  const StochasticProgram program(market, market.days_of(Split::kTrain), {});
+  StochasticProgram::Situation at = StochasticProgram::situation_of(market.steps[5'000]);
+  const auto best = [&] { return argmax_action(program.action_values(at, 0.5).data()); };
+  at.price_eur_per_mwh = at.level_eur_per_mwh - 400;
+  EXPECT_EQ(best(), Action::kCharge);
+  at.price_eur_per_mwh = at.level_eur_per_mwh + 400;
+  EXPECT_EQ(best(), Action::kDischarge);
+}
+
+TEST(StochasticProgram, KnowingTheWearItEarnsMoreNetOfIt) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  BatteryParameters worn;
+  worn.wear_eur_per_mwh = 40;
+  StochasticProgramPolicy unaware(market, market.days_of(Split::kTrain), {});
+  const double without =
+      evaluate(market, market.days_of(Split::kTest), unaware, {.battery = worn, .carry_soc = true})
+          .profit_eur_per_day_per_mwh();
+  EXPECT_GT(profit(market, Split::kTest, true, 0.6, worn), without + 1);
+}
+
+TEST(StochasticProgram, TellsTheRowsQuarterHour) {
+  for (const int delay : {0, 1, 2}) {
+    const MarketSteps market = make_market_steps(small_series(), {.observation_delay_min = delay});
+    const StochasticProgram program(market, market.days_of(Split::kTrain), {});
+    for (int minute = 0; minute < kMinutesPerQuarterHour; ++minute) {
+      EXPECT_EQ(program.row_quarter_hour(40, minute), minute < delay ? 39 : 40) << delay << minute;
+      EXPECT_EQ(program.row_quarter_hour(0, minute), minute < delay ? 95 : 0);
+    }
+  }
+}
+
+TEST(StochasticProgram, NothingToFitOnIsAnError) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  EXPECT_THROW(StochasticProgram(market, {}, {}), UserError);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,85 @@
+// Two small markets: one by hand, with a price of its own for every step, and one simulated.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "shared/host/user_error.h"
+#include "shared/local_time.h"
+#include "workstation/data/env/market_steps.h"
+#include "workstation/data/market/model/simulated_market.h"
+#include "workstation/data/market/series/local_date.h"
+#include "workstation/policy/rl/price_map.h"
+
+namespace bess {
+
+/// A day of the market by hand: its split and the start of each step, in steps since the first.
+struct DayByHand {
+  Split split;
+  std::vector<int> starts;
+};
+
+/// Step k observes 10 k EUR/MWh and is paid 100 + k.
+inline MarketSteps market_by_hand(const std::vector<DayByHand>& days) {
+  MarketSteps market;
+  for (std::size_t d = 0; d < days.size(); ++d) {
+    market.days.push_back({2023, 1, static_cast<int>(d) + 1, days[d].split, market.steps.size(),
+                           days[d].starts.size()});
+    for (const int start : days[d].starts) {
+      const auto k = static_cast<double>(market.steps.size());
+      MarketStep step{};
+      step.utc_s = std::int64_t{start} * kSecondsPerStep;
+      step.observed_eur_per_mwh = 10 * k;
+      step.paid_eur_per_mwh = 100 + k;
+      step.minute_of_quarter_hour = static_cast<std::int8_t>(2 * start % 15);
+      step.quarter_hour = static_cast<std::int8_t>(40 + start);
+      step.month = 6;
+      market.steps.push_back(step);
+    }
+  }
+  return market;
+}
+
+/// Training days that follow each other, end at a validation day, a missing day and a hole.
+inline MarketSteps uneven_market() {
+  return market_by_hand({{Split::kTrain, {0, 1, 2, 3}},         // steps 0..3, next day follows
+                         {Split::kTrain, {4, 5, 6, 7}},         // steps 4..7, then validation
+                         {Split::kValidation, {8, 9, 10, 11}},  // steps 8..11
+                         {Split::kTrain, {12, 13, 14, 15}},     // steps 12..15, then nothing
+                         {Split::kTrain, {20, 21, 23, 24}},     // steps 16..19, a hole in it
+                         {Split::kTest, {25, 26, 27, 28}}});    // steps 20..23
+}
+
+/// Straight line over the lattice: every step's price is told apart.
+inline PriceMap straight_price_map() {
+  return PriceMap::fit({double{kLatticePriceMinEurPerMwh}, double{kLatticePriceMaxEurPerMwh}});
+}
+
+/// Step whose observed price the network input shows.
+inline int step_of_input(float price_input) {
+  const double price = kLatticePriceMinEurPerMwh + double{price_input} * (kPriceCount - 1);
+  return static_cast<int>(std::lround(price / 10));
+}
+
+inline MarketSteps simulated_market(const LocalDate& first, int days) {
+  set_market_time_zone();
+  const SimulationPeriod period{local_midnight_utc_s(first),
+                                local_midnight_utc_s(add_days(first, days))};
+  return make_market_steps(minutes_on_quarter_hours(simulate_quarter_hours(period, 5), 5), {});
+}
+
+/// What the UserError says; empty when nothing was thrown.
+template <typename Call>
+std::string user_error_of(const Call& call) {
+  try {
+    call();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace bess

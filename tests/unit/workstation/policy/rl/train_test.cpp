@@ -1,0 +1,220 @@
+#include "workstation/policy/rl/train.h"
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
+#include "tests/unit/workstation/policy/rl/market_by_hand.h"
+#include "workstation/base/random.h"
+
+namespace bess {
+namespace {
+
+/// Forty days from the first of January 2023.
+const MarketSteps& small_market() {
+  static const MarketSteps market = simulated_market({2023, 1, 1}, 40);
+  return market;
+}
+
+struct TrainCase {
+  const char* name;
+  Method method;
+  Source source;
+  Horizon horizon;
+  long steps;
+  bool residual = false;
+};
+
+void PrintTo(const TrainCase& c, std::ostream* out) { *out << c.name; }
+
+TrainOptions small_options() {
+  TrainOptions options;
+  options.method = Method::kC51;
+  options.residual = false;
+  options.batch_size = 96;
+  options.atoms = 21;
+  options.validate_every = 100;
+  options.steps = 200;
+  return options;
+}
+
+TrainOptions options_of(const TrainCase& c) {
+  TrainOptions options = small_options();
+  options.method = c.method;
+  options.source = c.source;
+  options.horizon = c.horizon;
+  options.steps = c.steps;
+  options.residual = c.residual;
+  return options;
+}
+
+TrainResult train(const TrainOptions& options) {
+  const std::atomic<bool> interrupted = false;
+  return train_teacher(small_market(), {}, options, interrupted);
+}
+
+/// Answers the question whether a run is interrupted: after so many looks, each before a step or
+/// before a day of a validation.
+auto interrupted_after(long looks) {
+  return [asked = 0L, looks]() mutable { return asked++ >= looks; };
+}
+
+class TrainTeacher : public testing::TestWithParam<TrainCase> {};
+
+TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
+  const TrainOptions options = options_of(GetParam());
+  const TrainResult result = train(options);
+  const std::size_t points = static_cast<std::size_t>((options.steps + 99) / 100);
+  ASSERT_EQ(result.curve.size(), points + (options.residual ? 1 : 0));  // the program is step 0
+  for (const CurvePoint& point : result.curve) {
+    EXPECT_TRUE(std::isfinite(point.loss));
+    EXPECT_TRUE(std::isfinite(point.validation_eur_per_day_per_mwh));
+    EXPECT_GE(point.edge_mass_frac, 0);
+    EXPECT_LE(point.edge_mass_frac, 1);
+    const double gain = options.residual ? point.validation_eur_per_day_per_mwh -
+                                               result.curve[0].validation_eur_per_day_per_mwh
+                                         : 0;
+    EXPECT_LE(point.gain_at_least_eur_per_day_per_mwh, gain + 1e-9);
+    EXPECT_GE(point.gain_at_least_eur_per_day_per_mwh, gain - 1'000) << "five days, in pairs";
+  }
+  EXPECT_EQ(result.curve.back().step, options.steps);
+  const CurvePoint& kept = kept_point(result.curve);
+  EXPECT_EQ(result.best_step, kept.step);
+  EXPECT_EQ(result.best_validation_eur_per_day_per_mwh, kept.validation_eur_per_day_per_mwh);
+  EXPECT_TRUE(result.teacher.parameters.allFinite());
+
+  const TrainResult again = train(options);
+  EXPECT_EQ(again.teacher.parameters, result.teacher.parameters);
+  EXPECT_EQ(again.best_step, result.best_step);
+  ASSERT_EQ(again.curve.size(), result.curve.size());
+  for (std::size_t i = 0; i < result.curve.size(); ++i) {
+    EXPECT_EQ(again.curve[i].loss, result.curve[i].loss);
+    EXPECT_EQ(again.curve[i].validation_eur_per_day_per_mwh,
+              result.curve[i].validation_eur_per_day_per_mwh);
+  }
+}
+
+TEST_P(TrainTeacher, BestEarnsOnTheValidationDaysWhatIsReported) {
+  const TrainResult result = train(options_of(GetParam()));
+  TeacherPolicy policy(result.teacher);
+  const auto days = small_market().days_of(Split::kValidation);
+  EvaluationOptions evaluation;
+  evaluation.carry_soc = true;
+  EXPECT_DOUBLE_EQ(evaluate(small_market(), days, policy, evaluation).profit_eur_per_day_per_mwh(),
+                   result.best_validation_eur_per_day_per_mwh);
+}
+
+TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
+  const TemporaryFolder folder;
+  const TrainOptions options = options_of(GetParam());
+  const TrainResult whole = train(options);
+  const CheckpointOptions first{folder.file("a.checkpoint"), false, "this run"};
+  const TrainResult broken_off =
+      train_teacher(small_market(), {}, options, interrupted_after(options.steps / 2 + 7), first);
+  ASSERT_LT(broken_off.curve.size(), whole.curve.size());  // between two validations
+  const std::atomic<bool> interrupted = false;
+  const CheckpointOptions second{first.path, true, "this run"};
+  const TrainResult resumed = train_teacher(small_market(), {}, options, interrupted, second);
+  EXPECT_EQ(resumed.teacher.parameters, whole.teacher.parameters);
+  EXPECT_EQ(resumed.best_step, whole.best_step);
+  ASSERT_EQ(resumed.curve.size(), whole.curve.size());
+  for (std::size_t i = 0; i < whole.curve.size(); ++i) {
+    EXPECT_EQ(resumed.curve[i].loss, whole.curve[i].loss);
+    EXPECT_EQ(resumed.curve[i].gain_at_least_eur_per_day_per_mwh,
+              whole.curve[i].gain_at_least_eur_per_day_per_mwh);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, TrainTeacher,
+    testing::Values(
+        TrainCase{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
+        TrainCase{"dqn_days", Method::kDqn, Source::kCounterfactual, Horizon::kDay, 150},
+        TrainCase{"dqn_replay", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40},
+        TrainCase{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40},
+        TrainCase{"residual", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 200,
+                  true},
+        TrainCase{"residual_dqn", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40, true}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(Train, LearnsToEarn) {
+  TrainOptions options = small_options();
+  options.batch_size = 384;
+  options.validate_every = 500;
+  options.steps = 500;
+  const TrainResult result = train(options);
+  EXPECT_GT(result.best_validation_eur_per_day_per_mwh, 0);
+}
+
+TEST(Train, InterruptedBeforeTheStartReturnsNothingValidated) {
+  const std::atomic<bool> interrupted = true;
+  const TrainResult result = train_teacher(small_market(), {}, small_options(), interrupted);
+  EXPECT_TRUE(result.curve.empty());
+  EXPECT_EQ(result.best_step, 0);
+  EXPECT_TRUE(result.teacher.parameters.allFinite());
+}
+
+TEST(Train, InterruptedInTheMiddleKeepsTheBestSoFar) {
+  TrainOptions options = small_options();
+  options.steps = 1'000'000'000;
+  options.validate_every = 10;
+  const auto validation_days = static_cast<long>(small_market().days_of(Split::kValidation).size());
+  const TrainResult result =
+      train_teacher(small_market(), {}, options, interrupted_after(25 + 2 * validation_days));
+  ASSERT_EQ(result.curve.size(), 2U);
+  EXPECT_EQ(result.curve.back().step, 20);
+  EXPECT_GT(result.best_step, 0);
+}
+
+TEST(Train, DaysThatLackAreNamedWithTheMend) {
+  const struct {
+    const char* name;
+    LocalDate first;
+    int days;
+    bool lacks_validation;  ///< local days 21 to 25, or else training days
+  } cases[] = {{"validation only", {2023, 1, 21}, 4, false},
+               {"training only", {2023, 1, 2}, 4, true},
+               {"test only", {2023, 1, 27}, 3, true},
+               {"validation and test", {2023, 1, 24}, 5, false}};
+  const std::atomic<bool> interrupted = false;
+  for (const auto& c : cases) {
+    const MarketSteps market = simulated_market(c.first, c.days);
+    const std::string message =
+        user_error_of([&] { (void)train_teacher(market, {}, small_options(), interrupted); });
+    EXPECT_NE(message, "") << c.name;
+    EXPECT_EQ(has_code(message, "21"), c.lacks_validation) << c.name << ": " << message;
+  }
+}
+
+TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.checkpoint");
+  const std::atomic<bool> interrupted = false;
+  TrainOptions options = small_options();
+  options.steps = 30;
+  const auto refusal = [&](const std::string& identity) {
+    return user_error_of([&] {
+      (void)train_teacher(small_market(), {}, options, interrupted, {path, true, identity});
+    });
+  };
+  EXPECT_THAT(refusal("this run"), Names(path));
+  (void)train_teacher(small_market(), {}, options, interrupted, {path, false, "this run"});
+  EXPECT_EQ(refusal("this run"), "");
+  EXPECT_THAT(refusal("another run"), Names(path));
+  const std::string sound = read_file(path);
+  const auto expect_refused = [&](const std::string& bytes, const std::string& what) {
+    write_file(path, bytes);
+    EXPECT_THAT(refusal("this run"), Names(path)) << what;
+  };
+  Random random(93);
+  for (int part = 0; part < 20; ++part) {
+    expect_refused(sound.substr(0, sound.size() * static_cast<std::size_t>(part) / 20), "cut");
+    std::string flipped = sound;
+    flipped[random.index(flipped.size())] ^= 0x10;
+    expect_refused(flipped, "flipped");
+  }
+  expect_refused(sound + "x", "appended");
+}
+
+}  // namespace
+}  // namespace bess

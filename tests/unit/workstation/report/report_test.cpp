@@ -1,0 +1,205 @@
+#include "workstation/report/report.h"
+
+#include <fmt/core.h>
+
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/workstation/report/report_test_support.h"
+#include "workstation/report/headline.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything that ReportInputs points to.
+struct FinishedRun {
+  Teacher teacher = untrained_teacher();
+  StudentFile student{untrained_student(), failed_certificate(), ""};
+
+  static Certificate failed_certificate() {
+    Certificate certificate;
+    certificate.states_checked = 6'950'033'280;
+    certificate.set_violations_of(3, 42);
+    certificate.counterexamples = {{3, 20, 2, 100, 50}};
+    return certificate;
+  }
+
+  [[nodiscard]] ReportInputs inputs() const {
+    RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+    TeacherPolicy taught(teacher);
+    ReportInputs in{.market = small_market()};
+    in.evaluations = {named_evaluation("rule-based", rule), named_evaluation("teacher", taught)};
+    in.training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}};
+    in.distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}};
+    in.teacher = &teacher;
+    in.uncorrected = &student;
+    in.corrected = &student;
+    in.provenance = "seed 1 <untrained> & small";
+    return in;
+  }
+};
+
+std::string html_of(const ReportInputs& inputs, const fs::path& folder) {
+  write_report(inputs, folder);
+  return read_file(folder / "report.html");
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// The page without its scripts and their data.
+std::string markup_of(std::string html) {
+  for (auto at = html.find("<script"); at != std::string::npos; at = html.find("<script", at)) {
+    html.erase(at, html.find("</script>", at) + 9 - at);
+  }
+  return html;
+}
+
+TEST(Report, TheNumbersOfItsPicturesLieBesideThePage) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  for (const std::string& name : write_report(run.inputs(), folder.file("run"))) {
+    EXPECT_TRUE(fs::exists(folder.file("run/" + name))) << name;
+  }
+  for (const char* name : {"policy_map", "prices_seen"}) {
+    EXPECT_GT(CsvTable::read(folder.file(fmt::format("run/{}.csv", name))).row_count(), 0U) << name;
+  }
+}
+
+/// A picture's file has what is drawn: a map's stretches hold the states of its grid, each once.
+TEST(Report, TheNumbersOfAMapAreItsStates) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  write_report(run.inputs(), folder.file("run"));
+  const CsvTable table = CsvTable::read(folder.file("run/policy_map.csv"));
+  const auto number = [&](std::size_t row, const char* column) {
+    return static_cast<std::int16_t>(table.number(row, table.column(column)));
+  };
+  LatticeState state{number(0, "minute"), number(0, "quarter_hour"), number(0, "context_class"), 0,
+                     0};
+  std::string drawn;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.text(row, table.column("student")) != table.text(0, table.column("student"))) break;
+    const std::string action(table.text(row, table.column("action")));
+    const int prices =
+        number(row, "price_to_eur_per_mwh") - number(row, "price_from_eur_per_mwh") + 1;
+    drawn.append(static_cast<std::size_t>(prices), action.front());
+  }
+  std::string expected;
+  for (std::int16_t soc = 0; soc < kSocCount; ++soc) {
+    for (int price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh; ++price) {
+      state.soc_index = soc;
+      state.price_eur_per_mwh = static_cast<std::int16_t>(price);
+      expected += action_name(run.student.net.decide(state)).front();
+    }
+  }
+  EXPECT_EQ(drawn, expected);
+}
+
+TEST(Report, ThePageHoldsAllAndFetchesNothing) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  const std::string html = html_of(run.inputs(), folder.file("run"));
+  const std::string markup = markup_of(html);
+  EXPECT_EQ(first_unbalanced_tag(markup), "");
+  for (const char* outside : {"src=", "url(", "http:", "https:", "@import", "<link"}) {
+    EXPECT_EQ(count_of(markup, outside), 0) << outside;
+  }
+  EXPECT_EQ(count_of(html, "Content-Security-Policy"), 1);
+  EXPECT_EQ(count_of(markup, "{{"), 0);
+  EXPECT_NE(markup.find("seed 1 &lt;untrained&gt; &amp; small"), std::string::npos);
+  EXPECT_EQ(count_of(html, "\"marks\":[]"), 1) << "no price regime begins in these days";
+  EXPECT_LT(html.size(), 5'000'000u);
+}
+
+/// Of a run whose proof failed nothing is called corrected, and each broken demand leads to its
+/// state on the map.
+TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  ReportInputs in = run.inputs();
+  RuleBasedPolicy policy(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  in.evaluations.push_back(named_evaluation(kPlainName, policy));
+  in.evaluations.push_back(named_evaluation(kUnprovedName, policy));
+  in.broken = {
+      {{"property 3", "monotone", false, true, 9, 42}, "charge at dawn", "more effort"},
+      {{"rest", "idle", true, true, 9, 7}, "sells", "more room", LatticeState{1, 2, 3, 4, 5}}};
+  const std::string html = html_of(in, folder.file("run"));
+  const std::string markup = markup_of(html);
+  EXPECT_EQ(first_unbalanced_tag(markup), "");
+  for (const char* untrue : {"orrected student", "price-of-correction"}) {
+    EXPECT_EQ(count_of(markup, untrue), 0) << untrue;
+  }
+  for (const char* said : {"href=\"#failure\"", "unproved student</th>", "data-broken=\"1\""}) {
+    EXPECT_GT(count_of(markup, said), 0) << said;
+  }
+  EXPECT_EQ(count_of(markup, "data-broken=\"0\""), 0) << "no state of it is known";
+  EXPECT_NE(html.find("\"broken\":[null,[1,2,3,4,5]]"), std::string::npos);
+  EXPECT_NE(html.find("\"exported\":\"unproved student\""), std::string::npos);
+  EXPECT_NE(html.find("\"counterexamples_of\":\"unproved student\""), std::string::npos);
+  in.broken.clear();
+  StudentFile proved = run.student;
+  proved.certificate.set_violations_of(3, 0);
+  proved.certificate.counterexamples.clear();
+  in.corrected = &proved;
+  EXPECT_EQ(count_of(html_of(in, folder.file("proved")), "href=\"#failure\""), 0);
+}
+
+TEST(Report, NoTestDaysAreRefused) {
+  const TemporaryFolder folder;
+  MarketSteps market = small_market();
+  std::erase_if(market.days, [](const MarketDay& day) { return day.split == Split::kTest; });
+  EXPECT_THROW(write_report({.market = market}, folder.file("run")), UserError);
+}
+
+/// Numbers of a table have a true minus.
+std::string with_minus(std::string cells) {
+  for (std::size_t at = cells.find(">-"); at != cells.npos; at = cells.find(">-", at)) {
+    cells.replace(at, 2, ">\u2212");
+  }
+  return cells;
+}
+
+TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  const ReportInputs in = run.inputs();
+  const std::string html = html_of(in, folder.file("run"));
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
+    const Evaluation& teacher = in.evaluations[1].*field;
+    const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
+    const std::string cells = with_minus(fmt::format(
+        "teacher</th><td data-label=\"EUR/day/MWh\">{:.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
+        "<td data-label=\"By month\">{:.1f}</td><td data-label=\"Gain\">{:+.1f}</td>"
+        "<td data-label=\"Its s.e.\">{:.1f}</td><td data-label=\"Gain by month\">{:.1f}</td>"
+        "<td data-label=\"Worst day\">{:.1f}</td><td data-label=\"Cycles/day\">{:.2f}</td>"
+        "<td data-label=\"Switches/day\">{:.1f}</td>",
+        teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,
+        d.mean, d.standard_error, d.standard_error_by_month, teacher.worst_day_eur_per_mwh(),
+        teacher.cycles_per_day(), teacher.switches_per_day()));
+    EXPECT_NE(html.find(cells), std::string::npos) << cells;
+  }
+  EXPECT_NE(html.find("<th scope=\"col\">At wear 10</th>"), std::string::npos);
+  const double at_wear =
+      in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
+  EXPECT_NE(
+      html.find(with_minus(fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear))),
+      std::string::npos);
+  EXPECT_NE(html.find("<td data-label=\"Pairs out of order\">42</td></tr>"), std::string::npos);
+}
+
+TEST(Report, OnlyAMarketIsEnough) {
+  const TemporaryFolder folder;
+  const std::string html = html_of({.market = small_market()}, folder.file("run"));
+  EXPECT_EQ(first_unbalanced_tag(markup_of(html)), "");
+  EXPECT_EQ(count_of(html, "id=\"headline-profit\""), 0);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,34 @@
+#include "workstation/runs/chain/source_tree.h"
+
+#include <gtest/gtest.h>
+
+#include "shared/host/file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(SourceTree, IsFoundFromAnyFolderInIt) {
+  const TemporaryFolder folder;
+  const fs::path tree = folder.file("bess");
+  write_file(tree / "edge/CMakeLists.txt", "");
+  write_file(tree / "edge/generated/student_weights.h", "");
+  fs::create_directories(tree / "build/deep");
+  for (const fs::path& at : {tree, tree / "edge", tree / "build/deep"}) {
+    EXPECT_EQ(header_in_tree_around(at), tree / "edge/generated/student_weights.h") << at;
+  }
+  EXPECT_EQ(header_in_tree_around(folder.file("")), std::nullopt);
+}
+
+TEST(SourceTree, AFolderThatOnlyLooksLikeItIsNone) {
+  const TemporaryFolder folder;  // what an export into the wrong folder would have left behind
+  write_file(folder.file("edge/generated/student_weights.h"), "");
+  EXPECT_EQ(header_in_tree_around(folder.file(".")), std::nullopt);
+  EXPECT_EQ(header_in_tree_around("/"), std::nullopt);
+  EXPECT_EQ(header_in_tree_around(""), std::nullopt);
+}
+
+}  // namespace
+}  // namespace bess

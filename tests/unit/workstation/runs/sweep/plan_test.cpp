@@ -1,0 +1,231 @@
+// Points, sites and plans: what is a task, how it is numbered, what is refused before the first.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
+#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/sweep/sweep_plan.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+std::string what_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+class SweepPlans : public testing::Test {
+ protected:
+  SweepPlans() {
+    request_.prices = std::string(BESS_SOURCE_DIR) + "/tests/data/benchmark_minutes_2023.csv.gz";
+  }
+  SweepPlan plan(const std::string& text) {
+    request_.plan = root_.write("plan.toml", text);
+    return plan_sweep(request_, folder_);
+  }
+  std::string refusal(const std::string& text) {
+    return what_of([&] { plan(text); });
+  }
+  std::vector<std::string> settings(const SweepPlan& of) {
+    std::vector<std::string> all;
+    for (const SweepTask& task : of.tasks) all.push_back(settings_shown(task.settings));
+    return all;
+  }
+
+  TemporaryFolder root_;
+  SweepFolder folder_{root_.file("sweep")};
+  SweepRequest request_;
+};
+
+TEST_F(SweepPlans, EveryCombinationOfTheGridForEverySeed) {
+  request_.seeds = 2;
+  EXPECT_THAT(settings(plan("[[list]]\n\"distil.epochs\" = 60\n[[list]]\n\"distil.epochs\" = 70\n"
+                            "[grid]\n\"distil.fidelity\" = [1, 2.5]\n")),
+              ElementsAre("seed 1, distil.epochs 60, distil.fidelity 1",
+                          "seed 1, distil.epochs 60, distil.fidelity 2.5",
+                          "seed 1, distil.epochs 70, distil.fidelity 1",
+                          "seed 1, distil.epochs 70, distil.fidelity 2.5",
+                          "seed 2, distil.epochs 60, distil.fidelity 1",
+                          "seed 2, distil.epochs 60, distil.fidelity 2.5",
+                          "seed 2, distil.epochs 70, distil.fidelity 1",
+                          "seed 2, distil.epochs 70, distil.fidelity 2.5"));
+}
+
+TEST_F(SweepPlans, ASetOfTheCommandLineIsAnAxisOfTheGrid) {
+  request_.sets = {"distil.fidelity=1,2", "train.method=sdp"};
+  request_.seeds = 3;
+  const SweepPlan planned = plan("");
+  EXPECT_THAT(planned.tasks, SizeIs(6));
+  EXPECT_EQ(planned.tasks.front().value("train.method"), "\"sdp\"");
+}
+
+TEST_F(SweepPlans, EachMonthThatCanBeTradedIsATask) {
+  request_.folds = "monthly";
+  const SweepPlan planned = plan("");
+  ASSERT_GE(planned.tasks.size(), 2);
+  EXPECT_EQ(planned.tasks.front().value("fold").substr(0, 5), "2023-");
+}
+
+TEST_F(SweepPlans, WhatCannotBeIsRefusedWithItsPlace) {
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1,\n 1000]\n"),
+              Names("plan.toml:3 [distil] fidelity 1000"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelty\" = 1\n"),
+              Names("plan.toml:2 [distil] fidelty fidelity"));
+  EXPECT_THAT(refusal("[grid]\nfidelity = [1, 2]\n"), Names("plan.toml:2 \"fidelity\""));
+  EXPECT_THAT(refusal("[gird]\n"), Names("plan.toml:1 gird grid list"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = []\n"), Names("plan.toml:2 distil.fidelity"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 1.0]\n"),
+              Names("plan.toml:2 distil.fidelity"));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = 1\n[[list]]\n\"distil.fidelity\" = 2\n"),
+              Names("distil.fidelity"));
+  EXPECT_THAT(refusal("[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n"),
+              Names("2 initial_soc 0.5 soc_min 0.6"))
+      << "what keys are to each other is looked at before task 1 begins";
+  EXPECT_FALSE(fs::exists(folder_.path));
+}
+
+TEST_F(SweepPlans, PlannedAgainWithMoreEveryTaskKeepsItsNumber) {
+  write_plan(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n"), request_);
+  const std::string before = read_file(folder_.tasks());
+  request_.seeds = 2;
+  const SweepPlan more = plan("[grid]\n\"distil.fidelity\" = [0.5, 1, 2]\n");
+  EXPECT_EQ(more.known, 2);
+  write_plan(more, request_);
+  EXPECT_THAT(load_tasks(folder_), SizeIs(6));
+  EXPECT_TRUE(read_file(folder_.tasks()).starts_with(before));
+  EXPECT_EQ(plan("[grid]\n\"distil.fidelity\" = [0.5, 1, 2]\n").known, 6);
+}
+
+TEST_F(SweepPlans, AnotherPlanPricesOrConfigurationIsRefusedNamingBoth) {
+  write_plan(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n"), request_);
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 3]\n"), Names("2 1 distil.fidelity"));
+  request_.full = true;
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("kind lean full"));
+  request_.full = false;
+  const std::string own = request_.prices;
+  request_.prices = root_.write("other name.csv", read_file(own));
+  EXPECT_EQ(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n").known, 2) << "prices count by content";
+  request_.config = root_.write("other.toml", "[train]\nsteps = 7\n");
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("[train] steps 7"));
+  request_.config.clear();
+  const std::string minutes = read_file(request_.prices);
+  request_.prices =
+      root_.write("fewer.csv", minutes.substr(0, minutes.rfind('\n', minutes.size() * 9 / 10) + 1));
+  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("prices crc32"));
+}
+
+TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
+  write_plan(plan(""), request_);
+  std::string record = read_file(folder_.record());
+  record.replace(record.find("commit "), 11, "commit older");
+  write_file(folder_.record(), record);
+  EXPECT_THAT(what_of([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
+}
+
+TEST_F(SweepPlans, ATaskHasItsOwnConfigurationAndOneThread) {
+  request_.sets = {"distil.fidelity=1,2"};
+  const SweepPlan planned = plan("");
+  write_plan(planned, request_);
+  const RunConfig config = config_of_task(folder_, planned.base, planned.tasks[1]);
+  EXPECT_EQ(config.distil.fidelity, 2);
+  EXPECT_EQ(config.train.threads, 1);
+  EXPECT_EQ(config.train.seed, 1);
+}
+
+TEST_F(SweepPlans, SitesThatLearnAlikeShareAStudent) {
+  (void)root_.write("big.toml", "[battery]\npower_w = 4e6\ncapacity_wh = 8e6\n");
+  (void)root_.write("small.toml", "[battery]\npower_w = 4000\ncapacity_wh = 8000\n");
+  (void)root_.write("fast.toml", "[battery]\npower_w = 8000\ncapacity_wh = 8000\n");
+  (void)root_.write("odd.toml", "[battery]\npower_w = 3300\ncapacity_wh = 10000\n");
+  (void)root_.write("odd2.toml", "[battery]\npower_w = 3.3e6\ncapacity_wh = 1e7\n");
+  (void)root_.write("dear.toml", "[costs]\nimport_percent = 5\n");
+  (void)root_.write("rule.toml",
+                    "[[rule]]\nname = \"calm\"\nprice_min = 301\nat_most = \"idle\"\n");
+  request_.sites =
+      root_.write("sites.csv",
+                  "id,battery,contract,rules,correction.high_price_eur_per_mwh,region\n"
+                  "a,big.toml,,,,north\nb,small.toml,,,,south\nc,fast.toml,,,,\n"
+                  "d,small.toml,dear.toml,,,\ne,small.toml,,rule.toml,,\n"
+                  "f,big.toml,,,250,\ng,odd.toml,,,,\nh,odd2.toml,,,,\n");
+  const SweepPlan planned = plan("");
+  EXPECT_EQ(planned.classes, 6);
+  EXPECT_THAT(planned.tasks, SizeIs(6));
+  const auto student = [&](std::size_t site) { return planned.sites.at(site).student; };
+  EXPECT_EQ(student(0), student(1)) << "4 MW / 8 MWh and 4 kW / 8 kWh";
+  EXPECT_EQ(student(6), student(7)) << "a rate of no binary fraction";
+  EXPECT_NE(student(1), student(2));
+  write_plan(planned, request_);
+  EXPECT_EQ(load_sites(folder_).at(1).region, "south");
+  const auto of_rule = std::ranges::find_if(
+      planned.tasks, [](const SweepTask& task) { return !task.value("rules").empty(); });
+  EXPECT_THAT(config_of_task(folder_, planned.base, *of_rule).distil.rules.rules, SizeIs(1));
+}
+
+TEST_F(SweepPlans, RoundedRatesShareAStudentOnlyWhereThePlanSaysSo) {
+  request_.sites = root_.write("sites.csv",
+                               "id,battery.power_w,battery.capacity_wh\na,5000,13500\n"
+                               "b,5000,13400\nc,5000,13100\nd,4000,8000\n");
+  EXPECT_EQ(plan("").classes, 4);
+  request_.c_rate_step_percent = 2;
+  const SweepPlan rounded = plan("");
+  EXPECT_EQ(rounded.classes, 3);
+  EXPECT_EQ(rounded.sites[0].student, rounded.sites[1].student);
+  EXPECT_EQ(rounded.sites[0].power_w, 5000) << "the site's own";
+  for (double rate = 0.1; rate < 3; rate *= 1.0013) {
+    RunConfig config;
+    config.battery.power_w_max = rate * config.battery.capacity_wh;
+    const double ratio = canonical(config, 2).battery.power_w_max / config.battery.power_w_max;
+    EXPECT_NEAR(std::log(ratio), 0, std::log(1.02) / 2 + 1e-9);
+  }
+}
+
+TEST_F(SweepPlans, WhatIsWrongWithASiteIsToldWithItsLine) {
+  const auto with = [&](const std::string& csv) {
+    request_.sites = root_.write("sites.csv", csv);
+    return refusal("");
+  };
+  EXPECT_THAT(with("id,battery.power_w\na,5\n"), Names("sites.csv:2 power_w 5 100"));
+  EXPECT_THAT(with("id,region\na,x\na,y\n"), Names("sites.csv:3 \"a\""));
+  EXPECT_THAT(with("id,batery\na,x\n"), Names("sites.csv \"batery\" id"));
+  EXPECT_THAT(with("id,battery\na,none.toml\n"), HasSubstr("none.toml"));
+}
+
+TEST(ConfigKeys, EachSaysWhoReadsItAndLearningKeysMakeAClass) {
+  const RunConfig base;
+  const auto entries = config_entries(base);
+  const std::vector<ConfigKey> keys = config_keys();
+  ASSERT_EQ(keys.size(), entries.size());
+  const std::string key = learning_key(base, "");
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const bool is_in_it = key.find(keys[k].name + " = " + entries[k].second + "\n") != key.npos;
+    EXPECT_EQ(is_in_it, keys[k].use == KeyUse::kLearning) << keys[k].name;
+  }
+  RunConfig other = base;
+  other.market.day_ahead_published_min += 60;
+  EXPECT_EQ(learning_key(other, ""), key) << "no learning stage reads day-ahead prices";
+  other.battery.wear_eur_per_mwh += 1;
+  EXPECT_NE(learning_key(other, ""), key);
+  EXPECT_NE(learning_key(base, "[[rule]]"), key);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,55 @@
+# Sourced by the commands of tools/flash: which package is meant, and may it be installed at all.
+#   package_for ARCH RELEASE [FILE]   prints the file: FILE, or the newest that tools/package made
+#                             for both; RELEASE is as the machine's /etc/os-release names it
+#   require_whole FILE        dies unless its archive can be read to the end
+#   require_certified FILE    dies unless the package carries a proved student and the certificate
+#                             of just that one
+# They use die of the command that sources them.
+
+flashing_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
+# shellcheck source=tools/delivery/packaging/release.sh
+. "$flashing_root/tools/delivery/packaging/release.sh"
+
+package_for() {
+  local release=$2 file=${3:-} suffix make found
+  is_release "$release" || release=$own_release
+  suffix=$(suffix_of "$release")
+  make="make it with: tools/package ${suffix:+--release $release }$1"
+  if [ -z "$file" ]; then
+    file=$(find "$flashing_root/build-packages$suffix" -name "bess-edge_*_$1.deb" \
+      -printf '%T@ %p\n' 2>/dev/null | sort -n | tail -n 1 | cut -d' ' -f2-)
+    [ -n "$file" ] || die "build-packages$suffix/ has no bess-edge for $1; $make"
+  fi
+  [ -f "$file" ] || die "$file: no such package"
+  [ "$(dpkg-deb -f "$file" Package 2>/dev/null)" = bess-edge ] ||
+    die "$file: is no package of bess-edge"
+  found=$(dpkg-deb -f "$file" Architecture)
+  [ "$found" = "$1" ] || die "$file is for $found, the machine is $1; $make"
+  # Of a version without a mark apt judges by the dependencies.
+  found=$(release_of "$file")
+  [ "${found:-$release}" = "$release" ] ||
+    die "$file is for $found, the machine has $release; $make"
+  echo "$file"
+}
+
+# All of it is read: a package that lost its end is no package.
+require_whole() {
+  dpkg-deb --fsys-tarfile "$1" 2>/dev/null | tar -t >/dev/null 2>&1 ||
+    die "${1##*/} is damaged: its archive cannot be read to the end"
+}
+
+require_certified() {
+  require_whole "$1"
+  local work
+  work=$(mktemp -d)
+  dpkg-deb --fsys-tarfile "$1" | tar -x -C "$work" ./usr/lib/bess-edge/share/certificate.json \
+    ./usr/lib/bess-edge/share/student_weights.h 2>/dev/null || true
+  local said
+  said=$("$flashing_root/tools/delivery/packaging/certificate" check \
+    "$work/usr/lib/bess-edge/share/student_weights.h" \
+    "$work/usr/lib/bess-edge/share/certificate.json" 2>&1) || {
+    rm -rf "$work"
+    die "${1##*/}: ${said//$work/}"
+  }
+  rm -rf "$work"
+}

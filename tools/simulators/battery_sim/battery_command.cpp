@@ -1,0 +1,428 @@
+// bess-sim battery: options and composition.
+#include "tools/simulators/battery_sim/battery_command.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "edge/device/registers/map_file.h"
+#include "shared/battery_keys.h"
+#include "shared/host/file.h"
+#include "shared/host/toml_reader.h"
+#include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "tools/simulators/battery_sim/battery_faults.h"
+#include "tools/simulators/battery_sim/battery_record.h"
+#include "tools/simulators/battery_sim/battery_server.h"
+#include "tools/simulators/sim/clock_options.h"
+#include "tools/simulators/sim/commands.h"
+#include "tools/simulators/sim/stop_signal.h"
+
+namespace bess {
+
+void read_battery_file(const std::string& path, BatteryParameters& battery) {
+  std::string error;
+  TomlValue document;
+  if (!parse_toml_file(path, document, error)) throw UserError(error);
+  TomlTable table(document.find("battery"), path, "[battery]", error);
+  if (document.find("battery") == nullptr) fail("{}: has no [battery]", path);
+  for (const BatteryKey& key : kBatteryKeys) {
+    table.number(key.name, key.of(battery), key.low, key.high);
+  }
+  for (const char* of_workstation : {"wear_eur_per_mwh", "cycles_per_day_max", "initial_soc",
+                                     "fade_percent_per_1000_cycles", "minimum_run_min"}) {
+    double ignored = 0;  // a simulator has none of it, and the workstation's file may
+    table.number(of_workstation, ignored, 0, 1'000);
+  }
+  table.finish();
+  if (!error.empty()) throw UserError(error);
+  if (const char* wrong = battery_contradiction(battery)) fail("{}: [battery] {}", path, wrong);
+}
+
+namespace {
+
+UtcText time_text(std::int64_t utc_ns) { return utc_text(utc_ns / kNanosecondsPerSecond); }
+
+}  // namespace
+
+void run_replay(const ReplayOptions& options, const BatteryServerSettings& server,
+                const ClockOptions& clock_options) {
+  const StopSignal stop;
+  const ScaledClock clock = clock_options.clock();
+  RecordedDevice device(options.path,
+                        options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused);
+  ReplayedBus replayed(device, clock);
+  static RegisterMap no_points;  // the recording answers
+  no_points.unit = device.head().unit;
+  SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
+  BatteryServer battery(server, no_points, unused, clock);
+  battery.replay(replayed);
+  const std::string place = server.serial_device.empty()
+                                ? fmt::format("{}:{}", server.host, battery.port())
+                                : server.serial_device;
+  std::printf(
+      "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "
+      "%s%s\n",
+      place.c_str(), device.head().unit, options.path.c_str(), device.head().map.c_str(),
+      static_cast<long long>(device.exchanges()), time_text(device.first_utc_ns()).c_str(),
+      time_text(device.last_utc_ns()).c_str(),
+      clock.is_real_time() ? ", which begins at the first request" : "");
+  std::fflush(stdout);
+  battery.run(stop.fd());
+  std::printf("bess-sim battery: stopped\n");
+}
+
+namespace {
+
+/// Any free port; meters serve several; a fault lasts from its begin to its end.
+BatteryServerSettings meter_defaults() {
+  BatteryServerSettings settings;
+  settings.port = 0;
+  settings.clients_max = 4;
+  settings.faults.every = 1;
+  return settings;
+}
+
+struct BatteryOptions {
+  BatteryServerSettings server;
+  ClockOptions clock;
+  std::string map_path = BESS_MAP_DIR "/alphaess.toml";
+  std::vector<std::string> fault_names;
+  std::string map_variant;
+  std::string record_path;
+  std::string events_path;
+  double soc_frac = 0.5;
+  BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
+  double round_trip_efficiency = 0.9;
+  std::string battery_path;  ///< empty: none
+  std::string house;         ///< empty: none, and no meter
+  std::uint64_t house_seed = 1;
+  std::string meter_map_path;
+  std::string meter_variant;
+  BatteryServerSettings meter = meter_defaults();
+  std::vector<std::string> meter_fault_names;
+  ReplayOptions replay;
+};
+
+const BatteryFaultInfo* find_fault(const std::string& name) {
+  for (const BatteryFaultInfo& fault : battery_faults()) {
+    if (name == fault.name) return &fault;
+  }
+  return nullptr;
+}
+
+std::string known_fault(const std::string& name) {
+  return find_fault(name) != nullptr ? "" : "there is no fault " + name;
+}
+
+/// What the options say; then what the file says of it.
+BatteryParameters battery_of(const BatteryOptions& options) {
+  BatteryParameters battery = options.battery;
+  battery.charge_efficiency = battery.discharge_efficiency =
+      std::sqrt(options.round_trip_efficiency);
+  if (!options.battery_path.empty()) read_battery_file(options.battery_path, battery);
+  return battery;
+}
+
+/// The meter at the house's connection, on a thread of its own until it is ended.
+class MeterThread {
+ public:
+  MeterThread(const BatteryOptions& options, SimulatedBattery& battery, const ScaledClock& clock,
+              MeteredHouse& house) {
+    std::string error;
+    if (!load_register_map(options.meter_map_path, options.meter_variant, map_, error)) {
+      throw UserError(error);
+    }
+    if (!map_.is_meter) fail("--meter-map {}: not a meter's map", options.meter_map_path);
+    server_.emplace(options.meter, map_, battery, clock, &house);
+    if (pipe2(stop_, O_CLOEXEC) != 0) fail("no pipe for the meter");
+    thread_ = std::thread([this] { server_->run(stop_[0]); });
+  }
+  MeterThread(const MeterThread&) = delete;
+  MeterThread& operator=(const MeterThread&) = delete;
+  ~MeterThread() {
+    close(stop_[1]);
+    thread_.join();
+    close(stop_[0]);
+  }
+  [[nodiscard]] int port() const { return server_->port(); }
+  [[nodiscard]] int unit() const { return map_.unit; }
+
+ private:
+  RegisterMap map_;
+  std::optional<BatteryServer> server_;
+  int stop_[2] = {-1, -1};
+  std::thread thread_;
+};
+
+/// A fault that this bus does not have would be waited for in vain.
+void take_faults(const std::vector<std::string>& names, BatteryServerSettings& server) {
+  const bool rtu = !server.serial_device.empty();
+  for (const std::string& name : names) {
+    const BatteryFaultInfo& info = *find_fault(name);
+    if (!(rtu ? info.rtu : info.tcp)) {
+      fail("--fault {}: only {} a serial line", name, rtu ? "without" : "on");
+    }
+    server.faults.faults.push_back(info.fault);
+  }
+}
+
+void require_span(const char* name, const FaultSchedule& faults) {
+  if (faults.on_s > 0 && faults.off_s == 0) {
+    fail("--{}-on-s {:g}: needs --{}-off-s, so long it is away", name, faults.on_s, name);
+  }
+  if (faults.from_s < faults.to_s) return;
+  fail("--{}-from-s {:g}: is not before --{}-to-s {:g}, so that no fault would strike", name,
+       faults.from_s, name, faults.to_s);
+}
+
+/// What would be simulated in vain is said before anything listens.
+void require_consistent(const BatteryOptions& options) {
+  const BatteryParameters& battery = options.battery;
+  if (!(battery.soc_min_frac < battery.soc_max_frac)) {
+    fail("--soc-min {:g}: is not below --soc-max {:g}", battery.soc_min_frac, battery.soc_max_frac);
+  }
+  require_span("fault", options.server.faults);
+  require_span("meter-fault", options.meter.faults);
+  if (!options.meter_map_path.empty() && options.meter.port != 0 &&
+      options.meter.port == options.server.port && options.server.serial_device.empty()) {
+    fail("--meter-port {}: is the battery's own --port; give another", options.meter.port);
+  }
+  require_distinct({{"--record", options.record_path}}, {{"--map", options.map_path},
+                                                         {"--meter-map", options.meter_map_path},
+                                                         {"--house", options.house}});
+}
+
+void run_battery(BatteryOptions& options) {
+  if (!options.replay.path.empty()) {
+    return run_replay(options.replay, options.server, options.clock);
+  }
+  const StopSignal stop;
+  require_consistent(options);
+  take_faults(options.fault_names, options.server);
+  take_faults(options.meter_fault_names, options.meter);
+  const ScaledClock clock = options.clock.clock();
+  // Fails before serving rather than after a day.
+  if (!options.record_path.empty()) require_writable(options.record_path);
+  if (!options.events_path.empty()) require_writable(options.events_path);
+  static RegisterMap map;
+  std::string error;
+  if (!load_register_map(options.map_path, options.map_variant, map, error)) {
+    throw UserError(error);
+  }
+  const BatteryParameters battery = battery_of(options);
+  if (battery.power_w_max > map.charge_w_max || battery.power_w_max > map.discharge_w_max) {
+    fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
+  }
+  SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
+  std::optional<MeteredHouse> house;
+  if (!options.house.empty()) {
+    house.emplace(HouseLoad::from_option(options.house, options.house_seed));
+  }
+  BatteryServer server(options.server, map, simulated, clock, house ? &*house : nullptr);
+  std::optional<MeterThread> meter;
+  if (!options.meter_map_path.empty()) meter.emplace(options, simulated, clock, *house);
+  const std::string place = options.server.serial_device.empty()
+                                ? fmt::format("{}:{}", options.server.host, server.port())
+                                : options.server.serial_device;
+  std::printf("bess-sim battery: listening on %s, unit %d, %s at time scale %d\n", place.c_str(),
+              map.unit, utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
+  if (meter) {
+    std::printf("bess-sim battery: meter listening on %s:%d, unit %d\n", options.meter.host.c_str(),
+                meter->port(), meter->unit());
+  }
+  std::fflush(stdout);
+  server.run(stop.fd());
+  meter.reset();
+  if (!options.record_path.empty()) {
+    write_battery_record(options.record_path, simulated.record(), house ? &house->load : nullptr);
+  }
+  if (!options.events_path.empty()) write_dispatch_events(options.events_path, simulated);
+  std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());
+}
+
+std::string footer() {
+  std::string text =
+      "Examples:\n"
+      "  bess-sim battery --port 1502 --soc 0.5\n"
+      "  bess-sim battery --serial /dev/ttyUSB0 --baud 9600\n"
+      "  bess-sim battery --port 1502 --utc-start 2023-03-26T00:00:00Z --time-scale 900 "
+      "--anchor-monotonic-ns $(bess-sim clock) --record battery.csv\n"
+      "  bess-sim battery --port 1502 --fault drop --fault-every 7\n"
+      "  bess-sim battery --port 1502 --fault late wrong-unit drip --fault-probability 0.1 "
+      "--fault-seed 3 --fault-from-s 600 --fault-to-s 3600\n"
+      "  bess-sim battery --port 1502 --house daily --meter-map edge/device/meters/sunspec.toml "
+      "--meter-port 1503\n"
+      "  bess-sim battery --port 1502 --replay inverter.jsonl\n"
+      "A serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
+      "--serial a here and device = \"b\" at the edge.\n"
+      "Faults:\n";
+  for (const BatteryFaultInfo& fault : battery_faults()) {
+    text += fmt::format("  {:<20} {}\n", fault.name, fault.text);
+  }
+  return text;
+}
+
+void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
+  command.option("--host", server.host, "Numeric IPv4 address to listen on").ipv4().with_default();
+  command.option("--port", server.port, "TCP port, 0 = any free one")
+      .range(0, 65'535)
+      .with_default();
+  command.option("--clients-max", server.clients_max, "More are refused, like the real device")
+      .range(1, 32)
+      .with_default();
+  command.option("--serial", server.serial_device, "Serve RTU on this serial line instead")
+      .excludes("--host")
+      .excludes("--port")
+      .excludes("--clients-max");
+  command.option("--baud", server.baud, "Of the serial line").with_default().needs("--serial");
+  command
+      .choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
+                    "none, even or odd")
+      .needs("--serial");
+  command.option("--stop-bits", server.stop_bits, "1 or 2").range(1, 2).needs("--serial");
+  command.option("--response-delay-ms", server.response_delay_ms, "Before every answer")
+      .range(0, 60'000);
+}
+
+/// From when to when a fault strikes, and whether it comes and goes.
+void add_fault_span(ProgramCommand& command, const std::string& fault, FaultSchedule& faults) {
+  command.option(fault + "-from-s", faults.from_s, "Simulated seconds after the start")
+      .non_negative()
+      .needs(fault);
+  command.option(fault + "-to-s", faults.to_s, "And until when").non_negative().needs(fault);
+  command.option(fault + "-on-s", faults.on_s, "Comes and goes: so long it may strike")
+      .positive()
+      .needs(fault);
+  command.option(fault + "-off-s", faults.off_s, "And then so long not")
+      .positive()
+      .needs(fault + "-on-s");
+}
+
+void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
+  BatteryServerSettings& server = options.server;
+  FaultSchedule& faults = server.faults;
+  command
+      .option("--fault", options.fault_names,
+              "Misbehave now and then; of several, one at random each time (see below)")
+      .check(known_fault)
+      .value_name("NAME");
+  command.option("--fault-every", faults.every, "At every Nth chance")
+      .range(1, 1'000'000)
+      .with_default()
+      .needs("--fault");
+  command.option("--fault-probability", faults.probability, "At each chance, instead of every")
+      .range(0.0, 1.0)
+      .needs("--fault")
+      .excludes("--fault-every");
+  command.option("--fault-seed", faults.seed, "Of what is random").with_default().needs("--fault");
+  add_fault_span(command, "--fault", faults);
+  command.option("--fault-period-s", faults.period_s, "Of what ends or replaces orders")
+      .range(1, 86'400)
+      .with_default()
+      .needs("--fault");
+  command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
+      .range(1, 60'000)
+      .with_default()
+      .needs("--fault");
+  command.option("--drip-ms", server.drip_ms, "Between the bytes of drip")
+      .range(1, 60'000)
+      .with_default()
+      .needs("--fault");
+  command.option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
+      .range(1, 255)
+      .with_default()
+      .needs("--fault");
+}
+
+void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
+  command.option("--map", options.map_path, "Register map (TOML): the device to act");
+  command.option("--variant", options.map_variant, "Of the map; default: its first");
+  command.option("--soc", options.soc_frac, "State of charge at start, 0..1")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--power-w", options.battery.power_w_max, "Rated power").positive().with_default();
+  command.option("--capacity-wh", options.battery.capacity_wh, "Capacity")
+      .positive()
+      .with_default();
+  command.option("--soc-min", options.battery.soc_min_frac, "The battery's own floor")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--soc-max", options.battery.soc_max_frac, "The battery's own ceiling")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--efficiency", options.round_trip_efficiency, "Round trip")
+      .range(0.01, 1.0)
+      .with_default();
+  command.option("--battery", options.battery_path,
+                 "Act [battery] of this file, as bess-train battery fit writes it");
+  command
+      .option("--time-constant-s", options.battery.response.time_constant_s,
+              "Its power follows an order as a first-order lag of so many seconds; 0 = at once")
+      .range(0.0, 600.0)
+      .with_default();
+  command.option("--record", options.record_path,
+                 "CSV of energy and SoC per simulated minute, written at exit");
+  command.option("--events", options.events_path,
+                 "CSV of every order, and of how each ended, written at exit");
+}
+
+void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
+  command.option(
+      "--replay", replay.path,
+      "Answer as this recorded device did (bess-edge record), by address and time; no other "
+      "option of battery, house or faults counts then");
+  command.flag("--accept-cut", replay.accept_cut,
+               "Replay a recording without its last line up to where it was cut");
+}
+
+void add_house_options(ProgramCommand& command, BatteryOptions& options) {
+  command.option("--house", options.house,
+                 "House behind the same meter: daily, watts, or a CSV file (minute_utc,house_w)");
+  command.option("--house-seed", options.house_seed, "Of --house daily")
+      .with_default()
+      .needs("--house");
+  command
+      .option("--meter-map", options.meter_map_path,
+              "Act the meter of this map too (edge/device/meters); a battery map's own grid point "
+              "needs "
+              "none")
+      .needs("--house");
+  command.option("--meter-variant", options.meter_variant, "Of the map; default: its first")
+      .needs("--meter-map");
+  command.option("--meter-port", options.meter.port, "TCP port, 0 = any free one")
+      .range(0, 65'535)
+      .with_default()
+      .needs("--meter-map");
+  command
+      .option("--meter-fault", options.meter_fault_names,
+              "The meter misbehaves, at every chance: silence, frozen, wrong-sign, grid-scaled ...")
+      .check(known_fault)
+      .value_name("NAME")
+      .needs("--meter-map");
+  add_fault_span(command, "--meter-fault", options.meter.faults);
+}
+
+}  // namespace
+
+void add_battery_command(ProgramCommand& app) {
+  auto options = std::make_shared<BatteryOptions>();
+  ProgramCommand command =
+      app.subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
+  command.footer(footer());
+  add_bus_options(command, options->server);
+  options->clock.add_to(command);
+  add_plant_options(command, *options);
+  add_house_options(command, *options);
+  add_fault_options(command, *options);
+  add_replay_options(command, options->replay);
+  command.runs([options] { run_battery(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,26 @@
+// The battery's own account of what it exchanged: one CSV row per simulated minute, to be held
+// against the edge's log and the market. Written beside and renamed, so a file under its name is
+// always complete.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/simulators/battery_sim/house_load.h"
+#include "tools/simulators/battery_sim/simulated_battery.h"
+
+namespace bess {
+
+/// With a house two more columns: house_wh, and grid_wh = house_wh + energy_wh (import positive).
+void write_battery_record(const std::string& path, const std::vector<MinuteRecord>& minutes,
+                          const HouseLoad* house = nullptr);
+
+/// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order,
+/// stop, expiry).
+void write_dispatch_events(const std::string& path, const SimulatedBattery& battery);
+
+/// What the two have written, again. Throws UserError naming file and line.
+std::vector<MinuteRecord> read_battery_record(const std::string& path);
+std::vector<DispatchEvent> read_dispatch_events(const std::string& path);
+
+}  // namespace bess

@@ -1,0 +1,127 @@
+// The bus side of the simulated battery, TCP or a serial line: takes requests, lets the device
+// answer, and misbehaves by schedule. One client at a time like the real device, unless told
+// otherwise.
+#pragma once
+
+#include <modbus/modbus.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edge/device/registers/register_map.h"
+#include "shared/bus_exchange.h"
+#include "shared/scaled_clock.h"
+#include "tools/simulators/battery_sim/battery_faults.h"
+#include "tools/simulators/battery_sim/bus_reply.h"
+#include "tools/simulators/battery_sim/faulty_device.h"
+#include "tools/simulators/battery_sim/recorded_device.h"
+
+namespace bess {
+
+// A recorded device on the simulator's bus: requests as libmodbus received them -> what the device
+// did, at what time of the recording, after what latency.
+
+class ReplayedBus {
+ public:
+  /// In simulated time a request has the recording's time; in real time the first request is made
+  /// the recording's first. `device` must outlive this object.
+  ReplayedBus(RecordedDevice& device, const ScaledClock& clock) : device_(device), clock_(clock) {}
+
+  [[nodiscard]] bool serves_unit(std::int32_t unit) const { return device_.has_unit(unit); }
+  /// What came of it. Prints one line where the recording has no answer.
+  BusExchange answer(const BusRequest& request);
+  /// How long that took, in wall time: a recording in real time that is replayed faster has shorter
+  /// latencies.
+  [[nodiscard]] std::int32_t latency_ms(const BusExchange& answer) const;
+
+  /// Unit and PDU of a good reply.
+  static Bytes content(const BusExchange& answer);
+
+ private:
+  RecordedDevice& device_;
+  ScaledClock clock_;
+  std::int64_t shift_ns_ = 0;  ///< from now to the recording's time
+  bool has_begun_ = false;
+};
+
+// Requests of a serial line: whole frames, whichever unit they are for. libmodbus reads those of
+// one unit alone, and takes what follows a request to another for that one's reply.
+
+enum class SerialRead : std::uint8_t {
+  kRequest,
+  kNoise,  ///< not whole in time, or its CRC is wrong: what was on the line is thrown away
+  kGone,   ///< the line itself
+};
+
+/// Waits `byte_timeout_ms` for each next byte of a frame. Calls for function 3, 4, 6 and 16 are
+/// known by their length, others end with such a silence.
+SerialRead read_serial_request(int fd, int byte_timeout_ms, BusRequest& request);
+
+struct BatteryServerSettings {
+  std::string host = "127.0.0.1";
+  std::int32_t port = 1502;  ///< 0 = any free one
+  std::int32_t clients_max = 1;
+  std::string serial_device;  ///< not empty: RTU instead of TCP
+  std::int32_t baud = 9'600;
+  char parity = 'N';
+  std::int32_t stop_bits = 1;
+  std::int32_t response_delay_ms = 0;
+  FaultSchedule faults;
+  std::int32_t late_ms = 1'500;
+  std::int32_t drip_ms = 100;
+  std::int32_t exception_code = 6;
+};
+
+class BatteryServer {
+ public:
+  /// Binds and listens, or opens the line. Throws UserError when the port is in use.
+  /// With a house the map's grid point shows it, and a meter's map makes this a meter.
+  BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
+                SimulatedBattery& battery, const ScaledClock& clock, MeteredHouse* house = nullptr);
+  BatteryServer(const BatteryServer&) = delete;
+  BatteryServer& operator=(const BatteryServer&) = delete;
+  ~BatteryServer();
+
+  [[nodiscard]] int port() const { return port_; }
+  /// From now on every request is answered as recorded; the registers stay as they are.
+  void replay(ReplayedBus& recorded) { recorded_ = &recorded; }
+  /// Serves until `stop_fd` becomes readable. Throws UserError when the serial line disappears.
+  void run(int stop_fd);
+
+ private:
+  struct FreeContext {
+    void operator()(modbus_t* context) const { modbus_free(context); }
+  };
+  struct Client {
+    int fd;
+    bool half_open = false;
+  };
+  void listen_tcp();
+  void open_serial();
+  void accept_client();
+  [[nodiscard]] bool receive(Client& client, BusRequest& request);
+  void serve(Client& client);
+  void answer_as_recorded(Client& client, const BusRequest& request);
+  void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
+  void send(Client& client, const Bytes& bytes);
+  void drip(Client& client, const Bytes& bytes);
+  void close_client(Client& client, bool reset);
+  [[nodiscard]] bool wait(std::int32_t ms) const;
+
+  BatteryServerSettings settings_;
+  bool rtu_;
+  const RegisterMap& map_;
+  ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
+  ScaledClock clock_;
+  std::unique_ptr<modbus_t, FreeContext> context_;
+  std::optional<FaultyDevice> device_;
+  std::vector<Client> clients_;
+  int listen_fd_ = -1;
+  int stop_fd_ = -1;
+  int port_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,60 @@
+// The bytes of an answer: libmodbus makes every frame, so that the edge's own framing is checked
+// against an independent implementation; faults then change what it made. libmodbus writes into a
+// socket pair instead of the client's connection; what comes out at its other end is the frame.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tools/simulators/battery_sim/battery_faults.h"
+
+struct _modbus;
+struct _modbus_mapping_t;
+
+namespace bess {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline constexpr int kTcpHeaderBytes = 6;  ///< before the unit; RTU has none
+
+/// A request as libmodbus received it, header included.
+struct BusRequest {
+  std::uint8_t bytes[260];
+  int size = 0;
+  int header = 0;
+
+  [[nodiscard]] int unit() const { return bytes[header]; }
+  [[nodiscard]] int function() const { return bytes[header + 1]; }
+  [[nodiscard]] int address() const { return bytes[header + 2] << 8 | bytes[header + 3]; }
+  [[nodiscard]] bool is_write() const { return function() == 6 || function() == 16; }
+  [[nodiscard]] int write_count() const {
+    return function() == 16 ? bytes[header + 4] << 8 | bytes[header + 5] : 1;
+  }
+};
+
+class BusReply {
+ public:
+  BusReply(_modbus* context, bool rtu);
+  BusReply(const BusReply&) = delete;
+  BusReply& operator=(const BusReply&) = delete;
+  ~BusReply();
+
+  /// The right answer; a write changes `registers`.
+  Bytes answer(const BusRequest& request, _modbus_mapping_t& registers);
+  Bytes exception(const BusRequest& request, int code);
+  /// Any answer: unit, function and what follows, framed.
+  Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu);
+  /// The right answer changed by a fault of its bytes; others leave it as it is.
+  Bytes spoil(const BusRequest& request, Bytes reply, BatteryFault fault, std::mt19937_64& random);
+
+ private:
+  Bytes take();
+
+  _modbus* context_;
+  bool rtu_;
+  int header_;
+  int tap_[2] = {-1, -1};
+};
+
+}  // namespace bess

@@ -1,0 +1,137 @@
+#include "tools/simulators/battery_sim/recorded_device.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "shared/host/user_error.h"
+#include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// A cycle's requests lie within seconds of their ticks; two cycles lie two minutes apart.
+constexpr std::int64_t kSlackNs = 20 * kNanosecondsPerSecond;
+constexpr std::int32_t kIllegalDataAddress = 2;
+
+std::string request_text(const BusExchange& request) {
+  return fmt::format("{} of {} register{} at {}, unit {}, function {}",
+                     request.is_write() ? "write" : "read", request.count,
+                     request.count == 1 ? "" : "s", request.address, request.unit,
+                     request.function);
+}
+
+std::string instant_text(std::int64_t utc_ns) {
+  return std::string(utc_text(utc_ns / kNanosecondsPerSecond).view());
+}
+
+}  // namespace
+
+RecordedDevice::RecordedDevice(const std::string& path, CutRecording cut) {
+  BusRecordingReader reader;
+  std::string error;
+  if (!reader.open(path, cut, error)) throw UserError(error);
+  head_ = reader.head();
+  BusExchange exchange;
+  auto next = reader.next(exchange, error);
+  for (; next == BusRecordingReader::Next::kExchange; next = reader.next(exchange, error)) {
+    add(exchange);
+  }
+  if (next == BusRecordingReader::Next::kDamaged) throw UserError(error);
+  if (entries_.empty()) fail("{}: this recording holds no exchange", path);
+}
+
+void RecordedDevice::add(const BusExchange& exchange) {
+  const std::span<const std::uint16_t> values = exchange.values();
+  if (entries_.empty()) first_utc_ns_ = exchange.utc_ns;
+  last_utc_ns_ = exchange.utc_ns;
+  courses_[{exchange.unit, exchange.function, exchange.address, exchange.count}].entries.push_back(
+      entries_.size());
+  entries_.push_back({.utc_ns = exchange.utc_ns,
+                      .latency_us = exchange.latency_us,
+                      .outcome = exchange.outcome,
+                      .exception = exchange.exception,
+                      .first_value = values_.size(),
+                      .value_count = values.size()});
+  values_.insert(values_.end(), values.begin(), values.end());
+  if (exchange.outcome != BusOutcome::kAnswered || exchange.is_write()) return;
+  int address = exchange.address;
+  for (const std::uint16_t value : values) {
+    readings_[{exchange.unit, exchange.function == 4, address++}].push_back(
+        {exchange.utc_ns, value});
+  }
+}
+
+bool RecordedDevice::has_unit(std::int32_t unit) const {
+  return std::any_of(courses_.begin(), courses_.end(),
+                     [unit](const auto& course) { return std::get<0>(course.first) == unit; });
+}
+
+std::string RecordedDevice::answer(BusExchange& request) {
+  const auto course =
+      courses_.find({request.unit, request.function, request.address, request.count});
+  if (course != courses_.end()) {
+    const Entry& entry = now_in(course->second, request.utc_ns);
+    std::string told = difference(entry, request);
+    give(entry, request);
+    return told;
+  }
+  if (!request.is_write() && assemble(request)) return "";
+  request.outcome = BusOutcome::kException;
+  request.exception = kIllegalDataAddress;
+  return request_text(request) + ": was never recorded, answered with exception 2";
+}
+
+/// The next answer of this request, unless its time has not come: then the one before it again. The
+/// first is given at any time.
+const RecordedDevice::Entry& RecordedDevice::now_in(Course& course, std::int64_t utc_ns) const {
+  const auto entry = [&](std::size_t i) -> const Entry& { return entries_[course.entries[i]]; };
+  const std::size_t count = course.entries.size();
+  // Long over, and there is a younger one whose time has come as well.
+  while (course.next + 1 < count && entry(course.next + 1).utc_ns <= utc_ns - kSlackNs) {
+    ++course.next;
+  }
+  const bool has_come = course.next < count && entry(course.next).utc_ns <= utc_ns + kSlackNs;
+  if (has_come || course.next == 0) ++course.next;
+  return entry(course.next - 1);
+}
+
+void RecordedDevice::give(const Entry& entry, BusExchange& request) const {
+  request.outcome = entry.outcome;
+  request.exception = entry.exception;
+  request.latency_us = entry.latency_us;
+  if (request.is_write()) return;
+  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(entry.first_value), entry.value_count,
+              request.registers.begin());
+}
+
+/// What a device would do that is told something else than it was is not known.
+std::string RecordedDevice::difference(const Entry& entry, const BusExchange& request) const {
+  if (!request.is_write()) return "";
+  const auto recorded = values_.begin() + static_cast<std::ptrdiff_t>(entry.first_value);
+  const std::span<const std::uint16_t> written = request.values();
+  if (std::equal(written.begin(), written.end(), recorded)) return "";
+  return fmt::format(
+      "{}: [{}], at {} it was [{}]: the device goes on as recorded", request_text(request),
+      fmt::join(written, " "), instant_text(entry.utc_ns),
+      fmt::join(recorded, recorded + static_cast<std::ptrdiff_t>(entry.value_count), " "));
+}
+
+/// False when one of the registers was never read.
+bool RecordedDevice::assemble(BusExchange& request) const {
+  for (std::size_t i = 0; i < request.count; ++i) {
+    const auto found = readings_.find(
+        {request.unit, request.function == 4, request.address + static_cast<int>(i)});
+    if (found == readings_.end()) return false;
+    const std::vector<Reading>& readings = found->second;
+    const auto after = std::upper_bound(
+        readings.begin(), readings.end(), request.utc_ns,
+        [](std::int64_t utc_ns, const Reading& reading) { return utc_ns < reading.utc_ns; });
+    request.registers[i] = after == readings.begin() ? after->value : std::prev(after)->value;
+  }
+  request.outcome = BusOutcome::kAnswered;
+  return true;
+}
+
+}  // namespace bess

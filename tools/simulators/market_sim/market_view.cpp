@@ -1,0 +1,97 @@
+#include "tools/simulators/market_sim/market_view.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/json.h"
+#include "shared/local_time.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kQuarterHourS = 900;
+
+std::string offset_time(std::int64_t utc_s) {
+  const CivilTime t = civil_from_utc(utc_s);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}+00:00", t.year, t.month, t.day, t.hour,
+                     t.minute, t.second);
+}
+
+}  // namespace
+
+/// Index range of the minutes that ended up to now, at most 24 hours back; of past days, all.
+std::pair<std::size_t, std::size_t> MarketView::window(Dataset dataset,
+                                                       std::int64_t now_utc_ns) const {
+  const std::int64_t published_s = (now_utc_ns - latency_ns_) / kNanosecondsPerSecond - 60;
+  const auto first_at_or_after = [this](std::int64_t utc_s) {
+    const std::int64_t minute = (utc_s - prices_.start_utc_s + 59) / 60;
+    return static_cast<std::size_t>(
+        std::clamp<std::int64_t>(minute, 0, static_cast<std::int64_t>(prices_.size())));
+  };
+  if (dataset == Dataset::kMinutesOfPastDays) {
+    return {0, first_at_or_after((published_s + 60) / kSecondsPerDay * kSecondsPerDay)};
+  }
+  return {first_at_or_after(published_s + 1 - kSecondsPerDay), first_at_or_after(published_s + 1)};
+}
+
+std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,
+                                                         std::int64_t now_utc_ns) const {
+  const auto [begin, end] = window(dataset, now_utc_ns);
+  std::vector<Row> rows;
+  rows.reserve(end - begin);
+  for (std::size_t m = begin; m < end; ++m) {
+    if (prices_.is_empty(m)) continue;
+    rows.push_back({prices_.utc_s(m), prices_.indicative[m]});
+  }
+  return rows;
+}
+
+/// Ascending rows, of which those from `frozen_utc_s` on have the last price before it.
+void MarketView::freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows) {
+  double price = std::nan("");
+  for (Row& row : rows) {
+    if (row.utc_s < frozen_utc_s) {
+      price = row.price;
+    } else if (!std::isnan(price)) {
+      row.price = price;
+    }
+  }
+}
+
+std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
+  std::vector<Row> rows;
+  const auto [begin, end] = window(Dataset::kQuarterHours, now_utc_ns);
+  for (std::size_t m = begin; m < end; ++m) {
+    const std::int64_t utc_s = prices_.utc_s(m);
+    if (utc_s % kQuarterHourS != kQuarterHourS - 60 || prices_.is_empty(m)) continue;
+    rows.push_back({utc_s - (kQuarterHourS - 60), prices_.settled[m]});
+  }
+  return rows;
+}
+
+std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns) const {
+  const bool minutes = query.dataset != Dataset::kQuarterHours;
+  std::vector<Row> rows =
+      minutes ? visible_minutes(query.dataset, now_utc_ns) : visible_quarter_hours(now_utc_ns);
+  freeze(query.frozen_utc_s, rows);
+  if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
+  if (query.newest_first) std::reverse(rows.begin(), rows.end());
+  const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));
+  const std::size_t last = std::min(rows.size(), first + static_cast<std::size_t>(query.limit));
+  Json results = Json::list();
+  for (std::size_t i = first; i < last; ++i) {
+    Json row = Json::object(
+        {{"datetime", offset_time(rows[i].utc_s)}, {"resolutioncode", minutes ? "PT1M" : "PT15M"}});
+    if (minutes) row.set("quarterhour", offset_time(rows[i].utc_s / kQuarterHourS * kQuarterHourS));
+    row.set("qualitystatus", "NotValidated");
+    row.set("imbalanceprice", Decimals{rows[i].price, 3});
+    results.add(std::move(row));
+  }
+  return Json::object({{"total_count", rows.size()}, {"results", std::move(results)}}).line();
+}
+
+}  // namespace bess

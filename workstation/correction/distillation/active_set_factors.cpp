@@ -1,0 +1,352 @@
+#include "workstation/correction/distillation/active_set_factors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace bess {
+
+namespace {
+
+constexpr std::size_t kBits = 64;  ///< of a word
+
+}  // namespace
+
+VariableGroups::VariableGroups(const Eigen::MatrixXd& inverse_root)
+    : words_((static_cast<std::size_t>(inverse_root.rows()) + kBits - 1) / kBits),
+      of_variable_(static_cast<std::size_t>(inverse_root.rows())),
+      of_column_(of_variable_.size()),
+      variables_(of_variable_.size() * words_),
+      count_(static_cast<int>(of_variable_.size())) {
+  std::iota(of_variable_.begin(), of_variable_.end(), 0);
+  std::iota(of_column_.begin(), of_column_.end(), 0);
+  for (std::size_t v = 0; v < of_variable_.size(); ++v) {
+    variables_[v * words_ + v / kBits] |= std::uint64_t{1} << v % kBits;
+  }
+  columns_ = variables_;
+  for (Eigen::Index column = 0; column < inverse_root.cols(); ++column) {
+    for (Eigen::Index row = 0; row < inverse_root.rows(); ++row) {
+      if (inverse_root(row, column) == 0) continue;
+      const int groups[] = {of_column(row), of_column(column)};
+      if (groups[0] != groups[1]) tie(groups);
+    }
+  }
+  start_of_ = of_variable_;
+  start_ = variables_;
+  start_count_ = count_;
+}
+
+void VariableGroups::reset() {
+  of_variable_ = start_of_;
+  of_column_ = start_of_;
+  variables_ = start_;
+  columns_ = start_;
+  count_ = start_count_;
+}
+
+void VariableGroups::find(std::span<const int> variables, std::vector<int>& groups) const {
+  groups.clear();
+  if (count_ == 1) variables = variables.first(std::min<std::size_t>(variables.size(), 1));
+  for (const int variable : variables) {
+    const int group = of_variable_[static_cast<std::size_t>(variable)];
+    if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
+  }
+}
+
+void VariableGroups::list_variables(std::span<const int> groups, std::vector<int>& list) const {
+  enumerate(groups, variables_, 0, of_variable_.size(), list);
+}
+
+void VariableGroups::list_columns(std::span<const int> groups, Eigen::Index from, Eigen::Index end,
+                                  std::vector<int>& list) const {
+  enumerate(groups, columns_, static_cast<std::size_t>(from), static_cast<std::size_t>(end), list);
+}
+
+void VariableGroups::enumerate(std::span<const int> groups, const Words& members, std::size_t from,
+                               std::size_t end, std::vector<int>& list) const {
+  list.resize(end - from);
+  if (count_ == 1 && !groups.empty()) {  // all
+    std::iota(list.begin(), list.end(), static_cast<int>(from));
+    return;
+  }
+  std::size_t count = 0;
+  for (std::size_t at = from; at < end; at += kBits - at % kBits) {
+    std::uint64_t left = 0;
+    for (const int group : groups) {
+      left |= members[static_cast<std::size_t>(group) * words_ + at / kBits];
+    }
+    left &= ~std::uint64_t{0} << at % kBits;
+    const std::size_t first = at - at % kBits;
+    if (end - first < kBits) left &= ~(~std::uint64_t{0} << (end - first));
+    for (; left != 0; left &= left - 1) {
+      list[count++] = static_cast<int>(first) + std::countr_zero(left);
+    }
+  }
+  list.resize(count);
+}
+
+void VariableGroups::tie(std::span<const int> groups) {
+  const int one = groups.front();
+  count_ -= static_cast<int>(groups.size()) - 1;
+  for (const int other : groups.subspan(1)) {
+    std::ranges::replace(of_variable_, other, one);
+    std::ranges::replace(of_column_, other, one);
+    for (std::size_t word = 0; word < words_; ++word) {
+      const auto to = static_cast<std::size_t>(one) * words_ + word;
+      const auto from = static_cast<std::size_t>(other) * words_ + word;
+      variables_[to] |= std::exchange(variables_[from], 0);
+      columns_[to] |= std::exchange(columns_[from], 0);
+    }
+  }
+}
+
+void VariableGroups::swap_columns(Eigen::Index one, Eigen::Index other) {
+  if (of_column(one) == of_column(other)) return;
+  for (const Eigen::Index column : {one, other}) {
+    const auto bit = std::uint64_t{1} << static_cast<std::size_t>(column) % kBits;
+    for (const int group : {of_column(one), of_column(other)}) {
+      columns_[static_cast<std::size_t>(group) * words_ +
+               static_cast<std::size_t>(column) / kBits] ^= bit;
+    }
+  }
+  std::swap(of_column_[static_cast<std::size_t>(one)], of_column_[static_cast<std::size_t>(other)]);
+}
+
+void VariableGroups::move_column_back(Eigen::Index from, Eigen::Index to) {
+  for (Eigen::Index column = from; column < to; ++column) swap_columns(column, column + 1);
+}
+
+namespace {
+
+constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
+/// A row of J lies across its columns: reading one takes as long as reading eight columns.
+constexpr std::size_t kColumnsARow = 8;
+constexpr int kTogether = 8;  ///< columns of R that drop() turns at a time
+
+/// Calls `visit.operator()<Count>(row)` for rows of J in bundles that fit into registers.
+template <typename Visit>
+void for_bundles_of_rows(Eigen::Index size, Visit visit) {
+  Eigen::Index row = 0;
+  for (; row + 32 <= size; row += 32) visit.template operator()<32>(row);
+  for (; row + 8 <= size; row += 8) visit.template operator()<8>(row);
+  for (; row < size; ++row) visit.template operator()<1>(row);
+}
+
+}  // namespace
+
+RowImage::RowImage(Eigen::Index size) : d(Eigen::VectorXd::Zero(size)) {
+  for (std::vector<int>* list : {&groups, &held, &free}) {
+    list->reserve(static_cast<std::size_t>(size));
+  }
+}
+
+ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
+    : start_(inverse_root.transpose()),
+      basis_(start_),
+      triangle_(start_.rows(), start_.rows()),
+      groups_(inverse_root),
+      scratch_(start_.rows()),
+      cosines_(start_.rows()),
+      sines_(start_.rows()) {
+  places_.reserve(static_cast<std::size_t>(start_.rows()));
+}
+
+void ActiveSetFactors::reset() {
+  basis_ = start_;
+  groups_.reset();
+  active_ = 0;
+}
+
+void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
+                                double sign, RowImage& image, bool of_free) {
+  const Eigen::Index from = of_free ? active_ : 0;
+  groups_.find(variables, image.groups);
+  groups_.list_columns(image.groups, from, active_, image.held);
+  groups_.list_columns(image.groups, active_, size(), image.free);
+  const Eigen::Index count = size() - from;
+  if (kColumnsARow * variables.size() > static_cast<std::size_t>(size())) {
+    scratch_.setZero();
+    for (std::size_t t = 0; t < variables.size(); ++t) scratch_[variables[t]] = sign * factors[t];
+    image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * scratch_;
+  } else {
+    const auto entry = [&](int k) {
+      double sum = 0;
+      for (std::size_t t = 0; t < variables.size(); ++t) {
+        sum += factors[t] * basis_(variables[t], k);
+      }
+      return sign * sum;
+    };
+    image.d.tail(count).setZero();
+    for (const int k : image.held) image.d[k] = entry(k);
+    for (const int k : image.free) image.d[k] = entry(k);
+  }
+  finish(from, image);
+}
+
+/// d without the rounding of what is 0, and what follows from it. Without branches: which are 0
+/// follows no pattern.
+void ActiveSetFactors::finish(Eigen::Index from, RowImage& image) const {
+  auto d = image.d.tail(size() - from);
+  d = (d.array().abs() < kRounding).select(0.0, d);
+  std::size_t count = 0;
+  for (const int k : image.free) {
+    image.free[count] = k;
+    count += image.d[k] != 0 ? 1 : 0;
+  }
+  image.free.resize(count);
+  image.independence = image.d.tail(size() - active_).norm();
+}
+
+void ActiveSetFactors::direction(const RowImage& image, Eigen::VectorXd& z) const {
+  const Eigen::Index count = size() - active_;
+  if (2 * static_cast<Eigen::Index>(image.free.size()) > count) {
+    z.noalias() = basis_.rightCols(count) * image.d.tail(count);
+    return;
+  }
+  z.setZero();
+  for (const int k : image.free) z += image.d[k] * basis_.col(k);
+}
+
+void ActiveSetFactors::project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free) {
+  const Eigen::Index count = size() - active_;
+  scratch_.tail(count).noalias() = basis_.rightCols(count).transpose() * v;
+  free.noalias() = basis_.rightCols(count) * scratch_.tail(count);
+}
+
+void ActiveSetFactors::solve(const RowImage& image, Eigen::VectorXd& r) const {
+  r.head(active_) = image.d.head(active_);
+  for (std::size_t i = image.held.size(); i-- > 0;) {
+    const int k = image.held[i];
+    if (r[k] == 0) continue;
+    r[k] /= triangle_(k, k);
+    r.head(k) -= r[k] * triangle_.col(k).head(k);
+  }
+}
+
+void ActiveSetFactors::solve(Eigen::VectorXd& y) const {
+  triangle_.topLeftCorner(active_, active_)
+      .triangularView<Eigen::Upper>()
+      .solveInPlace(y.head(active_));
+}
+
+void ActiveSetFactors::solve_transposed(Eigen::VectorXd& y) const {
+  triangle_.topLeftCorner(active_, active_)
+      .transpose()
+      .triangularView<Eigen::Lower>()
+      .solveInPlace(y.head(active_));
+}
+
+void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const {
+  x.noalias() += basis_.leftCols(active_) * y.head(active_);
+}
+
+/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0)
+/// by I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of J2 w = z -
+/// corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
+void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
+  Eigen::VectorXd& d = image.d;
+  int& most = *std::ranges::max_element(image.free, {}, [&d](int k) { return std::fabs(d[k]); });
+  if (most != active_) {
+    std::swap(d[most], d[active_]);
+    basis_.col(most).swap(basis_.col(active_));
+    groups_.swap_columns(most, active_);
+    if (image.free.front() != active_) most = static_cast<int>(active_);
+  }
+  direction(image, z);
+  const double norm = image.independence;
+  const double corner = d[active_] > 0 ? -norm : norm;
+  scratch_ = (z - corner * basis_.col(active_)) / (norm * (norm + std::fabs(d[active_])));
+  triangle_.col(active_).head(active_) = d.head(active_);
+  triangle_(active_, active_) = corner;
+  d[active_] -= corner;
+  for_bundles_of_rows(size(), [&]<int Count>(Eigen::Index row) {
+    const Eigen::Array<double, Count, 1> by = scratch_.segment<Count>(row);
+    for (const int k : image.free) basis_.col(k).segment<Count>(row).array() -= d[k] * by;
+  });
+  groups_.tie(image.groups);
+  ++active_;
+}
+
+/// The columns of the group behind the row's own each have one entry more than they should when
+/// they take the place of the one before. It is turned away, in a column by the rotations of those
+/// before and one of its own, and in J by all of them. Other groups' columns do not feel it. What
+/// remains is the place of the last one, which is free now and goes behind the active ones.
+std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
+  const int group[] = {groups_.of_column(position)};
+  groups_.list_columns(group, position, active_, places_);
+  std::size_t k = 1;
+  for (; k + kTogether <= places_.size(); k += kTogether) turn_columns<kTogether>(k);
+  for (; k < places_.size(); ++k) turn_columns<1>(k);
+  for_bundles_of_rows(size(), [&]<int Count>(Eigen::Index row) { turn_rows<Count>(row); });
+  const int last = places_.back();
+  close_gap(last);
+  --active_;
+  for (int behind = last + 1; behind <= active_; ++behind) places_.push_back(behind);
+  return places_;
+}
+
+/// Count rows of J through all rotations of a drop: what one hands to the next stays in registers.
+template <int Count>
+void ActiveSetFactors::turn_rows(Eigen::Index row) {
+  using Rows = Eigen::Array<double, Count, 1>;
+  Rows carried = basis_.col(places_.front()).segment<Count>(row);
+  for (std::size_t k = 1; k < places_.size(); ++k) {
+    const double cosine = cosines_[static_cast<Eigen::Index>(k)];
+    const double sine = sines_[static_cast<Eigen::Index>(k)];
+    const Rows next = basis_.col(places_[k]).segment<Count>(row);
+    basis_.col(places_[k - 1]).segment<Count>(row) = cosine * carried + sine * next;
+    carried = cosine * next - sine * carried;
+  }
+  basis_.col(places_.back()).segment<Count>(row) = carried;
+}
+
+/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. Each rotation
+/// of a column waits for the one before it, so the columns go through the rotations that all of
+/// them need side by side.
+template <int Count>
+void ActiveSetFactors::turn_columns(std::size_t k) {
+  const int first = places_.front();
+  double* columns[Count + 1];
+  double upper[Count];
+  for (std::size_t c = 0; c <= Count; ++c) columns[c] = triangle_.col(places_[k + c - 1]).data();
+  for (int c = 0; c < Count; ++c) {
+    std::copy_n(columns[c + 1], first, columns[c]);
+    upper[c] = columns[c + 1][first];
+  }
+  const auto turn = [&](int c, std::size_t rotation) {
+    const double cosine = cosines_[static_cast<Eigen::Index>(rotation)];
+    const double sine = sines_[static_cast<Eigen::Index>(rotation)];
+    const double lower = columns[c + 1][places_[rotation]];
+    columns[c][places_[rotation - 1]] = cosine * upper[c] + sine * lower;
+    upper[c] = cosine * lower - sine * upper[c];
+  };
+  for (std::size_t rotation = 1; rotation < k; ++rotation) {
+    for (int c = 0; c < Count; ++c) turn(c, rotation);
+  }
+  for (int c = 0; c < Count; ++c) {
+    const std::size_t own = k + static_cast<std::size_t>(c);
+    for (std::size_t rotation = k; rotation < own; ++rotation) turn(c, rotation);
+    const double lower = columns[c + 1][places_[own]];
+    const double length = std::sqrt(upper[c] * upper[c] + lower * lower);
+    columns[c][places_[own - 1]] = length;
+    cosines_[static_cast<Eigen::Index>(own)] = upper[c] / length;
+    sines_[static_cast<Eigen::Index>(own)] = lower / length;
+  }
+}
+
+/// Column `gap` of J, which no row of R belongs to any more, goes behind the active ones, which
+/// move up.
+void ActiveSetFactors::close_gap(Eigen::Index gap) {
+  for (Eigen::Index column = gap; column + 1 < active_; ++column) {
+    basis_.col(column).swap(basis_.col(column + 1));
+    double* const to = triangle_.col(column).data();
+    const double* const from = triangle_.col(column + 1).data();
+    std::copy_n(from, gap, to);
+    std::copy(from + gap + 1, from + column + 2, to + gap);
+  }
+  groups_.move_column_back(gap, active_ - 1);
+}
+
+}  // namespace bess

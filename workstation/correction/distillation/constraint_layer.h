@@ -1,0 +1,143 @@
+// The differentiable optimisation layer [Paper, Eq. 11] for any linear constraints: maps the logits
+// of a batch of states to the nearest ones that satisfy a plain list of rows. It gives the answer
+// of the CorrectionLayer on the paper's three properties (lattice_rows.h), which stays the fast way
+// for those alone.
+//
+// Metric as there: sum (u-u')^2 + (v-v')^2 over the batch, the mean of a state's logits passes
+// through. States that no row ties together are projected apart: a block is a set of differences
+// connected by rows, each one dense quadratic program (quadratic_program.h), whose time grows with
+// the cube of its size. A difference that is in no row stays as it is.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/action.h"
+#include "workstation/correction/distillation/quadratic_program.h"
+
+namespace bess {
+
+// One linear demand on the student's logit differences at the states of a batch: what a property or
+// an operator's rule becomes before the constraint layer (constraint_layer.h) projects onto it.
+//
+//   u = z_charge - z_idle     v = z_idle - z_discharge     (both in logits, one of each per state)
+//
+//   state 4 charges:             u_4 >= m             {"rule", {{4, kU, 1}}, m}
+//                                v_4 >= 0             {"rule", {{4, kV, 1}}, 0}
+//   state 4 does not discharge:  v_4 >= m             {"rule", {{4, kV, 1}}, m}
+//   u falls from state 4 to 7:   u_4 - u_7 >= slope   {"rule", {{4, kU, 1}, {7, kU, -1}}, slope}
+
+enum class Difference : std::uint8_t {
+  kU,  ///< z_charge - z_idle
+  kV,  ///< z_idle - z_discharge
+};
+
+struct DifferenceTerm {
+  int state;  ///< column of the batch, 0..states-1
+  Difference difference;
+  double factor;
+};
+
+/// sum of factor * difference >= bound, or = bound.
+struct DifferenceRow {
+  std::string rule;  ///< whose row it is: every report names it
+  std::vector<DifferenceTerm> terms;
+  double bound = 0;
+  bool is_equality = false;
+};
+
+// Logits [3] of a state and what the layers project: u = z_charge - z_idle and v = z_idle -
+// z_discharge, while their mean passes through. z = mean + A (u, v):
+//   z_dis = mean - (2v+u)/3     z_idle = mean + (v-u)/3     z_cha = mean + (v+2u)/3
+
+/// Of one state: a point, or a gradient with respect to it.
+struct LogitDifferences {
+  double u, v;
+};
+
+/// Of the state in column `c` of logits [3 x states].
+inline LogitDifferences differences_of(const Eigen::MatrixXd& logits, Eigen::Index c) {
+  const double idle = logits(static_cast<int>(Action::kIdle), c);
+  return {logits(static_cast<int>(Action::kCharge), c) - idle,
+          idle - logits(static_cast<int>(Action::kDischarge), c)};
+}
+
+/// Column `c` of `logits` becomes the logits of this mean and these differences.
+inline void set_logits(double mean, const LogitDifferences& difference, Eigen::MatrixXd& logits,
+                       Eigen::Index c) {
+  const double discharge = mean - (2 * difference.v + difference.u) / 3;
+  const double idle = discharge + difference.v;
+  logits(static_cast<int>(Action::kDischarge), c) = discharge;
+  logits(static_cast<int>(Action::kIdle), c) = idle;
+  logits(static_cast<int>(Action::kCharge), c) = idle + difference.u;
+}
+
+/// dL/d(u, v) of set_logits, from dL/dlogits in column `c`.
+inline LogitDifferences difference_gradient_of(const Eigen::MatrixXd& gradient, Eigen::Index c) {
+  const double discharge = gradient(static_cast<int>(Action::kDischarge), c);
+  const double idle = gradient(static_cast<int>(Action::kIdle), c);
+  const double charge = gradient(static_cast<int>(Action::kCharge), c);
+  return {(-discharge - idle + 2 * charge) / 3, (-2 * discharge + idle + charge) / 3};
+}
+
+/// Column `c` of dL/dlogits, from that of the corrected logits, whose mean passed through, and from
+/// dL/d(u, v) of the differences that went into the layer.
+inline void set_logit_gradient(const Eigen::MatrixXd& gradient_corrected,
+                               const LogitDifferences& difference, Eigen::MatrixXd& gradient,
+                               Eigen::Index c) {
+  // d mean / d z' = 1/3 each, dL/d mean = sum of the gradient
+  const double mean = gradient_corrected.col(c).mean();
+  gradient(static_cast<int>(Action::kDischarge), c) = mean - difference.v;
+  gradient(static_cast<int>(Action::kIdle), c) = mean + difference.v - difference.u;
+  gradient(static_cast<int>(Action::kCharge), c) = mean + difference.u;
+}
+
+/// Rows that no logits satisfy together: leave out any one of them and the others can be satisfied.
+struct RowClash {
+  std::vector<std::size_t> rows;   ///< indices into the layer's rows, ascending
+  std::vector<std::string> rules;  ///< whose rows they are, each once, in the order of the rows
+};
+
+class ConstraintLayer {
+ public:
+  /// For batches of `states` columns. Throws UserError, naming the rule, for a row with a state
+  /// outside the batch or a number that is not finite.
+  ConstraintLayer(std::vector<DifferenceRow> rows, int states);
+
+  /// Corrects logits [3 x states]. Throws UserError naming the rules when rows contradict each
+  /// other.
+  void forward(const Eigen::MatrixXd& logits, Eigen::MatrixXd& corrected);
+  /// dL/dlogits from dL/dcorrected at the last forward.
+  void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
+
+  /// The rows that contradict each other, if any do; whether rows can be satisfied does not depend
+  /// on logits.
+  [[nodiscard]] std::optional<RowClash> clash();
+
+  [[nodiscard]] const std::vector<DifferenceRow>& rows() const { return rows_; }
+  /// Variables of the largest block.
+  [[nodiscard]] int largest_block() const;
+
+ private:
+  /// Differences connected by rows, and their projection.
+  struct Block {
+    std::vector<int> variables;     ///< 2 * state + (v ? 1 : 0)
+    std::vector<std::size_t> rows;  ///< equalities first, as the program wants them
+    std::unique_ptr<QuadraticProgram> program;
+    Eigen::VectorXd point, gradient;
+  };
+  void add_block(const std::vector<std::size_t>& rows);
+  /// Into block.program->x(); or the rows that leave no point.
+  [[nodiscard]] std::optional<RowClash> project(Block& block) const;
+  [[nodiscard]] std::string contradiction(const RowClash& clash) const;
+
+  std::vector<DifferenceRow> rows_;
+  std::vector<Block> blocks_;
+  Eigen::VectorXd differences_;  ///< [2 * states] u and v of state 0, of state 1, ...
+};
+
+}  // namespace bess

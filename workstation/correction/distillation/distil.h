@@ -1,0 +1,162 @@
+// Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq.
+// 11, 12]: losses, lessons and loop. An epoch is 64 context lattices of 32 prices x 16 SoCs, on
+// which the layer corrects, and 32,768 states that the teacher visits, which only follow the
+// teacher; it is taken in small steps of Adam. The layer is dropped afterwards: the student alone
+// decides.
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "shared/features.h"
+#include "workstation/base/random.h"
+#include "workstation/correction/distillation/constraint_layer.h"
+#include "workstation/correction/distillation/correction_layer.h"
+#include "workstation/correction/rules/rule.h"
+#include "workstation/policy/nn/adam.h"
+#include "workstation/policy/nn/thread_team.h"
+#include "workstation/policy/rl/teacher.h"
+
+namespace bess {
+
+/// How property 3 comes about.
+enum class CorrectionMethod : std::uint8_t {
+  kConstruction,  ///< signs of weights: no student violates it (monotone_distil.h)
+  kLayer,  ///< the paper's: training through the optimisation layer, until a student does not
+};
+
+struct DistilOptions {
+  CorrectionMethod method = CorrectionMethod::kConstruction;
+  bool correct = true;  ///< false: plain distillation, for comparison
+  CorrectionOptions correction;
+  RuleSet rules = {};   ///< the operator's, consistent with the thresholds
+  double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
+  /// Construction: deviation of what is added to a visited day's prices.
+  double level_shift_eur_per_mwh = 60;
+  double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
+  double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
+  int epochs = 600;
+  int steps_per_epoch = 16;  ///< Adam steps that share one epoch's states
+  int lattices_per_epoch = 64;
+  int lattice_prices = 32;
+  int lattice_socs = 16;
+  int visited_per_epoch = 32'768;
+  double learning_rate = 5e-3;  ///< falling along a cosine
+  int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
+  int repair_epochs = 40;
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
+                                        kActionCount};
+
+/// The teacher's inputs, the student's five first, of states that the teacher's policy meets on the
+/// training days, with some exploration. All but the first pass move the prices of each day when
+/// the teacher knows such days: a stochastic program does, a network knows what it was shown.
+Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
+                      const BatteryParameters& battery, const DistilOptions& options);
+
+/// The teacher's action values over the temperature of its softmax, [3 x samples]: its logits.
+Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& options,
+                               const MatrixRef& x, MlpTile& tile);
+
+/// By construction there are no lattices: their losses are 0, and that of the visited states is the
+/// mean regret over the temperature.
+struct DistilPoint {
+  int epoch;
+  double teacher_loss;     ///< mean KL(pi || mu) over lattices
+  double correction_loss;  ///< mean KL(pi' || pi) over lattices
+  double visited_loss;     ///< mean KL(pi' || mu) over visited states
+
+  [[nodiscard]] bool is_by_construction() const {
+    return teacher_loss == 0 && correction_loss == 0;
+  }
+};
+
+class Distiller {
+ public:
+  /// Keeps references: `teacher` and `visited` must outlive it. With rules that name states the
+  /// general layer projects where they hold; its time grows with the cube of a lattice, so lattices
+  /// are smaller and more.
+  Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
+
+  /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are
+  /// any, and slope margins are multiplied by `margin_scale`.
+  void run(int epochs, const std::vector<LatticeState>& counterexamples, double margin_scale,
+           const std::atomic<bool>& interrupted);
+
+  [[nodiscard]] const Parameters& parameters() const { return student_; }
+  [[nodiscard]] const std::vector<DistilPoint>& curve() const { return curve_; }
+
+ private:
+  /// One context with its axes.
+  struct Lattice {
+    int minute_of_quarter_hour, quarter_hour, context_class;
+    LatticeAxes axes;
+  };
+  struct Losses {
+    double teacher = 0, correction = 0, visited = 0;
+  };
+  struct Worker {
+    Parameters gradient;
+    Losses losses;
+    MlpTile teacher_tile, student_tile;
+    Matrix seen;  ///< by the teacher, which may have inputs of its own
+    Matrix x, z, dz;
+    std::string complaint;  ///< of the constraint layer, for the user
+  };
+
+  Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
+  void draw_axes(const LatticeState* centre, LatticeAxes& axes);
+  void lattice_inputs(const Lattice& lattice, Matrix& x) const;
+  Eigen::MatrixXd teacher_log_policy(const Matrix& seen, Worker& worker) const;
+  void backward_student(Worker& worker) const;
+  [[nodiscard]] std::optional<ConstraintLayer> layer_with_rules(
+      const Lattice& lattice, const CorrectionOptions& correction) const;
+  void learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight, Worker& worker);
+  void learn_visited(const std::vector<Eigen::Index>& columns, double weight, Worker& worker);
+  Losses step(const std::vector<Lattice>& lattices, std::vector<CorrectionLayer>& layers,
+              const std::vector<Eigen::Index>& visited, double learning_rate);
+
+  const Teacher& teacher_;
+  const Matrix& visited_;
+  DistilOptions options_;
+  Random random_;
+  Parameters student_;
+  Adam adam_;
+  ThreadTeam team_;
+  std::vector<Worker> workers_;
+  std::vector<DistilPoint> curve_;
+};
+
+// What a student by outlook learns from: steps of the training days with what the teacher, the
+// program that plans on day-ahead prices and what a network adds to it, would do there. Its values
+// are no function of the student's five inputs, so they stand below them.
+
+/// [5 inputs and 3 action values x states], as Teacher::action_values() reads them. Of states that
+/// the teacher's policy meets on the training days, and some at another price and SoC. All but the
+/// first pass move each day's prices and its break-even prices alike: what to do stays the same.
+Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
+                       const BatteryParameters& battery, const DistilOptions& options);
+
+// The loss of the distillation and its gradients, per state [Paper, Eq. 12]:
+//   L = omega KL(pi || mu) + KL(pi' || pi)
+// pi' student, pi corrected student, mu teacher = softmax(action values / temperature).
+
+/// log softmax of each column.
+Eigen::MatrixXd log_softmax(const Eigen::MatrixXd& logits);
+
+/// Sum over columns of KL(p || q), from log probabilities.
+double kl_divergence(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
+
+/// Gradient of KL(p || q) with respect to the logits of p:  p_k (log p_k - log q_k - KL).
+Eigen::MatrixXd kl_gradient_first(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
+/// Gradient of KL(p || q) with respect to the logits of q:  q_k - p_k.
+Eigen::MatrixXd kl_gradient_second(const Eigen::MatrixXd& log_p, const Eigen::MatrixXd& log_q);
+
+}  // namespace bess

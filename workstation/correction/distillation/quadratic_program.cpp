@@ -1,0 +1,407 @@
+#include "workstation/correction/distillation/quadratic_program.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace bess {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Rows have unit length in the metric of G^-1, so slacks and multipliers are distances; all
+// tolerances on them are times the size of the terms that a slack is summed from.
+constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
+constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
+constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
+constexpr double kDrift = 1e-11;  ///< active rows this far from tight: the factors have drifted
+/// |d2| of a unit row that depends on the active ones: rounding leaves 1e-13 at 512 variables.
+constexpr double kDependent = 1e-9;
+/// Of the largest: smaller entries of r are rounding, and limit no step.
+constexpr double kFallingMultiplier = 1e-10;
+constexpr int kRebuildsMax = 3;
+/// From this share of factors that are not 0 on, rows are taken for dense: products then run over
+/// all.
+constexpr double kDenseShare = 0.2;
+constexpr int kStepsMaxPerRow = 50;
+
+Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& hessian) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
+  if (factor.info() != Eigen::Success) {
+    throw std::invalid_argument("quadratic program: the Hessian is not positive definite");
+  }
+  return factor.matrixL().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
+}
+
+}  // namespace
+
+QuadraticProgram::QuadraticProgram(LinearConstraints constraints)
+    : QuadraticProgram(
+          std::move(constraints),
+          Eigen::MatrixXd::Identity(constraints.normals.cols(), constraints.normals.cols())) {}
+
+QuadraticProgram::QuadraticProgram(const Eigen::MatrixXd& hessian, LinearConstraints constraints)
+    : QuadraticProgram(std::move(constraints), inverse_root_of(hessian)) {}
+
+QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
+                                   const Eigen::MatrixXd& inverse_root)
+    : rows_(std::move(constraints)), factors_(inverse_root), image_(inverse_root.rows()) {
+  const Eigen::Index variables = rows_.normals.cols();
+  const Eigen::Index count = rows_.normals.rows();
+  for (Eigen::VectorXd* v : {&free_minimum_, &x_, &z_, &r_}) v->setZero(variables);
+  active_multipliers_.setZero(variables);
+  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_, &slacks_}) v->setZero(count);
+  active_.reserve(static_cast<std::size_t>(variables));
+  clash_.reserve(static_cast<std::size_t>(variables) + 1);
+  is_active_.assign(static_cast<std::size_t>(count), 0);
+  neglected_.reserve(static_cast<std::size_t>(count));
+  passed_over_.setZero(count);
+  is_claimed_.resize(static_cast<std::size_t>(variables));
+  candidates_.reserve(static_cast<std::size_t>(count));
+  moved_.reserve(static_cast<std::size_t>(variables));
+  is_projection_ = inverse_root.isIdentity(0);
+  scale_rows(inverse_root);
+}
+
+/// A row of zeros stays one: it is satisfied, or clashes by itself.
+void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
+  rows_.normals.makeCompressed();
+  for (int i = 0; i < rows_.normals.rows(); ++i) {
+    z_.setZero();
+    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
+      z_ += term.value() * inverse_root.col(term.col());
+    }
+    const double length = z_.norm();
+    row_scale_[i] = length > 0 ? 1 / length : 1;
+    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
+      term.valueRef() *= row_scale_[i];
+    }
+    rows_.bounds[i] *= row_scale_[i];
+  }
+  const auto factors = static_cast<double>(rows_.normals.nonZeros());
+  if (factors > kDenseShare * static_cast<double>(rows_.normals.size())) {
+    dense_ = rows_.normals;
+    sizes_.setZero(rows_.normals.rows());
+  } else {
+    columns_ = rows_.normals;
+  }
+}
+
+QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
+  start(g);
+  if (is_projection_ && rows_.equalities == 0) take_in_disjoint_rows();
+  for (int row = 0; row < rows_.equalities; ++row) {
+    if (!take_in(row, slack_of(row) > 0 ? -1 : 1)) return QuadraticOutcome::kContradiction;
+  }
+  const auto steps_max = kStepsMaxPerRow * (rows_.normals.rows() + rows_.normals.cols());
+  int rebuilds = 0;
+  while (steps_ <= steps_max) {
+    int row = most_violated();
+    if (row < 0) {
+      while (recompute() > kDrift * scale_ && rebuilds < kRebuildsMax) {
+        rebuild();
+        ++rebuilds;
+      }
+      row = most_violated();
+      if (row < 0) {
+        publish_multipliers();
+        return QuadraticOutcome::kSolved;
+      }
+    }
+    if (!take_in(row, 1)) return QuadraticOutcome::kContradiction;
+  }
+  return QuadraticOutcome::kStalled;
+}
+
+void QuadraticProgram::start(const Eigen::VectorXd& g) {
+  factors_.reset();
+  active_.clear();
+  clash_.clear();
+  std::ranges::fill(is_active_, 0);
+  neglected_.clear();
+  passed_over_.setZero();
+  steps_ = 0;
+  factors_.project_free(g, free_minimum_);
+  x_ = free_minimum_;
+  measure();
+}
+
+/// Rows that share no variable do not feel each other: at the start of a projection each is met by
+/// itself, the most violated first. The dearer steps, which look at all active rows, begin with
+/// these.
+void QuadraticProgram::take_in_disjoint_rows() {
+  candidates_.clear();
+  for (int row = 0; row < slacks_.size(); ++row) {
+    if (slacks_[row] < -kViolation * scale_) candidates_.push_back(row);
+  }
+  std::ranges::sort(candidates_, std::ranges::less{}, [this](int row) { return slacks_[row]; });
+  std::ranges::fill(is_claimed_, 0);
+  for (const int row : candidates_) {
+    if (!claim_variables(row)) continue;
+    image_of(row, 1);
+    if (image_.independence <= kDependent) continue;  // a row of zeros
+    const double violation = -slacks_[row];
+    factors_.add(image_, z_);
+    move(violation);
+    activate(row, 1, violation);
+    ++steps_;
+  }
+}
+
+/// False, and nothing is claimed, when another row has one of the row's variables already.
+bool QuadraticProgram::claim_variables(int row) {
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    if (is_claimed_[static_cast<std::size_t>(term.col())] != 0) return false;
+  }
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    is_claimed_[static_cast<std::size_t>(term.col())] = 1;
+  }
+  return true;
+}
+
+/// Slacks at x, and the size of their terms.
+void QuadraticProgram::measure() {
+  scale_ = std::numeric_limits<double>::min();
+  if (dense_.size() > 0) {
+    slacks_ = -rows_.bounds;
+    slacks_.noalias() += dense_ * x_;
+    sizes_ = rows_.bounds.cwiseAbs();
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      sizes_ += std::fabs(x_[i]) * dense_.col(i).cwiseAbs();
+    }
+    scale_ = std::max(scale_, sizes_.maxCoeff());
+    return;
+  }
+  for (int row = 0; row < slacks_.size(); ++row) {
+    double slack = -rows_.bounds[row];
+    double size = std::fabs(slack);
+    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+      const double part = term.value() * x_[term.col()];
+      slack += part;
+      size += std::fabs(part);
+    }
+    slacks_[row] = slack;
+    scale_ = std::max(scale_, size);
+  }
+}
+
+/// The image of the row times its sign.
+void QuadraticProgram::image_of(int row, double sign, bool of_free) {
+  const auto begin = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row]);
+  const auto end = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row + 1]);
+  factors_.image_of({rows_.normals.innerIndexPtr() + begin, end - begin},
+                    {rows_.normals.valuePtr() + begin, end - begin}, sign, image_, of_free);
+}
+
+double QuadraticProgram::slack_of(int row) const {
+  double sum = -rows_.bounds[row];
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    sum += term.value() * x_[term.col()];
+  }
+  return sum;
+}
+
+/// x += step z, where z is the direction of the image; slacks follow where x moves. Their rounding
+/// is gone when they are measured at the end.
+void QuadraticProgram::move(double step) {
+  if (dense_.size() > 0) {
+    z_ *= step;
+    x_ += z_;
+    slacks_.noalias() += dense_ * z_;
+    return;
+  }
+  factors_.list_variables(image_, moved_);
+  for (const int i : moved_) {
+    const double by = step * z_[i];
+    x_[i] += by;
+    for (Columns::InnerIterator term(columns_, i); term; ++term) {
+      slacks_[term.row()] += by * term.value();
+    }
+  }
+}
+
+/// The inequality that x violates most, or -1.
+int QuadraticProgram::most_violated() const {
+  const Eigen::Index inequalities = slacks_.size() - rows_.equalities;
+  if (inequalities == 0) return -1;
+  const double least = (slacks_ + passed_over_).tail(inequalities).minCoeff();
+  if (!(least < -kViolation * scale_)) return -1;
+  int worst = rows_.equalities;
+  while (slacks_[worst] + passed_over_[worst] != least) ++worst;
+  return worst;
+}
+
+Eigen::Index QuadraticProgram::active_equalities() const {
+  const auto is_equality = [this](const ActiveRow& row) { return row.row < rows_.equalities; };
+  return std::ranges::partition_point(active_, is_equality) - active_.begin();
+}
+
+/// How far the multipliers can follow -r until that of an inequality is 0.
+QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
+  Limit limit{kInfinity, 0};
+  if (image_.held.empty()) return limit;
+  const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
+  const Eigen::Index equalities = active_equalities();
+  for (const int k : image_.held) {
+    // First what seldom holds: whether r falls is as likely as not.
+    const bool is_nearer = active_multipliers_[k] < limit.step * r_[k];
+    if (is_nearer && r_[k] > falling && k >= equalities) {
+      limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
+    }
+  }
+  return limit;
+}
+
+/// Multipliers of inequalities are not negative, whatever rounding says.
+void QuadraticProgram::keep_signs() {
+  const Eigen::Index equalities = active_equalities();
+  auto signed_ones = active_multipliers_.segment(equalities, factors_.active() - equalities);
+  signed_ones = signed_ones.cwiseMax(0);
+}
+
+/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way.
+/// False when the row contradicts the active ones.
+bool QuadraticProgram::take_in(int row, double sign) {
+  double multiplier = 0;
+  while (true) {
+    ++steps_;
+    image_of(row, sign);
+    factors_.solve(image_, r_);
+    const double independence = image_.independence;
+    const bool is_dependent = independence <= kDependent;
+    const double violation = std::max(0.0, -sign * slack_of(row));
+    const double full = is_dependent ? kInfinity : violation / (independence * independence);
+    const Limit limit = limit_by_multipliers();
+    const double step = std::min(full, limit.step);
+    if (step == kInfinity) {
+      if (violation > kContradiction * scale_) {
+        keep_clash(row, sign);
+        return false;
+      }
+      neglected_.push_back(row);
+      passed_over_[row] = kInfinity;
+      return true;
+    }
+    active_multipliers_.head(factors_.active()) -= step * r_.head(factors_.active());
+    keep_signs();
+    multiplier += step;
+    if (full <= limit.step) {
+      factors_.add(image_, z_);
+      move(step);
+      activate(row, sign, multiplier);
+      for (const int other : neglected_) passed_over_[other] = 0;
+      neglected_.clear();
+      return true;
+    }
+    if (!is_dependent) {
+      factors_.direction(image_, z_);
+      move(step);
+    }
+    let_go(limit.position);
+  }
+}
+
+void QuadraticProgram::activate(int row, double sign, double multiplier) {
+  active_multipliers_[static_cast<Eigen::Index>(active_.size())] = multiplier;
+  active_.push_back({row, sign});
+  mark(row, true);
+}
+
+/// Who is active is not looked for among the violated.
+void QuadraticProgram::mark(int row, bool active) {
+  is_active_[static_cast<std::size_t>(row)] = active ? 1 : 0;
+  passed_over_[row] = active ? kInfinity : 0;
+}
+
+/// Takes the row into the factors, unless it depends on the active ones.
+bool QuadraticProgram::hold(int row, double sign) {
+  image_of(row, sign, true);  // most rows that come here depend on the others
+  if (image_.independence <= kDependent) return false;
+  image_of(row, sign);
+  factors_.add(image_, z_);
+  return true;
+}
+
+void QuadraticProgram::let_go(std::size_t position) {
+  mark(active_[position].row, false);
+  const std::span<const int> places = factors_.drop(static_cast<Eigen::Index>(position));
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    active_[static_cast<std::size_t>(places[k - 1])] = active_[static_cast<std::size_t>(places[k])];
+    active_multipliers_[places[k - 1]] = active_multipliers_[places[k]];
+  }
+  active_.pop_back();
+}
+
+/// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0
+/// while its bounds sum to the violation. The active rows are independent, so there is no other
+/// such sum: without any one of these rows the others can be satisfied.
+void QuadraticProgram::keep_clash(int row, double sign) {
+  const double least =
+      kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());
+  clash_.push_back({row, sign * row_scale_[row]});
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const double part = -r_[static_cast<Eigen::Index>(k)];
+    if (std::fabs(part) <= least) continue;
+    const ActiveRow& other = active_[k];
+    clash_.push_back({other.row, part * other.sign * row_scale_[other.row]});
+  }
+}
+
+/// x and multipliers of the active set, from the factors alone:
+///   y = R^-T (b - N'G^-1 g)    x = G^-1 g + J1 y    multipliers = R^-1 y
+/// Returns how far the active rows are from tight.
+double QuadraticProgram::recompute() {
+  x_ = free_minimum_;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    z_[static_cast<Eigen::Index>(k)] = -active_[k].sign * slack_of(active_[k].row);
+  }
+  factors_.solve_transposed(z_);
+  factors_.add_combination(z_, x_);
+  factors_.solve(z_);
+  measure();
+  active_multipliers_.head(factors_.active()) = z_.head(factors_.active());
+  keep_signs();
+  double distance = 0;
+  for (const ActiveRow& row : active_) distance = std::max(distance, std::fabs(slacks_[row.row]));
+  return distance;
+}
+
+/// The factors of the active set from the start.
+void QuadraticProgram::rebuild() {
+  factors_.reset();
+  std::erase_if(active_, [this](const ActiveRow& row) {
+    const bool held = hold(row.row, row.sign);
+    mark(row.row, held);
+    return !held;
+  });
+}
+
+void QuadraticProgram::publish_multipliers() {
+  multipliers_.setZero();
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const auto& [row, sign] = active_[k];
+    multipliers_[row] = active_multipliers_[static_cast<Eigen::Index>(k)] * sign * row_scale_[row];
+  }
+}
+
+void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
+  const double weak = kWeakly * scale_;
+  // Held: every tight row.
+  for (int row = rows_.equalities; row < slacks_.size(); ++row) {
+    if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
+    if (hold(row, 1)) activate(row, 1, 0);
+  }
+  factors_.project_free(gradient_x, gradient_g);
+  // Let go: those without a multiplier.
+  const std::size_t held = active_.size();
+  const Eigen::Index equalities = active_equalities();
+  for (Eigen::Index k = factors_.active(); k-- > equalities;) {
+    if (active_multipliers_[k] <= weak) let_go(static_cast<std::size_t>(k));
+  }
+  if (active_.size() == held) return;
+  factors_.project_free(gradient_x, z_);
+  gradient_g = (gradient_g + z_) / 2;
+}
+
+}  // namespace bess

@@ -1,0 +1,83 @@
+#include "workstation/correction/rules/properties.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+
+RuleSet with_outlook_rule(const RuleSet& rules) {
+  constexpr std::string_view kName = "break-even price";
+  const Direction direction{RuleInput::kContextClass, 1};
+  RuleSet all = rules;
+  for (const Rule& rule : rules.rules) {
+    if (rule.demand->direction() == direction) return all;
+    if (rule.name == kName) {
+      fail("{}: the name \"{}\" is that of a rule of every student by outlook; give it another",
+           rule.place, kName);
+    }
+    if (rule.box.context_classes != RuleBox{}.context_classes) {
+      fail(
+          "{}: rule \"{}\" names context classes: by outlook they are classes of the plan's "
+          "break-even price, which the guard does not know; name prices or hours",
+          rule.place, rule.name);
+    }
+  }
+  Rule rule;
+  rule.name = kName;
+  rule.demand = direction_demand(direction);
+  all.rules.push_back(rule);
+  return all;
+}
+
+namespace {
+
+Rule threshold(int property, Action action) {
+  Rule rule;
+  rule.name = fmt::format("property {}", property);
+  rule.property = property;
+  rule.demand = action_demand(action_bit(action));
+  return rule;
+}
+
+Rule never_rises_with(RuleInput input, const char* name) {
+  Rule rule;
+  rule.name = fmt::format("property 3, {}", name);
+  rule.property = 3;
+  rule.demand = direction_demand({input, -1});
+  return rule;
+}
+
+}  // namespace
+
+RuleSet built_in_rules(const PriceThresholds& thresholds) {
+  Rule cheap = threshold(1, Action::kCharge);
+  cheap.box.price_max_eur_per_mwh = thresholds.low_eur_per_mwh;
+  Rule dear = threshold(2, Action::kDischarge);
+  dear.box.price_min_eur_per_mwh = thresholds.high_eur_per_mwh;
+  return {{cheap, dear, never_rises_with(RuleInput::kPrice, "price"),
+           never_rises_with(RuleInput::kSoc, "SoC")}};
+}
+
+RuleSet with_built_in(const PriceThresholds& thresholds, const RuleSet& rules) {
+  RuleSet all = built_in_rules(thresholds);
+  all.rules.insert(all.rules.end(), rules.rules.begin(), rules.rules.end());
+  return all;
+}
+
+RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds) {
+  return with_built_in(rules.thresholds(thresholds), rules);
+}
+
+std::string property_text(int property, const PriceThresholds& thresholds) {
+  if (property == 1)
+    return fmt::format("charge at or below {} EUR/MWh", thresholds.low_eur_per_mwh);
+  if (property == 2) {
+    return fmt::format("discharge at or above {} EUR/MWh", thresholds.high_eur_per_mwh);
+  }
+  return "monotone in price and SoC";
+}
+
+}  // namespace bess

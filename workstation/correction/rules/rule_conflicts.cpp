@@ -1,0 +1,295 @@
+#include "workstation/correction/rules/rule_conflicts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include "shared/host/user_error.h"
+#include "workstation/correction/rules/properties.h"
+
+namespace bess {
+namespace {
+
+/// Ends of a range to which a demand reaches along an input: "at least" to where actions are
+/// larger.
+template <typename Index>
+void reach(int sign, bool at_least, Index& first, Index& last, Index lowest, Index highest) {
+  if (sign == 0) return;
+  if ((sign < 0) == at_least) {
+    first = lowest;
+  } else {
+    last = highest;
+  }
+}
+
+std::string state_text(int quarter_hour, int context_class, int soc_index, int price,
+                       ContextKind kind) {
+  return fmt::format("{} {}, {}, SoC {:g} %, {} EUR/MWh",
+                     kind == ContextKind::kMonth ? "month" : "context class", context_class,
+                     hour_text(quarter_hour), soc_index * 100.0 / (kSocCount - 1), price);
+}
+
+/// The thresholds of properties 1 and 2 as rules, unless the set has its own.
+RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds) {
+  RuleSet all = rules;
+  for (Rule rule : built_in_rules(thresholds).rules) {
+    if (!rule.restricts_actions()) continue;
+    const bool has_own = std::ranges::any_of(rules.rules, [&](const Rule& own) {
+      return own.is_threshold && own.lowest() == rule.lowest();
+    });
+    if (has_own) continue;
+    rule.name = rule.property == 1 ? "[correction] low_price_eur_per_mwh"
+                                   : "[correction] high_price_eur_per_mwh";
+    rule.place = "the configuration";
+    rule.is_threshold = true;
+    all.rules.push_back(std::move(rule));
+  }
+  return all;
+}
+
+[[noreturn]] void clash(const Rule& a, const Rule& b, const std::string& state) {
+  fail("{}: \"{}\" contradicts \"{}\" ({}) at {}: narrow or drop one of them", a.place, a.name,
+       b.name, b.place, state);
+}
+
+std::optional<int> common_quarter_hour(const RuleBox& a, const RuleBox& b) {
+  for (int q = 0; q < kQuarterHourCount; ++q) {
+    if (a.holds_at_hour(q) && b.holds_at_hour(q)) return q;
+  }
+  return {};
+}
+
+/// What the guard would have to obey at once.
+void check_boxes(const Rule& a, const Rule& b, ContextKind kind) {
+  if ((a.actions() & b.actions()) != 0) return;
+  const int price = std::max(a.box.price_min_eur_per_mwh, b.box.price_min_eur_per_mwh);
+  const int soc = std::max(a.box.soc_index_min, b.box.soc_index_min);
+  const std::int32_t months = a.box.months & b.box.months;
+  const std::int32_t classes = a.box.context_classes & b.box.context_classes;
+  const auto quarter_hour = common_quarter_hour(a.box, b.box);
+  if (price > std::min(a.box.price_max_eur_per_mwh, b.box.price_max_eur_per_mwh) ||
+      soc > std::min(a.box.soc_index_max, b.box.soc_index_max) || months == 0 || classes == 0 ||
+      !quarter_hour) {
+    return;
+  }
+  const std::int32_t seen = kind == ContextKind::kMonth ? months : classes;
+  clash(a, b,
+        state_text(*quarter_hour, std::countr_zero(static_cast<unsigned>(seen)) + 1, soc, price,
+                   kind));
+}
+
+void check_directions(const RuleSet& rules) {
+  for (const Rule& a : rules.rules) {
+    for (const Rule& b : rules.rules) {
+      const Direction up = a.demand->direction();
+      const Direction down = b.demand->direction();
+      if (up.input == down.input && up.sign > 0 && down.sign < 0) {
+        clash(a, b, "every state: only an action that never changes with that input obeys both");
+      }
+    }
+  }
+}
+
+void check_each(const RuleSet& rules, ContextKind kind) {
+  for (const Rule& rule : rules.rules) {
+    if (kind == ContextKind::kMonth && rule.box.context_classes != kAllTwelve) {
+      fail(
+          "{}: \"{}\" has context_classes, but the student is by month: use months, or [train] "
+          "context = \"level\"",
+          rule.place, rule.name);
+    }
+    const bool is_bound = binds_student(rule, kind) || rule.enforce || rule.is_threshold;
+    if (is_bound) continue;
+    fail("{}: \"{}\" binds nobody: {}; add enforce = true for the guard", rule.place, rule.name,
+         rule.box.months != kAllTwelve ? "a student by price level does not see months"
+                                       : "no price of it lies on the lattice");
+  }
+}
+
+}  // namespace
+
+ActionSet ActionRange::set() const {
+  ActionSet actions = 0;
+  for (int a = static_cast<int>(lowest); a <= static_cast<int>(highest); ++a) {
+    const auto action = static_cast<Action>(a);
+    if (has_gap && action == Action::kIdle) continue;
+    actions = static_cast<ActionSet>(actions | action_bit(action));
+  }
+  return actions;
+}
+
+void ImpliedRanges::add_claim(const Rule& rule, std::size_t index, Side side, Action action,
+                              const std::vector<Direction>& directions, ContextKind kind) {
+  Claim claim{side, action, index, lattice_box_of(rule.box, kind), {}};
+  for (int q = 0; q < kQuarterHourCount; ++q) {
+    claim.quarter_hours.push_back(rule.box.holds_at_hour(q));
+  }
+  for (const Direction& direction : directions) {
+    if (side == Side::kNotIdle) break;  // reaches no other state
+    const bool at_least = side == Side::kAtLeast;
+    LatticeBox& box = claim.box;
+    if (direction.input == RuleInput::kPrice) {
+      reach(direction.sign, at_least, box.price_first, box.price_last, 0, kPriceCount - 1);
+    } else if (direction.input == RuleInput::kSoc) {
+      reach(direction.sign, at_least, box.soc_first, box.soc_last, 0, kSocCount - 1);
+    } else if (direction.input == RuleInput::kContextClass) {
+      int first = std::countr_zero(static_cast<unsigned>(box.classes));
+      int last = static_cast<int>(std::bit_width(static_cast<unsigned>(box.classes))) - 1;
+      const bool down = (direction.sign < 0) == at_least;
+      for (int c = down ? 0 : first; c <= (down ? last : kContextClassCount - 1); ++c) {
+        box.classes |= 1 << c;
+      }
+    } else if (direction.input == RuleInput::kQuarterHour) {
+      auto& held = claim.quarter_hours;
+      const auto first = std::ranges::find(held, true) - held.begin();
+      const auto last =
+          kQuarterHourCount - 1 - (std::find(held.rbegin(), held.rend(), true) - held.rbegin());
+      const bool down = (direction.sign < 0) == at_least;
+      for (auto q = down ? 0 : first; q <= (down ? last : kQuarterHourCount - 1); ++q) {
+        held[static_cast<std::size_t>(q)] = true;
+      }
+    }
+  }
+  claims_.push_back(std::move(claim));
+}
+
+ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
+  const std::vector<Direction> directions = rules.directions();
+  for (std::size_t i = 0; i < rules.rules.size(); ++i) {
+    const Rule& rule = rules.rules[i];
+    if (!binds_student(rule, kind)) continue;
+    if (rule.has_gap()) add_claim(rule, i, Side::kNotIdle, Action::kIdle, directions, kind);
+    if (rule.lowest() > Action::kDischarge) {
+      add_claim(rule, i, Side::kAtLeast, rule.lowest(), directions, kind);
+    }
+    if (rule.highest() < Action::kCharge) {
+      add_claim(rule, i, Side::kAtMost, rule.highest(), directions, kind);
+    }
+  }
+}
+
+ActionRange ImpliedRanges::at(int quarter_hour, int context_class, int soc_index,
+                              int price_eur_per_mwh) const {
+  const int price = price_eur_per_mwh - kLatticePriceMinEurPerMwh;
+  ActionRange range;
+  for (const Claim& claim : claims_) {
+    const LatticeBox& box = claim.box;
+    if (price < box.price_first || price > box.price_last || soc_index < box.soc_first ||
+        soc_index > box.soc_last || (box.classes >> (context_class - 1) & 1) == 0 ||
+        !claim.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
+      continue;
+    }
+    switch (claim.side) {
+      case Side::kAtLeast:
+        range.lowest = std::max(range.lowest, claim.action);
+        break;
+      case Side::kAtMost:
+        range.highest = std::min(range.highest, claim.action);
+        break;
+      case Side::kNotIdle:
+        range.has_gap = true;
+        break;
+    }
+  }
+  return range;
+}
+
+void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind) {
+  check_each(rules, kind);
+  check_directions(rules);
+  const PriceThresholds bound = rules.thresholds(thresholds);
+  if (!bound.are_ordered()) {
+    fail(
+        "the thresholds of the rules and of [correction] cross: charge at or below {} and "
+        "discharge at or above {} EUR/MWh; move one of them",
+        bound.low_eur_per_mwh, bound.high_eur_per_mwh);
+  }
+  for (const Rule& a : rules.rules) {
+    for (const Rule& b : rules.rules) {
+      if (&a < &b && a.enforce && b.enforce) check_boxes(a, b, kind);
+    }
+  }
+  const RuleSet all = with_thresholds(rules, thresholds);
+  const ImpliedRanges implied(all, kind);
+  using Claim = ImpliedRanges::Claim;
+  using Side = ImpliedRanges::Side;
+  // A corner of the states that claims have in common; every such set is a box, or hours and
+  // classes of boxes.
+  const auto meet = [kind](std::initializer_list<const Claim*> claims, std::string& state) {
+    LatticeBox common{0, kPriceCount - 1, 0, kSocCount - 1, kAllTwelve};
+    for (const Claim* claim : claims) {
+      common.price_first = std::max(common.price_first, claim->box.price_first);
+      common.price_last = std::min(common.price_last, claim->box.price_last);
+      common.soc_first = std::max(common.soc_first, claim->box.soc_first);
+      common.soc_last = std::min(common.soc_last, claim->box.soc_last);
+      common.classes &= claim->box.classes;
+    }
+    int quarter_hour = 0;
+    while (quarter_hour < kQuarterHourCount && !std::ranges::all_of(claims, [&](const Claim* c) {
+             return bool{c->quarter_hours[static_cast<std::size_t>(quarter_hour)]};
+           })) {
+      ++quarter_hour;
+    }
+    if (common.price_first > common.price_last || common.soc_first > common.soc_last ||
+        common.classes == 0 || quarter_hour == kQuarterHourCount) {
+      return false;
+    }
+    state = state_text(quarter_hour, std::countr_zero(static_cast<unsigned>(common.classes)) + 1,
+                       common.soc_first, kLatticePriceMinEurPerMwh + common.price_first, kind);
+    return true;
+  };
+  std::string state;
+  for (const Claim& least : implied.claims_) {
+    if (least.side != Side::kAtLeast) continue;
+    for (const Claim& most : implied.claims_) {
+      if (most.side != Side::kAtMost) continue;
+      const Rule& a = all.rules[least.rule];
+      const Rule& b = all.rules[most.rule];
+      if (least.action > most.action && meet({&least, &most}, state)) clash(a, b, state);
+      if (least.action != Action::kIdle || most.action != Action::kIdle) continue;
+      for (const Claim& gap : implied.claims_) {
+        if (gap.side != Side::kNotIdle || !meet({&least, &most, &gap}, state)) continue;
+        clash(all.rules[gap.rule], least.rule == most.rule ? a : b, state);
+      }
+    }
+  }
+}
+
+std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
+                                         ContextKind kind, const Rule& rule) {
+  const RuleSet all = with_thresholds(rules, thresholds);
+  const ImpliedRanges implied(all, kind);
+  using Claim = ImpliedRanges::Claim;
+  using Side = ImpliedRanges::Side;
+  const auto is_asked = [&](const Claim& claim) {
+    const Rule& other = all.rules[claim.rule];
+    return other.box == rule.box && other.actions() == rule.actions();
+  };
+  const auto meet_in_time = [](const Claim& a, const Claim& b) {
+    if ((a.box.classes & b.box.classes) == 0) return false;
+    for (std::size_t q = 0; q < a.quarter_hours.size(); ++q) {
+      if (a.quarter_hours[q] && b.quarter_hours[q]) return true;
+    }
+    return false;
+  };
+  std::optional<Opposite> nearest;
+  for (const Claim& least : implied.claims_) {
+    for (const Claim& most : implied.claims_) {
+      if (least.side != Side::kAtLeast || most.side != Side::kAtMost ||
+          least.action <= most.action || is_asked(least) == is_asked(most) ||
+          !meet_in_time(least, most)) {
+        continue;
+      }
+      const Rule& other = all.rules[is_asked(least) ? most.rule : least.rule];
+      const Opposite found{other.name, std::max(0, most.box.price_first - least.box.price_last),
+                           std::max(0, most.box.soc_first - least.box.soc_last)};
+      const auto distance = [](const Opposite& o) { return o.price_gap_eur_per_mwh + o.soc_gap; };
+      if (!nearest || distance(found) < distance(*nearest)) nearest = found;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace bess

@@ -1,0 +1,283 @@
+#include "workstation/correction/rules/rule_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "shared/host/file.h"
+#include "shared/host/toml_reader.h"
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr std::string_view kNameCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:()%+";
+constexpr int kSocStepsPerOne = kSocCount - 1;
+
+bool parse_digits(std::string_view text, int& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+/// "17:00" as a quarter-hour; "24:00" is the end of the day. False for anything else.
+bool parse_hour(std::string_view text, int& quarter_hour) {
+  int hours = 0;
+  int minutes = 0;
+  if (text.size() != 5 || text[2] != ':' || !parse_digits(text.substr(0, 2), hours) ||
+      !parse_digits(text.substr(3), minutes)) {
+    return false;
+  }
+  if (hours < 0 || minutes < 0 || minutes > 59 || minutes % kMinutesPerQuarterHour != 0) {
+    return false;
+  }
+  quarter_hour = hours * 4 + minutes / kMinutesPerQuarterHour;
+  return quarter_hour <= kQuarterHourCount;
+}
+
+/// Reads one [[rule]].
+class RuleReader {
+ public:
+  explicit RuleReader(TomlTable& table) : table_(table) {}
+
+  Rule read() {
+    read_name();
+    read_hours();
+    const bool has_months = table_.has("months");
+    if (has_months && table_.has("context_classes")) {
+      table_.fail("context_classes", "cannot stand beside months: leave out one of them");
+    }
+    read_members("months", rule_.box.months);
+    read_members("context_classes", rule_.box.context_classes);
+    read_range_of_soc();
+    read_range_of_price();
+    table_.boolean("enforce", rule_.enforce);
+    read_demand();
+    table_.finish();
+    return rule_;
+  }
+
+ private:
+  void read_name() {
+    table_.require("name");
+    const std::string* name = table_.text("name");
+    if (name == nullptr) return;
+    const bool plain = name->find_first_not_of(kNameCharacters) == std::string::npos;
+    if (name->empty() || name->size() > kNameLengthMax || !plain) {
+      table_.fail("name", fmt::format("must have 1 to {} letters, digits, spaces or -_.,:()%+",
+                                      kNameLengthMax));
+    }
+    rule_.name = *name;
+  }
+
+  void read_hours() {
+    const std::string* text = table_.text("hours");
+    if (text == nullptr) return;
+    const std::size_t dash = text->find('-');
+    int first = 0;
+    int end = 0;
+    if (dash == std::string::npos || !parse_hour(std::string_view(*text).substr(0, dash), first) ||
+        !parse_hour(std::string_view(*text).substr(dash + 1), end) || first == kQuarterHourCount) {
+      return table_.fail("hours", "must be two times in quarter-hours, like \"17:00-20:15\"");
+    }
+    const int count = (end - first + kQuarterHourCount) % kQuarterHourCount;
+    if (count == 0) return table_.fail("hours", "holds the whole day or nothing: leave it out");
+    rule_.box.quarter_hour_first = first;
+    rule_.box.quarter_hour_count = count;
+  }
+
+  void read_members(std::string_view key, std::int32_t& bits) {
+    const TomlArray* list = table_.array(key);
+    if (list == nullptr) return;
+    bits = 0;
+    for (const TomlValue& value : *list) {
+      const auto* member = value.as<std::int64_t>();
+      if (member == nullptr || *member < 1 || *member > 12) {
+        return table_.fail(key, "must list whole numbers from 1 to 12");
+      }
+      bits |= 1 << (*member - 1);
+    }
+    if (bits == 0) table_.fail(key, "is empty: the rule would never hold; leave the key out");
+  }
+
+  void read_soc(std::string_view key, std::int32_t& index) {
+    const TomlValue* node = table_.node(key);
+    if (node == nullptr) return;
+    const auto value = node->number();
+    if (!value || !(*value >= 0 && *value <= 1)) {
+      return table_.fail(key, "must be a fraction between 0 and 1");
+    }
+    const double steps = *value * kSocStepsPerOne;
+    if (std::fabs(steps - std::round(steps)) > 1e-6) {
+      return table_.fail(key, "must be a multiple of 0.005: the student sees no finer SoC");
+    }
+    index = static_cast<std::int32_t>(std::lround(steps));
+  }
+
+  void read_range_of_soc() {
+    read_soc("soc_min", rule_.box.soc_index_min);
+    read_soc("soc_max", rule_.box.soc_index_max);
+    if (rule_.box.soc_index_min > rule_.box.soc_index_max) {
+      table_.fail("soc_max", "is below soc_min: the rule would never hold");
+    }
+  }
+
+  void read_price(std::string_view key, std::int32_t& price) {
+    table_.integer(key, price, -kThresholdMaxEurPerMwh, kThresholdMaxEurPerMwh);
+  }
+
+  void read_range_of_price() {
+    read_price("price_min", rule_.box.price_min_eur_per_mwh);
+    read_price("price_max", rule_.box.price_max_eur_per_mwh);
+    if (rule_.box.price_min_eur_per_mwh > rule_.box.price_max_eur_per_mwh) {
+      table_.fail("price_max", "is below price_min: the rule would never hold");
+    }
+  }
+
+  void read_demand() {
+    if (table_.node("switches_max") != nullptr) return refuse_switches();
+    const DemandKind* kind = nullptr;
+    std::string_view found;
+    std::vector<std::string_view> keys;
+    for (const DemandKind& candidate : demand_kinds()) {
+      for (const std::string_view key : candidate.keys) {
+        keys.push_back(key);
+        if (table_.node(key) == nullptr) continue;
+        if (kind != nullptr) {
+          return table_.fail(
+              key, fmt::format("is a second demand beside {}: make it a rule of its own", found));
+        }
+        kind = &candidate;
+        found = key;
+      }
+    }
+    if (kind != nullptr) return kind->read(table_, found, rule_);
+    table_.finish();  // a demand that is misspelt is told by its name
+    table_.fail("", fmt::format("asks for nothing: add one of {}", fmt::join(keys, ", ")));
+  }
+
+  /// It was documented once, and no student was ever proved with it.
+  void refuse_switches() {
+    table_.fail("switches_max",
+                "is no rule any more: an action that never rises with the price (property 3) "
+                "changes at most twice as it is; for once, without a rest between charging and "
+                "discharging, write is_not = \"idle\"; against to and fro keep a dead band, is = "
+                "\"idle\" with price_min and price_max");
+  }
+
+  TomlTable& table_;
+  Rule rule_;
+};
+
+void check_names(const RuleSet& set) {
+  std::map<std::string, const Rule*> seen;
+  for (const Rule& rule : set.rules) {
+    const auto [first, is_new] = seen.emplace(rule.name, &rule);
+    if (!is_new) {
+      fail("{}: the name \"{}\" is that of {} already: rename one", rule.place, rule.name,
+           first->second->place);
+    }
+  }
+}
+
+void check_thresholds(const RuleSet& set) {
+  for (const Action action : {Action::kCharge, Action::kDischarge}) {
+    const Rule* first = nullptr;
+    for (const Rule& rule : set.rules) {
+      if (!rule.is_threshold || rule.lowest() != action) continue;
+      if (first != nullptr) {
+        fail("{}: \"{}\" is a second threshold beside \"{}\" ({}): leave one out", rule.place,
+             rule.name, first->name, first->place);
+      }
+      first = &rule;
+    }
+  }
+}
+
+std::string members_line(std::string_view key, std::int32_t bits) {
+  if (bits == kAllTwelve) return {};
+  std::vector<int> members;
+  for (int k = 0; k < 12; ++k) {
+    if ((bits >> k & 1) != 0) members.push_back(k + 1);
+  }
+  return fmt::format("{} = [{}]\n", key, fmt::join(members, ", "));
+}
+
+std::string box_lines(const RuleBox& box) {
+  const RuleBox all;
+  std::string text;
+  if (box.quarter_hour_count != all.quarter_hour_count) {
+    const int end = (box.quarter_hour_first + box.quarter_hour_count) % kQuarterHourCount;
+    text += fmt::format("hours = \"{}-{}\"\n", hour_text(box.quarter_hour_first), hour_text(end));
+  }
+  text += members_line("months", box.months);
+  text += members_line("context_classes", box.context_classes);
+  const auto soc = [&text](std::string_view key, int index, int otherwise) {
+    if (index != otherwise)
+      text += fmt::format("{} = {:g}\n", key, index / double{kSocStepsPerOne});
+  };
+  soc("soc_min", box.soc_index_min, all.soc_index_min);
+  soc("soc_max", box.soc_index_max, all.soc_index_max);
+  const auto price = [&text](std::string_view key, int value, int otherwise) {
+    if (value != otherwise) text += fmt::format("{} = {}\n", key, value);
+  };
+  price("price_min", box.price_min_eur_per_mwh, all.price_min_eur_per_mwh);
+  price("price_max", box.price_max_eur_per_mwh, all.price_max_eur_per_mwh);
+  return text;
+}
+
+void append_rules(std::string_view text, const std::string& name, RuleSet& set) {
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
+  TomlTable top(&document, name, "", error);
+  const TomlValue* const single = document.find("rule");
+  if (single != nullptr && single->as<TomlMembers>() != nullptr) {
+    fail("{}:{}: [rule] is written [[rule]], as there may be many", name, single->line);
+  }
+  const TomlArray* list = top.array("rule");
+  top.finish();
+  if (!error.empty()) throw UserError(error);
+  if (list == nullptr || list->empty()) fail("{}: holds no [[rule]]", name);
+  for (const TomlValue& value : *list) {
+    if (value.as<TomlMembers>() == nullptr) fail("{}: rule must be written as [[rule]]", name);
+    TomlTable table(&value, name, "[[rule]]", error);
+    Rule rule = RuleReader(table).read();
+    if (!error.empty()) throw UserError(error);
+    rule.place = fmt::format("{}:{}", name, value.line);
+    set.rules.push_back(std::move(rule));
+  }
+  check_names(set);
+  check_thresholds(set);
+}
+
+}  // namespace
+
+RuleSet parse_rules(std::string_view text, const std::string& name) {
+  RuleSet set;
+  append_rules(text, name, set);
+  return set;
+}
+
+RuleSet load_rules(const std::vector<std::string>& paths) {
+  RuleSet set;
+  for (const std::string& path : paths) append_rules(read_file(path, kTomlBytesMax), path, set);
+  return set;
+}
+
+std::string format_rules(const RuleSet& rules) {
+  std::string text;
+  for (const Rule& rule : rules.rules) {
+    text += fmt::format("{}[[rule]]\nname = \"{}\"\n", text.empty() ? "" : "\n", rule.name);
+    if (!rule.is_threshold) text += box_lines(rule.box);
+    text += rule.demand->line(rule.box);
+    if (rule.enforce) text += "enforce = true\n";
+  }
+  return text;
+}
+
+}  // namespace bess

@@ -1,0 +1,104 @@
+#include "workstation/correction/rules/ruled_policy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bess {
+
+RuleWatch::RuleWatch(std::shared_ptr<Policy> policy, const RuleSet& rules,
+                     const ContextClasses& classes, int drawn_per_step, std::uint64_t seed)
+    : policy_(std::move(policy)),
+      rules_(rules),
+      classes_(classes),
+      drawn_per_step_(drawn_per_step),
+      random_(seed),
+      counts_(rules.rules.size()) {}
+
+RuleWatch::Look RuleWatch::look(const Rule& rule, Action action, const MarketStep& step,
+                                std::size_t index, double soc_frac) const {
+  const Demand& demand = *rule.demand;
+  if (!demand.binds_student()) return {false, false};
+  const std::optional<RuleInput> along = demand.pairs_along();
+  if (!along) {
+    return {rule.box.contains(rule_point_of(step, soc_frac, classes_)),
+            demand.is_broken(action, action)};
+  }
+  MarketStep next = step;
+  double next_soc_frac = soc_frac;
+  if (along == RuleInput::kPrice) {
+    next.observed_eur_per_mwh += 1;
+  } else if (along == RuleInput::kSoc) {
+    next_soc_frac += 1.0 / (kSocCount - 1);
+  } else {
+    return {false, false};
+  }
+  const Action after = policy_->decide(next, index, next_soc_frac);
+  return {next_soc_frac <= 1, demand.is_broken(action, after)};
+}
+
+Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
+  const Action action = policy_->decide(step, index, soc_frac);
+  ++decisions_;
+  for (std::size_t r = 0; r < counts_.size(); ++r) {
+    const Look found = look(rules_.rules[r], action, step, index, soc_frac);
+    if (!found.applies) continue;
+    ++counts_[r].visited;
+    counts_[r].visited_broken += found.breaks ? 1 : 0;
+  }
+  for (int n = 0; n < drawn_per_step_; ++n) {
+    const double drawn_soc_frac = random_.uniform();
+    const Action drawn = policy_->decide(step, index, drawn_soc_frac);
+    for (std::size_t r = 0; r < counts_.size(); ++r) {
+      const Look found = look(rules_.rules[r], drawn, step, index, drawn_soc_frac);
+      if (!found.applies) continue;
+      ++counts_[r].drawn;
+      counts_[r].drawn_broken += found.breaks ? 1 : 0;
+    }
+  }
+  return action;
+}
+
+bool can_be_projected(const Rule& rule) { return !rule.demand->pairs_along(); }
+
+RuleSet projected_rules(const RuleSet& rules) {
+  RuleSet projected;
+  std::ranges::copy_if(rules.rules, std::back_inserter(projected.rules), can_be_projected);
+  return projected;
+}
+
+RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes) {
+  const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
+  return {.price_eur_per_mwh = whole_price_of(price_centi_of(step.observed_eur_per_mwh)),
+          .soc_index = soc_index_of(soc_e4),
+          .quarter_hour = step.quarter_hour,
+          .month = step.month,
+          .context_class = classes.class_of(step.month, step.level_centi_eur_per_mwh)};
+}
+
+RuledPolicy::RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules,
+                         const ContextClasses& classes)
+    : policy_(std::move(policy)),
+      classes_(classes),
+      implied_(rules, classes.kind),
+      guard_rules_(rules.guard_rules()) {}
+
+Action RuledPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
+  const RulePoint point = rule_point_of(step, soc_frac, classes_);
+  const Action wanted = policy_->decide(step, index, soc_frac);
+  const int price =
+      std::clamp(point.price_eur_per_mwh, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
+  const ActionRange range =
+      implied_.at(point.quarter_hour, point.context_class, point.soc_index, price);
+  const Action action = nearest_allowed(rule_limits_at(guard_rules_, point).actions,
+                                        nearest_allowed(range.set(), wanted));
+  ++decisions_;
+  changed_ += action != wanted ? 1 : 0;
+  return action;
+}
+
+double RuledPolicy::power_share_max(const MarketStep& step, double soc_frac) const {
+  const RuleLimits limits = rule_limits_at(guard_rules_, rule_point_of(step, soc_frac, classes_));
+  return limits.power_permille_max / double{kFullPowerPermille};
+}
+
+}  // namespace bess

@@ -1,0 +1,53 @@
+// What the rounds of a correction ended with, demand by demand: for whoever waits for them, and as
+// CSV for whoever asks later.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "workstation/correction/student/certificate.h"
+
+namespace bess {
+
+/// Violations of one property or rule.
+struct DemandLeft {
+  std::string label;
+  std::int64_t violations = 0;
+};
+
+struct ProofRound {
+  /// The whole lattice, or a sample of it; else the states that decide a monotone student alone,
+  /// which spares it a proof that would fail.
+  bool is_whole = true;
+  std::vector<DemandLeft> left;  ///< of every demand that binds the student
+
+  [[nodiscard]] std::int64_t violations() const;
+  /// "property 1: 3, rule \"quiet hours\": 23994"; empty when nothing is left.
+  [[nodiscard]] std::string text() const;
+};
+
+/// What a proof, or a sample, has counted.
+ProofRound round_of(const Certificate& certificate);
+
+/// How far a correction is, after a round.
+struct RoundsState {
+  std::size_t done = 0;
+  std::size_t most = 0;
+  double seconds_left = 0;  ///< if all rounds are needed, each as long as the last one
+};
+using RoundWatch = std::function<void(const ProofRound&, const RoundsState&)>;
+
+/// "round 2 of at most 13: rule \"quiet hours\": 23994 left; at most 4 min more and a proof", for
+/// RoundWatch.
+std::string round_line(const ProofRound& round, const RoundsState& state);
+
+/// Header `round,looked_at,demand,violations`, a row a round and demand; looked_at is "lattice" or
+/// "corners".
+std::string proof_rounds_csv(const std::vector<ProofRound>& rounds);
+/// Reads it back; throws UserError naming `name` and the line.
+std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std::string& name);
+
+}  // namespace bess

@@ -1,0 +1,158 @@
+#include "workstation/correction/student/rule_proof.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "workstation/correction/student/verify.h"
+
+namespace bess {
+namespace {
+
+constexpr int kKeptPerContext = 4;
+constexpr int kKeptOfPropertiesPerContext = 16;  ///< of the four together
+constexpr std::size_t kKeptPerRule = 4096;
+
+const std::int8_t* row_of(const ActionGrid& grid, int soc) {
+  return &grid[static_cast<std::size_t>(soc) * kPriceCount];
+}
+
+}  // namespace
+
+void RuleCount::add(const RuleCount& other) {
+  binds_student = other.binds_student;
+  states += other.states;
+  violations += other.violations;
+  counterexamples.insert(counterexamples.end(), other.counterexamples.begin(),
+                         other.counterexamples.end());
+}
+
+std::optional<LatticeState> next_context(LatticeState context, RuleInput input) {
+  switch (input) {
+    case RuleInput::kMinute:
+      if (++context.minute_of_quarter_hour == kMinuteOfQuarterHourCount) return {};
+      return context;
+    case RuleInput::kQuarterHour:
+      if (++context.quarter_hour == kQuarterHourCount) return {};
+      return context;
+    case RuleInput::kContextClass:
+      if (++context.context_class > kContextClassCount) return {};
+      return context;
+    case RuleInput::kSoc:
+    case RuleInput::kPrice:
+      break;
+  }
+  return {};
+}
+
+RuleChecker::RuleChecker(const RuleSet& rules, ContextKind kind)
+    : rules_(rules),
+      kind_(kind),
+      boxes_(rules.rules.size()),
+      counts_(rules.rules.size()),
+      kept_(rules.rules.size()) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const Rule& rule = rules.rules[i];
+    counts_[i].binds_student = binds_student(rule, kind);
+    if (counts_[i].binds_student) boxes_[i] = lattice_box_of(rule.box, kind);
+    const std::optional<RuleInput> along = rule.demand->pairs_along();
+    if (!along || along == RuleInput::kSoc || along == RuleInput::kPrice) continue;
+    if (std::ranges::find(neighbours_, *along) == neighbours_.end()) neighbours_.push_back(*along);
+  }
+}
+
+void RuleChecker::check(const LatticeState& context, const ActionGrid& grid,
+                        const std::vector<ActionGrid>& neighbours) {
+  context_ = context;
+  std::ranges::fill(kept_, 0);
+  holding_.clear();
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (counts_[i].binds_student &&
+        holds_in_context(rules_.rules[i].box, kind_, context.quarter_hour, context.context_class)) {
+      holding_.push_back(i);
+    }
+  }
+  for (int s = 0; s < kSocCount;
+       ++s) {  // outside: a row is held against every rule while it is near
+    for (const std::size_t rule : holding_) check_row(rule, s, grid, neighbours);
+  }
+}
+
+void RuleChecker::check_row(std::size_t index, int soc, const ActionGrid& grid,
+                            const std::vector<ActionGrid>& neighbours) {
+  const LatticeBox& box = boxes_[index];
+  if (soc < box.soc_first || soc > box.soc_last) return;
+  const Demand& demand = *rules_.rules[index].demand;
+  const std::optional<RuleInput> along = demand.pairs_along();
+  const std::int8_t* here = row_of(grid, soc);
+  const std::int8_t* beside = along ? next_row(*along, soc, grid, neighbours) : here;
+  if (beside == nullptr) return;
+  const int last = along == RuleInput::kPrice ? kPriceCount - 1 : kPriceCount;
+  const int end = std::min(box.price_last + 1, last);
+  RuleCount& count = counts_[index];
+  count.states += std::max(0, end - box.price_first);
+  broken_.clear();
+  demand.broken({here, beside, box.price_first, end}, broken_);
+  count.violations += static_cast<std::int64_t>(broken_.size());
+  for (const int price : broken_) keep(index, soc, price);
+}
+
+const std::int8_t* RuleChecker::next_row(RuleInput input, int soc, const ActionGrid& grid,
+                                         const std::vector<ActionGrid>& neighbours) const {
+  if (input == RuleInput::kPrice) return row_of(grid, soc) + 1;
+  if (input == RuleInput::kSoc) return soc + 1 < kSocCount ? row_of(grid, soc + 1) : nullptr;
+  const auto which = std::ranges::find(neighbours_, input) - neighbours_.begin();
+  const ActionGrid& next = neighbours[static_cast<std::size_t>(which)];
+  return next.empty() ? nullptr : row_of(next, soc);
+}
+
+/// The first few of each context, those of the built-in rules as they come along.
+void RuleChecker::keep(std::size_t rule, int soc, int price) {
+  const bool is_built_in = rules_.rules[rule].property != 0;
+  const std::size_t with = is_built_in ? 0 : rule;
+  std::vector<LatticeState>& states = counts_[with].counterexamples;
+  if (kept_[with] == (is_built_in ? kKeptOfPropertiesPerContext : kKeptPerContext)) return;
+  if (!is_built_in && states.size() >= kKeptPerRule) return;
+  ++kept_[with];
+  LatticeState state = context_;
+  state.soc_index = static_cast<std::int16_t>(soc);
+  state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+  states.push_back(state);
+}
+
+std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
+                                      const RuleCount& count) {
+  if (rule.demand->pairs_along()) return {};
+  std::optional<WorstState> worst;
+  const LatticeBox box = lattice_box_of(rule.box, net.context.kind);
+  const auto look = [&](const LatticeState& state) {
+    std::int16_t x[kStudentInputs];
+    std::int32_t logits[kActionCount];
+    net.quantise(state, x);
+    net.propagate(x, logits);
+    const Action action = argmax_action(logits);
+    if (allows(rule.actions(), action)) return;
+    std::int64_t best = std::numeric_limits<std::int64_t>::min();
+    for (int a = 0; a < kActionCount; ++a) {
+      if (!allows(rule.actions(), static_cast<Action>(a))) continue;
+      best = std::max<std::int64_t>(best, logits[a]);
+    }
+    const std::int64_t lead = logits[static_cast<int>(action)] - best;
+    if (!worst || lead > worst->lead) worst = WorstState{state, action, lead};
+  };
+  for (const LatticeState& state : count.counterexamples) look(state);
+  for (int c = 0; c < kContextCount; ++c) {
+    LatticeState state = context_at(c);
+    if (!holds_in_context(rule.box, net.context.kind, state.quarter_hour, state.context_class)) {
+      continue;
+    }
+    for (const auto& [soc, price] :
+         {std::pair{box.soc_first, box.price_first}, std::pair{box.soc_last, box.price_last}}) {
+      state.soc_index = static_cast<std::int16_t>(soc);
+      state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+      look(state);
+    }
+  }
+  return worst;
+}
+
+}  // namespace bess

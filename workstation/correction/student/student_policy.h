@@ -1,0 +1,36 @@
+// The integer student as a policy: exactly what the edge computes from price and SoC.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "shared/nn/student_net.h"
+#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/policy.h"
+
+namespace bess {
+
+class StudentPolicy final : public Policy {
+ public:
+  /// Keeps a reference to the net. `book`: the plans of a net by outlook.
+  explicit StudentPolicy(const StudentNet& net, std::shared_ptr<const OutlookBook> book = nullptr)
+      : net_(net), book_(std::move(book)) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
+    const std::int32_t price_centi =
+        book_ ? book_->break_even_centi(step, soc_frac) : step.level_centi_eur_per_mwh;
+    const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
+    return net_.decide(
+        {.minute_of_quarter_hour = step.minute_of_quarter_hour,
+         .quarter_hour = step.quarter_hour,
+         .context_class = net_.context.class_of(step.month, price_centi),
+         .soc_index = soc_index_of(soc_e4),
+         .price_eur_per_mwh = lattice_price_of(price_centi_of(step.observed_eur_per_mwh))});
+  }
+
+ private:
+  const StudentNet& net_;
+  std::shared_ptr<const OutlookBook> book_;
+};
+
+}  // namespace bess

@@ -1,0 +1,369 @@
+#include "workstation/data/env/battery_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "shared/battery_keys.h"
+#include "shared/host/user_error.h"
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+constexpr int kRestsMin = 10;
+constexpr int kTaperedMin = 10;    ///< readings within the width
+constexpr int kRunsMin = 6;        ///< of each direction
+constexpr int kRunCyclesMax = 15;  ///< half an hour: short against a day, long against a reading
+constexpr double kRestingFrac = 0.02;  ///< of the power: less of it is none
+constexpr double kTaperShown = 0.02;   ///< of the power, missing at the bound
+constexpr double kColdShown = 0.05;    ///< of the power, missing all the time
+constexpr double kColdRoomFrac = 0.2;  ///< of the SoC window: no taper reaches there
+constexpr int kColdQuarterHoursMax = 72;
+constexpr double kSure = 3;  ///< standard errors
+
+/// From one tick to the next, with the order of both known.
+struct Interval {
+  const LoggedCycle& begin;
+  const LoggedCycle& end;
+  double before_w;  ///< ordered until `begin`
+
+  [[nodiscard]] bool goes_on() const { return before_w * begin.ordered_w > 0; }
+  /// Of one that goes on. Where the order changed, its power is that of the new one throughout.
+  [[nodiscard]] double first_w() const {
+    return before_w == begin.ordered_w ? begin.power_w : end.power_w;
+  }
+};
+
+std::vector<Interval> intervals_of(const std::vector<LoggedCycle>& cycles) {
+  std::vector<Interval> intervals;
+  const auto follows = [](const LoggedCycle& a, const LoggedCycle& b) {
+    return b.utc_s - a.utc_s == kSecondsPerStep;
+  };
+  for (std::size_t i = 1; i + 1 < cycles.size(); ++i) {
+    if (!follows(cycles[i - 1], cycles[i]) || !follows(cycles[i], cycles[i + 1])) continue;
+    intervals.push_back({cycles[i], cycles[i + 1], cycles[i - 1].ordered_w});
+  }
+  return intervals;
+}
+
+/// Mean of the middle half: what a stop or a late order left in a reading does not count.
+std::optional<Fitted> middle_mean(std::vector<double> values, int least) {
+  if (std::ssize(values) < least) return std::nullopt;
+  std::ranges::sort(values);
+  const std::size_t quarter = values.size() / 4;
+  const auto count = static_cast<double>(values.size() - 2 * quarter);
+  double sum = 0, squares = 0;
+  for (std::size_t i = quarter; i < values.size() - quarter; ++i) sum += values[i];
+  const double mean = sum / count;
+  for (std::size_t i = quarter; i < values.size() - quarter; ++i) {
+    squares += (values[i] - mean) * (values[i] - mean);
+  }
+  const double rounding_w = 0.5;  // of readings that are all the same
+  return Fitted{mean, std::max(std::sqrt(squares / (count - 1)), rounding_w) / std::sqrt(count),
+                static_cast<int>(values.size())};
+}
+
+std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
+  std::vector<double> rests_w;
+  for (const Interval& i : intervals) {
+    if (i.before_w == 0 && i.begin.ordered_w == 0) rests_w.push_back(i.end.power_w);
+  }
+  std::optional<Fitted> found = middle_mean(std::move(rests_w), kRestsMin);
+  if (found && found->value <= kSure * found->standard_error) found.reset();
+  return found;
+}
+
+/// Of full power that was ordered at mid charge, what was missing: what did not come, or what the
+/// order was cut by, as the battery said.
+struct Missing {
+  int quarter_hour;
+  double share;
+};
+
+std::vector<Missing> missing_of(const std::vector<Interval>& intervals,
+                                const BatteryParameters& nameplate, double standby_w) {
+  const double room_frac = kColdRoomFrac * (nameplate.soc_max_frac - nameplate.soc_min_frac);
+  std::vector<Missing> missing;
+  for (const Interval& i : intervals) {
+    const double ordered_w = i.begin.ordered_w;
+    const bool is_full = std::fabs(ordered_w) == nameplate.power_w_max || i.begin.is_cut;
+    if (ordered_w == 0 || !is_full || i.before_w != ordered_w) continue;
+    const double left_frac = ordered_w > 0 ? nameplate.soc_max_frac - i.end.soc_frac
+                                           : i.end.soc_frac - nameplate.soc_min_frac;
+    if (left_frac < room_frac) continue;
+    const double came_w = std::fabs(i.end.power_w - standby_w);
+    missing.push_back({local_minute_of(i.end.utc_s).quarter_hour,
+                       std::max(1 - came_w / nameplate.power_w_max, 0.0)});
+  }
+  return missing;
+}
+
+/// One stretch of the day misses the same share and the rest nothing: the stretch that explains
+/// most squares is the best, and its ends are known as far as others explain as much.
+void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
+  std::array<double, 2 * kQuarterHourCount + 1> sum{}, count{};  // before each, over two days
+  double squares = 0;
+  for (const Missing& m : missing) {
+    squares += m.share * m.share;
+    for (const int day : {0, kQuarterHourCount}) {
+      sum[static_cast<std::size_t>(m.quarter_hour + day + 1)] += m.share;
+      count[static_cast<std::size_t>(m.quarter_hour + day + 1)] += 1;
+    }
+  }
+  std::partial_sum(sum.begin(), sum.end(), sum.begin());
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  struct Stretch {
+    int from = 0, to = 0;
+    double share = 0, count = 0, explained = 0;
+  };
+  std::vector<Stretch> stretches;
+  for (int from = 0; from < kQuarterHourCount; ++from) {
+    for (int to = from + 1; to <= from + kColdQuarterHoursMax; ++to) {
+      const double inside =
+          count[static_cast<std::size_t>(to)] - count[static_cast<std::size_t>(from)];
+      if (inside < kTaperedMin) continue;
+      const double mean =
+          (sum[static_cast<std::size_t>(to)] - sum[static_cast<std::size_t>(from)]) / inside;
+      stretches.push_back({from, to, mean, inside, inside * mean * mean});
+    }
+  }
+  if (stretches.empty()) return;
+  const Stretch best = *std::ranges::max_element(stretches, {}, &Stretch::explained);
+  const double variance = std::max(squares - best.explained, 1e-9) /
+                          static_cast<double>(std::max<std::size_t>(missing.size(), 2) - 1);
+  const double error = std::sqrt(variance / best.count);
+  if (best.share < kColdShown || best.share < kSure * error) return;
+  double from_error = 0, to_error = 0;
+  for (const Stretch& s : stretches) {
+    if (s.explained < best.explained - variance) continue;
+    from_error = std::max(from_error, std::abs(s.from - best.from) / 4.0);
+    to_error = std::max(to_error, std::abs(s.to - best.to) / 4.0);
+  }
+  const auto inside = static_cast<int>(best.count);
+  const double quarter_hour = 1 / 8.0;  // half of one, at least
+  fit.cold_power_share = Fitted{1 - best.share, error, inside};
+  fit.cold_from_hour = Fitted{best.from / 4.0, std::max(from_error, quarter_hour), inside};
+  fit.cold_to_hour =
+      Fitted{best.to % kQuarterHourCount / 4.0, std::max(to_error, quarter_hour), inside};
+}
+
+/// A reading of full power: how far from the bound, and which share came.
+struct Reach {
+  double room_frac;
+  double share;
+};
+
+struct TaperFit {
+  Fitted width, share;
+};
+
+/// Shares fall by `1 - room / width` times what is missing at the bound: linear in that for each
+/// width, and the best width is looked for.
+std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
+  struct Trial {
+    double width = 0, missing = 0, misfit = INFINITY, weight = 0;
+    int inside = 0;
+  };
+  const auto try_width = [&](double width) {
+    Trial t{.width = width, .misfit = 0};
+    double products = 0;
+    for (const Reach& r : reaches) {
+      const double depth = std::max(1 - r.room_frac / width, 0.0);
+      t.weight += depth * depth;
+      products += depth * (1 - r.share);
+      t.inside += depth > 0 ? 1 : 0;
+    }
+    t.missing = t.weight > 0 ? products / t.weight : 0;
+    for (const Reach& r : reaches) {
+      const double depth = std::max(1 - r.room_frac / width, 0.0);
+      t.misfit += std::pow(1 - r.share - depth * t.missing, 2);
+    }
+    return t;
+  };
+  constexpr double kWidthMin = 0.01, kWidthStep = 0.0005;
+  constexpr int kWidths = 1'200;  // to 0.61
+  std::vector<Trial> trials;
+  for (int i = 0; i < kWidths; ++i) trials.push_back(try_width(kWidthMin + kWidthStep * i));
+  const Trial& best = *std::ranges::min_element(trials, {}, &Trial::misfit);
+  if (best.inside < kTaperedMin || best.missing < kTaperShown) return std::nullopt;
+  const auto count = static_cast<int>(reaches.size());
+  const double variance = std::max(best.misfit, 1e-12) / std::max(count - 2, 1);
+  double low = best.width, high = best.width;  // as far as it fits within an error of the best
+  for (const Trial& t : trials) {
+    if (t.misfit > best.misfit + variance) continue;
+    low = std::min(low, t.width);
+    high = std::max(high, t.width);
+  }
+  return TaperFit{{best.width, std::max((high - low) / 2, kWidthStep), best.inside},
+                  {1 - best.missing, std::sqrt(variance / best.weight), best.inside}};
+}
+
+std::optional<TaperFit> taper_of(const std::vector<Interval>& intervals,
+                                 const BatteryParameters& nameplate, double standby_w, int sign,
+                                 const ColdHours& cold) {
+  std::vector<Reach> reaches;
+  for (const Interval& i : intervals) {
+    const double full_w = sign * nameplate.power_w_max;
+    if (i.before_w != full_w || i.begin.ordered_w != full_w) continue;
+    if (cold.hold(local_minute_of(i.end.utc_s).quarter_hour)) continue;
+    const double room_frac = sign > 0 ? nameplate.soc_max_frac - i.end.soc_frac
+                                      : i.end.soc_frac - nameplate.soc_min_frac;
+    if (room_frac <= 0.001) continue;  // at the bound it rests
+    reaches.push_back({room_frac, (i.end.power_w - standby_w) / full_w});
+  }
+  return reaches.empty() ? std::nullopt : fit_taper(reaches);
+}
+
+/// Some cycles in one direction: what came in by the grid, by its square, and into the cells.
+struct Run {
+  double energy_wh = 0;
+  double square_wh = 0;  ///< of power squared over the rated one
+  double stored_wh = 0;
+  int cycles = 0;
+};
+
+std::vector<Run> runs_of(const std::vector<Interval>& intervals, const BatteryParameters& nameplate,
+                         double standby_w, int sign) {
+  std::vector<Run> runs;
+  Run run;
+  const auto end_run = [&] {
+    if (run.cycles >= 2) runs.push_back(run);
+    run = {};
+  };
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    const Interval& i = intervals[k];
+    const bool has_gap = k > 0 && intervals[k - 1].end.utc_s != i.end.utc_s - kSecondsPerStep;
+    const double first_w = i.first_w() - standby_w, last_w = i.end.power_w - standby_w;
+    const bool rests_at_bound = last_w * sign < kRestingFrac * nameplate.power_w_max;
+    const bool counts = i.goes_on() && i.begin.ordered_w * sign > 0 && !rests_at_bound;
+    if (has_gap || !counts) end_run();
+    if (!counts) continue;
+    run.energy_wh += (first_w + last_w) / 2 * kHoursPerStep;
+    run.square_wh += (first_w * first_w + first_w * last_w + last_w * last_w) / 3 /
+                     nameplate.power_w_max * kHoursPerStep;
+    run.stored_wh += (i.end.soc_frac - i.begin.soc_frac) * nameplate.capacity_wh;
+    if (++run.cycles == kRunCyclesMax) end_run();
+  }
+  end_run();
+  return runs;
+}
+
+/// Least squares with standard errors, by columns.
+struct Regression {
+  Eigen::VectorXd value, standard_error;
+};
+
+Regression regression(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
+  const Eigen::MatrixXd inverse = (x.transpose() * x).inverse();
+  const Eigen::VectorXd value = inverse * (x.transpose() * y);
+  const double variance = (y - x * value).squaredNorm() /
+                          static_cast<double>(std::max<Eigen::Index>(x.rows() - x.cols(), 1));
+  return {value, (inverse.diagonal() * variance).cwiseSqrt()};
+}
+
+/// stored = eta * bought - square * r, and sold / eta - square * r [battery_model.h].
+void fit_efficiency(const std::vector<Run>& charged, const std::vector<Run>& discharged,
+                    BatteryFit& fit) {
+  if (std::ssize(charged) < kRunsMin || std::ssize(discharged) < kRunsMin) return;
+  const auto count = static_cast<Eigen::Index>(charged.size() + discharged.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(count, 3);
+  Eigen::VectorXd y(count);
+  Eigen::Index row = 0;
+  for (const auto& [runs, column] : {std::pair{&charged, 0}, std::pair{&discharged, 1}}) {
+    for (const Run& run : *runs) {
+      x(row, column) = run.energy_wh;
+      x(row, 2) = -run.square_wh;
+      y(row++) = run.stored_wh;
+    }
+  }
+  Regression found = regression(x, y);
+  const bool has_loss = found.value(2) > kSure * found.standard_error(2) && found.value(2) > 0.002;
+  if (!has_loss) found = regression(x.leftCols(2), y);
+  const auto n = static_cast<int>(count);
+  if (has_loss) fit.full_power_loss = Fitted{found.value(2), found.standard_error(2), n};
+  const double inverse = found.value(1);
+  fit.charge_efficiency = Fitted{found.value(0), found.standard_error(0), n};
+  fit.discharge_efficiency = Fitted{1 / inverse, found.standard_error(1) / (inverse * inverse), n};
+  if (found.value(0) > 1.01 || inverse < 0.99 || found.value(0) < 0.5 || inverse > 2) {
+    fail(
+        "the cells keep {:.3f} of what is bought and give {:.3f} of what they lose: no battery "
+        "does, [battery] capacity_wh is not that of this one",
+        found.value(0), 1 / inverse);
+  }
+}
+
+/// A log of kilowatts beside a nameplate of megawatts would show nothing, and say nothing.
+void require_same_battery(const std::vector<LoggedCycle>& cycles,
+                          const BatteryParameters& nameplate) {
+  double flowed_w = 0, ordered_w = 0;
+  for (const LoggedCycle& cycle : cycles) {
+    flowed_w = std::max(flowed_w, std::fabs(cycle.power_w));
+    ordered_w = std::max(ordered_w, std::fabs(cycle.ordered_w));
+  }
+  const bool is_smaller = ordered_w > 0 && ordered_w < 0.2 * nameplate.power_w_max;
+  if (flowed_w <= 1.3 * nameplate.power_w_max && !is_smaller) return;
+  fail(
+      "{:.0f} W were ordered and {:.0f} W flowed at most, [battery] power_w says {:g}: give the "
+      "nameplate by --config, with capacity_wh",
+      ordered_w, flowed_w, nameplate.power_w_max);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, Fitted>> BatteryFit::found() const {
+  const std::pair<const char*, const std::optional<Fitted>&> all[] = {
+      {"charge_efficiency", charge_efficiency},
+      {"discharge_efficiency", discharge_efficiency},
+      {"charge_taper_width", charge_taper_width},
+      {"charge_taper_share", charge_taper_share},
+      {"discharge_taper_width", discharge_taper_width},
+      {"discharge_taper_share", discharge_taper_share},
+      {"full_power_loss", full_power_loss},
+      {"standby_w", standby_w},
+      {"cold_power_share", cold_power_share},
+      {"cold_from_hour", cold_from_hour},
+      {"cold_to_hour", cold_to_hour}};
+  std::vector<std::pair<std::string, Fitted>> found;
+  for (const auto& key : all) {
+    if (key.second) found.emplace_back(key.first, *key.second);
+  }
+  return found;
+}
+
+BatteryParameters BatteryFit::applied_to(BatteryParameters battery) const {
+  for (const auto& one : found()) {
+    const auto key = std::ranges::find_if(
+        kBatteryKeys, [&](const BatteryKey& known) { return known.name == one.first; });
+    key->of(battery) = one.second.value;
+  }
+  battery.charge_efficiency = std::min(battery.charge_efficiency, 1.0);
+  battery.discharge_efficiency = std::min(battery.discharge_efficiency, 1.0);
+  return battery;
+}
+
+BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate) {
+  require_same_battery(cycles, nameplate);
+  const std::vector<Interval> intervals = intervals_of(cycles);
+  BatteryFit fit;
+  fit.standby_w = standby_of(intervals);
+  const double standby_w = fit.standby_w ? fit.standby_w->value : 0;
+  fit_cold(missing_of(intervals, nameplate, standby_w), fit);
+  const ColdHours cold = fit.applied_to(nameplate).cold;
+  if (const auto taper = taper_of(intervals, nameplate, standby_w, 1, cold)) {
+    fit.charge_taper_width = taper->width;
+    fit.charge_taper_share = taper->share;
+  }
+  if (const auto taper = taper_of(intervals, nameplate, standby_w, -1, cold)) {
+    fit.discharge_taper_width = taper->width;
+    fit.discharge_taper_share = taper->share;
+  }
+  fit_efficiency(runs_of(intervals, nameplate, standby_w, 1),
+                 runs_of(intervals, nameplate, standby_w, -1), fit);
+  return fit;
+}
+
+}  // namespace bess

@@ -1,0 +1,35 @@
+// Downloads day-ahead prices of local days from energy-charts (Fraunhofer ISE), which needs no key:
+// one request for each year or part of it. The answer is whole or the command fails; nothing is
+// kept between.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "workstation/data/market/feed/day_ahead_rows.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+
+namespace bess {
+
+inline constexpr const char* kEnergyChartsBaseUrl = "https://api.energy-charts.info";
+
+struct DayAheadRequest {
+  FetchSpan span;
+  std::string zone = "BE";  ///< bidding zone, as energy-charts names it
+  std::string base_url = kEnergyChartsBaseUrl;
+  std::int64_t now_utc_s;
+  RetryPolicy retry;
+  bool allow_gaps = false;
+  std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
+};
+
+/// Nothing when interrupted. Throws UserError when the server cannot be made to answer, its answer
+/// is none, or days of the span miss prices though they must be published by now and gaps are not
+/// allowed.
+std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
+                                              const std::atomic<bool>& interrupted);
+
+}  // namespace bess

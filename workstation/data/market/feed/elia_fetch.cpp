@@ -1,0 +1,348 @@
+#include "workstation/data/market/feed/elia_fetch.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "workstation/base/progress.h"
+#include "workstation/data/market/feed/elia_window.h"
+#include "workstation/data/market/feed/market_files.h"
+
+namespace bess {
+
+namespace {
+
+/// First day of the local mFRR market and its datasets.
+constexpr LocalDate kNewDatasets{2024, 5, 22};
+
+struct DatasetPair {
+  const char* minutes;
+  const char* quarter_hours;
+};
+
+constexpr DatasetPair kOld{"ods046", "ods047"};
+constexpr DatasetPair kNew{"ods133", "ods134"};
+constexpr DatasetPair kToday{"ods161", "ods162"};
+
+/// A dataset of the day may be refreshed a day late.
+constexpr int kFillingDays = 2;
+
+DatasetPair datasets_of(const LocalDate& day, const LocalDate& today) {
+  if (day == today) return kToday;
+  return day < kNewDatasets ? kOld : kNew;
+}
+
+LocalDate next_month(const LocalDate& day) {
+  return day.month == 12 ? LocalDate{day.year + 1, 1, 1} : LocalDate{day.year, day.month + 1, 1};
+}
+
+/// First day of the next window: month's end, change of datasets, the days that may still be
+/// filling, today, or the span's end.
+LocalDate window_end(const LocalDate& from, const LocalDate& end, const LocalDate& today) {
+  LocalDate until = std::min(end, next_month(from));
+  for (const LocalDate& border : {kNewDatasets, add_days(today, -kFillingDays), today}) {
+    if (from < border) until = std::min(until, border);
+  }
+  return until;
+}
+
+}  // namespace
+
+bool is_near_real_time(std::string_view dataset) {
+  return dataset == kToday.minutes || dataset == kToday.quarter_hours;
+}
+
+bool holds_minutes(std::string_view dataset) {
+  return dataset == kOld.minutes || dataset == kNew.minutes || dataset == kToday.minutes;
+}
+
+std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_s) {
+  if (span.to < span.from) {
+    fail("--to {} is before --from {}; swap them", format_local_date(span.to),
+         format_local_date(span.from));
+  }
+  const LocalDate today = local_date_of(now_utc_s);
+  if (today < span.from) {
+    fail("--from {} is in the future; prices exist until today", format_local_date(span.from));
+  }
+  const LocalDate end = add_days(std::min(span.to, today), 1);
+  std::vector<FetchWindow> windows;
+  for (LocalDate from = span.from; from < end;) {
+    const LocalDate until = window_end(from, end, today);
+    const DatasetPair datasets = datasets_of(from, today);
+    const std::int64_t until_utc_s = local_midnight_utc_s(until);
+    const bool settles_later = until_utc_s > now_utc_s - kFillingDays * kSecondsPerDay;
+    for (const char* dataset : {datasets.minutes, datasets.quarter_hours}) {
+      windows.push_back({dataset, local_midnight_utc_s(from), until_utc_s, settles_later});
+    }
+    from = until;
+  }
+  return windows;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Cached windows of another server are never taken for this one's.
+fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
+  Crc32 server;
+  server.add_bytes(request.base_url.data(), request.base_url.size());
+  return fetch_cache_folder(request) / fmt::format("{}_{}_{}_{:08x}.csv.gz", window.dataset,
+                                                   window.from_utc_s, window.until_utc_s,
+                                                   server.value());
+}
+
+/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none, and so
+/// does one with a gap unless gaps are allowed: the server may have mended it.
+std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWindow& window) {
+  const fs::path path = window_path(request, window);
+  if (window.settles_later || !fs::exists(path)) return std::nullopt;
+  try {
+    WindowRows rows = rows_in_window(read_file(path), path.string(), window, request.now_utc_s);
+    const bool complete = holes_in(window, rows.rows, request.now_utc_s).empty();
+    if (count_of(rows.rows) > 0 && (complete || request.allow_gaps)) return rows;
+  } catch (const UserError&) {
+  }
+  return std::nullopt;
+}
+
+/// Nothing when interrupted.
+std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchWindow& window,
+                                       const std::atomic<bool>& interrupted) {
+  std::optional<WindowDownload> download = download_window(request, window, interrupted);
+  if (!download) return std::nullopt;
+  const MarketRows& rows = download->rows.rows;
+  const bool complete = holes_in(window, rows, request.now_utc_s).empty();
+  const bool finished = !window.settles_later && count_of(rows) > 0 && !download->text.empty() &&
+                        (complete || request.allow_gaps);
+  if (finished) write_file(window_path(request, window), download->text);
+  return std::move(download->rows);
+}
+
+/// Rows of each window, or nothing when interrupted. Kept windows come first, so that the rate
+/// shown is that of the downloads.
+std::optional<std::vector<WindowRows>> fetch_windows(const FetchRequest& request,
+                                                     const std::vector<FetchWindow>& windows,
+                                                     const std::atomic<bool>& interrupted) {
+  std::vector<WindowRows> rows(windows.size());
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (interrupted) return std::nullopt;
+    std::optional<WindowRows> kept = kept_rows(request, windows[i]);
+    if (kept) rows[i] = std::move(*kept);
+    if (!kept) wanted.push_back(i);
+  }
+  if (wanted.size() < windows.size()) {
+    fmt::print(stderr, "fetch: {} kept from an earlier run\n",
+               counted(windows.size() - wanted.size(), "window"));
+  }
+  Progress progress("fetch", "windows", static_cast<double>(wanted.size()));
+  for (std::size_t done = 0; done < wanted.size(); ++done) {
+    const FetchWindow& window = windows[wanted[done]];
+    progress.update(static_cast<double>(done), window.dataset);
+    std::optional<WindowRows> fetched = fetch_window(request, window, interrupted);
+    if (!fetched) return std::nullopt;
+    rows[wanted[done]] = std::move(*fetched);
+  }
+  progress.update(static_cast<double>(wanted.size()));
+  return rows;
+}
+
+void remove_kept_windows(const FetchRequest& request) {
+  std::error_code error;
+  fs::remove_all(fetch_cache_folder(request), error);  // a leftover is only wasted space
+}
+
+[[noreturn]] void fail_without_prices(const FetchRequest& request, const FetchWindow& first) {
+  remove_kept_windows(request);
+  if (!first.settles_later) {
+    fail("{}: holds no prices from {} to {}; choose other days", request.base_url,
+         format_local_date(request.span.from), format_local_date(request.span.to));
+  }
+  if (is_near_real_time(first.dataset)) {
+    fail("{}: no prices of today yet; run again in some minutes", request.base_url);
+  }
+  fail("{}: not published yet: {} is refreshed once a day; run again tomorrow", request.base_url,
+       first.dataset);
+}
+
+/// Kept windows that cannot be used would only bring the same failure again.
+JoinedMarket join_or_forget(const FetchRequest& request, MarketRows rows) {
+  try {
+    return join_market(std::move(rows), request.base_url);
+  } catch (const UserError&) {
+    remove_kept_windows(request);
+    throw;
+  }
+}
+
+/// What the datasets that are refreshed once a day do not hold yet.
+std::string describe_unpublished(const FetchWindow& window, const MarketRows& rows) {
+  if (!window.settles_later || is_near_real_time(window.dataset)) return {};
+  std::int64_t end_utc_s = window.from_utc_s;
+  for (const MinuteRow& row : rows.minutes) end_utc_s = std::max(end_utc_s, row.utc_s + 60);
+  for (const QuarterHour& row : rows.quarter_hours) {
+    end_utc_s = std::max(end_utc_s, row.utc_s + kSecondsPerQuarterHour);
+  }
+  if (end_utc_s >= window.until_utc_s) return {};
+  return fmt::format(
+      "{}: not published yet from {} to {}: it is refreshed once a day; run again tomorrow\n",
+      window.dataset, utc_text(end_utc_s).view(), utc_text(window.until_utc_s).view());
+}
+
+std::string describe_windows(const std::vector<FetchWindow>& windows,
+                             const std::vector<WindowRows>& rows) {
+  std::string text;
+  std::size_t unended = 0;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const std::string unpublished = describe_unpublished(windows[i], rows[i].rows);
+    if (unpublished.empty() && rows[i].received == 0) {
+      text += fmt::format("{}: no rows from {} to {}\n", windows[i].dataset,
+                          utc_text(windows[i].from_utc_s).view(),
+                          utc_text(windows[i].until_utc_s).view());
+    }
+    text += unpublished;
+    unended += rows[i].unended;
+  }
+  if (unended > 0) {
+    text += fmt::format("{} dropped: of minutes or quarter-hours that had not ended\n",
+                        counted(unended, "row"));
+  }
+  return text;
+}
+
+/// Ends of the span where no window has a row are described with the windows.
+std::string describe_coverage(const FetchRequest& request, const std::vector<FetchWindow>& windows,
+                              const std::vector<WindowRows>& rows, const MinuteSeries& series) {
+  std::string text;
+  std::int64_t from_utc_s = series.start_utc_s;
+  std::int64_t until_utc_s = series.utc_s(series.size());
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (count_of(rows[i].rows) == 0) continue;
+    from_utc_s = std::min(from_utc_s, windows[i].from_utc_s);
+    if (!describe_unpublished(windows[i], rows[i].rows).empty()) continue;
+    until_utc_s = std::max(until_utc_s, std::min(windows[i].until_utc_s, request.now_utc_s));
+  }
+  const std::int64_t end_utc_s = series.utc_s(series.size());
+  if (from_utc_s < series.start_utc_s) {
+    text += fmt::format("nothing published from {} to {}\n", utc_text(from_utc_s).view(),
+                        utc_text(series.start_utc_s).view());
+  }
+  if (end_utc_s + kSecondsPerQuarterHour < until_utc_s) {
+    text += fmt::format("nothing published from {} to {}\n", utc_text(end_utc_s).view(),
+                        utc_text(until_utc_s).view());
+  }
+  return text;
+}
+
+/// Gaps that are none of an end which is still being published: with each window that has any.
+struct WindowGaps {
+  const FetchWindow* window;
+  const WindowRows* rows;
+  std::vector<Gap> gaps;
+};
+
+std::vector<WindowGaps> gaps_of(const FetchRequest& request,
+                                const std::vector<FetchWindow>& windows,
+                                const std::vector<WindowRows>& rows) {
+  std::vector<WindowGaps> all;
+  bool minutes_follow = false;
+  bool quarter_hours_follow = false;
+  for (std::size_t i = windows.size(); i-- > 0;) {
+    const FetchWindow& window = windows[i];
+    bool& follow = holds_minutes(window.dataset) ? minutes_follow : quarter_hours_follow;
+    std::vector<Gap> gaps = holes_in(window, rows[i].rows, request.now_utc_s);
+    const bool ends_open = !follow && window.settles_later && !rows[i].lacks_rows_of_total();
+    const std::int64_t end_utc_s = std::min(window.until_utc_s, request.now_utc_s);
+    if (ends_open && !gaps.empty() &&
+        gaps.back().until_utc_s + kSecondsPerQuarterHour > end_utc_s) {
+      gaps.pop_back();
+    }
+    follow = follow || count_of(rows[i].rows) > 0;
+    if (!gaps.empty()) all.push_back({&window, &rows[i], std::move(gaps)});
+  }
+  std::ranges::reverse(all);
+  return all;
+}
+
+/// "ods046: 2780 of 2880 minutes missing, the first from ... to ...; the server holds no more".
+std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
+  const bool minutes = holds_minutes(of.window->dataset);
+  const std::int64_t missing_min = minutes_in(of.gaps);
+  const bool has_empty_rows =
+      missing_min > minutes_in(missing_in(*of.window, of.rows->rows, now_utc_s));
+  std::string text = fmt::format(
+      "{} of {} {} {} in {}, first from {} to {}", minutes ? missing_min : missing_min / 15,
+      expected_rows(*of.window, now_utc_s), minutes ? "minutes" : "quarter-hours",
+      has_empty_rows ? "missing or without a price" : "missing", of.window->dataset,
+      utc_text(of.gaps.front().from_utc_s).view(), utc_text(of.gaps.front().until_utc_s).view());
+  const std::optional<std::size_t>& total = of.rows->total;
+  if (of.rows->lacks_rows_of_total()) {
+    text += fmt::format(" (the server counts {} and sent {})", counted(*total, "row"),
+                        of.rows->distinct);
+  } else if (total) {
+    text += " (the server has no more)";
+  } else if (of.window->settles_later) {
+    text += " (refreshed once a day: perhaps tomorrow)";
+  }
+  return text;
+}
+
+void require_no_gaps(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
+  if (gaps.empty() || request.allow_gaps) return;
+  fail(
+      "{}{}: {}; run again later, or with --allow-gaps for a file that has them",
+      describe_missing(gaps.front(), request.now_utc_s),
+      gaps.size() == 1 ? "" : fmt::format(", and {} with gaps", counted(gaps.size() - 1, "window")),
+      host_of(request.base_url));
+}
+
+std::string describe_allowed(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
+  std::string text;
+  for (const WindowGaps& of : gaps) text += describe_missing(of, request.now_utc_s) + "\n";
+  return text;
+}
+
+std::string provenance_of(const FetchRequest& request, const std::vector<FetchWindow>& windows) {
+  std::string datasets;
+  for (const FetchWindow& window : windows) {
+    if (datasets.find(window.dataset) == std::string::npos) datasets += " " + window.dataset;
+  }
+  return fmt::format("{}\nDatasets{} fetched {} from {} by bess-train {}\n",
+                     attribution_of({MarketSource::kElia}), datasets,
+                     utc_text(request.now_utc_s).view(), request.base_url, BESS_VERSION);
+}
+
+}  // namespace
+
+fs::path fetch_cache_folder(const FetchRequest& request) { return request.out.string() + ".fetch"; }
+
+std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
+                                          const std::atomic<bool>& interrupted) {
+  const std::vector<FetchWindow> windows = plan_fetch(request.span, request.now_utc_s);
+  const std::optional<std::vector<WindowRows>> rows = fetch_windows(request, windows, interrupted);
+  if (!rows) return std::nullopt;
+  MarketRows all;
+  for (const WindowRows& of_window : *rows) append_rows(all, of_window.rows);
+  if (count_of(all) == 0) fail_without_prices(request, windows.front());
+  const std::vector<WindowGaps> gaps = gaps_of(request, windows, *rows);
+  require_no_gaps(request, gaps);
+  FetchedPrices fetched{join_or_forget(request, std::move(all)), {}};
+  judge(implausible(fetched.market.series), request.accepted, {{host_of(request.base_url), {}}});
+  fetched.description = describe_join(fetched.market) + describe_windows(windows, *rows) +
+                        describe_coverage(request, windows, *rows, fetched.market.series) +
+                        describe_allowed(request, gaps);
+  write_minute_file(request.out, fetched.market.series,
+                    provenance_of(request, windows) + fetched.description);
+  remove_kept_windows(request);
+  return fetched;
+}
+
+}  // namespace bess

@@ -1,0 +1,107 @@
+// ENTSO-E A44 (Publication_MarketDocument): time series, of these periods, of these points with a
+// position and a price.amount. Under curveType A03 a point that is left out repeats the one before.
+// A zone with two auctions has a series of each, told apart by
+// classificationSequence_AttributeInstanceComponent.position: 1 is the coupled day-ahead auction's,
+// 2 a local one's (Germany, Austria).
+#include <algorithm>
+#include <limits>
+
+#include "workstation/data/market/feed/day_ahead_rows.h"
+#include "workstation/data/market/feed/entsoe_element.h"
+
+namespace bess {
+namespace {
+
+void add_day_ahead_period(const EntsoeElement& element, bool repeats,
+                          std::vector<DayAheadRow>& rows) {
+  const EntsoeElement interval = element.required("timeInterval");
+  const std::int64_t start_utc_s = entsoe_time_of(interval.required("start"));
+  const std::int64_t span_s = entsoe_time_of(interval.required("end")) - start_utc_s;
+  const std::int64_t step_s = entsoe_resolution_s_of(element.required("resolution"));
+  if (span_s <= 0 || span_s > kEntsoePeriodSecondsMax) {
+    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
+         span_s);
+  }
+  std::vector<double> prices(static_cast<std::size_t>(span_s / step_s), kNotPublished);
+  for (const EntsoeElement& point : element.children("Point")) {
+    const auto position = entsoe_number_of<std::int64_t>(point.required("position"));
+    if (position < 1 || position > static_cast<std::int64_t>(prices.size())) {
+      fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
+           point.place(), position, prices.size());
+    }
+    double& price = prices[static_cast<std::size_t>(position - 1)];
+    if (is_published(price)) {
+      fail("{}: position {} comes twice; download it again", point.place(), position);
+    }
+    price = entsoe_number_of<double>(point.required("price.amount"));
+  }
+  for (std::size_t p = 0; p < prices.size(); ++p) {
+    if (repeats && p > 0 && !is_published(prices[p])) prices[p] = prices[p - 1];
+    if (!is_published(prices[p])) continue;
+    rows.push_back({start_utc_s + static_cast<std::int64_t>(p) * step_s, prices[p],
+                    static_cast<int>(step_s / 60)});
+  }
+}
+
+/// Of a series: its zone, and which of two auctions it is of.
+std::string zone_of(const EntsoeElement& series) {
+  return std::string(series.child("out_Domain.mRID").text());
+}
+
+std::int64_t sequence_of(const EntsoeElement& series) {
+  const EntsoeElement position =
+      series.child("classificationSequence_AttributeInstanceComponent.position");
+  return position.node ? entsoe_number_of<std::int64_t>(position) : 1;
+}
+
+struct SequencedRows {
+  std::int64_t sequence = 1;
+  std::vector<DayAheadRow> rows{};
+};
+
+}  // namespace
+
+DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name) {
+  const EntsoeSource source{text, name};
+  pugi::xml_document document;
+  load_entsoe_document(document, source, "Publication_MarketDocument",
+                       "document of day-ahead prices (A44)");
+  DayAheadFile file;
+  std::vector<SequencedRows> found;
+  for (const pugi::xml_node& root : document) {
+    for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
+      require_entsoe_unit(series.child("currency_Unit.name"), "EUR");
+      require_entsoe_unit(series.child("price_Measure_Unit.name"), "MWH");
+      const std::string zone = zone_of(series);
+      if (!file.zone.empty() && !zone.empty() && zone != file.zone) {
+        fail("{}: prices of the zone {} behind those of {}; import one zone at a time",
+             series.place(), one_line(zone, 20), one_line(file.zone, 20));
+      }
+      if (!zone.empty()) file.zone = zone;
+      SequencedRows of_series{.sequence = sequence_of(series)};
+      const bool repeats = series.child("curveType").text() == "A03";
+      for (const EntsoeElement& period : series.children("Period")) {
+        add_day_ahead_period(period, repeats, of_series.rows);
+      }
+      found.push_back(std::move(of_series));
+    }
+  }
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  for (const SequencedRows& s : found) first = std::min(first, s.sequence);
+  std::size_t unused = 0;
+  for (SequencedRows& s : found) {
+    if (s.sequence != first) {
+      unused += s.rows.size();
+      continue;
+    }
+    file.rows.insert(file.rows.end(), s.rows.begin(), s.rows.end());
+  }
+  if (file.rows.empty()) fail("{}: holds no day-ahead prices; choose other days", name);
+  if (unused > 0) {
+    file.unused = fmt::format("{} of another auction of the zone (sequence above {}) are not used",
+                              counted(unused, "price"), first);
+  }
+  return file;
+}
+
+}  // namespace bess

@@ -1,0 +1,146 @@
+#include "workstation/data/market/feed/entsoe_xml.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/host/plain_text.h"
+#include "shared/host/user_error.h"
+#include "workstation/data/market/feed/entsoe_element.h"
+
+namespace bess {
+namespace {
+
+/// Which party a point's price is for; documents of some areas name none.
+enum Category { kBoth, kLong, kShort, kCategoryCount };
+
+struct Point {
+  std::int64_t position = 0;  ///< 1 = first of its period
+  double eur_per_mwh = kNotPublished;
+  Category category = kBoth;
+};
+
+struct Period {
+  std::int64_t start_utc_s = 0;
+  std::int64_t resolution_s = 0;
+  std::int64_t positions = 0;
+  std::vector<Point> points{};  ///< in order of position
+};
+
+Point point_of(const EntsoeElement& element, std::int64_t positions) {
+  Point point{.position = entsoe_number_of<std::int64_t>(element.required("position"))};
+  if (point.position < 1 || point.position > positions) {
+    fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
+         element.place(), point.position, positions);
+  }
+  const EntsoeElement amount = element.child("imbalance_Price.amount");
+  if (amount.node) point.eur_per_mwh = entsoe_number_of<double>(amount);
+  const std::string_view category = element.child("imbalance_Price.category").text();
+  point.category = category == "A04" ? kLong : category == "A05" ? kShort : kBoth;
+  return point;
+}
+
+Period period_of(const EntsoeElement& element) {
+  const EntsoeElement interval = element.required("timeInterval");
+  Period period{.start_utc_s = entsoe_time_of(interval.required("start")),
+                .resolution_s = entsoe_resolution_s_of(element.required("resolution"))};
+  const std::int64_t span_s = entsoe_time_of(interval.required("end")) - period.start_utc_s;
+  if (span_s <= 0 || span_s > kEntsoePeriodSecondsMax) {
+    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
+         span_s);
+  }
+  period.positions = span_s / period.resolution_s;
+  for (const EntsoeElement& point : element.children("Point")) {
+    period.points.push_back(point_of(point, period.positions));
+  }
+  // Some documents list all long prices, then all short ones.
+  std::ranges::stable_sort(period.points, {}, &Point::position);
+  return period;
+}
+
+struct Prices {
+  double long_eur_per_mwh = kNotPublished;
+  double short_eur_per_mwh = kNotPublished;
+
+  void set(const Point& point) {
+    if (point.category != kShort) long_eur_per_mwh = point.eur_per_mwh;
+    if (point.category != kLong) short_eur_per_mwh = point.eur_per_mwh;
+  }
+  /// The one price; NaN when there are two different ones.
+  [[nodiscard]] double single() const {
+    if (!is_published(long_eur_per_mwh)) return short_eur_per_mwh;
+    if (!is_published(short_eur_per_mwh)) return long_eur_per_mwh;
+    return long_eur_per_mwh == short_eur_per_mwh ? long_eur_per_mwh : kNotPublished;
+  }
+};
+using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
+
+/// A price of a longer interval is that of each of its quarter-hours; where points repeat, one
+/// holds until the next of its own category.
+void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
+  std::array<std::optional<Point>, kCategoryCount> current;
+  auto next = period.points.begin();
+  for (std::int64_t position = 1; position <= period.positions; ++position) {
+    if (!repeats) current = {};
+    for (; next != period.points.end() && next->position == position; ++next) {
+      current[next->category] = *next;
+    }
+    const std::int64_t end_utc_s = period.start_utc_s + position * period.resolution_s;
+    for (const std::optional<Point>& point : current) {
+      if (!point) continue;
+      for (std::int64_t utc_s = end_utc_s - period.resolution_s; utc_s < end_utc_s;
+           utc_s += kSecondsPerQuarterHour) {
+        prices[utc_s].set(*point);
+      }
+    }
+  }
+}
+
+void add_series(const EntsoeElement& series, QuarterHourPrices& prices) {
+  require_entsoe_unit(series.child("currency_Unit.name"), "EUR");
+  require_entsoe_unit(series.child("price_Measure_Unit.name"), "MWH");
+  const bool repeats = series.child("curveType").text() == "A03";
+  for (const EntsoeElement& period : series.children("Period")) {
+    add_period(period_of(period), repeats, prices);
+  }
+}
+
+QuarterHourPrices prices_of(const EntsoeSource& source) {
+  pugi::xml_document document;
+  load_entsoe_document(document, source, "Balancing_MarketDocument", "balancing document (A85)");
+  QuarterHourPrices prices;
+  for (const pugi::xml_node& root : document) {
+    for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
+      add_series(series, prices);
+    }
+  }
+  if (prices.empty()) fail("{}: holds no imbalance prices; choose other days", source.name);
+  return prices;
+}
+
+}  // namespace
+
+bool looks_like_xml(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '<';
+}
+
+MarketRows parse_entsoe_xml(std::string_view text, std::string_view name) {
+  MarketRows rows;
+  rows.sources = {MarketSource::kEntsoe};
+  for (const auto& [utc_s, prices] : prices_of({text, name})) {
+    QuarterHour quarter_hour;
+    quarter_hour.utc_s = utc_s;
+    quarter_hour.price_eur_per_mwh = prices.single();
+    if (!is_published(quarter_hour.price_eur_per_mwh)) {
+      rows.dual_priced_quarter_hours.insert(utc_s);
+    }
+    rows.quarter_hours.push_back(quarter_hour);
+  }
+  return rows;
+}
+
+}  // namespace bess

@@ -1,0 +1,522 @@
+#include "workstation/data/market/series/plausibility.h"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+
+#include "shared/host/day_ahead_rows.h"
+#include "shared/host/text.h"
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "workstation/data/market/series/gaps.h"
+#include "workstation/data/market/series/local_date.h"
+
+namespace bess {
+
+namespace {
+
+/// As the edge refuses it.
+constexpr double kPriceMaxEurPerMwh = kPlausiblePriceMaxEurPerMwh;
+/// No day of a balancing market stays within it; every one does when counted in EUR/kWh.
+constexpr double kUnitLowMax = 5;
+/// The median of no market; that of every market in cents.
+constexpr double kUnitHighMin = 1'500, kUnitHighMax = 1.5e6;
+constexpr std::int64_t kGapWorthNaming_min = 60;
+constexpr double kGapShareMax = 0.05;
+constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
+constexpr std::int64_t kLatest_s = 4'102'444'800;  // 2100-01-01
+/// What databases and instruments write where there is no value, and what no market has settled at
+/// or limits its bids to.
+constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
+/// What they write as well, and what is a price: seven quarter-hours of Belgium's 2025 were settled
+/// at -999, and bids end at +-99,999. Only many of them together are suspect.
+constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
+constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
+
+/// Prices in evenly spaced rows, and what is usual of them.
+struct Column {
+  const char* name;
+  std::span<const double> prices;
+  std::int64_t start_utc_s;
+  std::int64_t row_s;
+  const char* row;
+  double usual_min_eur_per_mwh, usual_max_eur_per_mwh;
+  bool (*is_sentinel)(double);
+
+  [[nodiscard]] std::int64_t utc_s(std::size_t i) const {
+    return start_utc_s + static_cast<std::int64_t>(i) * row_s;
+  }
+  /// A day's worth of prices: judgements of a whole column need as many.
+  [[nodiscard]] std::size_t judged_min() const {
+    return static_cast<std::size_t>(kSecondsPerDay / row_s);
+  }
+};
+
+/// Of the published prices of a column.
+struct Summary {
+  std::size_t count = 0;
+  std::optional<std::size_t> first;
+  double size_max = 0;  ///< of |price|
+  bool is_constant = true;
+};
+
+Summary summary_of(const Column& column) {
+  Summary summary;
+  for (std::size_t m = 0; m < column.prices.size(); ++m) {
+    const double price = column.prices[m];
+    if (!is_published(price)) continue;
+    if (!summary.first) summary.first = m;
+    ++summary.count;
+    summary.size_max = std::max(summary.size_max, std::fabs(price));
+    summary.is_constant = summary.is_constant && price == column.prices[*summary.first];
+  }
+  return summary;
+}
+
+double median_size(const Column& column) {
+  std::vector<double> sizes;
+  for (const double price : column.prices) {
+    if (is_published(price)) sizes.push_back(std::fabs(price));
+  }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+/// Rows whose price `wanted` names: how many, and the first.
+template <typename Wanted>
+std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Wanted wanted) {
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (std::size_t m = 0; m < prices.size(); ++m) {
+    if (is_published(prices[m]) && wanted(prices[m]) && count++ == 0) first = m;
+  }
+  return {count, first};
+}
+
+/// What minutes and day-ahead prices have in common.
+class ColumnJudge {
+ protected:
+  void error(std::string_view name, const Column& column, std::size_t row, std::string what) {
+    findings_.push_back({name, true, std::move(what), column.utc_s(row)});
+  }
+  void warning(std::string_view name, std::int64_t utc_s, std::string what) {
+    findings_.push_back({name, false, std::move(what), utc_s});
+  }
+
+  void check_dates(const Column& column) {
+    const std::size_t last = column.prices.size() - 1;
+    const bool early = column.start_utc_s < kEarliest_s;
+    if (!early && column.utc_s(last) < kLatest_s) return;
+    error("dates", column, early ? 0 : last, "the year cannot be meant; mend the times");
+  }
+
+  void check_constant(const Column& column) {
+    const Summary summary = summary_of(column);
+    if (summary.count < column.judged_min() || !summary.is_constant) return;
+    const double price = column.prices[*summary.first];
+    error("constant", column, *summary.first,
+          fmt::format("every {} price is {:g}, in {}; nothing can be learnt from it, get the "
+                      "prices again",
+                      column.name, price, counted(summary.count, column.row)));
+  }
+
+  void check_sentinels(const Column& column) {
+    const auto [count, first] = matches(column.prices, column.is_sentinel);
+    if (count == 0) return;
+    error("sentinel", column, first,
+          fmt::format("{} price {} stands for \"no price\" ({}); leave it out if your source says "
+                      "so",
+                      column.name, column.prices[first], counted(count, column.row)));
+  }
+
+  void check_unit(const Column& column) {
+    const Summary summary = summary_of(column);
+    if (summary.count < column.judged_min() || summary.is_constant) return;
+    if (summary.size_max < kUnitLowMax) {
+      error("price-unit", column, *summary.first,
+            fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
+                        "1000",
+                        column.name, summary.size_max));
+    }
+    if (summary.size_max < kUnitHighMin) return;
+    const double median = median_size(column);
+    if (median >= kUnitHighMin && median <= kUnitHighMax) {
+      error("price-unit", column, *summary.first,
+            fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
+                        "by 100",
+                        column.name, median));
+    }
+  }
+
+  void check_range(const Column& column) {
+    const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
+    const auto [count, first] = matches(column.prices, is_beyond);
+    if (count == 0) return;
+    error("price-range", column, first,
+          fmt::format("{} price {} lies beyond {:.0f} EUR/MWh, more than any market allows ({}); "
+                      "mend it or leave it out",
+                      column.name, column.prices[first], kPriceMaxEurPerMwh,
+                      counted(count, column.row)));
+  }
+
+  /// They are kept: the dearest minutes of a year are what a battery is for.
+  void check_unusual(const Column& column) {
+    const auto is_unusual = [&column](double price) {
+      const bool is_usual =
+          price >= column.usual_min_eur_per_mwh && price <= column.usual_max_eur_per_mwh;
+      return !is_usual && std::fabs(price) <= kPriceMaxEurPerMwh;
+    };
+    const auto [count, first] = matches(column.prices, is_unusual);
+    if (count == 0) return;
+    warning("unusual-price", column.utc_s(first),
+            fmt::format("{} price {} lies beyond {:.0f} .. {:.0f} EUR/MWh ({}): taken as it is",
+                        column.name, column.prices[first], column.usual_min_eur_per_mwh,
+                        column.usual_max_eur_per_mwh, counted(count, column.row)));
+  }
+
+  std::vector<Finding> findings_;
+};
+
+class MinuteJudge : public ColumnJudge {
+ public:
+  explicit MinuteJudge(const MinuteSeries& series)
+      : series_(series),
+        settled_(column("settled", series.settled)),
+        indicative_(column("indicative", series.indicative)) {}
+
+  std::vector<Finding> findings() {
+    check_dates(settled_);
+    using Check = void (MinuteJudge::*)(const Column&);
+    for (const Check check : std::initializer_list<Check>{
+             &MinuteJudge::check_row_step, &MinuteJudge::check_constant,
+             &MinuteJudge::check_sentinels, &MinuteJudge::check_frequent_sentinels,
+             &MinuteJudge::check_unit, &MinuteJudge::check_range, &MinuteJudge::check_unusual}) {
+      for_columns(check);
+    }
+    check_settled_changes();
+    for_columns(&MinuteJudge::check_frozen);
+    check_copied();
+    for_columns(&MinuteJudge::check_gaps);
+    return std::move(findings_);
+  }
+
+ private:
+  Column column(const char* name, const std::vector<double>& prices) const {
+    const auto is_sentinel = [](double price) {
+      return std::ranges::find(kSentinels, price) != kSentinels.end();
+    };
+    return {name,
+            prices,
+            series_.start_utc_s,
+            60,
+            "minute",
+            -kUnusualPriceMaxEurPerMwh,
+            kUnusualPriceMaxEurPerMwh,
+            is_sentinel};
+  }
+  void for_columns(void (MinuteJudge::*check)(const Column&)) {
+    (this->*check)(settled_);
+    (this->*check)(indicative_);
+  }
+
+  /// Minutes between rows as they usually follow each other; 1 when there are too few to say.
+  static std::size_t usual_step(std::span<const double> prices, std::size_t first,
+                                std::size_t stride) {
+    constexpr std::size_t kStepsMin = 8;
+    std::map<std::size_t, std::size_t> count_of_step;
+    std::optional<std::size_t> before;
+    std::size_t steps = 0;
+    for (std::size_t m = first; m < prices.size(); m += stride) {
+      if (!is_published(prices[m])) continue;
+      if (before) ++count_of_step[m - *before];
+      steps += before ? 1 : 0;
+      before = m;
+    }
+    if (steps < kStepsMin) return stride;
+    return std::ranges::max_element(count_of_step, {}, [](const auto& step) { return step.second; })
+        ->first;
+  }
+
+  void check_row_step(const Column& column) {
+    const std::optional<std::size_t> first_price = summary_of(column).first;
+    if (!first_price) return;
+    const std::size_t first = *first_price;
+    const std::size_t step = usual_step(column.prices, 0, 1);
+    if (step > 1) {
+      error("row-step", column, first,
+            fmt::format("{} prices come every {} minutes, and a minute file has one a minute; "
+                        "'bess-train prices reconstruct --quarter-hours' builds minutes on "
+                        "quarter-hours",
+                        column.name, step));
+      return;
+    }
+    const std::size_t quarter_hour = kSecondsPerQuarterHour / 60;
+    const std::size_t begin = static_cast<std::size_t>(
+        (kSecondsPerQuarterHour - series_.start_utc_s % kSecondsPerQuarterHour) %
+        kSecondsPerQuarterHour / 60);
+    const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
+    if (rows_apart > quarter_hour) {
+      error("row-step", column, first,
+            fmt::format("{} prices come every {} minutes, and the market settles every 15: get "
+                        "quarter-hours",
+                        column.name, rows_apart));
+    }
+  }
+
+  void check_frequent_sentinels(const Column& column) {
+    const std::size_t prices = summary_of(column).count;
+    if (prices < column.judged_min()) return;
+    for (const double wanted : kAlsoPrices) {
+      const auto [count, first] =
+          matches(column.prices, [wanted](double price) { return price == wanted; });
+      const double share = static_cast<double>(count) / static_cast<double>(prices);
+      if (share <= kAlsoPricesShareMax) continue;
+      warning("sentinel", series_.utc_s(first),
+              fmt::format("{} price {} in {:.1f} % of the minutes: is it what your source writes "
+                          "for \"no price\"? then leave the field empty",
+                          column.name, wanted, 100 * share));
+    }
+  }
+
+  /// The settled price belongs to the quarter-hour; when the other column keeps still instead, the
+  /// two are swapped.
+  void check_settled_changes() {
+    std::size_t changing = 0;
+    std::size_t first = 0;
+    std::size_t still_indicative = 0;
+    for (std::size_t m = 1; m < series_.size(); ++m) {
+      const bool same = series_.utc_s(m) % kSecondsPerQuarterHour != 0;
+      const auto changes = [&](const std::vector<double>& prices) {
+        return is_published(prices[m - 1]) && is_published(prices[m]) && prices[m] != prices[m - 1];
+      };
+      if (!same || !changes(series_.settled)) continue;
+      if (changing++ == 0) first = m;
+      still_indicative += changes(series_.indicative) ? 0 : 1;
+    }
+    if (changing == 0) return;
+    const bool swapped = changing > 100 && still_indicative * 10 > changing * 9;
+    error(
+        "settled-changes", settled_, first,
+        fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
+                    series_.settled[first - 1], series_.settled[first], counted(changing, "change"),
+                    swapped ? "the indicative price does not: are the two columns swapped?"
+                            : "a quarter-hour has one settled price, mend the rows"));
+  }
+
+  void check_frozen(const Column& column) {
+    if (summary_of(column).is_constant) return;  // said already
+    std::size_t longest = 0;
+    std::size_t start_of_longest = 0;
+    std::size_t start = 0;
+    for (std::size_t m = 0; m < column.prices.size(); ++m) {
+      if (m == 0 || column.prices[m] != column.prices[m - 1]) start = m;  // NaN differs from NaN
+      if (m + 1 - start > longest) {
+        longest = m + 1 - start;
+        start_of_longest = start;
+      }
+    }
+    if (longest < column.judged_min()) return;
+    warning("frozen", series_.utc_s(start_of_longest),
+            fmt::format("the {} price stays at {:g} for {} minutes; did the source hang?",
+                        column.name, column.prices[start_of_longest], longest));
+  }
+
+  void check_copied() {
+    std::size_t both = 0;
+    for (std::size_t m = 0; m < series_.size(); ++m) {
+      if (!is_published(series_.indicative[m]) || !is_published(series_.settled[m])) continue;
+      if (series_.indicative[m] != series_.settled[m]) return;
+      ++both;
+    }
+    if (both < settled_.judged_min() || summary_of(settled_).is_constant) return;
+    warning("copied-column", series_.start_utc_s,
+            "indicative and settled price are the same in every minute: a policy would see what it "
+            "will be paid, and its figures flatter");
+  }
+
+  /// Ends are no gaps: what came before the first price or will be settled later is not missing.
+  void check_gaps(const Column& column) {
+    const Summary summary = summary_of(column);
+    if (summary.count == 0) return;
+    std::vector<Gap> gaps = gaps_in(column.prices, series_.start_utc_s, 60);
+    std::erase_if(gaps, [this](const Gap& gap) {
+      return gap.from_utc_s == series_.start_utc_s ||
+             gap.until_utc_s == series_.utc_s(series_.size());
+    });
+    if (gaps.empty()) return;
+    const auto length_min = [](const Gap& gap) { return (gap.until_utc_s - gap.from_utc_s) / 60; };
+    const Gap largest = *std::ranges::max_element(gaps, {}, length_min);
+    const std::int64_t missing_min = minutes_in(gaps);
+    const double share = static_cast<double>(missing_min) / static_cast<double>(series_.size());
+    if (length_min(largest) < kGapWorthNaming_min && share <= kGapShareMax) return;
+    warning("gaps", largest.until_utc_s,
+            fmt::format("{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} "
+                        "to {}",
+                        column.name, counted(gaps.size(), "gap"), missing_min, series_.size(),
+                        length_min(largest), utc_text(largest.from_utc_s).view(),
+                        utc_text(largest.until_utc_s).view()));
+  }
+
+  const MinuteSeries& series_;
+  Column settled_;
+  Column indicative_;
+};
+
+}  // namespace
+
+std::vector<Finding> implausible(const MinuteSeries& series) {
+  if (series.size() == 0) return {};
+  return MinuteJudge(series).findings();
+}
+
+std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series) {
+  if (text.empty() || text.ends_with('\n') || series.size() == 0) return {};
+  const std::size_t last = series.size() - 1;
+  const bool first_of_quarter_hour = series.utc_s(last) % kSecondsPerQuarterHour == 0;
+  const bool contradicts = last > 0 && !first_of_quarter_hour &&
+                           is_published(series.settled[last - 1]) &&
+                           !(series.settled[last] == series.settled[last - 1]);
+  return {{"cut-end", contradicts,
+           "the last row does not end with a line end: the file may be cut off; get it again, or "
+           "delete the row",
+           series.utc_s(last)}};
+}
+
+namespace {
+
+constexpr std::size_t kDayOfPrices = 96;
+constexpr std::size_t kSharedMin = 80 * kDayOfPrices;  ///< fewer may mislead
+constexpr double kCorrelationMore = 0.02;              ///< that a shift must have
+/// Limits of the coupled auction, raised by steps when reached (harmonised clearing prices).
+constexpr double kAuctionMinEurPerMwh = -500, kAuctionMaxEurPerMwh = 5'000;
+
+class DayAheadJudge : public ColumnJudge {
+ public:
+  explicit DayAheadJudge(const DayAheadSeries& series)
+      : series_(series), column_{"day-ahead",          series.eur_per_mwh,
+                                 series.start_utc_s,   kSecondsPerQuarterHour,
+                                 "quarter-hour",       kAuctionMinEurPerMwh,
+                                 kAuctionMaxEurPerMwh, is_day_ahead_sentinel} {}
+
+  std::vector<Finding> findings() {
+    check_dates(column_);
+    check_sentinels(column_);
+    check_range(column_);
+    check_unusual(column_);
+    check_constant(column_);
+    check_unit(column_);
+    check_days();
+    return std::move(findings_);
+  }
+
+ private:
+  /// Whether the day [from, from + 96) has the prices of the day before it, of which not all are
+  /// one.
+  [[nodiscard]] bool repeats_day_before(std::size_t from) const {
+    bool moves = false;
+    for (std::size_t q = from; q < from + kDayOfPrices; ++q) {
+      const double price = series_.eur_per_mwh[q];
+      if (!(price == series_.eur_per_mwh[q - kDayOfPrices]))
+        return false;  // nor where one is missing
+      moves = moves || price != series_.eur_per_mwh[from];
+    }
+    return moves;
+  }
+
+  void check_days() {
+    const std::vector<IncompleteDay> incomplete = incomplete_days(series_);
+    if (!incomplete.empty()) {
+      const IncompleteDay& day = incomplete.front();
+      warning(
+          "gaps", series_.start_utc_s,
+          fmt::format("{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
+                      counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours));
+    }
+    const std::int64_t into_day_s =
+        series_.start_utc_s - local_midnight_utc_s(local_date_of(series_.start_utc_s));
+    const auto before =
+        static_cast<std::size_t>((kSecondsPerDay - into_day_s) / kSecondsPerQuarterHour) %
+        kDayOfPrices;
+    for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series_.size(); ++q) {
+      const bool midnight = local_minute_of(series_.utc_s(q)).minute_of_day == 0;
+      if (!midnight || !repeats_day_before(q)) continue;
+      return error("repeated-day", column_, q,
+                   fmt::format("the day-ahead prices of {} are those of the day before: an old "
+                               "answer? get the day again",
+                               format_local_date(local_date_of(series_.utc_s(q)))));
+    }
+  }
+
+  const DayAheadSeries& series_;
+  Column column_;
+};
+
+}  // namespace
+
+std::vector<Finding> implausible_day_ahead(const DayAheadSeries& series) {
+  return series.size() == 0 ? std::vector<Finding>{} : DayAheadJudge(series).findings();
+}
+
+namespace {
+
+struct SharedPrices {
+  std::size_t count = 0;
+  double correlation = kNotPublished;
+};
+
+SharedPrices compare(const DayAheadSeries& day_ahead, const MinuteSeries& settled, int days_later) {
+  double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+  for (std::size_t q = 0; q < day_ahead.size(); ++q) {
+    const double expected = day_ahead.eur_per_mwh[q];
+    const std::int64_t utc_s = day_ahead.utc_s(q) + std::int64_t{days_later} * kSecondsPerDay;
+    const std::int64_t minute = (utc_s - settled.start_utc_s) / 60;
+    if (!is_published(expected) || utc_s < settled.start_utc_s ||
+        minute >= static_cast<std::int64_t>(settled.size())) {
+      continue;
+    }
+    const double paid = settled.settled[static_cast<std::size_t>(minute)];
+    if (!is_published(paid)) continue;
+    n += 1, x += expected, y += paid;
+    xx += expected * expected, yy += paid * paid, xy += expected * paid;
+  }
+  SharedPrices shared{static_cast<std::size_t>(n)};
+  const double spread = (n * xx - x * x) * (n * yy - y * y);
+  if (shared.count >= kDayOfPrices && spread > 0) {
+    shared.correlation = (n * xy - x * y) / std::sqrt(spread);
+  }
+  return shared;
+}
+
+}  // namespace
+
+double day_ahead_correlation(const DayAheadSeries& day_ahead, const MinuteSeries& settled,
+                             int days_later) {
+  return compare(day_ahead, settled, days_later).correlation;
+}
+
+std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
+                                       const MinuteSeries& settled) {
+  const SharedPrices as_filed = compare(day_ahead, settled, 0);
+  if (as_filed.count < kSharedMin) return {};
+  for (const int days : {1, -1}) {
+    const double shifted = day_ahead_correlation(day_ahead, settled, days);
+    if (!(shifted > as_filed.correlation + kCorrelationMore)) continue;
+    return {
+        {"shifted-day",
+         true,
+         fmt::format("the day-ahead prices follow the settled ones better a day {} (correlation "
+                     "{:.2f}, as filed {:.2f}): are they filed under the wrong day? mend the "
+                     "dates",
+                     days > 0 ? "later" : "earlier", shifted, as_filed.correlation),
+         {}}};
+  }
+  return {};
+}
+
+}  // namespace bess

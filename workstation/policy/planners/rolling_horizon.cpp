@@ -1,0 +1,187 @@
+#include "workstation/policy/planners/rolling_horizon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr int kSocPoints = RollingHorizonPolicy::kSocPoints;
+constexpr int kDeviations = 33;
+constexpr int kHorizonQuarterHours = 96;
+constexpr double kDeviationMaxEurPerMwh = 1500;
+constexpr double kPersistenceMax = 0.99;
+/// A step that starts at minute 14 is half the next quarter-hour's and tells of neither.
+constexpr int kStraddlingMinute = 14;
+
+/// Deviations are tabulated densely near 0, sparsely far out: d = max * x * |x|, x even in [-1, 1].
+double deviation_at(int index) {
+  const double x = 2.0 * index / (kDeviations - 1) - 1;
+  return kDeviationMaxEurPerMwh * x * std::fabs(x);
+}
+double deviation_position(double deviation) {
+  const double ratio = std::clamp(deviation / kDeviationMaxEurPerMwh, -1.0, 1.0);
+  const double x = std::copysign(std::sqrt(std::fabs(ratio)), ratio);
+  return (x + 1) / 2 * (kDeviations - 1);
+}
+
+/// Steps that start in a quarter-hour: minutes 0 to 14 of the first of a half-hour, 1 to 13 of the
+/// second.
+int steps_of(int quarter_hour) { return quarter_hour % 2 == 0 ? 8 : 7; }
+
+/// Of this quarter-hour, this one included.
+int steps_left(const MarketStep& step) {
+  return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.minute_of_quarter_hour) / 2;
+}
+
+std::size_t row_of(int quarter_hour, int deviation) {
+  return (static_cast<std::size_t>(quarter_hour) * kDeviations +
+          static_cast<std::size_t>(deviation)) *
+         kSocPoints;
+}
+
+double ratio_or_zero(double numerator, double denominator) {
+  return denominator > 0 ? numerator / denominator : 0.0;
+}
+
+}  // namespace
+
+RollingHorizonPolicy::RollingHorizonPolicy(const MarketSteps& market,
+                                           const std::vector<MarketDay>& days,
+                                           const BatteryParameters& battery)
+    : battery_(battery), grid_(battery, kSocPoints), sweep_(battery, grid_) {
+  require_training_days(days.size());
+  fit_usual_prices(market, days);
+  fit_persistence(market, days);
+  fit_shrinkage(market, days);
+  tabulate_values();
+}
+
+void RollingHorizonPolicy::fit_usual_prices(const MarketSteps& market,
+                                            const std::vector<MarketDay>& days) {
+  std::array<double, kQuarterHours> sum{};
+  std::array<double, kQuarterHours> count{};
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : market.of(day)) {
+      if (step.minute_of_quarter_hour == kStraddlingMinute) continue;
+      sum[step.quarter_hour] += step.paid_eur_per_mwh;
+      count[step.quarter_hour] += 1;
+    }
+  }
+  for (int q = 0; q < kQuarterHours; ++q) usual_eur_per_mwh_[q] = ratio_or_zero(sum[q], count[q]);
+}
+
+void RollingHorizonPolicy::fit_persistence(const MarketSteps& market,
+                                           const std::vector<MarketDay>& days) {
+  double product = 0;
+  double square = 0;
+  for (const MarketDay& day : days) {
+    const MarketStep* before = nullptr;
+    for (const MarketStep& step : market.of(day)) {
+      if (step.minute_of_quarter_hour > 1)
+        continue;  // the first step that starts in each quarter-hour
+      if (before != nullptr) {
+        const double was = before->paid_eur_per_mwh - usual_eur_per_mwh_[before->quarter_hour];
+        product += was * (step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour]);
+        square += was * was;
+      }
+      before = &step;
+    }
+  }
+  persistence_ = std::clamp(ratio_or_zero(product, square), 0.0, kPersistenceMax);
+}
+
+void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
+                                         const std::vector<MarketDay>& days) {
+  std::array<double, kQuarterHourMinutes> product{};
+  std::array<double, kQuarterHourMinutes> square{};
+  ordinary_age_quarter_hours_.fill(kQuarterHours);
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : market.of(day)) {
+      const Observation seen = observe(step);
+      const double is = step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour];
+      product[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * is;
+      square[step.minute_of_quarter_hour] +=
+          seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
+      ordinary_age_quarter_hours_[step.minute_of_quarter_hour] = std::min(
+          ordinary_age_quarter_hours_[step.minute_of_quarter_hour], seen.quarter_hours_ago);
+    }
+  }
+  for (int t = 0; t < kQuarterHourMinutes; ++t) {
+    shrinkage_[t] = std::clamp(ratio_or_zero(product[t], square[t]), 0.0, 1.0);
+  }
+}
+
+RollingHorizonPolicy::Observation RollingHorizonPolicy::observe(const MarketStep& step) const {
+  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[step.row_quarter_hour()],
+          step.quarter_hours_ago()};
+}
+
+double RollingHorizonPolicy::deviation_now(const MarketStep& step) const {
+  const Observation seen = observe(step);
+  const int quarter_hours_late = std::max(
+      0, seen.quarter_hours_ago - ordinary_age_quarter_hours_[step.minute_of_quarter_hour]);
+  return shrinkage_[step.minute_of_quarter_hour] * std::pow(persistence_, quarter_hours_late) *
+         seen.deviation_eur_per_mwh;
+}
+
+void RollingHorizonPolicy::value_from(const std::vector<float>& table, int quarter_hour,
+                                      double deviation, float* value) const {
+  const double position = deviation_position(deviation);
+  const int lower = std::min(static_cast<int>(position), kDeviations - 2);
+  const auto weight = static_cast<float>(position - lower);
+  const float* a = &table[row_of(quarter_hour, lower)];
+  const float* b = a + kSocPoints;
+  for (int i = 0; i < kSocPoints; ++i) value[i] = a[i] * (1 - weight) + b[i] * weight;
+}
+
+void RollingHorizonPolicy::tabulate_values() {
+  value_.assign(row_of(kQuarterHours, 0), 0.0F);
+  std::vector<float> shorter;
+  std::array<float, kSocPoints> next{};
+  std::array<float, kSocPoints> now{};
+  for (int horizon = 1; horizon <= kHorizonQuarterHours; ++horizon) {
+    shorter = value_;
+    for (int q = 0; q < kQuarterHours; ++q) {
+      for (int d = 0; d < kDeviations; ++d) {
+        const double deviation = deviation_at(d);
+        const auto price = static_cast<float>(usual_eur_per_mwh_[q] + deviation);
+        value_from(shorter, (q + 1) % kQuarterHours, persistence_ * deviation, next.data());
+        for (int s = 0; s < steps_of(q); ++s) {
+          sweep_.run(next.data(), q, price, now.data());
+          std::swap(next, now);
+        }
+        std::copy(next.begin(), next.end(), value_.begin() + row_of(q, d));
+      }
+    }
+  }
+}
+
+RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& step,
+                                                             double deviation, int steps) const {
+  const auto price = static_cast<float>(usual_eur_per_mwh_[step.quarter_hour] + deviation);
+  Values next;
+  Values now;
+  value_from(value_, (step.quarter_hour + 1) % kQuarterHours, persistence_ * deviation,
+             next.data());
+  for (int s = 0; s < steps; ++s) {
+    sweep_.run(next.data(), step.quarter_hour, price, now.data());
+    std::swap(next, now);
+  }
+  return next;
+}
+
+RollingHorizonPolicy::Values RollingHorizonPolicy::values(const MarketStep& step) const {
+  return plan_rest(step, deviation_now(step), steps_left(step));
+}
+
+Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+  const double deviation = deviation_now(step);
+  const Values next = plan_rest(step, deviation, steps_left(step) - 1);
+  const double price = usual_eur_per_mwh_[step.quarter_hour] + deviation;
+  return best_action(battery_, grid_, next.data(), step.quarter_hour, price, soc_frac);
+}
+
+}  // namespace bess

@@ -1,0 +1,71 @@
+// Rolling-horizon control on a naive forecast: the model-predictive peer. At every step it plans
+// the next 24 hours by dynamic programming at forecast prices, does the plan's first action, and
+// plans anew at the next step. It sees what any policy sees: the newest published price and its
+// age.
+//
+// Forecast (persistence), with d = newest price - usual price of the quarter-hour it belongs to:
+//   rest of this quarter-hour   usual + s d        s: by minute of the quarter-hour, least squares
+//   k quarter-hours later       usual + s d rho^k
+// usual = mean settled price of the training days by quarter-hour of day; rho = their lag-1
+// autocorrelation by quarter-hours. A row older than the ordinary delay decays on by rho.
+//
+// The forecast of later quarter-hours depends on two numbers only, the quarter-hour of day and its
+// deviation, so their value by SoC is tabulated once and planning anew costs at most eight sweeps:
+//   V_h(q, d) = sweep over the steps of q at usual(q) + d  of  V_{h-1}(q + 1, rho d),   V_0 = 0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "workstation/data/env/policy.h"
+#include "workstation/policy/planners/foresight.h"
+
+namespace bess {
+
+class RollingHorizonPolicy final : public Policy {
+ public:
+  /// Fits the forecast on `days` of `market`; throws UserError when there are none.
+  RollingHorizonPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
+                       const BatteryParameters& battery);
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override;
+
+  /// What the plan expects to earn in the next 24 hours from this step on, EUR, at `kSocPoints`
+  /// even points of the SoC window.
+  static constexpr int kSocPoints = 121;
+  using Values = std::array<float, kSocPoints>;
+  [[nodiscard]] Values values(const MarketStep& step) const;
+
+  static constexpr int kQuarterHours = 96;
+  static constexpr int kQuarterHourMinutes = 15;
+
+ private:
+  /// Deviation of the newest price and the quarter-hours since the one it belongs to.
+  struct Observation {
+    double deviation_eur_per_mwh;
+    int quarter_hours_ago;
+  };
+  [[nodiscard]] Observation observe(const MarketStep& step) const;
+  [[nodiscard]] double deviation_now(const MarketStep& step) const;
+  void fit_usual_prices(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void fit_persistence(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void fit_shrinkage(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void tabulate_values();
+  /// Value by SoC when `steps` more steps of this quarter-hour are to come.
+  [[nodiscard]] Values plan_rest(const MarketStep& step, double deviation, int steps) const;
+  /// Value by SoC of the horizon that starts with quarter-hour `quarter_hour` at `deviation`.
+  void value_from(const std::vector<float>& table, int quarter_hour, double deviation,
+                  float* value) const;
+
+  BatteryParameters battery_;
+  SocGrid grid_;
+  BellmanSweep sweep_;
+  std::array<double, kQuarterHours> usual_eur_per_mwh_{};
+  std::array<double, kQuarterHourMinutes> shrinkage_{};  ///< s
+  std::array<int, kQuarterHourMinutes>
+      ordinary_age_quarter_hours_{};  ///< quarter-hours, in training
+  double persistence_ = 0;            ///< rho
+  std::vector<float> value_;          ///< [quarter-hour][deviation][SoC point] EUR
+};
+
+}  // namespace bess

@@ -1,0 +1,108 @@
+// C51, categorical distributional Q-learning [Bellemare, Dabney, Munos 2017, Algorithm 1; Paper,
+// Eq. 8-10]. Network output: kActionCount x atoms logits, atom index fastest. Values in units of
+// 1e4 EUR/h.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "workstation/policy/nn/packed_mlp.h"
+#include "workstation/policy/rl/transition.h"
+
+namespace bess {
+
+// What the tiles of one gradient step share, whichever the method.
+
+struct GradientStep {
+  const TileKernels& kernels;
+  const PackedMlp& online;  ///< head in one group an action
+  const PackedMlp& target;  ///< head in one group
+  const MiniBatch& batch;
+  float gamma;
+  float mean_weight = 0;  ///< C51 only
+};
+
+/// Samples first .. first+count-1 of the minibatch, all of one action.
+struct TileRange {
+  int action;
+  Eigen::Index first;
+  Eigen::Index count;
+};
+
+// The support of the value distributions: evenly spaced atoms [Paper, Eq. 10], in units of 1e4
+// EUR/h.
+
+/// z_i = v_min + i * step, i = 0 .. count-1; at least two.
+struct Support {
+  float v_min;
+  float v_max;
+  int count;
+  [[nodiscard]] float step() const { return (v_max - v_min) / static_cast<float>(count - 1); }
+  [[nodiscard]] float atom(int i) const { return v_min + static_cast<float>(i) * step(); }
+  [[nodiscard]] Eigen::VectorXf atoms() const {
+    return Eigen::VectorXf::LinSpaced(count, v_min, v_max);
+  }
+};
+
+// Categorical projection: a distribution over the support's atoms, moved to reward + discount * z,
+// back onto the support [Bellemare 2017, Eq. 7]:
+//   Tz_j = clip(r + gamma z_j, v_min, v_max)   b_j = (Tz_j - v_min) / step
+//   m_l += p_j (u - b_j),  m_u += p_j (b_j - l)   with l = floor(b_j), u = l + 1
+// Seen from the receiving atom, m_i = sum_j p_j max(0, 1 - |b_j - i|). Before clipping b_j = j + s
+// - (1 - gamma) j with the reward's shift s, so only atoms at a few distances d = i - j contribute:
+// two or three when gamma is near 1. Each distance is one pass over a shifted copy of p, without a
+// branch or a scattered store. Measured 2026-11 (AVX-512) against the formula atom by atom: 5 times
+// as fast at gamma 0.999, 2.3 to 2.7 times at 0.9; at 0.5, with half as many distances as atoms, no
+// faster for 51 atoms and 1.6 times slower for 101.
+
+class CategoricalProjection {
+ public:
+  /// With room for `rows` distributions.
+  CategoricalProjection(const Support& support, int rows);
+
+  /// Where distribution `row` is to be written: [padded atoms], those past the last atom zero.
+  [[nodiscard]] float* distribution(int row) { return rows_.col(row).data() + margin_; }
+
+  /// m = projection of scale * distribution(row); m is [padded atoms], zero past the last atom.
+  void project(int row, float scale, float reward, float discount, float* m) const;
+
+ private:
+  Support support_;
+  Eigen::Index padded_;  ///< atoms up to a whole number of panels
+  Eigen::Index margin_;  ///< zeros left and right of a distribution, so that it can be read shifted
+  Eigen::ArrayXf index_;  ///< 0, 1, 2, ... [padded atoms]
+  Eigen::MatrixXf rows_;  ///< [margin + padded atoms + margin x rows]
+};
+
+/// Softmax of each column in place.
+void softmax_columns(Matrix& z);
+
+/// Means of the value distributions, [actions x samples], from logits [actions*atoms x samples].
+Matrix mean_values(const Support& support, const MatrixRef& logits);
+
+/// Working space of one thread for tile after tile.
+struct C51Tile {
+  explicit C51Tile(const Support& s)
+      : support(s), next(s, kActionCount), atoms(Eigen::VectorXf::Zero(padded_to_panels(s.count))) {
+    atoms.head(s.count) = s.atoms();
+  }
+
+  Support support;
+  CategoricalProjection next;  ///< the next state's distributions, one row an action
+  Eigen::VectorXf atoms;       ///< z_i, padded with zeros
+  MlpActivations net;          ///< of the target network first, then of the online network
+  TileMatrix z_next;           ///< [actions*atoms x samples] logits of the target network
+  TileMatrix m;                ///< [atoms x samples] projected target distribution
+  TileMatrix z;                ///< [atoms x samples] logits of the action taken, then dL/dz
+  Eigen::ArrayXf sums;         ///< [samples] of exponentials
+  double edge_mass = 0;        ///< target mass on the two end atoms, summed over samples
+};
+
+/// Adds to `gradient` (of the mean over the minibatch) and returns the summed cross-entropy
+///   -sum_i m_i log p_i(s, a)   [Paper, Eq. 8 up to the entropy of m]
+/// and, with w = step.mean_weight, w / 2 (E_p[z] - E_m[z])^2: decisions hang on differences of
+/// means of a percent of the support, which the cross-entropy alone learns late. Next actions are
+/// greedy by mean under the target network, ties to the lowest action.
+double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Tile& tile,
+                         PackedGradient& gradient);
+
+}  // namespace bess

@@ -1,0 +1,99 @@
+#include "workstation/policy/rl/learner.h"
+
+#include <algorithm>
+
+namespace bess {
+namespace {
+
+/// Samples a tile at most: its activations stay in the second-level cache.
+constexpr Eigen::Index kTileSamples = 256;
+
+/// Calls body(tile) for tiles of about equal size that cover the samples of one action within
+/// [begin, end).
+template <typename Body>
+void for_tiles(int action, Eigen::Index begin, Eigen::Index end, const Body& body) {
+  if (begin >= end) return;
+  const Eigen::Index tiles = (end - begin + kTileSamples - 1) / kTileSamples;
+  for (Eigen::Index t = 0; t < tiles; ++t) {
+    const Eigen::Index first = begin + (end - begin) * t / tiles;
+    const Eigen::Index next = begin + (end - begin) * (t + 1) / tiles;
+    body(TileRange{action, first, next - first});
+  }
+}
+
+}  // namespace
+
+Learner::Learner(Method method, const Support& support, double gamma, std::uint64_t seed,
+                 int threads, double mean_weight, const TileKernels& kernels)
+    : method_(method),
+      gamma_(static_cast<float>(gamma)),
+      mean_weight_(static_cast<float>(mean_weight)),
+      kernels_(kernels),
+      shape_(teacher_shape(method, support)),
+      online_(initial_parameters(shape_, seed)),
+      target_(online_),
+      gradient_(shape_.parameter_count()),
+      adam_(shape_.parameter_count()),
+      team_(threads),
+      workers_(static_cast<std::size_t>(threads), Worker(support)) {}
+
+void Learner::pack_weights() {
+  const ConstMlp online(shape_, online_.data());
+  const ConstMlp target(shape_, target_.data());
+  team_.run([&](int worker) {
+    if (worker == 0) packed_online_.pack(online, kActionCount, PackedMlp::Use::kForwardAndBackward);
+    if (worker == team_.size() - 1) packed_target_.pack(target, 1, PackedMlp::Use::kForward);
+  });
+}
+
+void Learner::run_tiles(const MiniBatch& batch, int worker_index) {
+  Worker& worker = workers_[static_cast<std::size_t>(worker_index)];
+  worker.gradient.set_zero(shape_, kActionCount);
+  worker.loss = 0;
+  worker.c51.edge_mass = 0;
+  const GradientStep step{kernels_, packed_online_, packed_target_, batch, gamma_, mean_weight_};
+  const Eigen::Index begin = batch.size() * worker_index / team_.size();
+  const Eigen::Index end = batch.size() * (worker_index + 1) / team_.size();
+  for (int action = 0; action < kActionCount; ++action) {
+    for_tiles(action, std::max(begin, batch.group_begin(action)),
+              std::min(end, batch.group_end[action]), [&](const TileRange& range) {
+                worker.loss += method_ == Method::kC51
+                                   ? c51_tile_gradient(step, range, worker.c51, worker.gradient)
+                                   : dqn_tile_gradient(step, range, worker.dqn, worker.gradient);
+              });
+  }
+}
+
+Learner::StepResult Learner::compute_gradient(const MiniBatch& batch) {
+  pack_weights();
+  team_.run([&](int worker) { run_tiles(batch, worker); });
+  const auto samples = static_cast<double>(batch.size());
+  StepResult result{0, 0};
+  gradient_.setZero();
+  MutableMlp gradient(shape_, gradient_.data());
+  for (const Worker& worker : workers_) {
+    worker.gradient.add_to(gradient);
+    result.loss += worker.loss / samples;
+    result.edge_mass_frac += worker.c51.edge_mass / samples;
+  }
+  return result;
+}
+
+Learner::StepResult Learner::step(const MiniBatch& batch, double learning_rate, double tau) {
+  const StepResult result = compute_gradient(batch);
+  adam_.update(online_, gradient(), static_cast<float>(learning_rate));
+  target_ += static_cast<float>(tau) * (online_ - target_);
+  return result;
+}
+
+void Learner::save(BinaryWriter& out) const {
+  out.put(static_cast<std::int64_t>(adam_.step));
+  for (const Parameters* p : {&online_, &target_, &adam_.m, &adam_.v}) put_parameters(out, *p);
+}
+
+void Learner::restore(BinaryReader& in) {
+  adam_.step = in.take<std::int64_t>();
+  for (Parameters* p : {&online_, &target_, &adam_.m, &adam_.v}) take_parameters(in, *p);
+}
+
+}  // namespace bess

@@ -1,0 +1,99 @@
+#include "workstation/policy/rl/program_residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/exchange_cost.h"
+#include "workstation/base/in_parallel.h"
+#include "workstation/policy/rl/transition.h"
+
+namespace bess {
+namespace {
+
+constexpr int kSocPoints = StochasticProgram::kSocPoints;
+static_assert(kSocPoints == OutlookProgram::kSocPoints);
+
+}  // namespace
+
+ProgramRows::ProgramRows(Foundation foundation)
+    : foundation_(std::move(foundation)),
+      grid_(foundation_.battery(), kSocPoints),
+      break_even_grid_(foundation_.battery(), OutlookModel::kSocPoints),
+      unit_per_eur_(learned_per_eur(foundation_.battery())) {}
+
+std::uint32_t ProgramRows::add(const MarketStep& step) {
+  if (is_outlook()) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(utc_s_, step.utc_s) -
+                                      utc_s_.begin());
+  }
+  if (utc_s_.empty() || step.utc_s != utc_s_.back()) {
+    continuation_.resize(continuation_.size() + kSocPoints);
+    const auto at = StochasticProgram::situation_of(step);
+    foundation_.program->continuation(at, &*(continuation_.end() - kSocPoints));
+    price_eur_per_mwh_.push_back(foundation_.program->expected_price(at));
+    full_power_w_.push_back(foundation_.battery().power_w_at(step.quarter_hour));
+    utc_s_.push_back(step.utc_s);
+  }
+  return static_cast<std::uint32_t>(utc_s_.size() - 1);
+}
+
+void ProgramRows::plan(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) {
+  std::vector<std::size_t> first_row;
+  for (const MarketDay& day : days) {
+    first_row.push_back(utc_s_.size());
+    for (const MarketStep& step : market.of(day)) utc_s_.push_back(step.utc_s);
+  }
+  continuation_.resize(utc_s_.size() * kSocPoints);
+  break_even_.resize(utc_s_.size() * static_cast<std::size_t>(break_even_grid_.count));
+  price_eur_per_mwh_.resize(utc_s_.size());
+  full_power_w_.resize(utc_s_.size());
+  begins_plan_.resize(utc_s_.size());
+  in_parallel(days.size(), threads,
+              [&](std::size_t d) { plan_day(market.of(days[d]), first_row[d]); });
+}
+
+void ProgramRows::plan_day(std::span<const MarketStep> steps, std::size_t row) {
+  const OutlookModel& model = foundation_.book->model();
+  const auto points = static_cast<std::size_t>(break_even_grid_.count);
+  OutlookProgram::Plan plan;
+  for (const MarketStep& step : steps) {
+    begins_plan_[row] = plan.serves(step) ? 0 : 1;
+    if (begins_plan_[row] != 0) plan = foundation_.outlook->plan_of(step);
+    price_eur_per_mwh_[row] =
+        foundation_.outlook->continuation(step, plan, &continuation_[row * kSocPoints]);
+    full_power_w_[row] = foundation_.battery().power_w_at(step.quarter_hour);
+    const auto integers = foundation_.book->plan_for(step);
+    for (std::size_t p = 0; p < points; ++p) {
+      const double soc_frac = break_even_grid_.at(static_cast<int>(p));
+      const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
+      break_even_[row * points + p] =
+          static_cast<float>(
+              integers->break_even_centi(model, step.utc_s, soc_e4, step.level_centi_eur_per_mwh)) /
+          kCentiPerEur;
+    }
+    ++row;
+  }
+}
+
+double ProgramRows::break_even(std::uint32_t row, double soc_frac) const {
+  const auto count = static_cast<std::size_t>(break_even_grid_.count);
+  return double{interpolate(&break_even_[row * count], break_even_grid_.position(soc_frac))};
+}
+
+ProgramRows::Values ProgramRows::at(std::uint32_t row, double soc_frac) const {
+  const BatteryParameters& battery = foundation_.battery();
+  const float* ahead = &continuation_[std::size_t{row} * kSocPoints];
+  Values values{};
+  for (int a = 0; a < kActionCount; ++a) {
+    const double wanted_w = power_sign(static_cast<Action>(a)) * full_power_w_[row];
+    const BatteryStep moved = battery_step(battery, soc_frac, wanted_w, kHoursPerStep);
+    const double cost_eur = exchange_cost_eur(
+        battery, moved.power_w / kWattsPerMegawatt * kHoursPerStep, price_eur_per_mwh_[row]);
+    const double worth_eur = double{interpolate(ahead, grid_.position(moved.soc_frac))} - cost_eur;
+    values.action[a] = static_cast<float>(worth_eur * unit_per_eur_);
+  }
+  values.best = *std::ranges::max_element(values.action);
+  return values;
+}
+
+}  // namespace bess

@@ -1,0 +1,68 @@
+#include "workstation/runs/chain/common_options.h"
+
+#include <cstdlib>
+#include <thread>
+
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+
+namespace bess {
+namespace {
+constexpr int kThreadsMax = 256;
+}
+
+void CommonOptions::add_config(ProgramCommand& command) {
+  command.option("--config", config_path, "TOML file; 'bess-train config' prints all keys");
+}
+
+void CommonOptions::add_seed_and_threads(ProgramCommand& command) {
+  command.option("--seed", seed, "Seed of every random draw (default 1)").non_negative();
+  command.option("--threads", threads, "Default: all cores").range(1, kThreadsMax);
+}
+
+void CommonOptions::add_market(ProgramCommand& command) {
+  command.option("--delay", delay_min, "Observation delay in minutes, 0 to 5 (default 1)")
+      .range(0, 5);
+  command.option("--settlement", settlement, "minute (default) or step").one_of({"minute", "step"});
+  command.option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
+}
+
+RunConfig CommonOptions::resolve(ContextKind unless_said) const {
+  return resolve(load_run_config(config_path, unless_said));
+}
+
+RunConfig CommonOptions::resolve(RunConfig config) const {
+  config.set_seed(seed.value_or(1));
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  config.set_threads(threads.value_or(cores));
+  if (delay_min) config.market.observation_delay_min = *delay_min;
+  if (settlement) config.market.settlement = parse_settlement(*settlement);
+  if (initial_soc_frac) {
+    const BatteryParameters& battery = config.battery;
+    if (!(*initial_soc_frac >= battery.soc_min_frac && *initial_soc_frac <= battery.soc_max_frac)) {
+      fail("--initial-soc {}: use {:g} to {:g}, the battery's SoC window", *initial_soc_frac,
+           battery.soc_min_frac, battery.soc_max_frac);
+    }
+    config.initial_soc_frac = *initial_soc_frac;
+  }
+  return config;
+}
+
+std::string checked_base_url(std::string url, const std::string& option) {
+  const std::string given = url;
+  while (url.ends_with('/')) url.pop_back();
+  const std::size_t scheme = url.starts_with("http://") ? 7 : url.starts_with("https://") ? 8 : 0;
+  const std::string host = url.substr(scheme, url.find('/', scheme) - scheme);
+  const std::size_t colon = host.rfind(':');
+  const bool has_port = colon != host.npos && host.find(']', colon) == host.npos;
+  const long port = has_port ? std::strtol(host.c_str() + colon + 1, nullptr, 10) : 1;
+  if (scheme == 0 || url.size() <= scheme || host.empty() || colon == 0 || port < 1 ||
+      port > 65'535 || url.find_first_of(" \t\r\n") != url.npos) {
+    fail("{} \"{}\" is not a web address; write it as {}", option, one_line(given, 80),
+         kEliaBaseUrl);
+  }
+  return url;
+}
+
+}  // namespace bess

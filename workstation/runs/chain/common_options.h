@@ -1,0 +1,34 @@
+// Options that several subcommands share, and what they resolve to: one place for their names and
+// ranges.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "shared/host/command_line.h"
+#include "workstation/runs/chain/run_config.h"
+
+namespace bess {
+
+struct CommonOptions {
+  std::string config_path;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> threads;
+  std::optional<int> delay_min;
+  std::optional<std::string> settlement;
+  std::optional<double> initial_soc_frac;
+
+  void add_config(ProgramCommand& command);
+  void add_seed_and_threads(ProgramCommand& command);
+  void add_market(ProgramCommand& command);
+
+  /// The configuration file with the command line's options on top.
+  [[nodiscard]] RunConfig resolve(ContextKind unless_said = ContextKind::kLevel) const;
+  /// The same on top of `config`, whatever file is named.
+  [[nodiscard]] RunConfig resolve(RunConfig config) const;
+};
+
+/// The root of a web API without its last slash; throws UserError naming `option` when it is none.
+std::string checked_base_url(std::string url, const std::string& option);
+
+}  // namespace bess

@@ -1,0 +1,138 @@
+#include "workstation/runs/chain/folder_lock.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <string_view>
+#include <thread>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+
+namespace bess {
+
+namespace {
+
+constexpr int kExitInterrupted = 3;
+constexpr int kExitInterruptedTwice = 130;  // what a shell gives a program that Ctrl-C killed
+
+char note_text[512] = "";  // a handler may not allocate
+std::atomic<std::size_t> note_size{0};
+
+void say(std::string_view text) {
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+[[noreturn]] void end_now(int exit_code) {
+  remove_unfinished_files();
+  say("\n");
+  say({note_text, note_size.load()});
+  say("bess-train: interrupted\n");
+  _exit(exit_code);
+}
+
+void handle_with(void (*handler)(int)) {
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+}  // namespace
+
+void end_when_interrupted(const std::string& note) {
+  const std::string line = note.empty() ? "" : note + "\n";
+  note_size = 0;
+  const std::size_t size = std::min(line.size(), sizeof note_text);
+  std::copy_n(line.data(), size, note_text);
+  note_size = size;
+  handle_with([](int) { end_now(kExitInterrupted); });
+}
+
+std::atomic<bool>& interruption() {
+  static std::atomic<bool> interrupted{false};
+  static_assert(std::atomic<bool>::is_always_lock_free);
+  return interrupted;
+}
+
+void watch_interruption() {
+  interruption();  // constructed before a signal can come
+  handle_with([](int) {
+    if (interruption().exchange(true)) end_now(kExitInterruptedTwice);
+  });
+}
+
+std::function<bool()> watched_from_the_first_look() {
+  return [watching = false]() mutable {
+    if (!watching) watch_interruption();
+    watching = true;
+    return interruption().load();
+  };
+}
+
+void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!interrupted && Clock::now() < end) {
+    const std::chrono::duration<double> left = end - Clock::now();
+    std::this_thread::sleep_for(std::min(left, std::chrono::duration<double>(0.1)));
+  }
+}
+
+namespace {
+
+[[noreturn]] void at_work(const std::filesystem::path& place) {
+  fail("{}: another bess-train is at work here; wait for it, or give another --out",
+       place.string());
+}
+
+/// A file system that gives no lock, as many a cluster's: whoever works there must know.
+void warn_unlocked(const std::filesystem::path& place) {
+  fmt::print(stderr,
+             "bess-train: warning: {}: its file system gives no lock ({}): nothing keeps another "
+             "bess-train from working here at the same time [no-lock]\n",
+             place.string(), std::strerror(errno));
+}
+
+/// The lock file of a program that ended is taken away by it: a lock on what is no longer there is
+/// none.
+bool is_still_there(int fd, const std::filesystem::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(fd, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+         held.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder, Of what)
+    : fd_(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  const int kind = what == Of::kFolder ? LOCK_EX : LOCK_SH;
+  if (fd_.get() < 0 || flock(fd_.get(), kind | LOCK_NB) == 0) return;
+  if (errno == EWOULDBLOCK) at_work(folder);
+  warn_unlocked(folder);
+}
+
+FileLock::FileLock(const std::filesystem::path& file) : path_(file.string() + ".lock") {
+  do {
+    fd_.emplace(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+    if (fd_->get() < 0) return;  // whether it can be written is asked elsewhere
+    if (flock(fd_->get(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK) at_work(file);
+      warn_unlocked(file);
+      return;
+    }
+  } while (!is_still_there(fd_->get(), path_));
+}
+
+FileLock::~FileLock() {
+  if (fd_->get() >= 0) unlink(path_.c_str());
+}
+
+}  // namespace bess

@@ -1,0 +1,316 @@
+#include "workstation/runs/chain/run_config.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <vector>
+
+#include "shared/battery_keys.h"
+#include "shared/host/file.h"
+#include "shared/host/text.h"
+#include "shared/host/toml_reader.h"
+#include "shared/host/user_error.h"
+#include "workstation/runs/chain/config_plausibility.h"
+
+namespace bess {
+namespace {
+
+using enum KeyUse;
+
+struct Key {
+  std::string section;
+  std::string name;
+  KeyUse use;
+  std::string comment;
+  std::function<void(TomlTable&)> read;
+  std::function<std::string()> get;
+};
+
+/// The list of keys, bound to the fields of one configuration.
+class KeyList {
+ public:
+  explicit KeyList(RunConfig& config) { list(config); }
+  [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+
+ private:
+  void section(std::string name) { section_ = std::move(name); }
+
+  void number(const char* name, KeyUse use, double& field, double low, double high,
+              const char* comment) {
+    keys_.push_back({section_, name, use, fmt::format("{} ({:g} .. {:g})", comment, low, high),
+                     [=, &field](TomlTable& table) { table.number(name, field, low, high); },
+                     [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0: never -0
+  }
+  template <typename Integer>
+  void integer(const char* name, KeyUse use, Integer& field, std::int64_t low, std::int64_t high,
+               const char* comment) {
+    keys_.push_back({section_, name, use, fmt::format("{} ({} .. {})", comment, low, high),
+                     [=, &field](TomlTable& table) {
+                       auto wide = static_cast<std::int64_t>(field);
+                       table.integer(name, wide, low, high);
+                       field = static_cast<Integer>(wide);
+                     },
+                     [&field] { return fmt::format("{}", field); }});
+  }
+  void boolean(const char* name, KeyUse use, bool& field, const char* comment) {
+    keys_.push_back({section_, name, use, comment,
+                     [name, &field](TomlTable& table) { table.boolean(name, field); },
+                     [&field] { return std::string(field ? "true" : "false"); }});
+  }
+  template <typename Enum>
+  void choice(const char* name, KeyUse use, Enum& field,
+              std::initializer_list<std::string_view> choices, const char* comment) {
+    const std::vector<std::string_view> names(choices);
+    keys_.push_back({section_, name, use, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
+                     [=, &field](TomlTable& table) {
+                       int index = static_cast<int>(field);
+                       table.choice(name, index, names);
+                       field = static_cast<Enum>(index);
+                     },
+                     [names, &field] {
+                       return fmt::format("\"{}\"", names[static_cast<std::size_t>(field)]);
+                     }});
+  }
+
+  void list(RunConfig& c);
+
+  std::string section_;
+  std::vector<Key> keys_;
+};
+
+void KeyList::list(RunConfig& c) {
+  section("market");
+  integer("observation_delay_min", kLearning, c.market.observation_delay_min, 0, 5,
+          "newest row visible at minute t is t - delay; 0 is the paper's ideal");
+  choice("settlement", kLearning, c.market.settlement, {"minute", "step"},
+         "pay each minute at its own quarter-hour, or the step at the one it starts in");
+  integer(
+      "day_ahead_published_min", kEvaluation, c.market.day_ahead_published_min, 0, 1439,
+      "local minute of the day before from which day-ahead prices count as known; 780 is 13:00");
+
+  section("battery");
+  for (const BatteryKey& key : kBatteryKeys) {
+    number(key.name, kLearning, key.of(c.battery), key.low, key.high, key.comment);
+  }
+  number("wear_eur_per_mwh", kLearning, c.battery.wear_eur_per_mwh, 0, 1000,
+         "cost of throughput, charged and discharged; every profit and reward is net of it");
+  number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,
+         "equivalent full cycles a local day, then no further order that day; 0 is no limit");
+  number("fade_percent_per_1000_cycles", kEvaluation, c.battery.fade_percent_per_1000_cycles, 0,
+         100,
+         "of capacity, as [ageing] cycle_percent_per_1000 of bess-train size; no plan knows it");
+  number("minimum_run_min", kEvaluation, c.battery.minimum_run_min, 0, 240,
+         "that charging or discharging is kept, whatever is decided; no plan knows it");
+  number("initial_soc", kLearning, c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
+
+  section("costs");
+  TradingCosts& costs = c.battery.costs;
+  number("import_adder_eur_per_mwh", kLearning, costs.import_adder_eur_per_mwh, 0, 1000,
+         "on top of the price of what is charged: grid fee, taxes, supplier");
+  number("import_percent", kLearning, costs.import_percent, 0, 100,
+         "the same as a share of the price's size: at -100 and 5 %, one is paid 95");
+  number("export_fee_eur_per_mwh", kLearning, costs.export_fee_eur_per_mwh, 0, 1000,
+         "off the price of what is discharged: grid fee, supplier");
+  number("export_percent", kLearning, costs.export_percent, 0, 100,
+         "the same as a share of the price's size: at -100 and 5 %, one pays 105");
+
+  section("train");
+  choice("method", kLearning, c.train.method, {"c51", "dqn", "sdp"},
+         "distributional or plain Q-learning, or the stochastic program, exact for its model");
+  choice("context", kLearning, c.train.context, {"month", "level", "outlook"},
+         "the student's third input: local month, class of the trailing price level, or of the "
+         "break-even price of a plan on day-ahead prices: what it is with --day-ahead");
+  choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
+         "experience: one price move serves every SoC and action, or epsilon-greedy days");
+  choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},
+         "midnight is a truncation, or the end");
+  integer("steps", kLearning, c.train.steps, 1, 10'000'000, "gradient steps");
+  integer("batch_size", kLearning, c.train.batch_size, 1, 1 << 20, "transitions a step");
+  number("learning_rate", kLearning, c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
+  number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1, "at the end of a cosine");
+  number("gamma", kLearning, c.train.gamma, 0, 0.999999, "discount a step");
+  boolean("residual", kLearning, c.train.residual,
+          "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
+  number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
+         "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
+  number("tau", kLearning, c.train.tau, 1e-6, 1,
+         "target <- tau * online + (1 - tau) * target, each step");
+  integer("atoms", kLearning, c.train.atoms, 2, 1001, "of the value distribution");
+  number("value_min_eur_per_h", kLearning, c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
+  number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
+  number("mean_weight", kLearning, c.train.mean_weight, 0, 1000,
+         "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
+  number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,
+         "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
+         "by heart");
+  number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
+         "the same for the context class");
+  number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
+         "of the averaged weights that are validated and kept");
+  integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");
+
+  section("distil");
+  choice("method", kLearning, c.distil.method, {"construction", "layer"},
+         "monotone by the signs of its weights, or the paper's optimisation layer");
+  number("fidelity", kLearning, c.distil.fidelity, 0, 100,
+         "construction: following the teacher's every choice, beside losing no money");
+  number("level_shift_eur_per_mwh", kLearning, c.distil.level_shift_eur_per_mwh, 0, 1000,
+         "construction, a teacher with a program: deviation of what visited days are moved by");
+  number("omega", kLearning, c.distil.omega, 1e-8, 1,
+         "layer: the paper's trade-off, larger follows the teacher");
+  number("temperature_eur_per_h", kLearning, c.distil.temperature_eur_per_h, 1e-3, 1e6,
+         "of the teacher's softmax over action values");
+  integer("epochs", kLearning, c.distil.epochs, 1, 1'000'000,
+          "of 16 Adam steps (construction), or of 64 lattices and 32,768 visited states (layer)");
+  integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64,
+          "Adam steps that share an epoch");
+  number("learning_rate", kLearning, c.distil.learning_rate, 1e-7, 1,
+         "of Adam, falling to a tenth");
+  integer("repair_rounds", kLearning, c.distil.repair_rounds, 0, 1000,
+          "proofs that may fail before giving up; each trains on its counterexamples");
+  integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000, "of each repair");
+
+  section("correction");
+  PriceThresholds& thresholds = c.distil.correction.thresholds;
+  integer("low_price_eur_per_mwh", kLearning, thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
+          kThresholdMaxEurPerMwh, "property 1: charge at or below; binds the student from -500 up");
+  integer("high_price_eur_per_mwh", kLearning, thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
+          kThresholdMaxEurPerMwh,
+          "property 2: discharge at or above; binds the student up to 1500");
+  number("logit_margin", kLearning, c.distil.correction.logit_margin, 0.01, 100,
+         "at the thresholds");
+  number("price_slope", kLearning, c.distil.correction.price_slope, 0, 100,
+         "logits over the price range by which the order must fall at least");
+  number("soc_slope", kLearning, c.distil.correction.soc_slope, 0, 100,
+         "the same over the SoC range");
+}
+
+void check_relations(const RunConfig& config, const std::string& name) {
+  if (const char* wrong = battery_contradiction(config.battery)) {
+    fail("{}: [battery] {}", name, wrong);
+  }
+  if (config.initial_soc_frac < config.battery.soc_min_frac ||
+      config.initial_soc_frac > config.battery.soc_max_frac) {
+    fail("{}: [battery] initial_soc {:g} is outside soc_min {:g} .. soc_max {:g}", name,
+         config.initial_soc_frac, config.battery.soc_min_frac, config.battery.soc_max_frac);
+  }
+  if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
+    fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
+  }
+  if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
+    fail("{}: [train] horizon = \"day\" needs residual = false: the program's days have no end",
+         name);
+  }
+  const TrainOptions& train = config.train;
+  if (train.context == ContextKind::kOutlook &&
+      (!train.residual || train.source != Source::kCounterfactual)) {
+    fail(
+        "{}: [train] context = \"outlook\" needs residual = true and source = "
+        "\"counterfactual\": the network adds to the plan; or set context = \"level\"",
+        name);
+  }
+  if (config.train.residual && config.train.atoms % 2 == 0) {
+    fail("{}: [train] residual needs an odd number of atoms, not {}: zero is the middle one", name,
+         config.train.atoms);
+  }
+  if (!config.distil.correction.thresholds.are_ordered()) {
+    fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);
+  }
+}
+
+/// Sections and keys of the document, each of which must be one of `keys`. Throws UserError.
+void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
+  std::string error;
+  TomlTable root(&document, *document.file, "", error);
+  for (auto key = keys.begin(); key != keys.end();) {
+    const std::string& section = key->section;
+    TomlTable table(root.table(section), *document.file, "[" + section + "]", error);
+    for (; key != keys.end() && key->section == section; ++key) key->read(table);
+    table.finish();
+  }
+  root.finish();
+  if (!error.empty()) fail("{}; 'bess-train config' lists all keys", error);
+}
+
+}  // namespace
+
+RunConfig parse_run_config(std::string_view text, const std::string& name) {
+  RunConfig config;
+  apply_config_text(config, text, name);
+  require_consistent(config, name);
+  return config;
+}
+
+RunConfig load_run_config(const std::filesystem::path& path, ContextKind unless_said) {
+  RunConfig config;
+  config.train.context = unless_said;
+  if (path.empty()) return config;
+  apply_config_text(config, read_file(path, kTomlBytesMax), path.string());
+  require_consistent(config, path.string());
+  return config;
+}
+
+void set_config_key(RunConfig& config, std::string_view key, const TomlValue& value) {
+  const std::size_t dot = key.find('.');
+  const std::string name(key.substr(dot == key.npos ? key.size() : dot + 1));
+  TomlValue section = value;
+  section.held = TomlMembers{{name, value}};
+  TomlValue document = section;
+  document.held = TomlMembers{{std::string(key.substr(0, dot)), section}};
+  if (name.empty()) {
+    fail("{}:{}: \"{}\" is no key of a configuration: write section.key, such as distil.fidelity",
+         *value.file, value.line, one_line(key));
+  }
+  const KeyList list(config);
+  apply_document(document, list.keys());
+}
+
+void apply_config_text(RunConfig& config, std::string_view text, const std::string& name) {
+  const KeyList list(config);
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
+  apply_document(document, list.keys());
+}
+
+void require_consistent(const RunConfig& config, const std::string& name) {
+  check_relations(config, name);
+  require_plausible(config, name);
+}
+
+std::vector<ConfigKey> config_keys() {
+  RunConfig config;
+  const KeyList list(config);
+  std::vector<ConfigKey> keys;
+  for (const Key& key : list.keys()) {
+    keys.push_back({fmt::format("[{}] {}", key.section, key.name), key.use});
+  }
+  return keys;
+}
+
+std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  std::vector<std::pair<std::string, std::string>> entries;
+  for (const Key& key : list.keys()) {
+    entries.emplace_back(fmt::format("[{}] {}", key.section, key.name), key.get());
+  }
+  return entries;
+}
+
+std::string format_run_config(const RunConfig& config) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  std::string text;
+  std::string section;
+  for (const Key& key : list.keys()) {
+    if (key.section != section) {
+      section = key.section;
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
+    }
+    text += fmt::format("{} = {}  # {}\n", key.name, key.get(), key.comment);
+  }
+  return text;
+}
+
+}  // namespace bess

@@ -1,0 +1,39 @@
+#include "workstation/runs/chain/source_tree.h"
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// From the current folder when it lies below, which is how people name it.
+fs::path shortened(const fs::path& path) {
+  std::error_code error;
+  const fs::path relative = fs::relative(path, error);
+  return error || relative.empty() || *relative.begin() == ".." ? path : relative;
+}
+
+}  // namespace
+
+std::optional<fs::path> header_in_tree_around(const fs::path& folder) {
+  for (fs::path at = folder; !at.empty(); at = at.parent_path()) {
+    const fs::path header = at / "edge" / "generated" / "student_weights.h";
+    if (fs::exists(header) && fs::exists(at / "edge" / "CMakeLists.txt")) return header;
+    if (at == at.root_path()) break;
+  }
+  return std::nullopt;
+}
+
+fs::path header_to_replace() {
+  std::error_code error;
+  if (const auto header = header_in_tree_around(fs::current_path())) return shortened(*header);
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (const auto header = header_in_tree_around(program.parent_path())) return shortened(*header);
+  fail(
+      "there is no source tree around {} or {}, whose edge/generated/student_weights.h could be "
+      "replaced; go there, or name the header with --out",
+      fs::current_path().string(), program.string());
+}
+
+}  // namespace bess

@@ -1,0 +1,410 @@
+#include "workstation/runs/impact/impact_study.h"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/file.h"
+#include "workstation/base/answer.h"
+#include "workstation/base/in_parallel.h"
+#include "workstation/base/palette.h"
+#include "workstation/base/progress.h"
+#include "workstation/data/market/series/imbalance_price.h"
+#include "workstation/data/market/series/local_date.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
+#include "workstation/report/figures/picture_table.h"
+#include "workstation/report/figures/sort_table.h"
+#include "workstation/report/report_page.h"
+#include "workstation/runs/chain/policy_factory.h"
+
+namespace bess {
+
+namespace {
+
+/// The year whose imbalances the simulated market was fitted to.
+constexpr LocalDate kFirstDay{2023, 1, 1};
+/// Before the test days, not counted: the trailing price level finds its place.
+constexpr int kWarmUpDays = 5;
+
+/// Wear that a shy fleet plans with beside its own, EUR/MWh.
+constexpr double kShynesses[] = {0, 20, 50, 100, 200, 400};
+
+using Policies = std::vector<std::shared_ptr<Policy>>;
+
+std::vector<FleetPart> fleet_of(const Policies& policies, const ImpactVariant& variant,
+                                const ImpactPlan& plan) {
+  const int clocks = variant.is_spread ? plan.jitter_min + 1 : 1;
+  std::vector<FleetPart> fleet;
+  for (const auto& policy : policies) {
+    for (int late_min = 0; late_min < clocks; ++late_min) {
+      fleet.push_back({policy, 1.0 / static_cast<double>(clocks * policies.size()), late_min,
+                       variant.has_small_steps ? plan.step_share : 2});
+    }
+  }
+  return fleet;
+}
+
+/// One seed's market, cut into what is learnt from and what is traded.
+class SeedOfMarket {
+ public:
+  SeedOfMarket(const ImpactPlan& plan, std::uint64_t seed)
+      : plan_(plan),
+        whole_(
+            draw_market(local_midnight_utc_s(kFirstDay), plan.train_days + plan.test_days, seed)),
+        train_(whole_) {
+    train_.quarter_hours.resize(quarter_hour_of(plan.train_days));
+    train_.paths.resize(train_.quarter_hours.size());
+  }
+
+  /// What the fleet makes of the training days.
+  [[nodiscard]] FleetRun trained(const std::vector<FleetPart>& fleet,
+                                 const FleetOptions& options) const {
+    return run_fleet(train_, fleet, options);
+  }
+
+  [[nodiscard]] ImpactFigures traded(const std::vector<FleetPart>& fleet,
+                                     FleetOptions options) const {
+    options.first_quarter_hour = quarter_hour_of(plan_.train_days - kWarmUpDays);
+    FleetRun run = run_fleet(whole_, fleet, options);
+    ImpactFigures figures = imbalances(run, options.first_quarter_hour);
+    const std::string first_day = format_local_date(add_days(kFirstDay, plan_.train_days));
+    for (std::size_t p = 0; p < fleet.size(); ++p) {
+      std::erase_if(run.parts[p].days, [&](const DayResult& day) { return day.date < first_day; });
+      figures.switches_per_day += fleet[p].share * run.parts[p].switches_per_day();
+    }
+    figures.eur_per_mw_day = eur_per_mw_day(run, fleet, options);
+    return figures;
+  }
+
+  [[nodiscard]] static double eur_per_mw_day(const FleetRun& run,
+                                             const std::vector<FleetPart>& fleet,
+                                             const FleetOptions& options) {
+    double eur = 0;
+    for (std::size_t p = 0; p < fleet.size(); ++p) {
+      eur += fleet[p].share * run.parts[p].profit_eur_per_day_per_mwh() * run.parts[p].capacity_mwh;
+    }
+    return eur / (options.battery.power_w_max / kWattsPerMegawatt);
+  }
+
+ private:
+  [[nodiscard]] std::size_t quarter_hour_of(int day) const {
+    const std::int64_t utc_s = local_midnight_utc_s(add_days(kFirstDay, day));
+    return static_cast<std::size_t>((utc_s - whole_.quarter_hours.front().utc_s) /
+                                    kSecondsPerQuarterHour);
+  }
+
+  [[nodiscard]] ImpactFigures imbalances(const FleetRun& run, std::size_t first) const {
+    ImpactFigures figures{};
+    const std::size_t begin = quarter_hour_of(plan_.train_days);
+    const auto count = static_cast<double>(whole_.paths.size() - begin);
+    for (std::size_t q = begin; q < whole_.paths.size(); ++q) {
+      const double alone_mw = whole_.paths[q].imbalance_mw.back();
+      const double with_mw = run.imbalance_mw[q - first];
+      figures.imbalance_alone_mw += std::fabs(alone_mw) / count;
+      figures.imbalance_mw += std::fabs(with_mw) / count;
+      figures.overshoot_share += is_short(alone_mw) != is_short(with_mw) ? 1 / count : 0;
+    }
+    return figures;
+  }
+
+  const ImpactPlan& plan_;
+  DrawnMarket whole_, train_;
+};
+
+Policies fitted(const ImpactPlan& plan, const MinuteSeries& prices, const FleetOptions& options) {
+  Policies policies;
+  for (const std::string& name : plan.policies) {
+    policies.push_back(fitted_policy(name, prices, options));
+  }
+  return policies;
+}
+
+/// Of policies with more and more wear that which earned most on the training days.
+const Policies& shy(const std::vector<Policies>& candidates, const ImpactPlan& plan,
+                    const FleetOptions& options, const SeedOfMarket& market) {
+  const auto earned = [&](const Policies& policies) {
+    const std::vector<FleetPart> fleet = fleet_of(policies, {}, plan);
+    return SeedOfMarket::eur_per_mw_day(market.trained(fleet, options), fleet, options);
+  };
+  return *std::ranges::max_element(candidates, {}, earned);
+}
+
+/// All fleets of one formula and seed: [fleet][variant].
+std::vector<std::vector<ImpactFigures>> figures_of(const ImpactPlan& plan,
+                                                   const FleetOptions& options,
+                                                   const SeedOfMarket& market) {
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  const MinuteSeries untouched = market.trained({}, options).prices;
+  std::vector<Policies> candidates;
+  for (const double shyness : kShynesses) {
+    FleetOptions wary = options;
+    wary.battery.wear_eur_per_mwh += shyness;
+    candidates.push_back(fitted(plan, untouched, wary));
+  }
+  std::vector<std::vector<ImpactFigures>> all;
+  for (const double mw : plan.fleet_mw) {
+    FleetOptions with = options;
+    with.fleet_mw = mw;
+    Policies learnt = candidates.front();
+    std::vector<ImpactFigures> row;
+    for (const ImpactVariant& variant : variants) {
+      if (variant.round > 0) {
+        learnt = fitted(plan, market.trained(fleet_of(learnt, variant, plan), with).prices, with);
+      }
+      const Policies& used = variant.is_shy ? shy(candidates, plan, with, market) : learnt;
+      row.push_back(market.traded(fleet_of(used, variant, plan), with));
+    }
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+ImpactRow row_of(const std::vector<ImpactFigures>& seeds) {
+  ImpactRow row{};
+  const auto count = static_cast<double>(seeds.size());
+  for (const ImpactFigures& seed : seeds) {
+    row.mean.eur_per_mw_day += seed.eur_per_mw_day / count;
+    row.mean.overshoot_share += seed.overshoot_share / count;
+    row.mean.imbalance_mw += seed.imbalance_mw / count;
+    row.mean.imbalance_alone_mw += seed.imbalance_alone_mw / count;
+    row.mean.switches_per_day += seed.switches_per_day / count;
+  }
+  double squares = 0;
+  for (const ImpactFigures& seed : seeds) {
+    squares += std::pow(seed.eur_per_mw_day - row.mean.eur_per_mw_day, 2);
+  }
+  row.standard_error = seeds.size() > 1 ? std::sqrt(squares / (count - 1) / count) : NAN;
+  return row;
+}
+
+}  // namespace
+
+std::vector<ImpactVariant> impact_variants(const ImpactPlan& plan) {
+  std::vector<ImpactVariant> variants{{"as it is"},
+                                      {"spread in time", true},
+                                      {"small steps", false, true},
+                                      {"shy", false, false, true}};
+  for (int round = 1; round <= plan.rounds; ++round) {
+    variants.push_back({fmt::format("round {}", round), false, false, false, round});
+  }
+  return variants;
+}
+
+std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
+                                      const FleetOptions& options) {
+  MarketSteps market =
+      make_market_steps(prices, {.observation_delay_min = options.observation_delay_min});
+  for (MarketDay& day : market.days) day.split = Split::kTrain;
+  return make_policy(name, market, options.battery);
+}
+
+std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& base) {
+  const std::size_t formulas = kFormulaNames.size();
+  const auto seeds = static_cast<std::size_t>(plan.seeds);
+  std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
+  Progress progress("impact", "markets", static_cast<double>(found.size()));
+  in_parallel(found.size(), plan.threads, progress, [&](std::size_t i) {
+    FleetOptions options = base;
+    options.formula = static_cast<PriceFormula>(i / seeds);
+    found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
+  });
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  std::vector<ImpactRow> rows;
+  for (std::size_t f = 0; f < formulas; ++f) {
+    for (std::size_t m = 0; m < plan.fleet_mw.size(); ++m) {
+      for (std::size_t v = 0; v < variants.size(); ++v) {
+        std::vector<ImpactFigures> of_seeds;
+        for (std::size_t s = 0; s < seeds; ++s) of_seeds.push_back(found[f * seeds + s][m][v]);
+        ImpactRow row = row_of(of_seeds);
+        row.formula = static_cast<PriceFormula>(f);
+        row.fleet_mw = plan.fleet_mw[m];
+        row.variant = variants[v].name;
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+namespace {
+
+constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark, &kIdle};
+
+std::string formula_name(PriceFormula formula) {
+  return std::string(kFormulaNames[static_cast<std::size_t>(formula)]);
+}
+
+Table table_of(const std::vector<ImpactRow>& rows) {
+  using R = ImpactRow;
+  static const std::vector<Column<R>> kColumns{
+      {{"formula", "", "", 0, "Formula"}, [](const R& r) { return formula_name(r.formula); }},
+      {{"fleet_mw", "", "", kAllDecimals, "MW"}, &R::fleet_mw},
+      {{"variant", "", "", 0, "Variant"}, &R::variant},
+      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR a MW and day"},
+       [](const R& r) { return r.mean.eur_per_mw_day; }},
+      {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds"}, &R::standard_error},
+      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot"},
+       [](const R& r) { return r.mean.overshoot_share; }},
+      {{"imbalance_mw", "", "{:.1f}", 4, "Mean |SI|, MW"},
+       [](const R& r) { return r.mean.imbalance_mw; }},
+      {{"imbalance_alone_mw", "", "{:.1f}", 4, "Without, MW"},
+       [](const R& r) { return r.mean.imbalance_alone_mw; }},
+      {{"switches_per_day", "", "{:.1f}", 4, "Switches a day"},
+       [](const R& r) { return r.mean.switches_per_day; }},
+  };
+  return {kColumns, rows};
+}
+
+const ImpactRow& row_at(const std::vector<ImpactRow>& rows, PriceFormula formula, double mw,
+                        const std::string& variant) {
+  return *std::ranges::find_if(rows, [&](const ImpactRow& row) {
+    return row.formula == formula && row.fleet_mw == mw && row.variant == variant;
+  });
+}
+
+/// Where the fleet as a whole earns most, and from where on the system would do better without it.
+std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>& rows,
+                           PriceFormula formula) {
+  const auto as_it_is = [&](double mw) -> const ImpactRow& {
+    return row_at(rows, formula, mw, impact_variants(plan).front().name);
+  };
+  const auto money = [&](double mw) { return mw * as_it_is(mw).mean.eur_per_mw_day; };
+  const auto imbalance = [&](double mw) { return as_it_is(mw).mean.imbalance_mw; };
+  const double most = *std::ranges::max_element(plan.fleet_mw, {}, money);
+  const double best = *std::ranges::min_element(plan.fleet_mw, {}, imbalance);
+  std::string text =
+      fmt::format("{}: earns most in all at {:g} MW; the system's imbalance is least at {:g} MW",
+                  formula_name(formula), most, best);
+  for (const double mw : plan.fleet_mw) {
+    const ImpactFigures& figures = as_it_is(mw).mean;
+    if (mw <= best || figures.imbalance_mw <= figures.imbalance_alone_mw) continue;
+    return text + fmt::format(", and larger than without a fleet from {:g} MW on", mw);
+  }
+  return text;
+}
+
+/// Lines over the fleet's size: `value` of each of the rows that `named` tells apart.
+template <typename Value>
+Json lines_chart(const std::string& id, const ImpactPlan& plan,
+                 const std::vector<std::string>& names, Value value) {
+  Json labels = Json::list(), series = Json::list();
+  for (const double mw : plan.fleet_mw) labels.add(fmt::format("{:g} MW", mw));
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    Json line = Json::list(), values = Json::list();
+    for (const double mw : plan.fleet_mw) values.add(value(n, mw));
+    line.add(names[n]);
+    line.add(kLineColours[n % kLineColours.size()]->name);
+    line.add(std::move(values));
+    series.add(std::move(line));
+  }
+  Json chart = Json::object({{"id", id}, {"kind", "lines"}});
+  chart.set("labels", std::move(labels));
+  chart.set("series", std::move(series));
+  return chart;
+}
+
+std::string with_error(const ImpactRow& row) {
+  const std::string error =
+      std::isnan(row.standard_error) ? "" : fmt::format(" ({:.0f})", row.standard_error);
+  return fmt::format("{:.0f}{}", row.mean.eur_per_mw_day, error);
+}
+
+std::string plan_text(const ImpactPlan& plan) {
+  return fmt::format(
+      "{} simulated markets, each {} days learnt from and {} traded; {}; spread: clocks 0 to {} "
+      "min "
+      "late; small steps: {:g} % of the power each two minutes",
+      plan.seeds, plan.train_days, plan.test_days, fmt::join(plan.policies, " and "),
+      plan.jitter_min, 100 * plan.step_share);
+}
+
+}  // namespace
+
+std::string format_impact_table(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
+  std::string text =
+      fmt::format("EUR a MW and day (standard error over seeds)\n{}\n", plan_text(plan));
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  for (std::size_t f = 0; f < kFormulaNames.size(); ++f) {
+    const auto formula = static_cast<PriceFormula>(f);
+    text += fmt::format("\n{:<12}{:>6}", kFormulaNames[f], "MW");
+    for (const ImpactVariant& variant : variants) text += fmt::format(" {:>14}", variant.name);
+    text += fmt::format(" {:>10} {:>10} {:>8}\n", "overshoot", "|SI|, MW", "switches");
+    for (const double mw : plan.fleet_mw) {
+      text += fmt::format("{:>18g}", mw);
+      for (const ImpactVariant& variant : variants) {
+        text += fmt::format(" {:>14}", with_error(row_at(rows, formula, mw, variant.name)));
+      }
+      const ImpactFigures& figures = row_at(rows, formula, mw, variants.front().name).mean;
+      text += fmt::format(" {:>8.1f} % {:>10.1f} {:>8.1f}\n", 100 * figures.overshoot_share,
+                          figures.imbalance_mw, figures.switches_per_day);
+    }
+  }
+  text += "\n";
+  for (std::size_t f = 0; f < kFormulaNames.size(); ++f) {
+    text += turning_points(plan, rows, static_cast<PriceFormula>(f)) + "\n";
+  }
+  return text + "overshoot, |SI| and switches: of the fleet as it is\n";
+}
+
+std::string impact_csv(const std::vector<ImpactRow>& rows) { return table_of(rows).csv(); }
+
+Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
+  Json policies = Json::list();
+  for (const std::string& policy : plan.policies) policies.add(policy);
+  Json json = answer("impact");
+  json.set("policies", std::move(policies));
+  json.set("seeds", plan.seeds);
+  json.set("train_days", plan.train_days);
+  json.set("test_days", plan.test_days);
+  json.set("fleets", table_of(rows).json());
+  return json;
+}
+
+void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& rows,
+                       const std::filesystem::path& folder) {
+  const std::vector<std::string> formulas(kFormulaNames.begin(), kFormulaNames.end());
+  std::vector<std::string> variants;
+  for (const ImpactVariant& variant : impact_variants(plan)) variants.push_back(variant.name);
+  Json charts = Json::list();
+  std::string body = fmt::format(
+      "<h1>A fleet that moves its own price</h1>\n<p>{}.</p>\n<p class=\"note\">{}</p>\n",
+      html_escaped(plan_text(plan)), csv_link("impact.csv"));
+  const auto figure = [&](const std::string& title, const std::string& id, Json chart,
+                          const std::string& note) {
+    charts.add(std::move(chart));
+    body += fmt::format("<figure>\n<h2>{}</h2>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+                        html_escaped(title), chart_html(id, title), html_escaped(note));
+  };
+  const auto of_formula = [&](std::size_t f, double mw) -> const ImpactFigures& {
+    return row_at(rows, static_cast<PriceFormula>(f), mw, variants.front()).mean;
+  };
+  figure("EUR a MW and day over the fleet's size", "money",
+         lines_chart("money", plan, formulas,
+                     [&](std::size_t f, double mw) { return of_formula(f, mw).eur_per_mw_day; }),
+         "The fleet as it is, by price formula.");
+  figure("The system's imbalance with the fleet, mean size, MW", "imbalance",
+         lines_chart("imbalance", plan, formulas,
+                     [&](std::size_t f, double mw) { return of_formula(f, mw).imbalance_mw; }),
+         fmt::format("Without a fleet {:.1f} MW.", rows.front().mean.imbalance_alone_mw));
+  for (std::size_t f = 0; f < formulas.size(); ++f) {
+    const auto formula = static_cast<PriceFormula>(f);
+    const std::string id = fmt::format("variants-{}", f + 1);
+    figure(fmt::format("What saves it, formula {}", formulas[f]), id,
+           lines_chart(id, plan, variants,
+                       [&](std::size_t v, double mw) {
+                         return row_at(rows, formula, mw, variants[v]).mean.eur_per_mw_day;
+                       }),
+           turning_points(plan, rows, formula) + ".");
+  }
+  body += fmt::format("{}<script>\n{}</script>\n",
+                      sort_table_html(sort_table("rows", "Every fleet", table_of(rows))),
+                      page_file("sort.js"));
+  write_file(folder / "impact.html",
+             format_chart_page("A fleet that moves its own price", body, std::move(charts)));
+}
+
+}  // namespace bess

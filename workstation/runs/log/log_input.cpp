@@ -1,0 +1,252 @@
+#include "workstation/runs/log/log_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "shared/local_day.h"
+#include "shared/units_and_limits.h"
+#include "workstation/data/market/series/local_date.h"
+#include "workstation/runs/chain/run_config.h"
+
+namespace bess {
+
+namespace {
+
+LocalDate date_of(std::int32_t day) { return {day / 10'000, day / 100 % 100, day % 100}; }
+
+std::vector<ExchangeSample> samples_of(const CycleLog& log, const BatteryParameters& battery) {
+  std::vector<ExchangeSample> samples;
+  for (const LoggedCycle& c : log.cycles) {
+    if (!c.has_reading) continue;
+    samples.push_back({.utc_s = c.utc_s,
+                       .power_w = static_cast<std::int32_t>(c.power_w),
+                       .soc_e4 = static_cast<std::int32_t>(std::lround(c.soc_frac * kSocFullE4)),
+                       .capacity_wh = static_cast<std::int32_t>(battery.capacity_wh),
+                       .order_w = static_cast<std::int32_t>(c.ordered_w),
+                       .is_ordered = c.is_ordered});
+    if (c.is_ordered && c.has_price) {
+      samples.back().set_written(c.price_minute_utc_s, c.price_age_s);
+    }
+  }
+  return samples;
+}
+
+int direction(const LoggedCycle& cycle) { return (cycle.ordered_w > 0) - (cycle.ordered_w < 0); }
+
+void add_cycle(const LoggedCycle& c, LoggedDay& day) {
+  ++day.cycles;
+  day.driven_cycles += c.is_driven ? 1 : 0;
+  if (c.reason != "student") ++day.stopped[c.reason];
+  if (!c.has_reading) return;
+  if (!day.has_reading) day.soc_start_frac = c.soc_frac;
+  day.soc_end_frac = c.soc_frac;
+  day.has_reading = true;
+}
+
+}  // namespace
+
+std::vector<SettledQuarter> read_settled(const std::string& path) {
+  std::vector<SettledQuarter> settled;
+  if (path.empty()) return settled;
+  const CsvTable table = CsvTable::read(path);
+  const std::size_t start = table.column("quarter_hour_utc");
+  const std::size_t price = table.column("eur_per_mwh"), state = table.column("state");
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const bool is_validated = table.text(row, state) == "validated";
+    const std::int64_t utc_s = table.utc_s(row, start);
+    if (utc_s % kSecondsPerQuarterHour != 0) {
+      fail("{}:{}: quarter_hour_utc {} begins no quarter-hour", path, table.line(row),
+           table.text(row, start));
+    }
+    if (!is_validated && table.text(row, state) != "published") {
+      fail("{}:{}: state \"{}\" is neither published nor validated", path, table.line(row),
+           table.text(row, state));
+    }
+    settled.push_back({utc_s, table.number(row, price),
+                       is_validated ? PriceState::kValidated : PriceState::kPublished});
+  }
+  return settled;
+}
+
+QuarterPrices prices_of(const CycleLog& log, const std::vector<SettledQuarter>& settled) {
+  QuarterPrices prices(settled);
+  for (const LoggedCycle& c : log.cycles) {
+    if (c.has_price) prices.note(c.utc_s, c.price_minute_utc_s, c.price_eur_per_mwh);
+  }
+  return prices;
+}
+
+std::vector<LoggedDay> days_of(const CycleLog& log, const QuarterPrices& prices,
+                               const BatteryParameters& battery, const LoggedSpan& span) {
+  const auto exchanged = exchanged_days(samples_of(log, battery), prices, battery);
+  std::map<std::int32_t, LoggedDay> days;
+  const LoggedCycle* before = nullptr;
+  for (const LoggedCycle& c : log.cycles) {
+    const std::int32_t date = local_day_at(c.utc_s);
+    if (!c.is_cycle || !span.holds(date)) continue;
+    LoggedDay& day = days[date];
+    add_cycle(c, day);
+    if (before != nullptr) {
+      if (direction(*before) != direction(c)) ++day.switches;
+      const std::int64_t apart_s = c.utc_s - before->utc_s;
+      day.missing += static_cast<int>(std::max<std::int64_t>(apart_s / kSecondsPerStep, 1)) - 1;
+    }
+    before = &c;
+  }
+  std::vector<LoggedDay> all;
+  for (auto& [date, day] : days) {
+    const auto found = exchanged.find(date);
+    if (found != exchanged.end()) day.exchanged = found->second;
+    day.date = format_local_date(date_of(date));
+    all.push_back(std::move(day));
+  }
+  return all;
+}
+
+Evaluation evaluation_of(const std::vector<LoggedDay>& days, const BatteryParameters& battery) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = battery.capacity_wh / kWattsPerMegawatt;
+  evaluation.wear_eur_per_mwh = battery.wear_eur_per_mwh;
+  double soc_frac = std::nan("");
+  for (const LoggedDay& day : days) {
+    const double throughput_mwh =
+        (day.exchanged.charged_wh + day.exchanged.discharged_wh) / kWattsPerMegawatt;
+    if (std::isnan(soc_frac)) soc_frac = day.soc_start_frac;
+    const double end_frac = day.has_reading ? day.soc_end_frac : soc_frac;
+    evaluation.days.push_back({.date = day.date,
+                               .profit_eur = day.exchanged.money.net_eur(),
+                               .cycles = throughput_mwh / (2 * evaluation.capacity_mwh),
+                               .switches = day.switches,
+                               .soc_end_frac = end_frac,
+                               .throughput_mwh = throughput_mwh,
+                               .soc_start_frac = soc_frac});
+    soc_frac = end_frac;  // each goes on where the one before ended
+  }
+  return evaluation;
+}
+
+MarketStep step_of(const LoggedCycle& cycle, ContextKind context) {
+  const LocalMinute local = local_minute_of(cycle.utc_s);
+  const bool by_outlook = context == ContextKind::kOutlook && cycle.break_even_centi;
+  return {
+      .utc_s = cycle.utc_s,
+      .observed_eur_per_mwh = cycle.decided_eur_per_mwh,
+      .paid_eur_per_mwh = 0,
+      .level_centi_eur_per_mwh = by_outlook ? *cycle.break_even_centi : cycle.level_centi,
+      .observed_age_min = static_cast<std::int16_t>((cycle.utc_s - cycle.price_minute_utc_s) / 60),
+      .minute_of_quarter_hour = static_cast<std::int8_t>(local.minute_of_quarter_hour),
+      .quarter_hour = static_cast<std::int8_t>(local.quarter_hour),
+      .month = static_cast<std::int8_t>(local.month),
+      .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep)};
+}
+
+MarketSteps market_of_log(const CycleLog& log, const QuarterPrices& prices, const LoggedSpan& span,
+                          ContextKind context) {
+  MarketSteps market;
+  std::int32_t today = 0;
+  for (const LoggedCycle& c : log.cycles) {
+    const std::int32_t date = local_day_at(c.utc_s);
+    if (!c.is_cycle || !span.holds(date)) continue;
+    if (date != today) {
+      const auto [year, month, day] = date_of(date);
+      market.days.push_back({year, month, day, Split::kAll, market.steps.size(), 0});
+    }
+    today = date;
+    const auto first = prices.find(c.utc_s);
+    if (!c.has_price || !c.is_price_usable || !first) continue;
+    // The log may end in the step, with nothing known of the quarter-hour of its second minute.
+    const auto second = prices.find(c.utc_s + 60);
+    market.steps.push_back(step_of(c, context));
+    market.steps.back().paid_eur_per_mwh =
+        0.5 * (first->eur_per_mwh + second.value_or(*first).eur_per_mwh);
+    ++market.days.back().step_count;
+  }
+  return market;
+}
+
+double most_ordered_w(const CycleLog& log) {
+  double most_w = 0;
+  for (const LoggedCycle& c : log.cycles) most_w = std::max(most_w, std::fabs(c.ordered_w));
+  return most_w;
+}
+
+void require_same_battery(const CycleLog& log, const BatteryParameters& battery,
+                          const std::string& config) {
+  const double most_w = most_ordered_w(log);
+  if (most_w == 0 || (most_w <= battery.power_w_max && most_w >= battery.power_w_max / 20)) return;
+  fail(
+      "the orders of the log reach {:g} W, [battery] power_w of {} is {:g}: name the battery of "
+      "the log with --config",
+      most_w, config.empty() ? "the defaults" : config, battery.power_w_max);
+}
+
+namespace {
+
+std::int32_t day_of(const std::string& text, const char* option, std::int32_t otherwise) {
+  if (text.empty()) return otherwise;
+  const auto [year, month, day] = parse_local_date(text, option);
+  return (year * 100 + month) * 100 + day;
+}
+
+void tell(const std::string& file, const CycleLog& log, const std::vector<LoggedDay>& days) {
+  int missing = 0;
+  for (const LoggedDay& day : days) missing += day.missing;
+  const auto tell_one = [&](int count, const char* noun, const char* what) {
+    if (count == 0) return;
+    fmt::print(stderr, "{}: {} {}\n", file, counted(static_cast<std::size_t>(count), noun), what);
+  };
+  tell_one(log.torn, "last line", "without a line end: passed over");
+  tell_one(log.duplicates, "row", "of a time that there is already: passed over");
+  tell_one(missing, "tick", "without a row: what flowed there is told by the state of charge");
+}
+
+}  // namespace
+
+void LogInput::add(ProgramCommand& command, bool counts_money) {
+  counts_money_ = counts_money;
+  command.option("files", files_, "Of bess-edge log --csv, or [log] csv; several are one log")
+      .required();
+  command.option("--from", from_, "First local day, YYYY-MM-DD (default: that of the log)");
+  command.option("--to", to_, "Last local day, YYYY-MM-DD");
+  if (!counts_money) return;
+  command.option("--settled", settled_,
+                 "settled.csv of bess-prices; without: the last minute's price, an estimate");
+  command.option("--config", config_, "TOML file with [battery] and [costs] of the log's battery");
+}
+
+ReadLog LogInput::read() const {
+  const BatteryParameters battery = load_run_config(config_).battery;
+  CycleLog log = read_cycle_log(files_);
+  if (counts_money_) require_same_battery(log, battery, config_);
+  const LoggedSpan span{day_of(from_, "--from", 0), day_of(to_, "--to", 99'999'999)};
+  QuarterPrices prices = prices_of(log, read_settled(settled_));
+  std::vector<LoggedDay> days = days_of(log, prices, battery, span);
+  if (days.empty()) fail("{}: the log holds no cycle of these days", files_.front());
+  tell(files_.front(), log, days);
+  return {std::move(log), battery, span, std::move(prices), std::move(days)};
+}
+
+void LogInput::require_not_read(const std::string& option, const std::string& output) const {
+  std::vector<GivenPath> inputs = given_paths("files", files_);
+  inputs.push_back({"--settled", settled_});
+  inputs.push_back({"--config", config_});
+  require_distinct({{option, output}}, inputs);
+}
+
+StudentFile student_for_log(const std::string& name) {
+  const bool is_run = std::filesystem::is_directory(name);
+  StudentFile student = name == "compiled" ? compiled_student()
+                                           : load_student(is_run ? name + "/student.json" : name);
+  student.outlook = nullptr;
+  return student;
+}
+
+}  // namespace bess

@@ -1,0 +1,243 @@
+#include "workstation/runs/run/run_record.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/json_reader.h"
+#include "shared/host/made/build_info.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "workstation/correction/rules/rule_file.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKind = "a run's record; make the run again in another folder";
+
+Entries::const_iterator find(const Entries& entries, const std::string& name) {
+  return std::ranges::find(entries, name, &Entries::value_type::first);
+}
+
+Json json_of(const Entries& entries) {
+  Json json = Json::object();
+  for (const auto& [name, value] : entries) json.set(name.c_str(), value);
+  return json;
+}
+
+Entries entries_of(const JsonValue& object, const RunFolder& folder) {
+  Entries entries;
+  for (const JsonValue member : object) {
+    if (member.text() == nullptr) {
+      fail("{}: not {}: \"{}\" is not a text", folder.record().string(), kKind, member.key());
+    }
+    entries.emplace_back(member.key(), member.text());
+  }
+  return entries;
+}
+
+StageRecord stage_of(const JsonValue& json, const RunFolder& folder) {
+  StageRecord stage;
+  stage.name = json.key();
+  stage.inputs = entries_of(json["inputs"], folder);
+  stage.outputs = entries_of(json["outputs"], folder);
+  stage.failed = json["failed"].boolean().value_or(false);
+  return stage;
+}
+
+Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder) {
+  Entries marks;
+  for (const std::string& name : names) marks.emplace_back(name, file_mark(folder.path / name));
+  return marks;
+}
+
+}  // namespace
+
+Json demands_json(const std::vector<DemandFigures>& demands) {
+  Json list = Json::list();
+  for (const DemandFigures& d : demands) {
+    list.add(Json::object({{"demand", d.demand},
+                           {"violations_plain", d.violations_plain},
+                           {"violations_corrected", d.violations_corrected}}));
+  }
+  return list;
+}
+
+std::string file_mark(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || !fs::is_regular_file(path)) return {};
+  Crc32 crc;
+  std::uint64_t bytes = 0;
+  std::array<char, 1 << 16> part;
+  while (file.read(part.data(), part.size()) || file.gcount() > 0) {
+    crc.add_bytes(part.data(), static_cast<std::size_t>(file.gcount()));
+    bytes += static_cast<std::uint64_t>(file.gcount());
+  }
+  return fmt::format("crc32 {:08x}, {} bytes", crc.value(), bytes);
+}
+
+std::string RunRecord::value(const std::string& key) const {
+  const auto found = find(identity, key);
+  return found == identity.end() ? std::string() : found->second;
+}
+
+RunConfig RunRecord::config(const RunFolder& folder) const {
+  std::string toml;
+  std::string section;
+  for (const auto& [name, value] : identity) {
+    if (!name.starts_with('[')) continue;  // an option
+    const std::size_t end = name.find(']') + 1;
+    if (name.substr(0, end) != section) toml += (section = name.substr(0, end)) + "\n";
+    toml += fmt::format("{} = {}\n", name.substr(end + 1), value);
+  }
+  RunConfig config = parse_run_config(toml, folder.record().string());
+  config.set_seed(std::strtoull(value("seed").c_str(), nullptr, 10));
+  config.set_threads(
+      std::max(1, static_cast<int>(std::strtol(value("threads").c_str(), nullptr, 10))));
+  if (const std::string rules = value(kRulesKey); !rules.empty()) {
+    config.distil.rules = parse_rules(rules, folder.record().string() + ": rules");
+  }
+  return config;
+}
+
+const StageRecord* RunRecord::holds(const std::string& stage,
+                                    const std::vector<std::string>& inputs,
+                                    const RunFolder& folder) const {
+  const auto found = std::ranges::find(stages, stage, &StageRecord::name);
+  if (found == stages.end() || found->inputs != marks_of(inputs, folder)) return nullptr;
+  const bool is_whole = std::ranges::all_of(found->outputs, [&](const auto& output) {
+    return file_mark(folder.path / output.first) == output.second;
+  });
+  return is_whole ? &*found : nullptr;
+}
+
+std::string RunRecord::state() const {
+  if (figures) return "finished";
+  if (stages.empty()) return "just begun";
+  return has_failed() ? "ended without a proof"
+                      : fmt::format("stopped after the {}", stages.back().name);
+}
+
+bool RunRecord::has_failed() const { return std::ranges::any_of(stages, &StageRecord::failed); }
+
+Entries identity_of(const RunConfig& config, const std::string& prices_hash,
+                    const std::string& teacher_hash) {
+  Entries identity{{"bess-train", BESS_VERSION},
+                   {"prices", prices_hash},
+                   {"seed", fmt::format("{}", config.train.seed)},
+                   {"threads", fmt::format("{}", config.train.threads)},
+                   {"teacher", teacher_hash.empty() ? "of this run" : teacher_hash}};
+  for (auto& entry : config_entries(config)) identity.push_back(std::move(entry));
+  const RuleSet& rules = config.distil.rules;
+  if (!rules.empty()) identity.emplace_back(kRulesKey, format_rules(rules));
+  return identity;
+}
+
+Entries configuration_of(const Entries& identity) {
+  Entries kept;
+  std::ranges::copy_if(identity, std::back_inserter(kept),
+                       [](const auto& entry) { return entry.first.starts_with('['); });
+  return kept;
+}
+
+Entries circumstances_of(const Entries& identity) {
+  Entries kept;
+  std::ranges::copy_if(identity, std::back_inserter(kept), [](const auto& entry) {
+    return entry.first.starts_with("[market]") || entry.first.starts_with("[battery]") ||
+           entry.first.starts_with("[costs]");
+  });
+  return kept;
+}
+
+std::string differences(const Entries& there, const Entries& here, const std::string& where_there,
+                        const std::string& where_here) {
+  std::string text;
+  const auto add = [&](const std::string& name, const std::string& a, const std::string& b) {
+    text += fmt::format("{}{} is {} {} and {} {}", text.empty() ? "" : "; ", name, one_line(a),
+                        where_there, one_line(b), where_here);
+  };
+  for (const auto& [name, value] : there) {
+    const auto found = find(here, name);
+    if (found == here.end()) add(name, value, "unknown");
+    if (found != here.end() && found->second != value) add(name, value, found->second);
+  }
+  for (const auto& [name, value] : here) {
+    if (find(there, name) == there.end()) add(name, "unknown", value);
+  }
+  return text;
+}
+
+std::optional<RunRecord> load_run_record(const RunFolder& folder) {
+  const std::string name = folder.record().string();
+  if (!fs::exists(name)) return std::nullopt;
+  const Json json = Json::parse(read_file(name));
+  const JsonReader reader(json.value(), name, kKind);
+  (void)reader.object("identity");  // that of another bess-train has none
+  RunRecord record;
+  record.prices = reader.text("prices");
+  record.prices_name = reader.text("prices_name");
+  if (const char* file = json.value()["teacher_file"].text()) record.teacher_file = file;
+  record.commit = json.value()["commit"].text_or("");
+  record.day_ahead = json.value()["day_ahead"].text_or("");
+  record.identity = entries_of(json.value()["identity"], folder);
+  for (const JsonValue stage : json.value()["stages"]) {
+    record.stages.push_back(stage_of(stage, folder));
+  }
+  if (json.value()["figures"].is_object()) {
+    const JsonReader figures = reader.object("figures");
+    const auto count = [&](const char* key) {
+      return figures.whole(key, 0, std::int64_t{1} << 52);
+    };
+    record.figures = {figures.text("provenance"), figures.text("weights_hash"),
+                      count("states_checked"),    count("states_checked_plain"),
+                      count("violations_plain"),  count("violations_corrected")};
+    record.figures->last_learnt_day = json.value()["figures"]["last_learnt_day"].text_or("");
+    for (const JsonValue demand : json.value()["figures"]["demands"]) {
+      const JsonReader of(demand, name, kKind);
+      const auto violations = [&](const char* key) {
+        return of.whole(key, 0, std::int64_t{1} << 52);
+      };
+      record.figures->demands.push_back(
+          {of.text("demand"), violations("violations_plain"), violations("violations_corrected")});
+    }
+  }
+  return record;
+}
+
+void save_run_record(const RunFolder& folder, const RunRecord& record) {
+  Json json = Json::object({{"prices", record.prices}, {"prices_name", record.prices_name}});
+  if (!record.teacher_file.empty()) json.set("teacher_file", record.teacher_file);
+  if (!record.day_ahead.empty()) json.set("day_ahead", record.day_ahead);
+  json.set("commit", std::string(build_commit()));
+  json.set("identity", json_of(record.identity));
+  Json stages = Json::object();
+  for (const StageRecord& stage : record.stages) {
+    Json one =
+        Json::object({{"inputs", json_of(stage.inputs)}, {"outputs", json_of(stage.outputs)}});
+    if (stage.failed) one.set("failed", true);
+    stages.set(stage.name.c_str(), std::move(one));
+  }
+  json.set("stages", std::move(stages));
+  if (record.figures) {
+    const RunFigures& f = *record.figures;
+    Json figures = Json::object({{"provenance", f.provenance},
+                                 {"weights_hash", f.weights_hash},
+                                 {"states_checked", f.states_checked},
+                                 {"states_checked_plain", f.states_checked_plain},
+                                 {"violations_plain", f.violations_plain},
+                                 {"violations_corrected", f.violations_corrected}});
+    figures.set("demands", demands_json(f.demands));
+    figures.set("last_learnt_day", f.last_learnt_day);
+    json.set("figures", std::move(figures));
+  }
+  write_file(folder.record(), json.text());
+}
+
+}  // namespace bess

@@ -1,0 +1,485 @@
+#include "workstation/runs/run/run_report.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/made/build_info.h"
+#include "shared/host/run_program.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "shared/utc_text.h"
+#include "workstation/base/answer.h"
+#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/ruled_policy.h"
+#include "workstation/correction/student/certificate.h"
+#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
+#include "workstation/data/env/charge_left.h"
+#include "workstation/report/evaluation_days.h"
+#include "workstation/report/headline.h"
+#include "workstation/report/page_data.h"
+#include "workstation/report/report_tables.h"
+#include "workstation/report/rule_prices.h"
+#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/run/run_backtest.h"
+
+namespace bess {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bytes as they lie on the disk, gzip or not; none when it cannot be read.
+std::optional<std::string> bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || fs::is_directory(path)) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+/// Of this process, as it was given.
+std::string command_line() {
+  const std::string words = bytes_of("/proc/self/cmdline").value_or("");
+  std::string line;
+  for (std::size_t at = 0; at < words.size();) {
+    const std::string word = words.substr(at, words.find('\0', at) - at);
+    if (at > 0) line += ' ';
+    line += shell_word(at == 0 ? fs::path(word).filename().string() : word);
+    at += word.size() + 1;
+  }
+  return line;
+}
+
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+/// "teacher 12.1 s, ..." of times.json; empty without one.
+std::string stage_times(const fs::path& path) {
+  std::string text;
+  if (!fs::exists(path)) return text;
+  const Json times = Json::parse(read_file(path));
+  for (const JsonValue stage : times.value()) {
+    const auto seconds = stage["seconds"].number();
+    if (!seconds) continue;
+    text += fmt::format("{}{} {:.1f} s", text.empty() ? "" : ", ", stage.key(), *seconds);
+  }
+  return text;
+}
+
+/// "FILE: crc32 1234abcd, 4711 bytes"
+std::string prices_text(const RunFolder& folder) {
+  const Json run = Json::parse(read_file(folder.path / "run.json"));
+  const fs::path named = run.value()["prices"].text_or("");
+  const fs::path path = named.has_parent_path() ? named : folder.path / named;
+  const std::optional<std::string> bytes = bytes_of(path);
+  if (named.empty()) return "not named in run.json";
+  if (!bytes) return named.string() + ": is no longer there";
+  Crc32 crc;
+  crc.add_bytes(bytes->data(), bytes->size());
+  return fmt::format("{}: crc32 {:08x}, {} bytes", path.filename().string(), crc.value(),
+                     bytes->size());
+}
+
+std::string span_text(const MarketSteps& market) {
+  const auto days = [&](Split split) { return market.days_of(split).size(); };
+  return fmt::format("{} to {}: {} training, {} validation and {} test days",
+                     market.days.front().date(), market.days.back().date(), days(Split::kTrain),
+                     days(Split::kValidation), days(Split::kTest));
+}
+
+}  // namespace
+
+std::vector<Fact> making_facts(const RunFolder& folder) {
+  std::vector<Fact> facts;
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
+    facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
+    return facts;
+  }
+  facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
+  facts.push_back({"host", host_name()});
+  facts.push_back({"command", command_line()});
+  facts.push_back(
+      {"computed for", fmt::format("{:.1f} CPU seconds, this command until here",
+                                   static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
+  const std::string times = stage_times(folder.path / "times.json");
+  if (!times.empty()) facts.push_back({"stages", times});
+  return facts;
+}
+
+std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
+
+std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
+                            const RunFolder& folder) {
+  std::vector<Fact> facts = making_facts(folder);
+  const int delay_min = config.market.observation_delay_min;
+  facts.push_back({"program", program_text()});
+  facts.push_back({"prices", prices_text(folder)});
+  facts.push_back({"span", span_text(market)});
+  facts.push_back(
+      {"observation delay", fmt::format("{} minute{}", delay_min, delay_min == 1 ? "" : "s")});
+  facts.push_back({"settlement", config.market.settlement == Settlement::kMinute
+                                     ? "each minute by its own quarter-hour"
+                                     : "each step by the quarter-hour in which it starts"});
+  facts.push_back({"keys changed", changed_keys_text(config)});
+  facts.push_back(
+      {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)});
+  return facts;
+}
+
+namespace {
+
+const NamedEvaluation& exported(const RunSummary& run) {
+  const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
+  if (found == run.evaluations.end()) {
+    fail("{}: has no \"{}\"; make the run again", run.folder.file(run_file::kDays).string(),
+         kExportedPolicy);
+  }
+  return *found;
+}
+
+Json row_json(const ComparisonRow& row) {
+  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, row.carry_soc}});
+  add_figures(row, json);
+  return json;
+}
+
+/// The gain over another run, when both saw the same days.
+std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
+  if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
+  return paired_difference(run, first);
+}
+
+/// "KEY: A | B | C" for each of them.
+std::string what_differs(const std::vector<RunSummary>& runs) {
+  std::vector<const RunRecord*> records;
+  for (const RunSummary& run : runs) records.push_back(&run.record);
+  std::string text;
+  for (const std::string& key : differing_keys(records)) {
+    std::string line;
+    for (const RunRecord* record : records) {
+      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(*record, key));
+    }
+    text += fmt::format("{}: {}\n", key, line);
+  }
+  return text;
+}
+
+/// Numbers that are compared are those that the run wrote.
+void require_unchanged(const RunRecord& record, const RunFolder& folder) {
+  for (const StageRecord& stage : record.stages) {
+    for (const auto& [file, mark] : stage.outputs) {
+      if (file != run_file::kDays) continue;
+      const std::string now = file_mark(folder.file(run_file::kDays));
+      if (now == mark) return;
+      fail(
+          "{}: is not what the run wrote ({} in {}, now {}); 'bess-train report --run {}' makes it "
+          "again",
+          folder.file(run_file::kDays).string(), mark, run_file::kRecord,
+          now.empty() ? "missing" : now, folder.path.string());
+    }
+  }
+}
+
+/// What the figures are of, and the walk-forward one of each run that has it.
+std::string standing_text(const std::vector<RunSummary>& runs) {
+  std::string text = "\n";
+  std::string last;
+  for (const RunSummary& run : runs) {
+    const std::string judged = judged_days_text(judged_days_of(run));
+    if (judged != last) text += judged + "\n";
+    last = judged;
+  }
+  bool any = false;
+  for (const RunSummary& run : runs) {
+    const WalkForwardOfRun walk = walk_forward_of(run.folder, run.record);
+    if (!walk.figure) continue;
+    text += fmt::format("{}: {}\n", run.folder.path.string(), walk_forward_text(walk));
+    any = true;
+  }
+  const RunSummary& first = runs.front();
+  if (any) return text;
+  return with_run_folder(
+      text + walk_forward_text(walk_forward_of(first.folder, first.record)) + "\n",
+      first.folder.path);
+}
+
+std::size_t rules_of(const RunSummary& run) {
+  const std::string rules = run.record.value(kRulesKey);
+  return rules.empty() ? 0 : parse_rules(rules, "run.json: rules").rules.size();
+}
+
+}  // namespace
+
+std::string value_text(const RunRecord& record, const std::string& key) {
+  const std::string value = record.value(key);
+  if (key != kRulesKey) return value.empty() ? "unknown" : one_line(value);
+  if (value.empty()) return "none";
+  std::string text;
+  for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
+    text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
+                        rule.enforce ? "; the guard's too" : "");
+  }
+  return text;
+}
+
+std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs) {
+  std::vector<std::string> keys;
+  for (const RunRecord* run : runs) {
+    for (const auto& entry : run->identity) {
+      const std::string& key = entry.first;
+      const bool is_same = std::ranges::all_of(
+          runs, [&](const RunRecord* other) { return other->value(key) == entry.second; });
+      if (!is_same && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+JudgedDays judged_days_of(const RunSummary& run) {
+  JudgedDays judged{Split::kTest, {}, run.record.figures->last_learnt_day};
+  for (const DayResult& day : exported(run).carried_over.days) judged.dates.push_back(day.date);
+  return judged;
+}
+
+RunSummary load_run_summary(const RunFolder& folder) {
+  std::optional<RunRecord> record = load_run_record(folder);
+  const std::string name = folder.path.string();
+  if (!record) {
+    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", name,
+         run_file::kRecord, name);
+  }
+  if (!record->figures && record->has_failed()) {
+    fail(
+        "{}: ended without a proof, {} shows where; 'bess-train run --from-teacher {} --config NEW "
+        "--out ANOTHER' starts at its correction",
+        name, folder.file(run_file::kReport).string(), name);
+  }
+  if (!record->figures) {
+    fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
+         record->state(), name);
+  }
+  require_unchanged(*record, folder);
+  const std::string days = folder.file(run_file::kDays).string();
+  const RunConfig config = record->config(folder);
+  return {folder, std::move(*record),
+          parse_evaluation_days_csv(read_file(days), days, config.battery)};
+}
+
+Json summary_json(const RunSummary& run) {
+  const RunRecord& record = run.record;
+  const RunFigures& figures = *record.figures;
+  Json json = answer("run");
+  json.set("run", run.folder.path.string());
+  json.set("prices", record.prices);
+  json.set("seed", record.config(run.folder).train.seed);
+  json.set("provenance", figures.provenance);
+  json.set("weights_hash", figures.weights_hash);
+  json.set("states_checked", figures.states_checked);
+  json.set("states_checked_plain", figures.states_checked_plain);
+  json.set("violations_plain", figures.violations_plain);
+  json.set("violations_corrected", figures.violations_corrected);
+  json.set("demands", demands_json(figures.demands));
+  const auto prices = rule_prices_of(run.evaluations);
+  json.set("price_of_correction", prices ? rule_prices_table(*prices).json() : Json::null());
+  const auto headline = headline_of(run.evaluations);
+  json.set("headline", headline ? headline_json(*headline) : Json::null());
+  json.set("judged_days", judged_days_json(judged_days_of(run)));
+  const WalkForwardOfRun walk = walk_forward_of(run.folder, record);
+  json.set("walk_forward", walk.figure ? walk_forward_json(*walk.figure) : Json::null());
+  Json policies = Json::list();
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
+    for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
+      policies.add(row_json(row));
+    }
+  }
+  json.set("policies", std::move(policies));
+  return json;
+}
+
+std::string format_runs_table(const std::vector<RunSummary>& runs) {
+  std::size_t width = 3;
+  for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
+  std::string text = fmt::format(
+      "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
+      "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
+      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
+      "s.e.", "by month", kReferenceWearHead, "foresight", "reset", "weights");
+  const Evaluation& first = exported(runs.front()).carried_over;
+  for (const RunSummary& run : runs) {
+    const NamedEvaluation& student = exported(run);
+    const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
+    const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+    const auto over_first =
+        &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
+    text += fmt::format(
+        "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11.1f} {:>9} {:>8.1f} "
+        "{:>9}\n",
+        run.folder.path.string(), width, run.record.value("seed"), rules_of(run), row->days,
+        row->profit, error_text(row->errors.plain, 1), error_text(row->errors.by_month, 1),
+        over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
+        over_first ? error_text(over_first->standard_error, 1) : "-",
+        over_first ? error_text(over_first->standard_error_by_month, 1) : "-",
+        row->profit_at_reference_wear,
+        row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",
+        student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);
+  }
+  text += fmt::format(
+      "\ncarried, reset: SoC carried over from day to day, or the same at the start of each;\n"
+      "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
+      "standard error;\nby month: {}\n",
+      by_month_meaning(first.errors().months));
+  text += standing_text(runs);
+  const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
+  if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
+  return text;
+}
+
+namespace {
+
+NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
+  EvaluationOptions options{run.config.battery, run.config.initial_soc_frac, false};
+  const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
+  NamedEvaluation named;
+  named.name = name;
+  named.day_reset = evaluate(run.market, days, policy, options);
+  options.carry_soc = true;
+  named.carried_over = evaluate(run.market, days, policy, options);
+  value_charge_left(named.carried_over, run.config.battery,
+                    mean_settled_eur_per_mwh(run.market, days));
+  return named;
+}
+
+/// Before and after the correction: the properties in one line each, and a line a rule.
+std::string violations_text(const Certificate& plain, const Certificate& corrected) {
+  const auto properties = [](const Certificate& c) {
+    return fmt::format("{} / {} / {} in {} states", c.violations_of(1), c.violations_of(2),
+                       c.violations_of(3), c.states_checked);
+  };
+  const std::string before_head = fmt::format("before correction ({})", kPlainName);
+  const std::string after_head = fmt::format("after correction ({})", own_student_name(corrected));
+  const auto lines = [&](const std::string& of_plain, const std::string& of_corrected) {
+    return fmt::format("  {:<36} {}\n  {:<36} {}\n", before_head, of_plain, after_head,
+                       of_corrected);
+  };
+  std::string text =
+      "\nviolations of properties 1 / 2 / 3\n" + lines(properties(plain), properties(corrected));
+  const std::vector<DemandCount> before = demand_counts(plain);
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
+    text += fmt::format("violations of rule \"{}\" ({})\n", after[d].name, after[d].text);
+    if (!after[d].binds_student) {
+      text += "  the guard's alone: no student is held to it\n";
+      continue;
+    }
+    const auto counted = [](const DemandCount& count) {
+      return fmt::format("{} in {} states", count.violations, count.states);
+    };
+    text += lines(counted(before[d]), counted(after[d]));
+  }
+  return text;
+}
+
+/// The plain student, also as each rule would hold it.
+void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
+  const auto plain = std::make_shared<StudentPolicy>(run.plain->net, run.plain->outlook);
+  all.push_back(evaluate_both(kPlainName, *plain, run));
+  const auto under = [&](const std::string& name, const RuleSet& rules) {
+    RuledPolicy ruled(plain, rules, run.plain->net.context);
+    all.push_back(evaluate_both(name, ruled, run));
+  };
+  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
+  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
+  if (!projected.empty()) under(kUnderAllRules, projected);
+}
+
+/// So often that a warranty may not allow it, and what to set then.
+std::string cycles_text(const StudentFile& student) {
+  if (!student.cycles_per_day) return {};
+  return fmt::format(
+      "expect about {:.1f} full cycles a day of it (validation days); limit them by [battery] "
+      "wear_eur_per_mwh or cycles_per_day_max\n",
+      *student.cycles_per_day);
+}
+
+}  // namespace
+
+void require_test_days(const MarketSteps& market, const std::string& prices) {
+  if (!market.days_of(Split::kTest).empty()) return;
+  fail("{}: no test days (local days 26 to the end); add some", prices);
+}
+
+std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
+  std::vector<NamedEvaluation> all;
+  const auto baseline = [&](const std::string& name) {
+    const auto policy = make_baseline(name, run.market, run.config.battery);
+    all.push_back(evaluate_both(name, *policy, run));
+  };
+  for (const std::string& name : baseline_names(kInRuns)) {
+    if (name != kForesightName) baseline(name);
+  }
+  if (run.teacher.outlook) {  // both accountings trade the same
+    const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
+    run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
+    run.teacher.book->prepare(run.market, days, run.config.train.threads);
+  }
+  TeacherPolicy teacher(run.teacher);
+  all.push_back(evaluate_both(teacher_name(run.teacher), teacher, run));
+  if (run.plain) evaluate_plain(run, all);
+  all.push_back(evaluate_both(own_student_name(run.corrected.certificate),
+                              *exported_policy(run.corrected), run));
+  baseline(kForesightName);
+  return all;
+}
+
+std::vector<std::string> write_run_report(const RunResults& run,
+                                          const std::vector<NamedEvaluation>& evaluations,
+                                          const RunFolder& folder) {
+  const ReportInputs inputs{
+      .market = run.market,
+      .battery = run.config.battery,
+      .initial_soc_frac = run.config.initial_soc_frac,
+      .evaluations = evaluations,
+      .training_curve = run.training_curve,
+      .distil_curve = run.distil_curve,
+      .checkpoints = run.checkpoints,
+      .teacher = &run.teacher,
+      .uncorrected = &*run.plain,
+      .corrected = &run.corrected,
+      .broken = broken_demands(run.corrected, run.config.distil.method),
+      .walk_forward = run.walk_forward,
+      .provenance = run.corrected.provenance,
+      .facts = run_facts(run.config, run.market, folder),
+  };
+  std::vector<std::string> names = write_report(inputs, folder.path);
+  const Certificate& certificate = run.corrected.certificate;
+  const std::string alike = same_program_text(evaluations);
+  std::string summary = certificate.violations() == 0 ? "" : proof_sentence(certificate) + "\n\n";
+  if (const auto headline = headline_of(evaluations)) {
+    summary += headline_text(*headline) + judged_days_text(judged_days(run.market, Split::kTest)) +
+               "\n" + walk_forward_text(run.walk_forward) + "\n\n";
+  }
+  summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
+             whole_battery_text(evaluations) + cycles_text(run.corrected) +
+             violations_text(run.plain->certificate, certificate);
+  if (const auto prices = rule_prices_of(evaluations)) {
+    summary += '\n';
+    summary += rule_prices_text(*prices);
+  }
+  write_file(folder.file(run_file::kSummary), summary);
+  names.emplace_back(run_file::kSummary);
+  return names;
+}
+
+}  // namespace bess

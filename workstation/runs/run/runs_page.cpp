@@ -1,0 +1,168 @@
+#include "workstation/runs/run/runs_page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/file.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "workstation/correction/student/proof_rounds.h"
+#include "workstation/data/env/day_errors.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
+#include "workstation/report/figures/sort_table.h"
+#include "workstation/report/report_tables.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+Cell run_cell(const RunLine& run, const fs::path& page) {
+  const std::string name = run.folder.path.string();
+  const fs::path report = run.folder.file(run_file::kReport);
+  if (!fs::exists(report)) return text_cell(name);
+  const fs::path from = fs::absolute(page).parent_path();
+  const fs::path link = fs::absolute(report).lexically_relative(from);
+  return {fmt::format("<a href=\"{}\">{}</a>", html_escaped(link.string()), html_escaped(name)),
+          name};
+}
+
+/// What was left of the demands after the last round of a proof that failed.
+std::string left_text(const RunLine& run) {
+  const std::string rounds = run.folder.file(run_file::kProofRounds).string();
+  if (!fs::exists(rounds)) return {};
+  const auto parsed = parse_proof_rounds_csv(read_file(rounds), rounds);
+  return parsed.empty() ? std::string() : ": " + parsed.back().text();
+}
+
+Cell proof_cell(const RunLine& run) {
+  if (run.record.has_failed()) return text_cell("not proved" + left_text(run));
+  if (!run.record.figures) return no_text_cell();
+  const RunFigures& figures = *run.record.figures;
+  if (figures.violations_corrected != 0) {
+    return text_cell(fmt::format("{} violations", grouped(figures.violations_corrected)));
+  }
+  return text_cell(fmt::format("proved over {} states", grouped(figures.states_checked)));
+}
+
+std::string state_text(const RunLine& run) {
+  return run.trouble.empty() ? run.record.state() : run.trouble;
+}
+
+const Evaluation* exported_days(const RunLine& run, EvaluationField field) {
+  if (!run.summary) return nullptr;
+  const auto found =
+      std::ranges::find(run.summary->evaluations, kExportedPolicy, &NamedEvaluation::name);
+  return found == run.summary->evaluations.end() ? nullptr : &((*found).*field);
+}
+
+/// Over the first run with figures, where both saw the same days.
+Cell gain_cell(const Evaluation& days, const Evaluation& first) {
+  const bool same =
+      std::ranges::equal(days.days, first.days, {}, &DayResult::date, &DayResult::date);
+  if (&days == &first || !same) return {kNoValue};
+  const PairedDifference gain = paired_difference(days, first);
+  return number_cell(
+      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.standard_error, 1, kNoValue),
+                  error_text(gain.standard_error_by_month, 1, kNoValue)),
+      gain.mean);
+}
+
+std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
+  const Evaluation* carried = exported_days(run, &NamedEvaluation::carried_over);
+  if (carried == nullptr || carried->days.empty()) return std::vector<Cell>(7, Cell{kNoValue});
+  const auto rows = comparison_rows(run.summary->evaluations, &NamedEvaluation::carried_over);
+  const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+  const double reset =
+      exported_days(run, &NamedEvaluation::day_reset)->profit_eur_per_day_per_mwh();
+  return {number_cell(static_cast<double>(row->days), 0),
+          number_cell(fmt::format("{:.1f} \u00b1 {} ({})", row->profit,
+                                  error_text(row->errors.plain, 1, kNoValue),
+                                  error_text(row->errors.by_month, 1, kNoValue)),
+                      row->profit),
+          gain_cell(*carried, *first),
+          number_cell(row->profit * carried->capacity_mwh, 1),
+          number_cell(row->profit_at_reference_wear, 1),
+          number_cell(100 * row->foresight_share.value_or(std::nan("")), 1),
+          number_cell(reset, 1)};
+}
+
+SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
+  SortTable table{
+      "runs",
+      fmt::format("What the {} of each run earned on its test days", kExportedPolicy),
+      {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over", "Gain",
+       "EUR/day, whole battery", "At wear 10", "% of foresight", "Same charge each day", "Weights"},
+      {}};
+  const Evaluation* first = nullptr;
+  for (const RunLine& run : runs) {
+    if (first == nullptr) first = exported_days(run, &NamedEvaluation::carried_over);
+  }
+  for (const RunLine& run : runs) {
+    const std::string seed = run.record.value("seed");
+    const std::string rules = value_text(run.record, kRulesKey);
+    std::vector<Cell> row{run_cell(run, page),
+                          text_cell(state_text(run)),
+                          proof_cell(run),
+                          text_cell(rules),
+                          {html_escaped(seed), seed}};
+    std::ranges::move(figure_cells(run, first), std::back_inserter(row));
+    row.push_back(run.record.figures ? text_cell(run.record.figures->weights_hash)
+                                     : no_text_cell());
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// A column for each key that not all runs have alike; none where there is no such key.
+SortTable settings_table(const std::vector<RunLine>& runs) {
+  std::vector<const RunRecord*> records;
+  for (const RunLine& run : runs) records.push_back(&run.record);
+  SortTable table{"settings", "What they differ in", {"Run"}, {}};
+  const std::vector<std::string> keys = differing_keys(records);
+  table.header.insert(table.header.end(), keys.begin(), keys.end());
+  for (const RunLine& run : runs) {
+    std::vector<Cell> row{text_cell(run.folder.path.string())};
+    for (const std::string& key : keys) row.push_back(text_cell(value_text(run.record, key)));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+RunLine load_run_line(const RunFolder& folder) {
+  std::optional<RunRecord> record = load_run_record(folder);
+  if (!record) return {folder, load_run_summary(folder).record, {}, {}};  // says what to do
+  RunLine line{folder, std::move(*record), {}, {}};
+  if (!line.record.figures) return line;
+  try {
+    line.summary = load_run_summary(folder);
+  } catch (const UserError& error) {
+    line.trouble = one_line(error.what());
+  }
+  return line;
+}
+
+std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
+  const std::string title = counted(runs.size(), "run");
+  const SortTable settings = settings_table(runs);
+  const std::string differ = settings.header.size() > 1
+                                 ? sort_table_html(settings)
+                                 : "<p class=\"note\">They differ in no setting.</p>\n";
+  return format_page(
+      title,
+      fmt::format(
+          "<h1>{}</h1>\n{}<p class=\"note\">EUR per day per MWh of "
+          "capacity unless said otherwise, \u00b1 standard error (and with the days of a month as "
+          "one draw). Carried over: the charge goes over from day to day. Gain: day-by-day "
+          "difference to the first run with figures, where both have the same days. A head sorts "
+          "by its column, once more the other way round; what is not known comes last.</p>\n{}"
+          "<script>\n{}</script>\n",
+          title, sort_table_html(run_table(runs, page)), differ, page_file("sort.js")));
+}
+
+}  // namespace bess

@@ -1,0 +1,349 @@
+#include "workstation/runs/size/size_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "shared/host/file.h"
+#include "shared/host/toml_reader.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/in_parallel.h"
+#include "workstation/base/progress.h"
+#include "workstation/data/env/charge_left.h"
+#include "workstation/data/market/series/local_date.h"
+#include "workstation/policy/planners/baselines.h"
+#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/chain/policy_factory.h"
+
+namespace bess {
+
+namespace {
+
+constexpr double kKiloMin = 0.01;
+constexpr double kKiloMax = 1e6;
+constexpr std::size_t kCellsMax = 10'000;
+
+/// A list of kW or kWh as W or Wh.
+std::vector<double> read_kilos(TomlTable& table, std::string_view key) {
+  table.require(key);
+  std::vector<double> sizes;
+  const TomlArray* list = table.array(key);
+  if (list == nullptr) return sizes;
+  for (const TomlValue& value : *list) {
+    const double kilos = value.number().value_or(0);
+    if (!(kilos >= kKiloMin && kilos <= kKiloMax)) {
+      table.fail_at(value, std::string(key) + ": expected numbers from 0.01 to 1000000");
+    } else if (std::ranges::find(sizes, kilos * 1e3) != sizes.end()) {
+      table.fail_at(value, std::string(key) + ": a value stands there twice");
+    }
+    sizes.push_back(kilos * 1e3);
+  }
+  if (list->empty()) table.fail(key, "is empty: give one value at least");
+  return sizes;
+}
+
+SizeContract as_configured(const RunConfig& base) {
+  SizeContract contract{.name = "as configured", .costs = base.battery.costs};
+  contract.wear_eur_per_mwh = base.battery.wear_eur_per_mwh;
+  contract.cycles_per_day_max = base.battery.cycles_per_day_max;
+  return contract;
+}
+
+SizeContract read_contract(TomlTable& table, const RunConfig& base) {
+  SizeContract contract = as_configured(base);
+  table.require("name");
+  table.line("name", contract.name);
+  table.number("import_adder_eur_per_mwh", contract.costs.import_adder_eur_per_mwh, 0, 1000);
+  table.number("import_percent", contract.costs.import_percent, 0, 100);
+  table.number("export_fee_eur_per_mwh", contract.costs.export_fee_eur_per_mwh, 0, 1000);
+  table.number("export_percent", contract.costs.export_percent, 0, 100);
+  table.number("wear_eur_per_mwh", contract.wear_eur_per_mwh, 0, 1000);
+  table.number("cycles_per_day_max", contract.cycles_per_day_max, 0, 1000);
+  table.number("share_percent", contract.share_percent, 0, 100);
+  table.number("fee_eur_per_month", contract.fee_eur_per_month, 0, 1e6);
+  table.number("capacity_eur_per_kw_year", contract.capacity_eur_per_kw_year, 0, 10'000);
+  table.number("capacity_free_kw", contract.capacity_free_kw, 0, kKiloMax);
+  table.finish();
+  return contract;
+}
+
+void read_contracts(TomlTable& top, const RunConfig& base, SizePlan& plan) {
+  const TomlArray* list = top.has("contract") ? top.array("contract") : nullptr;
+  if (list == nullptr) return plan.contracts.push_back(as_configured(base));
+  for (const TomlValue& value : *list) {
+    TomlTable table(&value, top.file(), "[[contract]]", top.error());
+    plan.contracts.push_back(read_contract(table, base));
+    const auto same =
+        std::ranges::count(plan.contracts, plan.contracts.back().name, &SizeContract::name);
+    if (same > 1) top.fail_at(value, "[[contract]]: this name stands there twice");
+  }
+}
+
+void read_purchase(TomlTable& top, SizePlan& plan) {
+  TomlTable purchase(top.table("purchase"), top.file(), "[purchase]", top.error());
+  purchase.number("eur", plan.purchase.eur, 0, 1e9);
+  purchase.number("eur_per_kw", plan.purchase.eur_per_kw, 0, 1e5);
+  purchase.number("eur_per_kwh", plan.purchase.eur_per_kwh, 0, 1e5);
+  purchase.finish();
+  TomlTable ageing(top.table("ageing"), top.file(), "[ageing]", top.error());
+  ageing.number("calendar_percent_per_year", plan.ageing.calendar_percent_per_year, 0, 50);
+  ageing.number("cycle_percent_per_1000", plan.ageing.cycle_percent_per_1000, 0, 100);
+  ageing.number("end_percent", plan.ageing.end_percent, 1, 99);
+  ageing.finish();
+}
+
+}  // namespace
+
+SizePlan read_size_plan(const std::string& path, const RunConfig& base) {
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(read_file(path, kTomlBytesMax), path, document, error)) {
+    throw UserError(error);
+  }
+  SizePlan plan;
+  TomlTable top(&document, path, "", error);
+  top.require("size");
+  TomlTable size(top.table("size"), path, "[size]", error);
+  plan.power_w = read_kilos(size, "power_kw");
+  plan.capacity_wh = read_kilos(size, "capacity_kwh");
+  std::int64_t window_days = plan.window_days;
+  size.integer("window_days", window_days, 30, 3650);
+  plan.window_days = static_cast<int>(window_days);
+  size.line("policy", plan.policy);
+  size.finish();
+  read_contracts(top, base, plan);
+  read_purchase(top, plan);
+  top.finish();
+  if (!error.empty()) throw UserError(error);
+  const std::size_t cells = plan.power_w.size() * plan.capacity_wh.size() * plan.contracts.size();
+  if (cells > kCellsMax) fail("{}: {} cells are more than {}", path, cells, kCellsMax);
+  return plan;
+}
+
+namespace {
+
+/// All days that are traded, as days of the whole market.
+std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& traded) {
+  std::vector<MarketDay> days;
+  auto next = traded.days.begin();
+  for (const MarketDay& day : market.days) {
+    if (next == traded.days.end() || next->date != day.date()) continue;
+    days.push_back(day);
+    ++next;
+  }
+  return days;
+}
+
+/// One plan over the whole series, as walk_forward() has it for each of its months.
+double foresight_profit(const MarketSteps& market, const RunConfig& config,
+                        const std::vector<MarketDay>& days) {
+  const auto policy = make_baseline(kForesightName, market, config.battery);
+  Evaluation bound =
+      evaluate(market, days, *policy, {config.battery, config.initial_soc_frac, true});
+  value_charge_left(bound, config.battery, mean_settled_eur_per_mwh(market, days));
+  return bound.profit_eur_per_day_per_mwh();
+}
+
+SizeClass trade_class(const RunConfig& config, const SizeTrial& trial) {
+  const FoldPolicy make = [&](const Fold& fold) {
+    return make_policy(trial.policy, fold.market, config.battery);
+  };
+  std::vector<StepRecord> steps;
+  WalkForward walked = walk_forward(trial.policy, trial.folds, make, config.battery,
+                                    config.initial_soc_frac, trial.market, false, &steps);
+  const double bound =
+      foresight_profit(trial.market, config, traded_days(trial.market, walked.total));
+  const double profit = walked.total.profit_eur_per_day_per_mwh();
+  return {config.battery, std::move(walked.total), month_peaks(steps, config.battery.power_w_max),
+          bound > 0 ? profit / bound : NAN};
+}
+
+/// Power taken, summed over the minutes of one quarter-hour after the other.
+class PeakMeter {
+ public:
+  explicit PeakMeter(double power_w_max) : power_w_max_(power_w_max) {}
+
+  void add_minute(std::int64_t utc_s, double power_w) {
+    if (utc_s / kSecondsPerQuarterHour != quarter_hour_) {
+      close();
+      quarter_hour_ = utc_s / kSecondsPerQuarterHour;
+    }
+    watt_minutes_ += std::max(power_w, 0.0);
+  }
+  std::vector<MonthPeak> peaks() && {
+    close();
+    return std::move(peaks_);
+  }
+
+ private:
+  void close() {
+    if (quarter_hour_ == 0) return;
+    const std::string month =
+        format_local_date(local_date_of(quarter_hour_ * kSecondsPerQuarterHour)).substr(0, 7);
+    const double share = watt_minutes_ / kMinutesPerQuarterHour / power_w_max_;
+    if (peaks_.empty() || peaks_.back().month != month) peaks_.push_back({month, 0});
+    peaks_.back().power_share = std::max(peaks_.back().power_share, share);
+    watt_minutes_ = 0;
+  }
+
+  double power_w_max_;
+  std::int64_t quarter_hour_ = 0;  ///< 0: none yet
+  double watt_minutes_ = 0;
+  std::vector<MonthPeak> peaks_;
+};
+
+}  // namespace
+
+std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max) {
+  PeakMeter meter(power_w_max);
+  for (const StepRecord& step : steps) {
+    for (int minute = 0; minute < kMinutesPerStep; ++minute) {
+      meter.add_minute(step.utc_s + 60 * minute, step.power_w);
+    }
+  }
+  return std::move(meter).peaks();
+}
+
+std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
+                                     const SizeTrial& trial) {
+  std::vector<SizeClass> classes(configs.size());
+  Progress progress("size", "classes", static_cast<double>(configs.size()));
+  in_parallel(configs.size(), trial.threads, progress,
+              [&](std::size_t c) { classes[c] = trade_class(configs[c], trial); });
+  return classes;
+}
+
+namespace {
+
+constexpr double kDaysPerYear = 365.25;
+constexpr int kMonthsPerYear = 12;
+constexpr int kLifeMonthsMax = 50 * kMonthsPerYear;
+
+/// What each day leaves of the class's money: wear given back, a share taken of months that earn.
+std::vector<DayValue> cash_of(const SizeClass& of, double share_percent) {
+  std::vector<DayValue> days;
+  std::map<std::string, double> months;
+  for (const DayResult& day : of.traded.days) {
+    const double eur = day.profit_eur + of.traded.wear_eur_per_mwh * day.throughput_mwh;
+    days.emplace_back(day.date, eur);
+    months[day.date.substr(0, 7)] += eur;
+  }
+  for (auto& [date, eur] : days) {
+    if (months[date.substr(0, 7)] > 0) eur *= 1 - share_percent / 100;
+  }
+  return days;
+}
+
+double mean_of(const std::vector<DayValue>& days) {
+  double sum = 0;
+  for (const DayValue& day : days) sum += day.second;
+  return sum / static_cast<double>(days.size());
+}
+
+double fixed_costs(const SizeContract& contract, const SizeClass& of, double power_w) {
+  double kw = 0;
+  for (const MonthPeak& peak : of.peaks) {
+    kw += peak.power_share * power_w / 1e3 / static_cast<double>(of.peaks.size());
+  }
+  return kMonthsPerYear * contract.fee_eur_per_month +
+         contract.capacity_eur_per_kw_year * std::max(0.0, kw - contract.capacity_free_kw);
+}
+
+}  // namespace
+
+double SizeCell::eur_per_cycle() const { return eur_per_year() / (cycles_per_day * kDaysPerYear); }
+
+RunConfig cell_config(const RunConfig& base, double power_w, double capacity_wh,
+                      const SizeContract& contract) {
+  RunConfig config = base;
+  config.battery.power_w_max = power_w;
+  config.battery.capacity_wh = capacity_wh;
+  config.battery.costs = contract.costs;
+  config.battery.wear_eur_per_mwh = contract.wear_eur_per_mwh;
+  config.battery.cycles_per_day_max = contract.cycles_per_day_max;
+  return config;
+}
+
+SizeCells weigh_up(const SizePlan& plan, const RunConfig& base, const SizeTrial& trial) {
+  std::vector<RunConfig> configs;
+  std::map<std::string, std::size_t> by_key;
+  std::vector<std::size_t> class_of;
+  for (const double power_w : plan.power_w) {
+    for (const double capacity_wh : plan.capacity_wh) {
+      for (const SizeContract& contract : plan.contracts) {
+        const RunConfig own = cell_config(base, power_w, capacity_wh, contract);
+        require_consistent(own, "[[contract]] " + contract.name);
+        const RunConfig config = canonical(own);
+        const auto [at, is_new] = by_key.try_emplace(learning_key(config, ""), configs.size());
+        if (is_new) configs.push_back(config);
+        class_of.push_back(at->second);
+      }
+    }
+  }
+  SizeCells all{{}, trade_classes(configs, trial)};
+  auto of = class_of.begin();
+  for (const double power_w : plan.power_w) {
+    for (const double capacity_wh : plan.capacity_wh) {
+      for (const SizeContract& contract : plan.contracts) {
+        all.cells.push_back(size_cell(plan, contract, all.classes[*of], power_w, capacity_wh));
+        all.cells.back().class_index = *of++;
+      }
+    }
+  }
+  return all;
+}
+
+SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const SizeClass& of,
+                   double power_w, double capacity_wh) {
+  const std::vector<DayValue> cash = cash_of(of, contract.share_percent);
+  const double days_of_cell = kDaysPerYear * capacity_wh / of.battery.capacity_wh;
+  SizeCell cell{.power_w = power_w,
+                .capacity_wh = capacity_wh,
+                .contract = &contract,
+                .class_index = 0,
+                .profit_eur_per_day_per_mwh = of.traded.profit_eur_per_day_per_mwh(),
+                .margin_eur_per_year = mean_of(cash) * days_of_cell,
+                .fixed_eur_per_year = fixed_costs(contract, of, power_w),
+                .error_eur_per_year = day_errors(cash).by_month * days_of_cell,
+                .cycles_per_day = of.traded.cycles_per_day(),
+                .share_of_foresight = of.share_of_foresight,
+                .price_eur = plan.purchase.price_eur(power_w, capacity_wh),
+                .life_years = 0,
+                .pay_back_years = NAN,
+                .life_eur = 0};
+  const LifeOfBattery life = life_of(cell, plan.ageing);
+  cell.life_years = life.years;
+  cell.pay_back_years = life.pay_back_years;
+  cell.life_eur = life.eur;
+  return cell;
+}
+
+LifeOfBattery life_of(const SizeCell& cell, const Ageing& ageing) {
+  LifeOfBattery life{0, NAN, -cell.price_eur};
+  double capacity = 1;  // of what was bought
+  const double cycles = cell.cycles_per_day * kDaysPerYear / kMonthsPerYear;
+  for (int month = 0; month < kLifeMonthsMax && capacity > ageing.end_percent / 100; ++month) {
+    const double eur =
+        (cell.margin_eur_per_year * capacity - cell.fixed_eur_per_year) / kMonthsPerYear;
+    if (life.eur < 0 && life.eur + eur >= 0) {
+      life.pay_back_years = (month - life.eur / eur) / kMonthsPerYear;
+    }
+    life.eur += eur;
+    life.years = (month + 1.0) / kMonthsPerYear;
+    capacity -= ageing.calendar_percent_per_year / 100 / kMonthsPerYear +
+                ageing.cycle_percent_per_1000 / 100 * cycles * capacity / 1000;
+  }
+  return life;
+}
+
+const SizeCell& best_of(const std::vector<SizeCell>& cells) {
+  const auto rank = [](const SizeCell& cell) {
+    const bool pays = !std::isnan(cell.pay_back_years);
+    const double otherwise =
+        cell.price_eur > 0 ? cell.life_eur / cell.price_eur : cell.eur_per_kwh_year();
+    return std::pair(pays, pays ? -cell.pay_back_years : otherwise);
+  };
+  return *std::ranges::max_element(cells, {}, rank);
+}
+
+}  // namespace bess

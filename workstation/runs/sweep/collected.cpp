@@ -1,0 +1,347 @@
+#include "workstation/runs/sweep/collected.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "workstation/data/env/day_errors.h"
+#include "workstation/data/market/series/judged_prices.h"
+#include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/run/run_folder.h"
+#include "workstation/runs/run/run_record.h"
+#include "workstation/runs/run/run_report.h"
+#include "workstation/runs/run/run_stages.h"
+#include "workstation/runs/sweep/sweep_plan.h"
+
+namespace bess {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace run_file;
+
+/// What a lean task leaves: what is exported and what it earned; or where its proof failed.
+const std::set<std::string> kLeanFiles{kRecord,      kConfig, kStudent,         kHeader,
+                                       kTable,       kDays,   kUnprovedStudent, kUnprovedViolations,
+                                       kProofRounds, kTimes};
+
+/// That nobody else works in.
+fs::path make_own_folder(const fs::path& parts) {
+  fs::create_directories(parts);
+  std::string name = (parts / "XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) fail("{}: {}", name, std::strerror(errno));
+  return name;
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using Log = std::unique_ptr<std::FILE, CloseFile>;
+
+Log open_log(const fs::path& path) {
+  fs::create_directories(path.parent_path());
+  Log log(std::fopen(path.c_str(), "a"));
+  if (!log) fail("{}: {}", path.string(), std::strerror(errno));
+  return log;
+}
+
+/// A rename never replaces a folder that holds something.
+void publish(const SweepFolder& folder, int task, const fs::path& own) {
+  const fs::path result = folder.result(task);
+  std::error_code error;
+  fs::rename(own, result, error);
+  if (!error || is_complete(folder, task)) return;
+  if (fs::exists(result)) fs::rename(result, own.string() + ".half");
+  fs::rename(own, result);
+}
+
+/// Prices go by their content: what a file is called changes no byte of a result.
+RunRecord record_of(const SweepRecord& sweep, const SweepTask& task, const RunConfig& config) {
+  RunRecord record;
+  record.prices = "prices of the sweep";
+  record.prices_name = sweep.prices;
+  record.identity = identity_of(config, sweep.prices, "");
+  if (sweep.kind == kLean) record.identity.emplace_back(kStagesKey, kLean);
+  const std::string fold = task.value(setting::kFold);
+  if (!fold.empty()) record.identity.emplace_back(kFoldKey, fold);
+  return record;
+}
+
+MinuteSeries prices_of(const SweepFolder& folder, const SweepRecord& sweep) {
+  const std::string name = folder.prices().string();
+  MinuteSeries series = read_judged_minutes(name, AcceptedFindings::all());
+  if (prices_hash(series) == sweep.prices) return series;
+  fail("{}: holds other prices ({}) than the sweep was planned with ({})", name,
+       prices_hash(series), sweep.prices);
+}
+
+}  // namespace
+
+bool is_complete(const SweepFolder& folder, int task) {
+  return fs::exists(folder.result(task) / kRecord);
+}
+
+bool is_proved(const SweepFolder& folder, int task) {
+  return is_complete(folder, task) && fs::exists(folder.result(task) / kStudent);
+}
+
+bool complete_task(const SweepFolder& folder, int task, const TaskWork& work) {
+  if (is_complete(folder, task)) return false;
+  const Log log = open_log(folder.log(task));
+  std::error_code ignored;
+  try {
+    const fs::path own = make_own_folder(folder.parts(task));
+    work(own, log.get());
+    publish(folder, task, own);
+  } catch (const std::exception& error) {
+    if (!is_complete(folder, task)) {  // else another was first, and cleared up
+      fmt::print(log.get(), "{}{}\n", kFailedLine, error.what());
+      throw;
+    }
+  }
+  // Of those who died, or are too late. Two that clear up at once may each give up on the other's.
+  for (int tries = 0; tries < 10 && fs::exists(folder.parts(task), ignored); ++tries) {
+    fs::remove_all(folder.parts(task), ignored);
+  }
+  fs::remove(folder.log(task), ignored);
+  return true;
+}
+
+bool run_task(const SweepFolder& folder, int number) {
+  const SweepRecord sweep = load_own_sweep(folder);
+  const std::vector<SweepTask> tasks = load_tasks(folder);
+  if (number < 1 || number > std::ssize(tasks)) {
+    fail("there is no task {}: {} has {} of them", number, folder.tasks().string(), tasks.size());
+  }
+  const SweepTask& task = tasks[static_cast<std::size_t>(number - 1)];
+  setenv("SOURCE_DATE_EPOCH", fmt::format("{}", sweep.date_utc_s).c_str(), 1);
+  return complete_task(folder, number, [&](const fs::path& at, std::FILE* log) {
+    const MinuteSeries series = prices_of(folder, sweep);
+    const RunConfig config = config_of_task(folder, load_run_config(folder.base()), task);
+    const RunRecord record = record_of(sweep, task, config);
+    save_run_record({at}, record);
+    try {
+      RunStages({at}, record, series, log).finish();
+    } catch (const ProofFailed& failed) {
+      fmt::print(log, "{}\n", failed.what());
+    }
+    if (!record.is_lean()) return;
+    for (const auto& entry : fs::directory_iterator(at)) {
+      if (!kLeanFiles.contains(entry.path().filename().string())) fs::remove_all(entry.path());
+    }
+  });
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Column {
+  const char* name;  ///< in a run's table and in tasks.csv
+  int decimals;
+};
+constexpr const char* kProfit = "profit_eur_per_day_per_mwh";
+constexpr const char* kCycles = "cycles_per_day";
+/// Of the row that is carried over; the profit by days of the same charge is the other row's.
+constexpr Column kBefore[] = {{"days", 0},
+                              {kProfit, 4},
+                              {"profit_standard_error", 4},
+                              {"profit_standard_error_by_month", 4},
+                              {"gain_eur_per_day_per_mwh", 4},
+                              {"profit_at_wear_10_eur_per_day_per_mwh", 4}};
+constexpr Column kBehind[] = {{kCycles, 4}, {"share_of_foresight", 6}};
+
+std::string columns_of(const CsvTable& table, std::size_t row, std::span<const Column> columns) {
+  std::string text;
+  for (const auto& [name, decimals] : columns) {
+    const std::size_t at = table.column(name);
+    const bool is_known = !table.text(row, at).empty();
+    text += is_known ? fmt::format(",{:.{}f}", table.number(row, at), decimals) : std::string(",");
+  }
+  return text;
+}
+
+/// The exported student's two rows of a run's table.
+TaskFigures figures_in(const fs::path& result) {
+  const std::string name = (result / run_file::kTable).string();
+  const CsvTable table = CsvTable::read(name);
+  std::optional<std::size_t> reset, carried;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.text(row, table.column("policy")) != kExportedPolicy) continue;
+    (table.text(row, table.column("carry_soc")) == "true" ? carried : reset) = row;
+  }
+  if (!reset || !carried) fail("{}: has no two rows of the {}", name, kExportedPolicy);
+  const std::string record = (result / run_file::kRecord).string();
+  const Json json = Json::parse(read_file(record));
+  const std::string hash = json.value()["figures"]["weights_hash"].text_or("");
+  if (hash.empty()) fail("{}: tells no weights' hash", record);
+  const std::size_t profit = table.column(kProfit);
+  return {table.number(*carried, profit), table.number(*carried, table.column(kCycles)),
+          fmt::format("{},{:.4f}{},{}", columns_of(table, *carried, kBefore),
+                      table.number(*reset, profit), columns_of(table, *carried, kBehind), hash)};
+}
+
+std::string last_line(const fs::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);) last = line;
+  return one_line(last, 200);
+}
+
+double seconds_in(const fs::path& result) {
+  const fs::path path = result / run_file::kTimes;
+  if (!fs::exists(path)) return 0;
+  double seconds = 0;
+  const Json json = Json::parse(read_file(path));
+  for (const JsonValue stage : json.value()) seconds += stage["seconds"].number().value_or(0);
+  return seconds;
+}
+
+/// Names of settings, in the order in which tasks have them first.
+std::vector<std::string> names_in(const std::vector<CollectedTask>& tasks) {
+  std::vector<std::string> names;
+  for (const CollectedTask& one : tasks) {
+    for (const auto& [name, value] : one.task.settings) {
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+/// All tasks of the same settings.
+struct FoldedSettings {
+  const SweepTask* first = nullptr;
+  int tasks = 0;
+  std::vector<DayValue> profits =
+      {};                      ///< of proved ones, each with its month; no month without folds
+  double sum = 0, cycles = 0;  ///< of these
+};
+
+std::string columns_of(const FoldedSettings& row) {
+  if (row.profits.empty()) return ",,,,";
+  const DayErrors errors = day_errors(row.profits);
+  const auto [low, high] = std::ranges::minmax(row.profits, {}, &DayValue::second);
+  const auto proved = static_cast<double>(row.profits.size());
+  return fmt::format("{:.4f},{},{:.4f},{:.4f},{:.4f}", row.sum / proved,
+                     error_text(errors.months > 1 ? errors.by_month : errors.plain, 4, ""),
+                     low.second, high.second, row.cycles / proved);
+}
+
+}  // namespace
+
+std::vector<CollectedTask> collect_tasks(const SweepFolder& folder,
+                                         const std::vector<SweepTask>& tasks) {
+  std::vector<CollectedTask> collected;
+  for (const SweepTask& task : tasks) {
+    CollectedTask one{task};
+    if (is_complete(folder, task.number)) {
+      const fs::path result = folder.result(task.number);
+      one.state = is_proved(folder, task.number) ? TaskState::kProved : TaskState::kUnproved;
+      if (one.state == TaskState::kProved) one.figures = figures_in(result);
+      one.seconds = seconds_in(result);
+    } else {
+      one.said = last_line(folder.log(task.number));
+      if (one.said.starts_with(kFailedLine)) one.state = TaskState::kFailed;
+    }
+    collected.push_back(std::move(one));
+  }
+  return collected;
+}
+
+std::vector<CollectedSite> collect_sites(const SweepFolder& folder,
+                                         const std::vector<CollectedTask>& tasks,
+                                         const std::vector<Site>& sites) {
+  std::map<std::string, CollectedSite> classes;
+  for (const CollectedTask& task : tasks) {
+    CollectedSite& one = classes[task.task.value(setting::kClass)];
+    ++one.tasks;
+    if (!task.figures) continue;
+    one.profit_sum += task.figures->profit;
+    if (++one.proved > 1) continue;
+    const fs::path header = folder.result(task.task.number) / run_file::kHeader;
+    one.header = header.lexically_relative(folder.path).string();
+  }
+  std::vector<CollectedSite> collected;
+  for (const Site& site : sites) {
+    collected.push_back(classes[site.student]);
+    collected.back().site = site;
+  }
+  return collected;
+}
+
+std::string tasks_csv(const std::vector<CollectedTask>& tasks) {
+  constexpr const char* kStates[] = {"proved", "not proved", "failed", "missing"};
+  const std::vector<std::string> names = names_in(tasks);
+  std::string text = "task,state";
+  for (const std::string& name : names) text.append(",").append(csv_field(name));
+  text +=
+      ",days,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
+      "gain_eur_per_day_per_mwh,profit_at_wear_10_eur_per_day_per_mwh,"
+      "profit_day_reset_eur_per_day_per_mwh,cycles_per_day,share_of_foresight,weights_hash,"
+      "seconds\n";
+  for (const CollectedTask& task : tasks) {
+    text += fmt::format("{},{}", task.task.number, kStates[static_cast<std::size_t>(task.state)]);
+    for (const std::string& name : names) text.append(",").append(csv_field(task.task.value(name)));
+    text += task.figures ? task.figures->columns : ",,,,,,,,,,";
+    text += task.seconds > 0 ? fmt::format(",{:.2f}\n", task.seconds) : std::string(",\n");
+  }
+  return text;
+}
+
+std::string settings_csv(const std::vector<CollectedTask>& tasks) {
+  std::map<std::string, std::size_t> place;
+  std::vector<FoldedSettings> rows;
+  for (const CollectedTask& one : tasks) {
+    const std::string key = settings_text(one.task.without_seed_and_fold());
+    const auto [at, is_new] = place.try_emplace(key, rows.size());
+    if (is_new) rows.push_back({&one.task});
+    FoldedSettings& row = rows[at->second];
+    ++row.tasks;
+    if (!one.figures) continue;
+    row.profits.emplace_back(one.task.value(setting::kFold), one.figures->profit);
+    row.sum += one.figures->profit;
+    row.cycles += one.figures->cycles_per_day;
+  }
+  std::vector<std::string> names = names_in(tasks);
+  std::erase(names, setting::kSeed);
+  std::erase(names, setting::kFold);
+  std::string text;
+  for (const std::string& name : names) text += csv_field(name) + ",";
+  text +=
+      "tasks,proved,profit_eur_per_day_per_mwh,profit_standard_error,"
+      "profit_lowest_eur_per_day_per_mwh,profit_highest_eur_per_day_per_mwh,cycles_per_day\n";
+  for (const FoldedSettings& row : rows) {
+    for (const std::string& name : names) text += csv_field(row.first->value(name)) + ",";
+    text += fmt::format("{},{},{}\n", row.tasks, row.profits.size(), columns_of(row));
+  }
+  return text;
+}
+
+std::string sites_csv(const std::vector<CollectedSite>& sites) {
+  std::string text =
+      "id,region,class,power_w,capacity_wh,tasks,proved,profit_eur_per_day_per_mwh,"
+      "profit_eur_per_day,header\n";
+  for (const CollectedSite& row : sites) {
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.site.id),
+                    csv_field(row.site.region), row.site.student, row.site.power_w,
+                    row.site.capacity_wh, row.tasks, row.proved, error_text(row.profit(), 4, ""),
+                    error_text(row.eur_per_day(), 4, ""), csv_field(row.header));
+  }
+  return text;
+}
+
+}  // namespace bess
