@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "edge/records/log/whole_file.h"
-#include "shared/crc32.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 
@@ -46,10 +45,9 @@ HoldText format_hold(const Hold& hold) {
   const int length =
       std::snprintf(text, sizeof text, "%s%+010d%s%s", kBeforePower.data(), hold.power_w,
                     kBeforeUntil.data(), utc_text(std::int64_t{hold.until_utc_s}).c_str());
-  Crc32 crc;
-  crc.add_bytes(text, static_cast<std::size_t>(length));
-  std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), " crc32=%08x\n",
-                crc.value());
+  const auto end = static_cast<std::size_t>(length);
+  std::snprintf(text + end, sizeof text - end, "%s",
+                checksum_end({text, end}, kLineChecksum).c_str());
   return {text};
 }
 

@@ -6,14 +6,12 @@
 
 #include "edge/records/log/text_buffer.h"
 #include "edge/records/log/whole_file.h"
-#include "shared/crc32.h"
 
 namespace bess {
 
 namespace {
 
 constexpr std::string_view kHead = "bess-cleared 1";
-constexpr std::string_view kBeforeCrc = " crc32=";
 
 constexpr ClearedTrips kUnreadable{.unreadable = true};
 
@@ -43,21 +41,22 @@ ClearanceText format_cleared(const ClearedTrips& cleared) {
   for (const std::int64_t utc_s : cleared.utc_s) {
     if (utc_s != 0) text.add(" %lld", static_cast<long long>(utc_s));
   }
-  Crc32 crc;
-  crc.add_bytes(text.view().data(), text.view().size());
-  text.add("%s%08x\n", kBeforeCrc.data(), crc.value());
+  text.add("%s", checksum_end(text.view(), kLineChecksum).c_str());
   return {text.view()};
 }
 
 ClearedTrips parse_cleared(std::string_view text) {
   if (ClearedTrips older; parse_older(text, older)) return older;
-  const std::size_t end = text.find(kBeforeCrc);
-  if (!text.starts_with(kHead) || end == std::string_view::npos) return kUnreadable;
+  if (!text.starts_with(kHead) || check_text(text, kLineChecksum) != TextState::kIntact) {
+    return kUnreadable;
+  }
+  const std::string_view line = without_checksum(text, kLineChecksum);
+  const char* const end = line.data() + line.size();
   ClearedTrips cleared;
-  const char* at = text.data() + kHead.size();
+  const char* at = line.data() + kHead.size();
   for (std::int64_t& utc_s : cleared.utc_s) {
-    if (at >= text.data() + end) break;
-    const auto read = std::from_chars(at + 1, text.data() + end, utc_s);
+    if (at >= end) break;
+    const auto read = std::from_chars(at + 1, end, utc_s);
     if (read.ec != std::errc{}) return kUnreadable;
     at = read.ptr;
   }

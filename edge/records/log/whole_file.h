@@ -23,6 +23,8 @@ struct ChecksumFrame {
 };
 inline constexpr ChecksumFrame kCommentChecksum{"# crc32=", "\n"};
 inline constexpr ChecksumFrame kJsonChecksum{",\n  \"crc32\": \"", "\"\n}\n"};
+/// Of a file that is one line.
+inline constexpr ChecksumFrame kLineChecksum{" crc32=", "\n"};
 
 /// What makes a checked text of this one.
 FixedText<31> checksum_end(std::string_view text, const ChecksumFrame& frame);
