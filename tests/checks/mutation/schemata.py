@@ -82,6 +82,8 @@ class File:
         kind = cursor.kind
         if kind in NOT_AT_RUN_TIME or kind == CursorKind.FIELD_DECL:
             return
+        if kind == CursorKind.StmtExpr:  # of a macro of the C library
+            return
         start, end = self.at(cursor)
         if kind in FUNCTIONS:
             function = cursor.spelling.split("<")[0]
