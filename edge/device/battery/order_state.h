@@ -15,7 +15,6 @@
 #include "edge/core/control/power_order.h"
 #include "edge/device/registers/battery_command.h"
 #include "shared/scaled_clock.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
 
