@@ -109,7 +109,7 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
 TEST(EdgeWords, ACheckRunsInThisProcess) {
   const TemporaryFolder folder;
   const std::string config = folder.write("edge.toml", R"([battery]
-map = ")" BESS_SOURCE_DIR R"(/edge/maps/simulator.toml"
+map = ")" BESS_SOURCE_DIR R"(/edge/device/maps/simulator.toml"
 host = "127.0.0.1"
 port = 1
 [price]

@@ -32,7 +32,7 @@ class Questions : public ::testing::Test {
     set_market_time_zone();
     config_ = folder_.write("edge.toml", R"(contact = "Ann, +32 2 000 00 00"
 [battery]
-map = ")" BESS_SOURCE_DIR R"(/edge/maps/simulator.toml"
+map = ")" BESS_SOURCE_DIR R"(/edge/device/maps/simulator.toml"
 host = "127.0.0.1"
 [price]
 url = "http://127.0.0.1:1/prices"
