@@ -30,14 +30,14 @@ code is ...
 END
 says || { cat "$tree/../said"; echo "a README that is right is refused"; exit 1; }
 refused() {  # refused WHAT EXPRESSION: as changed by sed
-  cp "$tree/README.md" "$README.md"
+  cp "$tree/README.md" "$tree/../README.md"
   sed -i "$2" "$tree/README.md"
   if says || ! grep -q "$1" "$tree/../said"; then
     cat "$tree/../said"
     echo "not found: $1"
     exit 1
   fi
-  cp "$README.md" "$tree/README.md"
+  cp "$tree/../README.md" "$tree/README.md"
 }
 refused "README.md:1: bess-train prices fetch has no --form" 's/--from/--form/'
 refused "README.md:1: bess-train prices has no fatch" 's/fetch/fatch/'

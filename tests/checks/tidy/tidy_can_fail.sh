@@ -14,7 +14,7 @@ git -C "$tree" init -q
 says() { git -C "$tree" add -A; "$source/tests/checks/tidy/tidy.py" "$tree" >"$tree/../said" 2>&1; }
 says || { cat "$tree/../said"; echo "a tidy tree is refused"; exit 1; }
 refused() {  # refused WHAT FILE TEXT: with TEXT as another line of FILE
-  cp "$tree/README.md" "$README.md"
+  cp "$tree/README.md" "$tree/../README.md"
   mkdir -p "$(dirname "$tree/$2")"
   printf '%s\n' "$3" >>"$tree/$2"
   if says || ! grep -q "$1" "$tree/../said"; then
@@ -26,7 +26,7 @@ refused() {  # refused WHAT FILE TEXT: with TEXT as another line of FILE
     edge/long.cpp) echo "$long" >"$tree/$2" ;;
     *) rm "$tree/$2" ;;
   esac
-  cp "$README.md" "$tree/README.md"
+  cp "$tree/../README.md" "$tree/README.md"
 }
 refused "2 lines of more than 100 columns, 1 are known" edge/long.cpp "$long"
 refused "a file of an unknown kind" edge/note.doc text
