@@ -37,7 +37,7 @@ wrong tests/system/trial/trial_battery.h '#include "tools/simulators/sim/command
 wrong workstation/base/random.h '#include "workstation/data/market/series/gaps.h"'
 wrong workstation/data/env/evaluate.cpp '#include "workstation/policy/planners/baselines.h"'
 wrong workstation/policy/rl/teacher.h '#include "workstation/correction/student/student_policy.h"'
-wrong workstation/correction/student/verify.cpp '#include "workstation/report/figures/figure.h"'
+wrong workstation/correction/student/verify.cpp '#include "workstation/report/figures/html.h"'
 wrong workstation/correction/student/student_file.cpp '#include <cjson/cJSON.h>'
 wrong workstation/report/figures/html.cpp '#include "workstation/runs/chain/run_config.h"'
 wrong workstation/report/figures/html.cpp '#include <pugixml.hpp>'
