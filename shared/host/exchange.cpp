@@ -181,8 +181,8 @@ ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples)
   double in_wh = 0, out_wh = 0;
   walk_along(samples, scale, [&](const Exchange& e) {
     if (e.from_utc_s < static_cast<double>(samples.front().utc_s)) return;
-    in_wh += std::max(e.energy_wh, 0.0);
-    out_wh += std::max(-e.energy_wh, 0.0);
+    in_wh += e.charged_wh();
+    out_wh += e.discharged_wh();
   });
   const double capacity_wh = samples.back().capacity_wh;
   const double stored_wh = (samples.back().soc_e4 - samples.front().soc_e4) /

@@ -12,6 +12,7 @@
 // says how much flowed, by the efficiency that the same log shows.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -41,6 +42,9 @@ struct Exchange {
   double until_utc_s = 0;
   double energy_wh = 0;  ///< grid side, charge positive
   bool is_seen = true;   ///< false: by the state of charge alone, nobody looked
+
+  [[nodiscard]] double charged_wh() const { return std::max(energy_wh, 0.0); }
+  [[nodiscard]] double discharged_wh() const { return std::max(-energy_wh, 0.0); }
 };
 
 /// What the battery's state of charge says of energy.

@@ -99,15 +99,13 @@ std::map<std::int32_t, ExchangedDay> exchanged_days(std::span<const ExchangeSamp
   for_each_exchange(samples, [&](const Exchange& exchange) {
     if (!exchange.is_seen && exchange.energy_wh == 0) return;
     const auto utc_s = static_cast<std::int64_t>(exchange.from_utc_s);
-    const double charged_wh = std::max(exchange.energy_wh, 0.0);
-    const double discharged_wh = std::max(-exchange.energy_wh, 0.0);
     ExchangedDay& day = days[local_day_at(utc_s)];
     Flow& quarter = quarters[utc_s / kSecondsPerQuarterHour];
-    day.charged_wh += charged_wh;
-    day.discharged_wh += discharged_wh;
-    quarter.charged_wh += charged_wh;
-    quarter.discharged_wh += discharged_wh;
-    if (!exchange.is_seen) day.unseen_wh += charged_wh + discharged_wh;
+    day.charged_wh += exchange.charged_wh();
+    day.discharged_wh += exchange.discharged_wh();
+    quarter.charged_wh += exchange.charged_wh();
+    quarter.discharged_wh += exchange.discharged_wh();
+    if (!exchange.is_seen) day.unseen_wh += std::fabs(exchange.energy_wh);
   });
   for (const auto& [number, flow] : quarters) {
     const std::int64_t start_utc_s = number * kSecondsPerQuarterHour;

@@ -62,8 +62,6 @@ LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_ut
   return span;
 }
 
-double eur(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
-
 void print_csv(const CycleRecord& record, const LogGiven& given,
                const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
@@ -75,7 +73,7 @@ void print_csv(const CycleRecord& record, const LogGiven& given,
   }
   Margins at;
   if (given.explain && margins_of(record, thresholds, at)) {
-    std::printf(",%.2f,%.2f", eur(at.charge_up_to_centi), eur(at.discharge_from_centi));
+    std::printf(",%.2f,%.2f", eur_of(at.charge_up_to_centi), eur_of(at.discharge_from_centi));
   } else if (given.explain) {
     std::fputs(",,", stdout);  // nobody was asked
   }
@@ -93,8 +91,8 @@ void print_text(const CycleRecord& record, const LogGiven& given,
   std::fputs(line, stdout);
   Margins at;
   if (given.explain && margins_of(record, thresholds, at)) {
-    std::printf(" charge_up_to=%.2f discharge_from=%.2f", eur(at.charge_up_to_centi),
-                eur(at.discharge_from_centi));
+    std::printf(" charge_up_to=%.2f discharge_from=%.2f", eur_of(at.charge_up_to_centi),
+                eur_of(at.discharge_from_centi));
   }
   std::putchar('\n');
 }

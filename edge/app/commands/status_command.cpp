@@ -14,6 +14,7 @@
 #include "edge/records/log/health.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
+#include "edge/records/log/log_text.h"
 #include "edge/records/log/whole_file.h"
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/next_decision.h"
@@ -50,7 +51,6 @@ Examples:
   watch -n 60 bess-edge status --config /etc/bess/edge.toml)";
 
 std::string local_of(std::int64_t utc_s) { return local_text(utc_s).c_str(); }
-double eur_of(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 long long as_long(std::int64_t value) { return value; }
 
 constexpr const char* kUpdateFolder = "/var/lib/bess-update";
@@ -117,10 +117,9 @@ void print_operator_orders(const CycleRecord& last) {
 /// Nothing where there is no meter.
 void print_site(const CycleRecord& last) {
   if (!last.site.has_grid_power) return;
-  const std::int64_t house_w = std::int64_t{last.site.grid_power_w} - last.measurement.power_w;
   std::printf(
       "grid       %d W (import is positive), house %lld W, %d Wh imported in this quarter-hour\n",
-      last.site.grid_power_w, as_long(house_w), last.site.quarter_hour_import_wh);
+      last.site.grid_power_w, as_long(house_w_of(last)), last.site.quarter_hour_import_wh);
 }
 
 void print_price(const CycleRecord& last) {
@@ -340,7 +339,7 @@ bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& sta
   static char storage[kMetricsBytes];
   TextBuffer text(storage);
   format_prometheus(*status, text);
-  std::fputs(std::string(text.view()).c_str(), stdout);
+  std::fwrite(text.view().data(), 1, text.view().size(), stdout);
   if (is_running) print_labelled(config, decision_info(status->totals.last));
   NextDecision next;
   if (is_running && find_next(config, next)) {

@@ -128,16 +128,17 @@ std::optional<std::int64_t> lock_age_ms(const EdgeConfig& config) {
   return youngest;
 }
 
-/// Negative where somebody may run whose number nobody tells.
-constexpr int kSomebody = -1;
+/// Negative: a controller may run whose process number is not known.
+constexpr int kUnknownProcess = -1;
 
-/// Without asking for locks: the writer of the status, or whoever has locked the battery since.
+/// Without asking for locks: the writer of the status, or an unknown process that has locked the
+/// battery since.
 int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>& status) {
   const int writer = living_writer_of(status);
   if (writer != 0) return writer;
   const std::optional<std::int64_t> lock_ms = lock_age_ms(config);
   const bool is_later = lock_ms.has_value() && (!status || *lock_ms + 1'000 < age_ms_of(*status));
-  return is_later ? kSomebody : 0;
+  return is_later ? kUnknownProcess : 0;
 }
 
 /// Who may not open the lock, or will not, asks the files.
@@ -198,7 +199,7 @@ std::string why_unknown(const EdgeConfig& config, const PublishedStatus& publish
                               ? "process " + std::to_string(published.holder) + " runs"
                               : std::string("a controller has locked this battery or its state");
   const bool has_run_folder = !config.state.run_folder.empty();
-  return who + ", but neither a status nor the log tells of it: is the disk under " +
+  return who + ", but it has left neither a status nor a log record: is the disk under " +
          config.state.folder.c_str() +
          (has_run_folder ? " and " + std::string(config.state.run_folder.view()) : "") +
          " full or read-only" + (has_run_folder ? "?" : "? [state] run_folder would tell");

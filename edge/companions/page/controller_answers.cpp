@@ -1,6 +1,7 @@
 #include "edge/companions/page/controller_answers.h"
 
 #include "edge/core/control/policy.h"
+#include "edge/records/log/log_text.h"
 #include "shared/host/json.h"
 #include "shared/host/run_program.h"
 #include "shared/local_time.h"
@@ -8,12 +9,6 @@
 #include "shared/utc_text.h"
 
 namespace bess {
-
-namespace {
-
-double eur(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
-
-}  // namespace
 
 DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds, Policy policy) {
   DecisionMap map;
@@ -32,8 +27,8 @@ Json decision_map_json(const DecisionMap& map) {
     const DecisionMap::Column& column = map.columns[static_cast<std::size_t>(i)];
     columns.add(Json::object(
         {{"soc_percent", Decimals{100.0 * i / (kSocCount - 1), 1}},
-         {"charge_up_to_eur_per_mwh", Decimals{eur(column.charge_up_to_centi), 2}},
-         {"discharge_from_eur_per_mwh", Decimals{eur(column.discharge_from_centi), 2}}}));
+         {"charge_up_to_eur_per_mwh", Decimals{eur_of(column.charge_up_to_centi), 2}},
+         {"discharge_from_eur_per_mwh", Decimals{eur_of(column.discharge_from_centi), 2}}}));
   }
   return Json::object({{"columns", std::move(columns)}});
 }

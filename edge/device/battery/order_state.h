@@ -21,7 +21,7 @@ namespace bess {
 /// How an order went that was in force and ought to be.
 enum class OrderLoss : std::uint8_t {
   kNone,
-  kReplaced,  ///< its registers hold what somebody else wrote
+  kReplaced,  ///< another client has overwritten its registers
   kEnded      ///< the device follows none, and nothing in the registers says who ended it
 };
 
@@ -59,7 +59,7 @@ class OrderState {
   /// The device's own timer, as last read.
   void note_seconds_left(std::int64_t left_s) { runs_out_ = left_s < watchdog_.refresh_s; }
   void on_lost() { state_ = State::kNone; }
-  /// What has just run out was not lost to anybody, but for one that somebody else wrote over.
+  /// An order that has just run out is no loss, unless another client has overwritten it.
   void on_lost(OrderLoss loss, bool is_foreign, std::int64_t now_ns) {
     if (is_foreign || is_within_its_time(now_ns)) loss_ = loss;
     on_lost();
@@ -74,8 +74,8 @@ class OrderState {
   [[nodiscard]] bool may_last(std::int64_t now_ns) const {
     return is_in_force() && (lasts_for_ever() || now_ns - fed_ns_ < duration_ns());
   }
-  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart
-  /// agree.
+  /// Fed so recently that it cannot have run out; a tenth of its duration is left for the
+  /// difference of the clocks.
   [[nodiscard]] bool is_within_its_time(std::int64_t now_ns) const {
     return lasts_for_ever() || now_ns - fed_ns_ < duration_ns() - duration_ns() / 10;
   }

@@ -6,6 +6,7 @@
 
 #include "edge/core/control/reasons.h"
 #include "edge/core/control/tick.h"
+#include "edge/records/log/log_text.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -31,8 +32,6 @@ void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
   reasons.push_back(level + ": the last cycle ended " + seconds(in.age_ms) +
                     " ago, one is due every " + seconds(cadence_ms));
 }
-
-double eur_of(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 
 std::string held_row(double eur_per_mwh) {
   char text[160];
@@ -95,7 +94,7 @@ void check_findings(const CycleRecord& last, std::vector<std::string>& reasons) 
                       " % of the measured energy: is capacity_wh right, does the power arrive?");
   }
   if (found.wrong_energy_e6 >= kWrongEnergyE6Max) {
-    reasons.push_back("WARN: now and then the battery does not do as it is told: " +
+    reasons.push_back("WARN: the battery sometimes does not follow its orders: " +
                       std::to_string(found.wrong_energy_e6 / 10'000) +
                       " % of its capacity flowed against or beyond orders; a trip at 20 %");
   }
@@ -160,8 +159,7 @@ void check_site(const CycleRecord& last, std::vector<std::string>& reasons) {
         "another phase or ratio? Or is the battery's own power wrong?");
   }
   if (site.house_is_implausible) {
-    const std::int64_t house_w = std::int64_t{site.grid_power_w} - last.measurement.power_w;
-    reasons.push_back("WARN: meter: house " + std::to_string(house_w) +
+    reasons.push_back("WARN: meter: house " + std::to_string(house_w_of(last)) +
                       " W: a sign, the phase or the meter's place is wrong, or [meter] pv_w_max");
   }
   if (site.limit_status == Status::kTimeout) {

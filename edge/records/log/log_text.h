@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "edge/core/control/control_types.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -14,5 +16,13 @@ inline constexpr std::size_t kLogLineBytes = 1'024;
 std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
 std::size_t format_csv_header(char (&line)[kLogLineBytes]);
 std::size_t format_csv_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
+
+/// EUR/MWh of the hundredths that a record has.
+constexpr double eur_of(std::int64_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
+
+/// Power of the house behind the meter, without the battery.
+constexpr std::int64_t house_w_of(const CycleRecord& record) {
+  return std::int64_t{record.site.grid_power_w} - record.measurement.power_w;
+}
 
 }  // namespace bess

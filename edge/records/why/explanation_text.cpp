@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "edge/core/control/policy.h"
+#include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
 #include "shared/local_text.h"
@@ -10,7 +11,6 @@
 namespace bess {
 namespace {
 
-double eur(std::int64_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
 
 const char* doing(std::int32_t power_w) {
@@ -53,9 +53,9 @@ void add_price(const Explanation& explanation, std::string& text) {
     return;
   }
   add_formatted(text, "price      %.2f EUR/MWh, %d s old",
-                eur(record.price.price_centi_eur_per_mwh), record.price_age_s);
+                eur_of(record.price.price_centi_eur_per_mwh), record.price_age_s);
   if (record.price_stands_in) {
-    add_formatted(text, ", decided on as %.2f", eur(record.stand_in_centi_eur_per_mwh));
+    add_formatted(text, ", decided on as %.2f", eur_of(record.stand_in_centi_eur_per_mwh));
   }
   if (explanation.has_margins) {
     text.append("; it ").append(price_margins_text(explanation.margins));
@@ -89,7 +89,7 @@ void add_soc(const Explanation& explanation, std::string& text) {
 void add_level(const CycleRecord& record, std::string& text) {
   if (record.context_class == 0 || student_context().kind != ContextKind::kLevel) return;
   add_formatted(text, "level      %.2f EUR/MWh, class %d of %d\n",
-                eur(record.price_level.centi_eur_per_mwh()), record.context_class,
+                eur_of(record.price_level.centi_eur_per_mwh()), record.context_class,
                 kContextClassCount);
 }
 
@@ -98,14 +98,14 @@ std::string moment_text(const PricedQuarterHour& moment, std::int64_t now_utc_s)
   const bool is_today = local_day_number(local_minute_of(moment.utc_s)) ==
                         local_day_number(local_minute_of(now_utc_s));
   return formatted("%s %s (%.2f)", is_today ? "today" : "tomorrow",
-                   local_clock_text(moment.utc_s).c_str(), eur(moment.centi_eur_per_mwh));
+                   local_clock_text(moment.utc_s).c_str(), eur_of(moment.centi_eur_per_mwh));
 }
 
 void add_outlook(const CycleRecord& record, std::string& text) {
   const OutlookReport& outlook = record.outlook;
   if (outlook.source == OutlookSource::kNone) return;
   add_formatted(text, "outlook    %s: a plan would charge below %.2f EUR/MWh",
-                outlook_source_name(outlook.source).data(), eur(outlook.break_even_centi));
+                outlook_source_name(outlook.source).data(), eur_of(outlook.break_even_centi));
   if (outlook.known_quarter_hours > 0) {
     text += " because " + moment_text(outlook.dearest, record.utc_s) + " is dear and " +
             moment_text(outlook.cheapest, record.utc_s) + " cheap";
@@ -140,10 +140,10 @@ Json outlook_json(const OutlookReport& outlook) {
   const auto moment = [&](const PricedQuarterHour& at) {
     if (outlook.known_quarter_hours == 0) return Json::null();
     return Json::object({{"utc", utc_text(at.utc_s).view()},
-                         {"eur_per_mwh", Decimals{eur(at.centi_eur_per_mwh), 2}}});
+                         {"eur_per_mwh", Decimals{eur_of(at.centi_eur_per_mwh), 2}}});
   };
   return Json::object({{"source", outlook_source_name(outlook.source)},
-                       {"break_even_eur_per_mwh", Decimals{eur(outlook.break_even_centi), 2}},
+                       {"break_even_eur_per_mwh", Decimals{eur_of(outlook.break_even_centi), 2}},
                        {"known_quarter_hours", outlook.known_quarter_hours},
                        {"dearest", moment(outlook.dearest)},
                        {"cheapest", moment(outlook.cheapest)}});
@@ -152,12 +152,12 @@ Json outlook_json(const OutlookReport& outlook) {
 }  // namespace
 
 std::string price_margins_text(const Margins& at) {
-  std::string text = formatted("charges up to %.2f", eur(at.charge_up_to_centi));
+  std::string text = formatted("charges up to %.2f", eur_of(at.charge_up_to_centi));
   if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
-    add_formatted(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
-                  eur(at.discharge_from_centi - 1));
+    add_formatted(text, ", rests from %.2f to %.2f", eur_of(at.charge_up_to_centi + 1),
+                  eur_of(at.discharge_from_centi - 1));
   }
-  add_formatted(text, ", discharges from %.2f", eur(at.discharge_from_centi));
+  add_formatted(text, ", discharges from %.2f", eur_of(at.discharge_from_centi));
   return text;
 }
 
@@ -166,8 +166,8 @@ Json margins_json(const Margins& at) {
     return exists ? Json(Decimals{percent(soc_e4), 2}) : Json::null();
   };
   return Json::object(
-      {{"charge_up_to_eur_per_mwh", Decimals{eur(at.charge_up_to_centi), 2}},
-       {"discharge_from_eur_per_mwh", Decimals{eur(at.discharge_from_centi), 2}},
+      {{"charge_up_to_eur_per_mwh", Decimals{eur_of(at.charge_up_to_centi), 2}},
+       {"discharge_from_eur_per_mwh", Decimals{eur_of(at.discharge_from_centi), 2}},
        {"charge_up_to_soc_percent", soc_or_null(at.charges_at_some_soc, at.charge_up_to_soc_e4)},
        {"discharge_from_soc_percent",
         soc_or_null(at.discharges_at_some_soc, at.discharge_from_soc_e4)}});
@@ -207,8 +207,9 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
                             {"ends", what_ends(record, settings)}});
   json.set("student",
            record.has_student_action ? Json(action_name(record.student_action)) : Json::null());
-  json.set("price_eur_per_mwh",
-           has_price ? Json(Decimals{eur(record.price.price_centi_eur_per_mwh), 2}) : Json::null());
+  json.set(
+      "price_eur_per_mwh",
+      has_price ? Json(Decimals{eur_of(record.price.price_centi_eur_per_mwh), 2}) : Json::null());
   json.set("price_age_s", has_price ? Json(record.price_age_s) : Json::null());
   json.set("soc_percent", record.has_measurement
                               ? Json(Decimals{percent(record.measurement.soc_e4), 2})
@@ -216,7 +217,7 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
   json.set("level_eur_per_mwh",
            record.context_class == 0
                ? Json::null()
-               : Json(Decimals{eur(record.price_level.centi_eur_per_mwh()), 2}));
+               : Json(Decimals{eur_of(record.price_level.centi_eur_per_mwh()), 2}));
   json.set("context_class", record.context_class);
   json.set("outlook", outlook_json(record.outlook));
   json.set("margins", explanation.has_margins ? margins_json(explanation.margins) : Json::null());

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "edge/core/control/policy.h"
+#include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
 #include "shared/local_text.h"
@@ -119,13 +120,12 @@ std::string next_decision_text(const NextDecision& next) {
 std::string next_decision_metrics(const NextDecision& next) {
   std::string text;
   if (!next.has_action) return text;
-  const auto eur = [](std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; };
   add_metric("bess_charge_up_to_eur_per_mwh",
              "Price up to which the student would charge at the next tick, at this SoC.",
-             eur(next.margins.charge_up_to_centi), text);
+             eur_of(next.margins.charge_up_to_centi), text);
   add_metric("bess_discharge_from_eur_per_mwh",
              "Price from which the student would discharge at the next tick, at this SoC.",
-             eur(next.margins.discharge_from_centi), text);
+             eur_of(next.margins.discharge_from_centi), text);
   return text;
 }
 

@@ -238,7 +238,7 @@ void RunStages::finish() {
     if (!is_due(stage)) continue;
     announce(stage);
     go_through(stage);
-    tidy();  // not at the end: a failed proof ends before
+    if (stage.name == kTeacherStage) tidy();  // not at the end: a failed proof ends before
   }
 }
 
