@@ -1,6 +1,5 @@
 // What evaluate prints and writes, as a user calls them.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 

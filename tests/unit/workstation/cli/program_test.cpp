@@ -1,6 +1,5 @@
 // How bess-train ends: exit codes that scripts rely on.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // bess-train rules, as a user calls it.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 

@@ -3,7 +3,6 @@
 #include "workstation/report/backtest_report.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"

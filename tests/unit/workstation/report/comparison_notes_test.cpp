@@ -2,7 +2,6 @@
 #include "workstation/report/report_tables.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace bess {
 namespace {

@@ -1,11 +1,9 @@
 #include "workstation/report/headline.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "tests/support/tokens.h"
 #include "workstation/data/env/charge_left.h"

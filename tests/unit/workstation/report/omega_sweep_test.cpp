@@ -2,7 +2,6 @@
 #include "workstation/report/figures/walk_forward_figure.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace bess {
 namespace {

@@ -1,7 +1,6 @@
 #include "workstation/correction/distillation/constraint_layer.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
 #include "tests/support/correction_cases.h"

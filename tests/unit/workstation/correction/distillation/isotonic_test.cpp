@@ -1,7 +1,6 @@
 #include "workstation/correction/distillation/isotonic.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

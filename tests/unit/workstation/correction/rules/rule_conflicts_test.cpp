@@ -3,7 +3,6 @@
 #include "workstation/correction/rules/rule_conflicts.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <bit>
 

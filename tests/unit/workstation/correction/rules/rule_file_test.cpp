@@ -2,7 +2,6 @@
 #include "workstation/correction/rules/rule_file.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <student_weights.h>
 
 #include <charconv>

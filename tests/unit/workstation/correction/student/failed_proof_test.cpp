@@ -2,7 +2,6 @@
 #include "workstation/correction/student/prove.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"

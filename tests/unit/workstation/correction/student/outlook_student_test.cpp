@@ -2,7 +2,6 @@
 // prices, monotone in its break-even price by construction, kept in files, and exported with the
 // integers of its plan.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"

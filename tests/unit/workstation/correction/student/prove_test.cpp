@@ -1,7 +1,6 @@
 // The prover's word: what it says yes and no to, and that nobody else can say yes.
 #include "workstation/correction/student/prove.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <type_traits>

@@ -1,11 +1,8 @@
 #include "workstation/correction/student/student_file.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <student_weights.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <sstream>
 

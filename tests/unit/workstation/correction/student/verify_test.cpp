@@ -1,6 +1,5 @@
 #include "workstation/correction/student/verify.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/student_nets.h"

@@ -2,7 +2,6 @@
 #include "workstation/data/env/day_errors.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>

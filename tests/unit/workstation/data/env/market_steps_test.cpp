@@ -2,10 +2,8 @@
 // days of the year that are longer or shorter.
 #include "workstation/data/env/market_steps.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "shared/host/user_error.h"

@@ -3,9 +3,6 @@
 // never moves is no reason to move energy to and fro.
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <memory>
-
 #include "tests/support/small_market.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/policy/planners/foresight.h"

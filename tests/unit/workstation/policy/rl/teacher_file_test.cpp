@@ -1,5 +1,4 @@
 #include <cstring>
-#include <filesystem>
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"

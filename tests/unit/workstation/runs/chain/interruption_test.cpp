@@ -1,7 +1,7 @@
 // How signals end the program: each handler in a process of its own.
 #include "workstation/runs/chain/folder_lock.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <filesystem>

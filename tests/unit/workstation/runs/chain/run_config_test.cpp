@@ -1,7 +1,6 @@
 #include "workstation/runs/chain/run_config.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"

@@ -2,7 +2,6 @@
 // follow by hand, are seen when they are published, and nothing looks ahead.
 #include "workstation/runs/impact/fleet_market.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 // 4 kW, 2 kWh each way; what it earned, what a rule would have, another student, and bad logs.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

@@ -3,7 +3,6 @@
 #include "workstation/runs/run/learnt_for.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"

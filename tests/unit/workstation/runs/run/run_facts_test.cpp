@@ -1,7 +1,6 @@
 #include "workstation/runs/run/run_report.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <algorithm>

@@ -5,9 +5,6 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"

@@ -2,7 +2,6 @@
 #include "workstation/runs/run/run_stages.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 

@@ -1,7 +1,6 @@
 // What a battery would earn: a cell comes out as `evaluate` counts it at its own size, money is
 // shared, billed and paid back as by hand, and a plan that is wrong is told where.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

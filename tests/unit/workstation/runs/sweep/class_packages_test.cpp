@@ -3,7 +3,6 @@
 #include "workstation/runs/sweep/class_packages.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fmt/format.h>
 

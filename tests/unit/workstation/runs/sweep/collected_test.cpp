@@ -2,7 +2,6 @@
 #include "workstation/runs/sweep/collected.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"

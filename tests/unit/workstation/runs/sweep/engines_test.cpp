@@ -2,7 +2,6 @@
 #include "workstation/runs/sweep/engines.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <numeric>
 

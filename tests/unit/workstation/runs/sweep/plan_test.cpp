@@ -1,8 +1,5 @@
 // Points, sites and plans: what is a task, how it is numbered, what is refused before the first.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "workstation/runs/sweep/collected.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

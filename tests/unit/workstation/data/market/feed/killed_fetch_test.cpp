@@ -1,6 +1,6 @@
 // The program itself, killed while it downloads, at each request: an earlier file stays until the
 // new one is whole, and the next run goes on and cleans up.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
