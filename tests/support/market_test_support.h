@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/user_errors.h"
+
 namespace bess {
 
 /// Real prices that come with the project (tests/data/README.md).
@@ -52,19 +54,10 @@ class ScratchFolder {
 /// Runs `action` and returns the text of the UserError it throws; fails the test when it throws
 /// none.
 template <typename Action>
-std::string user_error_of(Action action);
+std::string user_error_of(Action action) {
+  const std::string error = refused_with(action);
+  EXPECT_NE(error, "") << "expected a UserError";
+  return error;
+}
 
 }  // namespace bess
-
-#include "shared/host/user_error.h"
-
-template <typename Action>
-std::string bess::user_error_of(Action action) {
-  try {
-    action();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "expected a UserError";
-  return {};
-}

@@ -5,13 +5,13 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"
-#include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/correction/student/student_file.h"
 
 namespace bess {
@@ -121,14 +121,11 @@ TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   const std::string teacher = folder_.file("teacher.bin");
   output("train --steps 20 --out " + teacher + with_prices() + config);
   const std::string student = folder_.file("student.json");
-  try {
-    output("distil --teacher " + teacher + " --rules " + rules + " --out " + student +
-           with_prices() + config);
-    ADD_FAILURE() << "proved";
-  } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), Names(folder_.file("student_unproved.json") +
-                                    " \"sell\" 12:00-13:00 4 EUR/MWh \"buy\""));
-  }
+  const std::string words =
+      "distil --teacher " + teacher + " --rules " + rules + " --out " + student;
+  EXPECT_THAT(
+      refused_with([&] { output(words + with_prices() + config); }),
+      Names(folder_.file("student_unproved.json") + " \"sell\" 12:00-13:00 4 EUR/MWh \"buy\""));
   EXPECT_FALSE(std::filesystem::exists(student));
   const Certificate kept = load_student(folder_.file("student_unproved.json")).certificate;
   EXPECT_GT(kept.rule_counts()[1].violations, 0);

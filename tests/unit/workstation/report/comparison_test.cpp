@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "shared/host/user_error.h"
+#include "tests/support/user_errors.h"
 #include "workstation/report/figures/curves.h"
 
 namespace bess {
@@ -133,13 +133,8 @@ TEST(Curves, ReadBackIsWhatWasWritten) {
 }
 
 TEST(Curves, DamagedFilesAreNamedWithTheLine) {
-  const auto message_of = [](const std::string& text) -> std::string {
-    try {
-      (void)parse_distil_curve_csv(text, "curve.csv");
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
+  const auto message_of = [](const std::string& text) {
+    return refused_with([&] { (void)parse_distil_curve_csv(text, "curve.csv"); });
   };
   const std::string header = distil_curve_csv({});
   EXPECT_NE(message_of("step\n").find("curve.csv:1:"), std::string::npos);

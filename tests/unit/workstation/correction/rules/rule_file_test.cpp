@@ -5,10 +5,10 @@
 
 #include <set>
 
-#include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 
 namespace bess {
 namespace {
@@ -105,23 +105,13 @@ TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
   };
   for (const DemandCase& c : cases) {
     SCOPED_TRACE(c.lines);
-    try {
-      one_rule(c.lines);
-      ADD_FAILURE() << "taken";
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names(c.names));
-    }
+    EXPECT_THAT(refused_with([&] { one_rule(c.lines); }), Names(c.names));
   }
 }
 
 TEST(RuleFile, NamesAreThereOnceAndFitEverywhere) {
   const auto complaint = [](const std::string& text) {
-    try {
-      parse_rules(text, "test.toml");
-    } catch (const UserError& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
+    return refused_with([&] { parse_rules(text, "test.toml"); });
   };
   EXPECT_THAT(complaint("[[rule]]\nis = \"idle\"\n"), Names("test.toml:1 name"));
   for (const char* name : {"", "a/* b", "é", "0123456789012345678901234567890123456789x"}) {

@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/outlook_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/correction/distillation/monotone_distil.h"
 #include "workstation/correction/rules/properties.h"
 #include "workstation/correction/rules/rule_file.h"
@@ -21,15 +21,6 @@ namespace bess {
 namespace {
 
 using testing::HasSubstr;
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 struct School {
   MarketSteps market = outlook_market({2025, 3, 1}, 31).steps();
@@ -143,28 +134,29 @@ TEST(OutlookStudent, ADamagedPlanIsRefused) {
   ASSERT_NE(at, text.npos);
   const std::size_t digit = text.find_first_of("0123456789", at + 15);
   text[digit] = '1';
-  EXPECT_THAT(error_of([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
+  EXPECT_THAT(refused_with([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
 }
 
 TEST(OutlookStudent, WhatItCannotDoIsSaid) {
   const auto never = [] { return false; };
   MarketSteps blind = school().market;
   blind.day_ahead = nullptr;
-  EXPECT_THAT(error_of([&] { train_teacher(blind, {}, School::options(), never); }),
+  EXPECT_THAT(refused_with([&] { train_teacher(blind, {}, School::options(), never); }),
               HasSubstr("--day-ahead"));
-  EXPECT_THAT(error_of([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
+  EXPECT_THAT(refused_with([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
               HasSubstr("--day-ahead"));
   MlpTile tile;
   EXPECT_THAT(
-      error_of([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
+      refused_with([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
       testing::Ne(""));
   DistilOptions layer = School::lessons();
   layer.method = CorrectionMethod::kLayer;
-  EXPECT_THAT(error_of([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
-              Names("[distil] method \"construction\""));
+  EXPECT_THAT(
+      refused_with([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
+      Names("[distil] method \"construction\""));
   const RuleSet named =
       parse_rules("[[rule]]\nname = \"dear\"\ncontext_classes = [3]\nis = \"idle\"\n", "mine.toml");
-  EXPECT_THAT(error_of([&] { with_outlook_rule(named); }), Names("mine.toml:1 \"dear\""));
+  EXPECT_THAT(refused_with([&] { with_outlook_rule(named); }), Names("mine.toml:1 \"dear\""));
 }
 
 }  // namespace

@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/correction/student/certificate.h"
 
 namespace bess {
@@ -246,12 +246,8 @@ TEST(StudentFile, DamageIsRefused) {
   damages.push_back({"only the end is missing", good.substr(0, good.rfind('}')), "JSON"});
   for (const Damage& d : damages) {
     SCOPED_TRACE(d.name);
-    try {
-      static_cast<void>(parse_student(d.text, "some/student.json"));
-      ADD_FAILURE() << "accepted";
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names("some/student.json " + d.names));
-    }
+    EXPECT_THAT(refused_with([&] { parse_student(d.text, "some/student.json"); }),
+                Names("some/student.json " + d.names));
   }
 }
 

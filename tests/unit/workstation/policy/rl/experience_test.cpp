@@ -171,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(TrainingDays, NoTrainingDayIsAUserError) {
   const MarketSteps market = market_by_hand({{Split::kValidation, {0, 1}}, {Split::kTest, {2, 3}}});
   EXPECT_NE(
-      user_error_of([&] { TrainingMarket(market, straight_price_map(), {}, Horizon::kDay, {}); }),
+      refused_with([&] { TrainingMarket(market, straight_price_map(), {}, Horizon::kDay, {}); }),
       "");
 }
 

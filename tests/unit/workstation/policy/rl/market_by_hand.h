@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 #include <vector>
 
-#include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "tests/support/user_errors.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/data/market/series/local_date.h"
@@ -69,17 +68,6 @@ inline MarketSteps simulated_market(const LocalDate& first, int days) {
   const SimulationPeriod period{local_midnight_utc_s(first),
                                 local_midnight_utc_s(add_days(first, days))};
   return make_market_steps(minutes_on_quarter_hours(simulate_quarter_hours(period, 5), 5), {});
-}
-
-/// What the UserError says; empty when nothing was thrown.
-template <typename Call>
-std::string user_error_of(const Call& call) {
-  try {
-    call();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace bess

@@ -259,7 +259,7 @@ TEST(OutlookResidual, ItsFileIsReadBackAndOneOfAnOlderVersionIsNone) {
   const std::uint32_t checksum = crc.value();
   bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
   write_file(path, bytes);
-  EXPECT_NE(user_error_of([&] { (void)load_teacher(path); }), "");
+  EXPECT_NE(refused_with([&] { (void)load_teacher(path); }), "");
 }
 
 }  // namespace

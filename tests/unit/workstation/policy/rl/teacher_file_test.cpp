@@ -34,7 +34,7 @@ class TeacherFile : public testing::Test {
   /// Loads `bytes` from the file and returns the UserError; empty when it loaded.
   std::string refusal_of(std::string_view bytes) const {
     write_file(path, bytes);
-    return user_error_of([&] { (void)load_teacher(path); });
+    return refused_with([&] { (void)load_teacher(path); });
   }
   /// `bytes` of a file with another value at a place, under a checksum that is right.
   static std::string changed(std::string bytes, std::size_t at, std::int32_t value) {
@@ -101,7 +101,7 @@ TEST_F(TeacherFile, ProvenanceOfAnyLengthIsReadBackOrCut) {
     teacher.provenance = std::string(length, 'p');
     save_teacher(path, teacher);
     std::string provenance;
-    EXPECT_EQ(user_error_of([&] { provenance = load_teacher(path).provenance; }), "") << length;
+    EXPECT_EQ(refused_with([&] { provenance = load_teacher(path).provenance; }), "") << length;
     EXPECT_EQ(provenance, teacher.provenance.substr(0, 4096)) << length;
   }
 }
@@ -129,7 +129,7 @@ TEST_F(TeacherFile, CutFlippedAndOtherBytesAreRefused) {
   }
   EXPECT_FALSE((write_file(path, "BESSTCH"), is_teacher_file(path)));
   for (const std::string& other : {folder.file("."), folder.file("missing.bin")}) {
-    EXPECT_THAT(user_error_of([&] { (void)load_teacher(other); }), Names(other));
+    EXPECT_THAT(refused_with([&] { (void)load_teacher(other); }), Names(other));
   }
 }
 
@@ -205,7 +205,7 @@ TEST(Methods, NamesReadBack) {
   for (const Method method : {Method::kC51, Method::kDqn}) {
     EXPECT_EQ(parse_method(method_name(method)), method);
   }
-  EXPECT_THAT(user_error_of([] { (void)parse_method("ppo"); }), Names("c51 dqn sdp"));
+  EXPECT_THAT(refused_with([] { (void)parse_method("ppo"); }), Names("c51 dqn sdp"));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "workstation/policy/rl/train.h"
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
@@ -180,7 +179,7 @@ TEST(Train, DaysThatLackAreNamedWithTheMend) {
   for (const auto& c : cases) {
     const MarketSteps market = simulated_market(c.first, c.days);
     const std::string message =
-        user_error_of([&] { (void)train_teacher(market, {}, small_options(), interrupted); });
+        refused_with([&] { (void)train_teacher(market, {}, small_options(), interrupted); });
     EXPECT_NE(message, "") << c.name;
     EXPECT_EQ(has_code(message, "21"), c.lacks_validation) << c.name << ": " << message;
   }
@@ -193,7 +192,7 @@ TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
   TrainOptions options = small_options();
   options.steps = 30;
   const auto refusal = [&](const std::string& identity) {
-    return user_error_of([&] {
+    return refused_with([&] {
       (void)train_teacher(small_market(), {}, options, interrupted, {path, true, identity});
     });
   };

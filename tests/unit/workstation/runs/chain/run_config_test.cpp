@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 
 namespace bess {
 namespace {
@@ -128,12 +128,7 @@ TEST(RunConfig, MistakesNamePlaceKeyAndWhatIsRefused) {
   };
   for (const auto& [text, names] : cases) {
     SCOPED_TRACE(text);
-    try {
-      static_cast<void>(parse_run_config(text, "some/run.toml"));
-      ADD_FAILURE() << "accepted";
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names(names));
-    }
+    EXPECT_THAT(refused_with([&] { parse_run_config(text, "some/run.toml"); }), Names(names));
   }
 }
 

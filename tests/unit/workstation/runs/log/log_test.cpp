@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/user_errors.h"
 #include "workstation/runs/log/log_comparison.h"
 #include "workstation/runs/log/log_replay.h"
 #include "workstation/runs/log/statement_page.h"
@@ -51,12 +51,7 @@ class Log : public testing::Test {
   }
 
   [[nodiscard]] std::string complaint(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
+    return refused_with([&] { static_cast<void>(read(text)); });
   }
 
   const TemporaryFolder folder_;

@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/run/learnt_for.h"
 
@@ -33,12 +33,7 @@ class RunPlanning : public testing::Test {
   }
 
   static std::string refusal(const RunRequest& request) {
-    try {
-      (void)plan_run(request);
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
+    return refused_with([&] { plan_run(request); });
   }
 
   TemporaryFolder folder_;
@@ -192,14 +187,7 @@ TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
 TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
   const fs::path folder = request_.out;
   using Of = FolderLock::Of;
-  const auto is_busy = [](auto lock) {
-    try {
-      lock();
-    } catch (const UserError&) {
-      return true;
-    }
-    return false;
-  };
+  const auto is_busy = [](auto lock) { return !refused_with(lock).empty(); };
   const auto whole = [&] { const FolderLock lock(folder); };
   const auto part = [&] { const FolderLock lock(folder, Of::kOneFile); };
   const auto file = [&] { const FileLock lock(folder / "teacher.bin"); };

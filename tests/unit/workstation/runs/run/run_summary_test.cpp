@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/data/env/charge_left.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
@@ -150,26 +150,15 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
   for (const std::string& other :
        {days + "rbc,2023-01-29,1e9,0,0,0,false,0,0,0,\n", std::string()}) {
     write_file(run.file(run_file::kDays), other);
-    try {
-      (void)load_run_summary(run);
-      ADD_FAILURE() << "believed";
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names("evaluation_days.csv bess-train report --run"));
-    }
+    EXPECT_THAT(refused_with([&] { load_run_summary(run); }),
+                Names("evaluation_days.csv bess-train report --run"));
   }
 }
 
 TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
   const TemporaryFolder folder;
   const RunFolder run{folder.file("run")};
-  const auto refusal = [&] {
-    try {
-      (void)load_run_summary(run);
-    } catch (const UserError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto refusal = [&] { return refused_with([&] { load_run_summary(run); }); };
   EXPECT_THAT(refusal(), Names(run.path.string()));
   RunRecord record;
   record.stages = {{"teacher", {}, {}, false}};

@@ -7,11 +7,11 @@
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
-#include "shared/host/user_error.h"
 #include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/runs/size/size_cell.h"
 
@@ -172,13 +172,8 @@ TEST(Size, TheBestPaysBackSoonest) {
 
 TEST(Size, APlanThatIsWrongIsToldWhere) {
   const TemporaryFolder folder;
-  const auto complaint = [&](const std::string& text) -> std::string {
-    try {
-      (void)read_size_plan(folder.write("plan.toml", text), {});
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
+  const auto complaint = [&](const std::string& text) {
+    return refused_with([&] { (void)read_size_plan(folder.write("plan.toml", text), {}); });
   };
   const std::string good = "[size]\npower_kw = [5]\ncapacity_kwh = [10]\n";
   EXPECT_EQ(complaint(good), "");

@@ -7,12 +7,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <functional>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 
 namespace bess {
 namespace {
@@ -45,14 +44,6 @@ class ClassPackages : public testing::Test {
     one.header = of + "/student_weights.h";
     write_file(folder_.path / one.header, header);
     return one;
-  }
-  static std::string what_of(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "nothing was refused";
   }
 
   TemporaryFolder root_;
@@ -111,16 +102,16 @@ TEST_F(ClassPackages, SharesAreAHundredthATenthAndTheRest) {
 
 TEST_F(ClassPackages, WhatCannotBeIsRefusedInOneLine) {
   const auto refusal = [&](const std::vector<CollectedSite>& sites) {
-    return what_of([&] { classes_to_package({}, sites, false); });
+    return refused_with([&] { classes_to_package({}, sites, false); });
   };
   EXPECT_THAT(refusal({site("a", "11", "x"), site("b", "22", "")}), Names("\"b\" 1 22 --partial"));
   EXPECT_EQ(classes_to_package({}, {site("a", "11", "x"), site("b", "22", "")}, true).size(), 1);
   EXPECT_THAT(refusal({site("a b", "11", "x")}), Names("\"a b\""));
   const CollectedTask of_march{{1, {{"fold", "2023-03"}}}, TaskState::kProved, {}, 0};
-  EXPECT_THAT(what_of([&] { classes_to_package({of_march}, {}, false); }), testing::Ne(""));
+  EXPECT_THAT(refused_with([&] { classes_to_package({of_march}, {}, false); }), testing::Ne(""));
 
   auto classes = classes_to_package({}, {site("a", "11", "bad")}, false);
-  EXPECT_THAT(what_of([&] { package_class(folder_, request_, classes[0]); }),
+  EXPECT_THAT(refused_with([&] { package_class(folder_, request_, classes[0]); }),
               Names("11 tools/package: no compiler"));
   write_file(folder_.path / "11/student_weights.h", "good");
   EXPECT_TRUE(package_class(folder_, request_, classes[0])) << "what broke off is no package";

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_errors.h"
 #include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
@@ -21,15 +20,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-std::string what_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
-
 class SweepPlans : public testing::Test {
  protected:
   SweepPlans() {
@@ -40,7 +30,7 @@ class SweepPlans : public testing::Test {
     return plan_sweep(request_, folder_);
   }
   std::string refusal(const std::string& text) {
-    return what_of([&] { plan(text); });
+    return refused_with([&] { plan(text); });
   }
   std::vector<std::string> settings(const SweepPlan& of) {
     std::vector<std::string> all;
@@ -135,7 +125,7 @@ TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
   std::string record = read_file(folder_.record());
   record.replace(record.find("commit "), 11, "commit older");
   write_file(folder_.record(), record);
-  EXPECT_THAT(what_of([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
+  EXPECT_THAT(refused_with([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
 }
 
 TEST_F(SweepPlans, ATaskHasItsOwnConfigurationAndOneThread) {
