@@ -9,17 +9,6 @@ namespace {
 
 // ---- Projection -----------------------------------------------------------------------------
 
-struct ProjectionCase {
-  const char* name;
-  Support support;
-  std::vector<float> probability;
-  float reward;
-  float discount;
-  std::vector<double> expected;
-};
-
-void PrintTo(const ProjectionCase& c, std::ostream* out) { *out << c.name; }
-
 /// Projects, and sees that nothing lands in the padding.
 std::vector<float> project(const Support& support, const std::vector<float>& p, float reward,
                            float discount) {
@@ -32,36 +21,35 @@ std::vector<float> project(const Support& support, const std::vector<float>& p, 
   return m;
 }
 
-class Projection : public testing::TestWithParam<ProjectionCase> {};
-
-TEST_P(Projection, GivesTheMassByHand) {
-  const ProjectionCase& c = GetParam();
-  const auto projected = project(c.support, c.probability, c.reward, c.discount);
-  for (std::size_t i = 0; i < projected.size(); ++i) {
-    EXPECT_NEAR(projected[i], c.expected[i], 1e-6) << "atom " << i;
+TEST(Projection, GivesTheMassByHand) {
+  const Support five{-2, 2, 5};  // atoms -2 -1 0 1 2
+  const std::vector<float> even{.2F, .2F, .2F, .2F, .2F}, uneven{.1F, .2F, .3F, .2F, .2F};
+  const struct {
+    const char* name;
+    Support support;
+    std::vector<float> probability;
+    float reward, discount;
+    std::vector<double> expected;
+  } cases[] = {
+      {"unmoved", five, uneven, 0, 1, {.1, .2, .3, .2, .2}},
+      {"moved by one atom", five, {0, .25F, .75F, 0, 0}, 1, 1, {0, 0, .25, .75, 0}},
+      {"between atoms", five, {0, 0, 1, 0, 0}, .25F, 1, {0, 0, .75, .25, 0}},
+      {"shrunk", five, {1, 0, 0, 0, 0}, 0, .75F, {.5, .5, 0, 0, 0}},
+      {"clipped above", five, {.5F, 0, 0, 0, .5F}, 3, 1, {0, 0, 0, .5, .5}},
+      {"all above", five, even, 1e6F, 1, {0, 0, 0, 0, 1}},
+      {"all below", five, even, -1e6F, 1, {1, 0, 0, 0, 0}},
+      {"terminal on an atom", five, uneven, -1, 0, {0, 1, 0, 0, 0}},
+      {"terminal between", five, uneven, 1.5F, 0, {0, 0, 0, .5, .5}},
+      {"terminal on the last atom", five, even, 2, 0, {0, 0, 0, 0, 1}},
+      {"two atoms", {0, 1, 2}, {.5F, .5F}, .25F, .5F, {.5, .5}},
+  };
+  for (const auto& c : cases) {
+    const auto projected = project(c.support, c.probability, c.reward, c.discount);
+    for (std::size_t i = 0; i < projected.size(); ++i) {
+      EXPECT_NEAR(projected[i], c.expected[i], 1e-6) << c.name << ", atom " << i;
+    }
   }
 }
-
-const Support kFive{-2, 2, 5};  // atoms -2 -1 0 1 2
-INSTANTIATE_TEST_SUITE_P(
-    ByHand, Projection,
-    testing::Values(
-        ProjectionCase{"unmoved", kFive, {.1F, .2F, .3F, .2F, .2F}, 0, 1, {.1, .2, .3, .2, .2}},
-        ProjectionCase{
-            "moved_by_one_atom", kFive, {0, .25F, .75F, 0, 0}, 1, 1, {0, 0, .25, .75, 0}},
-        ProjectionCase{"between_atoms", kFive, {0, 0, 1, 0, 0}, .25F, 1, {0, 0, .75, .25, 0}},
-        ProjectionCase{"shrunk", kFive, {1, 0, 0, 0, 0}, 0, .75F, {.5, .5, 0, 0, 0}},
-        ProjectionCase{"clipped_above", kFive, {.5F, 0, 0, 0, .5F}, 3, 1, {0, 0, 0, .5, .5}},
-        ProjectionCase{"all_above", kFive, {.2F, .2F, .2F, .2F, .2F}, 1e6F, 1, {0, 0, 0, 0, 1}},
-        ProjectionCase{"all_below", kFive, {.2F, .2F, .2F, .2F, .2F}, -1e6F, 1, {1, 0, 0, 0, 0}},
-        ProjectionCase{
-            "terminal_on_an_atom", kFive, {.1F, .2F, .3F, .2F, .2F}, -1, 0, {0, 1, 0, 0, 0}},
-        ProjectionCase{
-            "terminal_between", kFive, {.1F, .2F, .3F, .2F, .2F}, 1.5F, 0, {0, 0, 0, .5, .5}},
-        ProjectionCase{
-            "terminal_on_the_last_atom", kFive, {.2F, .2F, .2F, .2F, .2F}, 2, 0, {0, 0, 0, 0, 1}},
-        ProjectionCase{"two_atoms", {0, 1, 2}, {.5F, .5F}, .25F, .5F, {.5, .5}}),
-    [](const auto& instance) { return instance.param.name; });
 
 const Support kSupports[] = {
     {-30, 30, 101}, {-15, 15, 51}, {-0.7F, 3.1F, 7}, {0, 20, 201}, {-1, 1, 2}};
@@ -143,64 +131,50 @@ TEST(MeanValues, AreThoseOfTheReferenceInActionOrder) {
 
 // ---- Loss and gradient ----------------------------------------------------------------------
 
-struct GradientCase {
-  const char* name;
-  Support support;
-  double gamma;
-  BatchRecipe recipe;
-  bool clips;  ///< the batch reaches both ends of the support
-  double mean_weight = 0;
-};
-
-void PrintTo(const GradientCase& c, std::ostream* out) { *out << c.name; }
-
-class C51Gradient : public testing::TestWithParam<GradientCase> {
- protected:
-  static void expect_case_is_met(const ReferenceLoss& expected,
-                                 const std::vector<Transition>& batch) {
-    if (GetParam().clips) {
+TEST(C51Gradient, OfTheRealShapeIsAlgorithm1) {
+  const struct {
+    const char* name;
+    Support support;
+    double gamma;
+    BatchRecipe recipe;
+    bool clips;  ///< the batch reaches both ends of the support
+    double mean_weight = 0;
+  } cases[] = {
+      {"the paper's support", {-30, 30, 51}, 0.999, {{300, 300, 300}, 12}, true},
+      {"default atoms", {-30, 30, 101}, 0.999, {{90, 80, 60}, 12}, true},
+      {"mean as well", {-10, 10, 51}, 0.999, {{120, 100, 90}, 8}, true, 10},
+      {"residual", {-3, 3, 51}, 0.98, {{120, 100, 90}, 2, 0.15, 0.5}, true, 10},
+      {"residual of the program alone", {-3, 3, 51}, 0.98, {{60, 50, 70}, 2, 0.15, 5}, true},
+      {"uneven groups", {-15, 15, 21}, 0.99, {{700, 3, 60}, 6}, true},
+      {"no idle", {-15, 15, 21}, 0.95, {{40, 0, 130}, 6}, true},
+      {"only charge", {-15, 15, 11}, 0.9, {{0, 0, 33}, 30}, true},
+      {"lopsided support", {-0.7F, 3.1F, 7}, 0.5, {{30, 40, 30}, 3}, true},
+      {"two atoms", {-1, 1, 2}, 0.9, {{20, 20, 20}, 1}, true},
+      {"nothing clipped", {-40, 40, 31}, 0.5, {{30, 30, 30}, 3}, false},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    Learner learner(Method::kC51, c.support, c.gamma, 1, 2, c.mean_weight);
+    learner.online() = random_parameters(learner.shape(), 41, 3);
+    learner.target() = random_parameters(learner.shape(), 42, 3);
+    const ReferenceNet online(learner.shape(), to_doubles(learner.online()));
+    const ReferenceNet target(learner.shape(), to_doubles(learner.target()));
+    Random random(43);
+    const auto transitions = random_transitions(c.recipe, c.support, online, target, random);
+    EXPECT_TRUE(
+        std::ranges::any_of(transitions, [](const Transition& t) { return t.terminal != 0; }));
+    const ReferenceLoss expected =
+        reference_c51(c.support, c.gamma, online, target, transitions, c.mean_weight);
+    if (c.clips) {
       EXPECT_GT(expected.low_clipped, 0);
       EXPECT_GT(expected.high_clipped, 0);
     }
-    EXPECT_TRUE(std::ranges::any_of(batch, [](const Transition& t) { return t.terminal != 0; }));
+    const Learner::StepResult result = learner.compute_gradient(minibatch_of(transitions));
+    EXPECT_LT(std::abs(result.loss / expected.loss - 1), 1e-6) << result.loss;
+    EXPECT_LT(relative_l2(learner.gradient(), expected.gradient), 1e-5);
+    EXPECT_NEAR(result.edge_mass_frac, expected.edge_mass, 1e-5);
   }
-};
-
-TEST_P(C51Gradient, OfTheRealShapeIsAlgorithm1) {
-  const GradientCase& c = GetParam();
-  Learner learner(Method::kC51, c.support, c.gamma, 1, 2, c.mean_weight);
-  learner.online() = random_parameters(learner.shape(), 41, 3);
-  learner.target() = random_parameters(learner.shape(), 42, 3);
-  const ReferenceNet online(learner.shape(), to_doubles(learner.online()));
-  const ReferenceNet target(learner.shape(), to_doubles(learner.target()));
-  Random random(43);
-  const auto transitions = random_transitions(c.recipe, c.support, online, target, random);
-  const ReferenceLoss expected =
-      reference_c51(c.support, c.gamma, online, target, transitions, c.mean_weight);
-  expect_case_is_met(expected, transitions);
-
-  const Learner::StepResult result = learner.compute_gradient(minibatch_of(transitions));
-  EXPECT_LT(std::abs(result.loss / expected.loss - 1), 1e-6) << result.loss;
-  EXPECT_LT(relative_l2(learner.gradient(), expected.gradient), 1e-5);
-  EXPECT_NEAR(result.edge_mass_frac, expected.edge_mass, 1e-5);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Batches, C51Gradient,
-    testing::Values(
-        GradientCase{"paper_support", {-30, 30, 51}, 0.999, {{300, 300, 300}, 12}, true},
-        GradientCase{"default_atoms", {-30, 30, 101}, 0.999, {{90, 80, 60}, 12}, true},
-        GradientCase{"mean_as_well", {-10, 10, 51}, 0.999, {{120, 100, 90}, 8}, true, 10},
-        GradientCase{"residual", {-3, 3, 51}, 0.98, {{120, 100, 90}, 2, 0.15, 0.5}, true, 10},
-        GradientCase{
-            "residual_of_the_program_alone", {-3, 3, 51}, 0.98, {{60, 50, 70}, 2, 0.15, 5}, true},
-        GradientCase{"uneven_groups", {-15, 15, 21}, 0.99, {{700, 3, 60}, 6}, true},
-        GradientCase{"no_idle", {-15, 15, 21}, 0.95, {{40, 0, 130}, 6}, true},
-        GradientCase{"only_charge", {-15, 15, 11}, 0.9, {{0, 0, 33}, 30}, true},
-        GradientCase{"lopsided_support", {-0.7F, 3.1F, 7}, 0.5, {{30, 40, 30}, 3}, true},
-        GradientCase{"two_atoms", {-1, 1, 2}, 0.9, {{20, 20, 20}, 1}, true},
-        GradientCase{"nothing_clipped", {-40, 40, 31}, 0.5, {{30, 30, 30}, 3}, false}),
-    [](const auto& instance) { return instance.param.name; });
 
 TEST(C51Reference, GradientIsTheDifferenceQuotientOfItsLoss) {
   const Support support{-3, 3, 5};

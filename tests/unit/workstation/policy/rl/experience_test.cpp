@@ -16,55 +16,47 @@ constexpr double kRewardTolerance = 1e-6;
 
 // Battery of the paper: 4 MW, 8 MWh, sqrt(0.9) each way. A step of 1/30 h at full power moves
 // 0.0158113883 up or 0.0175682092 down. Step 0 is paid 100 EUR/MWh: 400 EUR/h, 0.04 scaled.
-struct StepCase {
-  const char* name;
-  Action action;
-  double soc;
-  Horizon horizon;
-  double soc_after;
-  double reward;
-};
-
-void PrintTo(const StepCase& c, std::ostream* out) { *out << c.name; }
-
-class TransitionByHand : public testing::TestWithParam<StepCase> {};
-
 /// One training day of one step after which nothing follows, or of two.
 MarketSteps one_day(Horizon horizon) {
   return market_by_hand(
       {{Split::kTrain, horizon == Horizon::kDay ? std::vector<int>{0} : std::vector<int>{0, 1}}});
 }
 
-TEST_P(TransitionByHand, RewardAndSoc) {
-  const StepCase& c = GetParam();
-  const BatteryParameters battery;
-  const TrainingMarket market(one_day(c.horizon), straight_price_map(), battery, c.horizon, {});
-  ASSERT_EQ(market.step_count(), 1u);
-  Transition t{};
-  EXPECT_NEAR(market.make_transition(0, c.soc, c.action, t), c.soc_after, kSocTolerance);
-  EXPECT_EQ(t.action, static_cast<int>(c.action));
-  EXPECT_EQ(t.terminal, c.horizon == Horizon::kDay ? 1 : 0);
-  EXPECT_NEAR(t.reward, c.reward, kRewardTolerance);
-  EXPECT_EQ(t.state[3], scaled_soc(c.soc));
-  EXPECT_NEAR(t.next_state[3], scaled_soc(c.soc_after), 1e-6);
-}
-
 constexpr Horizon kOn = Horizon::kContinuing;
 constexpr Horizon kEnd = Horizon::kDay;
 
-INSTANTIATE_TEST_SUITE_P(
-    Steps, TransitionByHand,
-    testing::Values(StepCase{"charge", Action::kCharge, 0.5, kOn, 0.5158113883, -0.04},
-                    StepCase{"idle", Action::kIdle, 0.5, kOn, 0.5, 0},
-                    StepCase{"discharge", Action::kDischarge, 0.5, kOn, 0.4824317908, 0.04},
-                    // 0.005 * 8 MWh = 40 kWh still fit: 40 kWh / sqrt(0.9) * 30 / h = 1.2649 MW
-                    StepCase{"nearly_full", Action::kCharge, 0.995, kOn, 1, -0.0126491106},
-                    StepCase{"full", Action::kCharge, 1, kOn, 1, 0},
-                    StepCase{"nearly_empty", Action::kDischarge, 0.105, kOn, 0.1, 0.0113841996},
-                    StepCase{"empty", Action::kDischarge, 0.1, kOn, 0.1, 0},
-                    StepCase{"below_the_window", Action::kDischarge, 0.05, kOn, 0.05, 0},
-                    StepCase{"terminal", Action::kCharge, 0.5, kEnd, 0.5158113883, -0.04}),
-    [](const auto& instance) { return instance.param.name; });
+TEST(Transitions, RewardAndSocByHand) {
+  const struct {
+    const char* name;
+    Action action;
+    double soc;
+    Horizon horizon;
+    double soc_after, reward;
+  } cases[] = {
+      {"charge", Action::kCharge, 0.5, kOn, 0.5158113883, -0.04},
+      {"idle", Action::kIdle, 0.5, kOn, 0.5, 0},
+      {"discharge", Action::kDischarge, 0.5, kOn, 0.4824317908, 0.04},
+      // 0.005 * 8 MWh = 40 kWh still fit: 40 kWh / sqrt(0.9) * 30 / h = 1.2649 MW
+      {"nearly full", Action::kCharge, 0.995, kOn, 1, -0.0126491106},
+      {"full", Action::kCharge, 1, kOn, 1, 0},
+      {"nearly empty", Action::kDischarge, 0.105, kOn, 0.1, 0.0113841996},
+      {"empty", Action::kDischarge, 0.1, kOn, 0.1, 0},
+      {"below the window", Action::kDischarge, 0.05, kOn, 0.05, 0},
+      {"terminal", Action::kCharge, 0.5, kEnd, 0.5158113883, -0.04},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    const TrainingMarket market(one_day(c.horizon), straight_price_map(), {}, c.horizon, {});
+    ASSERT_EQ(market.step_count(), 1u);
+    Transition t{};
+    EXPECT_NEAR(market.make_transition(0, c.soc, c.action, t), c.soc_after, kSocTolerance);
+    EXPECT_EQ(t.action, static_cast<int>(c.action));
+    EXPECT_EQ(t.terminal, c.horizon == Horizon::kDay ? 1 : 0);
+    EXPECT_NEAR(t.reward, c.reward, kRewardTolerance);
+    EXPECT_EQ(t.state[3], scaled_soc(c.soc));
+    EXPECT_NEAR(t.next_state[3], scaled_soc(c.soc_after), 1e-6);
+  }
+}
 
 TEST(Transitions, RewardsAreThoseOfThePaperWhateverTheSize) {
   BatteryParameters small;
@@ -106,46 +98,6 @@ TEST(Transitions, RewardsAreTheMoneyOfTheAccounting) {
 
 // ---- Which transitions there are ------------------------------------------------------------
 
-struct HorizonCase {
-  const char* name;
-  Horizon horizon;
-  std::vector<std::pair<int, int>> from_to;  ///< steps of state and successor, -1 = terminal
-  std::vector<std::size_t> day_counts;
-};
-
-void PrintTo(const HorizonCase& c, std::ostream* out) { *out << c.name; }
-
-class Successors : public testing::TestWithParam<HorizonCase> {};
-
-TEST_P(Successors, AreTheNextTrainingStepOrNone) {
-  const HorizonCase& c = GetParam();
-  const MarketSteps steps = uneven_market();
-  const TrainingMarket market(steps, straight_price_map(), {}, c.horizon, {});
-  ASSERT_EQ(market.step_count(), c.from_to.size());
-  for (std::size_t i = 0; i < market.step_count(); ++i) {
-    Transition t{};
-    market.make_transition(i, 0.5, Action::kIdle, t);
-    EXPECT_EQ(step_of_input(t.state[4]), c.from_to[i].first);
-    EXPECT_EQ(t.terminal, c.from_to[i].second < 0 ? 1 : 0) << i;
-    const int next = step_of_input(t.next_state[4]);
-    if (c.from_to[i].second >= 0) {
-      EXPECT_EQ(next, c.from_to[i].second);
-      EXPECT_NEAR(t.next_state[1] - t.state[1], 1.0 / 95, 1e-4) << "quarter-hour moves along";
-    }
-    for (const int step : {step_of_input(t.state[4]), next}) {
-      EXPECT_FALSE(step >= 8 && step < 12) << "validation day";
-      EXPECT_LT(step, 20) << "test day";
-    }
-  }
-  ASSERT_EQ(market.days().size(), c.day_counts.size());
-  std::size_t first = 0;
-  for (std::size_t d = 0; d < c.day_counts.size(); ++d) {
-    EXPECT_EQ(market.days()[d].first, first);
-    EXPECT_EQ(market.days()[d].count, c.day_counts[d]);
-    first += c.day_counts[d];
-  }
-}
-
 /// Pairs of the steps from each first to its last, and a terminal one behind where the day ends.
 std::vector<std::pair<int, int>> blocks(const std::vector<std::pair<int, int>>& of, bool terminal) {
   std::vector<std::pair<int, int>> pairs;
@@ -156,17 +108,43 @@ std::vector<std::pair<int, int>> blocks(const std::vector<std::pair<int, int>>& 
   return pairs;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Horizons, Successors,
-    testing::Values(HorizonCase{"continuing",
-                                Horizon::kContinuing,
-                                blocks({{0, 7}, {12, 15}, {16, 17}, {18, 19}}, false),
-                                {4, 3, 3, 2}},
-                    HorizonCase{"day",
-                                Horizon::kDay,
-                                blocks({{0, 3}, {4, 7}, {12, 15}, {16, 17}, {18, 19}}, true),
-                                {4, 4, 4, 3}}),
-    [](const auto& instance) { return instance.param.name; });
+TEST(Successors, AreTheNextTrainingStepOrNone) {
+  const struct {
+    Horizon horizon;
+    std::vector<std::pair<int, int>> from_to;  ///< steps of state and successor, -1 = terminal
+    std::vector<std::size_t> day_counts;
+  } cases[] = {
+      {kOn, blocks({{0, 7}, {12, 15}, {16, 17}, {18, 19}}, false), {4, 3, 3, 2}},
+      {kEnd, blocks({{0, 3}, {4, 7}, {12, 15}, {16, 17}, {18, 19}}, true), {4, 4, 4, 3}},
+  };
+  const MarketSteps steps = uneven_market();
+  for (const auto& c : cases) {
+    const TrainingMarket market(steps, straight_price_map(), {}, c.horizon, {});
+    ASSERT_EQ(market.step_count(), c.from_to.size());
+    for (std::size_t i = 0; i < market.step_count(); ++i) {
+      Transition t{};
+      market.make_transition(i, 0.5, Action::kIdle, t);
+      EXPECT_EQ(step_of_input(t.state[4]), c.from_to[i].first);
+      EXPECT_EQ(t.terminal, c.from_to[i].second < 0 ? 1 : 0) << i;
+      const int next = step_of_input(t.next_state[4]);
+      if (c.from_to[i].second >= 0) {
+        EXPECT_EQ(next, c.from_to[i].second);
+        EXPECT_NEAR(t.next_state[1] - t.state[1], 1.0 / 95, 1e-4) << "quarter-hour moves along";
+      }
+      for (const int step : {step_of_input(t.state[4]), next}) {
+        EXPECT_FALSE(step >= 8 && step < 12) << "validation day";
+        EXPECT_LT(step, 20) << "test day";
+      }
+    }
+    ASSERT_EQ(market.days().size(), c.day_counts.size());
+    std::size_t first = 0;
+    for (std::size_t d = 0; d < c.day_counts.size(); ++d) {
+      EXPECT_EQ(market.days()[d].first, first);
+      EXPECT_EQ(market.days()[d].count, c.day_counts[d]);
+      first += c.day_counts[d];
+    }
+  }
+}
 
 TEST(TrainingDays, NoTrainingDayIsAUserError) {
   const MarketSteps market = market_by_hand({{Split::kValidation, {0, 1}}, {Split::kTest, {2, 3}}});

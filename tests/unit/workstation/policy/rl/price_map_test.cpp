@@ -15,67 +15,49 @@ std::vector<double> normal_prices(double mean, double deviation, std::size_t cou
   return prices;
 }
 
-struct PriceMapCase {
-  const char* name;
-  std::vector<double> prices;
-  bool inside;  ///< all prices lie within the lattice, so the map reaches 0 and 1
-};
-
-void PrintTo(const PriceMapCase& c, std::ostream* out) { *out << c.name; }
-
-class PriceMapOf : public testing::TestWithParam<PriceMapCase> {
- protected:
-  const PriceMap map = PriceMap::fit(GetParam().prices);
-};
-
-TEST_P(PriceMapOf, TableIncreasesStrictlyFromZeroToOne) {
-  const auto& table = map.table();
-  for (std::size_t i = 1; i < table.size(); ++i) ASSERT_GT(table[i], table[i - 1]) << i;
-  EXPECT_GE(table.front(), 0);
-  EXPECT_LE(table.back(), 1 << 14);
-  if (GetParam().inside) {
-    EXPECT_EQ(table.front(), 0);
-    EXPECT_EQ(table.back(), 1 << 14);
-  }
-}
-
-TEST_P(PriceMapOf, InterpolationIncreasesAndHitsTheTable) {
-  float last = -1;
-  for (double price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh;
-       price += 0.25) {
-    const float x = map(price);
-    ASSERT_GT(x, last) << price;
-    last = x;
-    if (price == std::floor(price)) {
-      const auto i = static_cast<std::size_t>(price - kLatticePriceMinEurPerMwh);
-      ASSERT_EQ(x, static_cast<float>(map.table()[i]) / static_cast<float>(1 << 14)) << price;
+TEST(PriceMap, OfAnyPricesIncreasesAndIsClampedOutside) {
+  const struct {
+    const char* name;
+    std::vector<double> prices;
+    bool inside;  ///< all prices lie within the lattice, so the map reaches 0 and 1
+  } cases[] = {{"one price", {55.5}, true},
+               {"one price many times", {7, 7, 7}, true},
+               {"two prices", {-20, 300}, true},
+               {"like a market", normal_prices(100, 80, 20'000), true},
+               {"narrow", normal_prices(100, 0.001, 5'000), true},
+               {"on both ends", {-500, 0, 1500}, true},
+               {"wider than the lattice", normal_prices(300, 3'000, 5'000), false},
+               {"all above", {2000, 3000}, false},
+               {"all below", {-900, -700}, false}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    const PriceMap map = PriceMap::fit(c.prices);
+    const auto& table = map.table();
+    for (std::size_t i = 1; i < table.size(); ++i) ASSERT_GT(table[i], table[i - 1]) << i;
+    EXPECT_GE(table.front(), 0);
+    EXPECT_LE(table.back(), 1 << 14);
+    if (c.inside) {
+      EXPECT_EQ(table.front(), 0);
+      EXPECT_EQ(table.back(), 1 << 14);
     }
+    float last = -1;
+    for (double price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh;
+         price += 0.25) {
+      const float x = map(price);
+      ASSERT_GT(x, last) << price;
+      last = x;
+      if (price == std::floor(price)) {
+        const auto i = static_cast<std::size_t>(price - kLatticePriceMinEurPerMwh);
+        ASSERT_EQ(x, static_cast<float>(table[i]) / static_cast<float>(1 << 14)) << price;
+      }
+    }
+    for (const double below : {-500.01, -15'000.0, -1e300}) EXPECT_EQ(map(below), map(-500));
+    for (const double above : {1500.01, 15'000.0, 1e300}) EXPECT_EQ(map(above), map(1500));
+    EXPECT_GE(map(-1e300), 0);
+    EXPECT_LE(map(1e300), 1);
+    EXPECT_EQ(PriceMap(table).table(), table) << "rebuilt from its table";
   }
 }
-
-TEST_P(PriceMapOf, OutsideIsClamped) {
-  for (const double below : {-500.01, -15'000.0, -1e300}) EXPECT_EQ(map(below), map(-500));
-  for (const double above : {1500.01, 15'000.0, 1e300}) EXPECT_EQ(map(above), map(1500));
-  EXPECT_GE(map(-1e300), 0);
-  EXPECT_LE(map(1e300), 1);
-}
-
-TEST_P(PriceMapOf, RebuiltFromItsTableIsTheSame) {
-  EXPECT_EQ(PriceMap(map.table()).table(), map.table());
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Prices, PriceMapOf,
-    testing::Values(PriceMapCase{"one_price", {55.5}, true},
-                    PriceMapCase{"one_price_many_times", {7, 7, 7}, true},
-                    PriceMapCase{"two_prices", {-20, 300}, true},
-                    PriceMapCase{"like_a_market", normal_prices(100, 80, 20'000), true},
-                    PriceMapCase{"narrow", normal_prices(100, 0.001, 5'000), true},
-                    PriceMapCase{"on_both_ends", {-500, 0, 1500}, true},
-                    PriceMapCase{"wider_than_the_lattice", normal_prices(300, 3'000, 5'000), false},
-                    PriceMapCase{"all_above", {2000, 3000}, false},
-                    PriceMapCase{"all_below", {-900, -700}, false}),
-    [](const auto& instance) { return instance.param.name; });
 
 TEST(PriceMap, ResolutionLiesWherePricesAre) {
   const PriceMap map = PriceMap::fit(normal_prices(100, 30, 20'000));
