@@ -17,13 +17,12 @@ namespace bess {
 namespace {
 
 constexpr long kDay_s = DatedCertificate::kDayS;
-constexpr const char* kBusy = "HTTP/1.1 404 Not Found\r\n";
 
 TestServer::Options with(const DatedCertificate& certificate) {
   return {.certificate = certificate.certificate(), .key = certificate.key()};
 }
 bool say_404(TestConnection& connection, const std::string&) {
-  return connection.answer("", kBusy);
+  return connection.answer("", "HTTP/1.1 404 Not Found\r\n");
 }
 
 /// Takes connections, answers the first byte of each with the same words, and closes it.
