@@ -29,6 +29,12 @@ inline MinuteSeries small_series(int days = 59, std::uint64_t seed = 7) {
   return series;
 }
 
+/// The two months as decisions, made once.
+inline const MarketSteps& small_steps() {
+  static const MarketSteps steps = make_market_steps(small_series(), {});
+  return steps;
+}
+
 inline MinuteSeries constant_series(double price, int days = 28) {
   MinuteSeries series = small_series(days);
   for (double& p : series.settled) p = price;

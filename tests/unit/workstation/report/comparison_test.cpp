@@ -12,6 +12,8 @@
 namespace bess {
 namespace {
 
+using testing::HasSubstr;
+
 Evaluation evaluation_of(const std::vector<double>& profits_eur) {
   Evaluation evaluation;
   evaluation.capacity_mwh = 8;
@@ -55,7 +57,7 @@ TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   EXPECT_DOUBLE_EQ(at_reference(10), 150);
   EXPECT_DOUBLE_EQ(at_reference(25), 150 + 15 * 2);  // in place of the 25, not on top
   const std::string table = format_comparison_table({rule});
-  EXPECT_NE(table.find("     180.0\n"), std::string::npos) << table;
+  EXPECT_THAT(table, HasSubstr("     180.0\n"));
   EXPECT_NE(comparison_csv({rule}).find("share_of_foresight,soc_end_frac_mean\nrule,2,"),
             std::string::npos);
   EXPECT_NE(comparison_csv({rule}).find(",180.0000,false,"), std::string::npos);
@@ -76,7 +78,7 @@ TEST(Comparison, TerminalColumnsAlign) {
     EXPECT_EQ(end - line_at, width) << table;
     line_at = end + 1;
   }
-  EXPECT_NE(table.find("+133.3"), std::string::npos) << table;
+  EXPECT_THAT(table, HasSubstr("+133.3"));
 }
 
 TEST(Comparison, NothingToCompareIsNoTable) {
@@ -87,8 +89,8 @@ TEST(Comparison, NothingToCompareIsNoTable) {
 TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
   const std::string csv = comparison_csv(three_policies());
   EXPECT_EQ(std::ranges::count(csv, '\n'), 6);
-  EXPECT_NE(csv.find("\nrule,3,200.0000,,,100.0000,1.5000,40.0000,"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("\nstudent,3,"), std::string::npos);
+  EXPECT_THAT(csv, HasSubstr("\nrule,3,200.0000,,,100.0000,1.5000,40.0000,"));
+  EXPECT_THAT(csv, HasSubstr("\nstudent,3,"));
 }
 
 /// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 a MWh.
@@ -101,19 +103,18 @@ TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
     rule.day_reset.days[d].date = student.day_reset.days[d].date = dates[d];
   }
   const std::string table = format_comparison_table({rule, student});
-  EXPECT_NE(table.find("   5.0   2.0       3.0  +5.0   2.0       3.0  "), std::string::npos)
-      << table;
-  EXPECT_NE(table.find("71 %"), std::string::npos) << table;
+  EXPECT_THAT(table, HasSubstr("   5.0   2.0       3.0  +5.0   2.0       3.0  "));
+  EXPECT_THAT(table, HasSubstr("71 %"));
   const std::string csv = comparison_csv({rule, student});
-  EXPECT_NE(
-      csv.find(",profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"),
-      std::string::npos);
-  EXPECT_NE(csv.find(",3.0000,rule,3.0000,2,"), std::string::npos) << csv;
+  EXPECT_THAT(
+      csv,
+      HasSubstr(",profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"));
+  EXPECT_THAT(csv, HasSubstr(",3.0000,rule,3.0000,2,"));
 }
 
 TEST(Comparison, CsvQuotesNamesThatNeedIt) {
   const std::string csv = comparison_csv({{"student, \"new\"", evaluation_of({800}), {}}});
-  EXPECT_NE(csv.find("\n\"student, \"\"new\"\"\",1,100.0000,"), std::string::npos) << csv;
+  EXPECT_THAT(csv, HasSubstr("\n\"student, \"\"new\"\"\",1,100.0000,"));
 }
 
 TEST(Curves, CsvAndSmoothing) {
@@ -143,8 +144,6 @@ TEST(Curves, DamagedFilesAreNamedWithTheLine) {
   EXPECT_NE(message_of(header + "1,2,3\n").find("curve.csv:2:"), std::string::npos);
   EXPECT_NE(message_of(header + "1,2,3,4\n1,2,x,4\n").find("curve.csv:3:"), std::string::npos);
 }
-
-using testing::HasSubstr;
 
 /// Two days of these profits, 1 MWh.
 Evaluation two_days(double first_eur, double second_eur) {

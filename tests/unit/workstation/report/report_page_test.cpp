@@ -12,6 +12,8 @@
 namespace bess {
 namespace {
 
+using testing::HasSubstr;
+
 TEST(ReportPage, PlaceholdersAreFilledOnce) {
   EXPECT_EQ(filled_in("a{{x}}b{{y}}{{x}}", {{"x", "1"}, {"y", "{{x}}"}}), "a1b{{x}}1");
   EXPECT_EQ(filled_in("nothing", {}), "nothing");
@@ -55,7 +57,7 @@ TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
   const std::string html = rules_html(&plain, &corrected, ContextKind::kLevel, &prices);
   for (const char* said : {"rest \u2013 ", ">81.04</td>", ">1,234</td>", ">0</td>", ">student</td>",
                            ">guard</td>", ">rest, alone</th>", "\u2212109.5 \u00b1 2.0"}) {
-    EXPECT_NE(html.find(said), std::string::npos) << said;
+    EXPECT_THAT(html, HasSubstr(said));
   }
   EXPECT_EQ(rules_html(&plain, nullptr, ContextKind::kLevel, nullptr), "");
   const Certificate without;
@@ -69,7 +71,7 @@ TEST(ReportTables, AFailedProofNamesDemandStateAndMend) {
   const std::string html = failure_html({broken});
   for (const char* said :
        {"&quot;rest&quot;", "1,234", "charge at class 3 &lt;", "leave more room"}) {
-    EXPECT_NE(html.find(said), std::string::npos) << said;
+    EXPECT_THAT(html, HasSubstr(said));
   }
   EXPECT_EQ(failure_html({}), "");
 }
@@ -81,14 +83,14 @@ TEST(ReportTables, NumbersHaveMinusSignsAndNamesKeepTheirHyphens) {
        {{"rbc-tuned", "-3.5"}, {"a", "318 (-89)"}, {"b", "2023-04"}, {"c", "-"}, {"d", "no-one"}}});
   for (const char* said :
        {">rbc-tuned<", ">\u22123.5<", ">318 (\u221289)<", ">2023-04<", ">-<", ">no-one<"}) {
-    EXPECT_NE(html.find(said), std::string::npos) << said;
+    EXPECT_THAT(html, HasSubstr(said));
   }
 }
 
 TEST(ReportTables, FactsAreEscaped) {
   const std::string html = provenance_html({{"command", "a <b> & c"}}, "x<y");
-  EXPECT_NE(html.find("<dt>command</dt><dd>a &lt;b&gt; &amp; c</dd>"), std::string::npos);
-  EXPECT_NE(html.find("<pre>x&lt;y</pre>"), std::string::npos);
+  EXPECT_THAT(html, HasSubstr("<dt>command</dt><dd>a &lt;b&gt; &amp; c</dd>"));
+  EXPECT_THAT(html, HasSubstr("<pre>x&lt;y</pre>"));
 }
 
 NamedEvaluation earning(const std::string& name, double eur) {
@@ -106,7 +108,7 @@ TEST(ComparisonNotes, TheWholeBatteryIsCapacityTimesWhatAMwhEarns) {
   house[0].day_reset.capacity_mwh = house[0].carried_over.capacity_mwh = 0.008;
   EXPECT_THAT(whole_battery_text(house), Names("8 kWh 1.00 EUR"));
   const std::string html = whole_battery_html(evaluations);
-  EXPECT_NE(html.find(">1000.0</td>"), std::string::npos) << html;
+  EXPECT_THAT(html, HasSubstr(">1000.0</td>"));
   EXPECT_NE(html.find(">\u221220.0</td>"), std::string::npos) << "a true minus";
   EXPECT_EQ(whole_battery_text({earning("rbc", 1)}), "");
   EXPECT_EQ(whole_battery_html({}), "");

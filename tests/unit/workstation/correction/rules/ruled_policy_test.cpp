@@ -14,13 +14,8 @@ namespace {
 /// Charges below, discharges above, never idles between: much to forbid.
 std::shared_ptr<Policy> restless() { return std::make_shared<RuleBasedPolicy>(99.5, 99.5); }
 
-const MarketSteps& market() {
-  static const MarketSteps steps = make_market_steps(small_series(), {});
-  return steps;
-}
-
 Evaluation run(Policy& policy) {
-  return evaluate(market(), market().days_of(Split::kHeldOut), policy,
+  return evaluate(small_steps(), small_steps().days_of(Split::kHeldOut), policy,
                   {.battery = {}, .carry_soc = true});
 }
 
@@ -57,8 +52,8 @@ TEST(RuledPolicy, APowerCapHalvesTheEnergyOfAStep) {
   const RuleSet rules = one_rule("power_max = 0.5\nenforce = true");
   RuledPolicy ruled(restless(), rules, {});
   std::vector<StepRecord> steps;
-  evaluate(market(), market().days_of(Split::kTest), ruled, {.battery = {}, .carry_soc = true},
-           &steps);
+  evaluate(small_steps(), small_steps().days_of(Split::kTest), ruled,
+           {.battery = {}, .carry_soc = true}, &steps);
   const double most_w = BatteryParameters{}.power_w_max / 2;
   double largest_w = 0;
   for (const StepRecord& step : steps) largest_w = std::max(largest_w, std::fabs(step.power_w));

@@ -122,9 +122,17 @@ TEST(Export, CommittedHeaderIsWhatTheExporterWrites) {
   expect_self_checks(header, net);
 }
 
-/// Compiles the header of `folder` in a C and a C++ program and runs both; `provenance` is what
-/// both must find in it.
-void expect_header_compiles(const std::string& header_dir, const std::string& provenance) {
+/// What the compiler says to these words, with the header in a folder that it looks into.
+Said compiled(const TemporaryFolder& folder, const std::string& header,
+              std::vector<std::string> words) {
+  write_file(folder.file("student_weights.h"), header);
+  words.insert(words.end(), {"-I", folder.file(""), "-I", BESS_SOURCE_DIR});
+  return answer_of(words);
+}
+
+/// Compiles the header in a C and a C++ program and runs both; `provenance` is what both must find
+/// in it.
+void expect_header_compiles(const std::string& header, const std::string& provenance) {
   const TemporaryFolder folder;
   std::string literal;
   for (const char c : provenance) literal += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
@@ -145,15 +153,15 @@ void expect_header_compiles(const std::string& header_dir, const std::string& pr
                        "\") != 0) return 2;\n"
                        "  return bess::count_exported_self_check_failures() == 0 ? 0 : 1;\n}\n");
   const std::string program = folder.file("program");
-  const Said c = answer_of({BESS_C_COMPILER, "-std=c11", "-Wall", "-Wextra", "-Wpedantic",
-                            "-Werror", "-I", header_dir, "-o", program, c_source});
-  ASSERT_EQ(c.exit_code, 0) << c.text;
-  EXPECT_EQ(answer_of({program}).exit_code, 0) << "C";
-  const Said cpp =
-      answer_of({BESS_CXX_COMPILER, "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I",
-                 header_dir, "-I", BESS_SOURCE_DIR, "-o", program, cpp_source});
-  ASSERT_EQ(cpp.exit_code, 0) << cpp.text;
-  EXPECT_EQ(answer_of({program}).exit_code, 0) << "C++";
+  for (const auto& [compiler, standard, source] :
+       {std::tuple(BESS_C_COMPILER, "-std=c11", c_source),
+        std::tuple(BESS_CXX_COMPILER, "-std=c++20", cpp_source)}) {
+    const Said built = compiled(
+        folder, header,
+        {compiler, standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o", program, source});
+    ASSERT_EQ(built.exit_code, 0) << built.text;
+    EXPECT_EQ(answer_of({program}).exit_code, 0) << standard;
+  }
 }
 
 /// The workstation's replay and the edge's are of two programs: one number holds them together.
@@ -169,23 +177,19 @@ TEST(Export, TheSignatureIsTheOneOfTheBuild) {
 
 TEST(Export, ProvenanceIsSafe) {
   const std::string harmless = "*/ #error // /* {} {0} %s why?\?) ?\?' ";
-  const TemporaryFolder folder;
   std::string header = committed_header();
   const std::size_t literal = header.find('"', header.find("BESS_STUDENT_PROVENANCE"));
   header.replace(literal, header.find('\n', literal) - literal,
                  c_string_literal(harmless + "\"a\" 'b' one\ntwo\r\n\té C:\\new\\x41\\"));
-  write_file(folder.file("student_weights.h"), header);
-  expect_header_compiles(folder.file(""), harmless + "\"a\" 'b' one?two?\?\?\?\? C:\\new\\x41\\");
+  expect_header_compiles(header, harmless + "\"a\" 'b' one?two?\?\?\?\? C:\\new\\x41\\");
 }
 
 /// By the assertion about what `names` say.
 void expect_header_is_refused(const std::string& header, const std::string& names) {
   const TemporaryFolder folder;
-  write_file(folder.file("student_weights.h"), header);
   const std::string source = folder.write("a.cpp", "#include \"shared/nn/exported_student.h\"\n");
   const Said outcome =
-      answer_of({BESS_CXX_COMPILER, "-std=c++20", "-fsyntax-only", "-I",
-                 fs::path(source).parent_path().string(), "-I", BESS_SOURCE_DIR, source});
+      compiled(folder, header, {BESS_CXX_COMPILER, "-std=c++20", "-fsyntax-only", source});
   EXPECT_NE(outcome.exit_code, 0);
   EXPECT_THAT(outcome.text, Names("exported_student.h " + names));
 }
@@ -197,12 +201,9 @@ TEST(Export, TheTrainingDaysAreToldAndAHeaderOfBeforeHasNone) {
                         "#define BESS_STUDENT_TRAINED_UNTIL \"2024-12-31\"\n"
                         "#define BESS_STUDENT_CYCLES_PER_DAY_E2 321\n"));
   const std::string header = committed_header();
-  const TemporaryFolder folder;
-  write_file(
-      folder.file("student_weights.h"),
-      std::regex_replace(header, std::regex("#define BESS_STUDENT_(TRAINED|CYCLES)_.*\n"), ""));
-  expect_header_compiles(fs::path(folder.file("student_weights.h")).parent_path().string(),
-                         BESS_STUDENT_PROVENANCE);
+  expect_header_compiles(
+      std::regex_replace(header, std::regex("#define BESS_STUDENT_(TRAINED|CYCLES)_.*\n"), ""),
+      BESS_STUDENT_PROVENANCE);
   for (const char* day : {"2023-02-30", "2022-12-31"}) {
     expect_header_is_refused(
         std::regex_replace(header, std::regex("(TRAINED_UNTIL) .*"), fmt::format("$1 \"{}\"", day)),
@@ -268,16 +269,12 @@ TEST(Export, RulesAreAddedToTheHeader) {
 }
 
 TEST(Export, AHeaderWithRulesIsCAndCppAndAnswersItsGoldenPoints) {
-  const TemporaryFolder folder;
-  write_file(folder.file("student_weights.h"), format_weight_header(ruled_student()));
-  expect_header_compiles(fs::path(folder.file("student_weights.h")).parent_path().string(),
-                         kCrowdedProvenance);
+  expect_header_compiles(format_weight_header(ruled_student()), kCrowdedProvenance);
 }
 
 /// The edge's own guard, with rules in its header, against what the exporter says of it.
 TEST(Export, TheEdgeDecidesWithRulesAsTheSignatureSays) {
   const TemporaryFolder folder;
-  write_file(folder.file("student_weights.h"), format_weight_header(ruled_student()));
   const std::string source = folder.write("a.cpp", R"(
 #include <cstdio>
 #include "edge/core/control/decision_signature.h"
@@ -287,26 +284,17 @@ int main() {
   bess::set_market_time_zone();
   std::puts(bess::signature_line(bess::student_hash(), bess::replay_recorded_days()).c_str());
 })");
-  std::vector<std::string> command{BESS_CXX_COMPILER,
-                                   "-std=c++20",
-                                   "-O1",
-                                   "-I",
-                                   fs::path(source).parent_path().string(),
-                                   "-I",
-                                   BESS_SOURCE_DIR,
-                                   "-o",
-                                   folder.file("program"),
-                                   source};
+  const std::string program = folder.file("program");
+  std::vector<std::string> command{BESS_CXX_COMPILER, "-std=c++20", "-O1", "-o", program, source};
   for (const char* const file :
        {"edge/core/control/policy", "edge/core/control/decision_signature",
         "edge/core/control/safety_guard", "shared/decision_signature", "shared/features",
         "shared/local_time", "shared/outlook/outlook_model", "shared/outlook/outlook_plan"}) {
     command.push_back(fmt::format("{}/{}.cpp", BESS_SOURCE_DIR, file));
   }
-  const Said built = answer_of(command);
+  const Said built = compiled(folder, format_weight_header(ruled_student()), command);
   ASSERT_EQ(built.exit_code, 0) << built.text;
-  EXPECT_EQ(answer_of({folder.file("program")}).text,
-            decision_signature_line(ruled_student().file()) + '\n');
+  EXPECT_EQ(answer_of({program}).text, decision_signature_line(ruled_student().file()) + '\n');
   EXPECT_NE(decision_signature_line(ruled_student().file()),
             decision_signature_line(crowded_student().file()));
 }

@@ -12,21 +12,19 @@ constexpr std::int64_t kContextStates = std::int64_t{kSocCount} * kPriceCount;
 /// One context of the whole lattice: enough for nets that see price and SoC alone.
 constexpr int kOneContext = kContextCount;
 
-struct GridCase {
-  const char* name;
-  StudentNet net;
-  int minute_of_quarter_hour, quarter_hour, context_class;
-};
-
 TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
-  const GridCase cases[] = {
+  const struct {
+    const char* name;
+    StudentNet net;
+    int minute_of_quarter_hour, quarter_hour, context_class;
+  } cases[] = {
       {"random", seeded_net(1), 0, 0, 1},
       {"random, another", seeded_net(2), 7, 50, 6},
       {"compiled student", compiled_student().net, 14, 95, 12},
       {"adversarial", adversarial_net(1), 3, 20, 3},
       {"adversarial, another", adversarial_net(2), 14, 0, 12},
   };
-  for (const GridCase& c : cases) {
+  for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
     ASSERT_LE(accumulator_bound(c.net), INT32_MAX);
     std::vector<std::int8_t> bounded, exhaustive;
@@ -126,65 +124,49 @@ bool is_violation(const StudentNet& net, const LatticeState& state, const Verify
   return false;
 }
 
-struct CountCase {
-  const char* name;
-  LinearNet net;
-  int low, high;
-  bool breaks_low, breaks_high, breaks_order;
-};
-
 TEST(Verify, CountsMatchTheDefinitions) {
-  const CountCase cases[] = {
-      {"keeps all", {}, -500, 1500, false, false, false},
-      {"keeps all, falling in SoC too",
-       {.price_weight = 2, .soc_weight = 1, .charge_below = 17'000, .discharge_from = 30'000},
-       -500,
-       1500,
-       false,
-       false,
-       false},
-      {"never charges", {.charge_below = 0}, -500, 1500, true, false, false},
-      {"never discharges", {.discharge_from = 20'000}, -500, 1500, false, true, false},
-      {"rises with price", {.price_weight = -1, .offset = 16'000}, -500, 1500, true, true, true},
-      {"rises with SoC", {.soc_weight = -1, .offset = 17'000}, -500, 1500, true, false, true},
-      {"rises with SoC between the thresholds",
-       {.price_weight = 2, .soc_weight = -1, .offset = 3000},
-       -500,
-       1500,
-       false,
-       false,
-       true},
-      {"thresholds inside, kept", {}, -1, 1000, false, false, false},
-      {"thresholds inside, one beyond", {}, 0, 999, true, true, false},
-      {"thresholds outside",
-       {.charge_below = 0, .discharge_from = 20'000},
-       -501,
-       1501,
-       false,
-       false,
-       false},
-      {"thresholds far outside",
-       {.charge_below = 0, .discharge_from = 20'000},
-       -15'000,
-       15'000,
-       false,
-       false,
-       false},
-      {"all prices are low", {}, 1500, 1501, true, false, false},
-      {"all prices are high", {}, -501, -500, false, true, false},
+  const LinearNet never_charges{.charge_below = 0}, never_discharges{.discharge_from = 20'000};
+  const LinearNet always_idles{.charge_below = 0, .discharge_from = 20'000};
+  const LinearNet falls_in_both{
+      .price_weight = 2, .soc_weight = 1, .charge_below = 17'000, .discharge_from = 30'000};
+  const LinearNet rises_with_price{.price_weight = -1, .offset = 16'000};
+  const LinearNet rises_with_soc{.soc_weight = -1, .offset = 17'000};
+  const LinearNet rises_between{.price_weight = 2, .soc_weight = -1, .offset = 3000};
+  const struct {
+    const char* name;
+    LinearNet net;
+    PriceThresholds thresholds;
+    std::string_view broken;  ///< numbers of the properties
+  } cases[] = {
+      {"keeps all", {}, {-500, 1500}, ""},
+      {"keeps all, falling in SoC too", falls_in_both, {-500, 1500}, ""},
+      {"never charges", never_charges, {-500, 1500}, "1"},
+      {"never discharges", never_discharges, {-500, 1500}, "2"},
+      {"rises with price", rises_with_price, {-500, 1500}, "1 2 3"},
+      {"rises with SoC", rises_with_soc, {-500, 1500}, "1 3"},
+      {"rises with SoC between the thresholds", rises_between, {-500, 1500}, "3"},
+      {"thresholds inside, kept", {}, {-1, 1000}, ""},
+      {"thresholds inside, one beyond", {}, {0, 999}, "1 2"},
+      {"thresholds outside", always_idles, {-501, 1501}, ""},
+      {"thresholds far outside", always_idles, {-15'000, 15'000}, ""},
+      {"all prices are low", {}, {1500, 1501}, "1"},
+      {"all prices are high", {}, {-501, -500}, "2"},
   };
-  for (const CountCase& c : cases) {
+  for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
     const StudentNet net = c.net.net();
     ASSERT_LE(accumulator_bound(net), INT32_MAX);
     const VerifyOptions options{
-        .thresholds = {c.low, c.high}, .context_stride = kOneContext, .threads = 1};
+        .thresholds = c.thresholds, .context_stride = kOneContext, .threads = 1};
     const Certificate certificate = verify_student(net, options);
     const auto answer = [&c](const LatticeState& s) { return c.net.action(s); };
-    EXPECT_EQ(counts_of(certificate), brute_force(answer, {0, 0, 1, 0, 0}, c.low, c.high));
-    EXPECT_EQ(certificate.violations_of(1) > 0, c.breaks_low);
-    EXPECT_EQ(certificate.violations_of(2) > 0, c.breaks_high);
-    EXPECT_EQ(certificate.violations_of(3) > 0, c.breaks_order);
+    EXPECT_EQ(counts_of(certificate),
+              brute_force(answer, {0, 0, 1, 0, 0}, c.thresholds.low_eur_per_mwh,
+                          c.thresholds.high_eur_per_mwh));
+    for (const int property : {1, 2, 3}) {
+      const bool is_broken = c.broken.find(std::to_string(property)) != c.broken.npos;
+      EXPECT_EQ(certificate.violations_of(property) > 0, is_broken) << property;
+    }
     EXPECT_EQ(certificate.thresholds, options.thresholds);
     EXPECT_EQ(certificate.counterexamples.empty(), certificate.violations() == 0);
     for (const LatticeState& state : certificate.counterexamples) {

@@ -10,10 +10,8 @@
 namespace bess {
 namespace {
 
-MarketSteps small_market() { return make_market_steps(small_series(), {}); }
-
 TEST(ContextFit, LevelsOfTheTrainingDaysLieInside) {
-  const MarketSteps market = small_market();
+  const MarketSteps& market = small_steps();
   const ContextClasses classes = fit_context_classes(market, ContextKind::kLevel);
   ASSERT_TRUE(classes.is_valid());
   EXPECT_EQ(classes.kind, ContextKind::kLevel);
@@ -57,7 +55,7 @@ TEST(ContextFit, AConstantMarketHasClassesToo) {
 }
 
 TEST(ContextFit, TheLevelOfAClassLiesInIt) {
-  const ContextClasses classes = fit_context_classes(small_market(), ContextKind::kLevel);
+  const ContextClasses classes = fit_context_classes(small_steps(), ContextKind::kLevel);
   for (int c = 1; c <= kContextClassCount; ++c) {
     const double level = class_level_eur_per_mwh(classes, c);
     EXPECT_EQ(classes.class_of(1, static_cast<std::int32_t>(level * kCentiPerEur)), c);

@@ -10,46 +10,43 @@
 namespace bess {
 namespace {
 
-double profit(const std::string& name, const MarketSteps& market, Split split, bool carry_soc) {
-  const auto policy = make_baseline(name, market, {});
-  return evaluate(market, market.days_of(split), *policy, {.battery = {}, .carry_soc = carry_soc})
+double profit(const std::string& name, Split split, bool carry_soc) {
+  const auto policy = make_baseline(name, small_steps(), {});
+  const auto days = small_steps().days_of(split);
+  return evaluate(small_steps(), days, *policy, {.battery = {}, .carry_soc = carry_soc})
       .profit_eur_per_day_per_mwh();
 }
 
 TEST(GivenRule, TakesItsThresholdsFromTheName) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  EXPECT_EQ(profit("rbc:11:179", market, Split::kTest, false),
-            profit("rbc", market, Split::kTest, false));
-  EXPECT_NO_THROW(make_baseline("rbc:-50.5:80", market, {}));
+  EXPECT_EQ(profit("rbc:11:179", Split::kTest, false), profit("rbc", Split::kTest, false));
+  EXPECT_NO_THROW(make_baseline("rbc:-50.5:80", small_steps(), {}));
   for (const char* bad :
        {"rbc:", "rbc:1", "rbc:1:", "rbc:a:b", "rbc:2:1", "rbc:1:2x", "rbc:1:nan"}) {
-    EXPECT_THROW(make_baseline(bad, market, {}), UserError) << bad;
+    EXPECT_THROW(make_baseline(bad, small_steps(), {}), UserError) << bad;
   }
 }
 
 TEST(TunedRule, IsBestOnItsTrainingDaysAndDeterministic) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  const double tuned = profit("rbc-tuned", market, Split::kTrain, true);
+  const double tuned = profit("rbc-tuned", Split::kTrain, true);
   for (double low = -50; low <= 150; low += 20) {
     for (double high = low; high <= 250; high += 20) {
       const auto name = "rbc:" + std::to_string(low) + ":" + std::to_string(high);
-      EXPECT_GE(tuned, 0.995 * profit(name, market, Split::kTrain, true)) << name;
+      EXPECT_GE(tuned, 0.995 * profit(name, Split::kTrain, true)) << name;
     }
   }
-  const auto days = market.days_of(Split::kTrain);
-  const RuleThresholds a = tune_rule(market, days, {});
-  const RuleThresholds b = tune_rule(market, days, {});
+  const auto days = small_steps().days_of(Split::kTrain);
+  const RuleThresholds a = tune_rule(small_steps(), days, {});
+  const RuleThresholds b = tune_rule(small_steps(), days, {});
   EXPECT_EQ(a.low_eur_per_mwh, b.low_eur_per_mwh);
   EXPECT_EQ(a.high_eur_per_mwh, b.high_eur_per_mwh);
 }
 
 TEST(Foresight, CarriedOverIsThePlanOfTheWholeSeries) {
-  const MarketSteps market = make_market_steps(small_series(), {});
   ForesightPolicy foresight({});
   const EvaluationOptions carried{.battery = {}, .carry_soc = true};
-  const Evaluation all = evaluate(market, market.days, foresight, carried);
-  const auto days = market.days_of(Split::kTest);
-  const Evaluation test = evaluate(market, days, foresight, carried);
+  const Evaluation all = evaluate(small_steps(), small_steps().days, foresight, carried);
+  const auto days = small_steps().days_of(Split::kTest);
+  const Evaluation test = evaluate(small_steps(), days, foresight, carried);
   ASSERT_EQ(test.days.size(), days.size());
   for (const DayResult& day : test.days) {
     const auto same = std::ranges::find(all.days, day.date, &DayResult::date);
@@ -58,9 +55,10 @@ TEST(Foresight, CarriedOverIsThePlanOfTheWholeSeries) {
   }
   // Over all days it is a bound on every chained policy.
   for (const char* name : {"tabular", "mpc"}) {
-    const auto policy = make_baseline(name, market, {});
-    EXPECT_GT(all.profit_eur_per_day_per_mwh(),
-              evaluate(market, market.days, *policy, carried).profit_eur_per_day_per_mwh());
+    const auto policy = make_baseline(name, small_steps(), {});
+    EXPECT_GT(
+        all.profit_eur_per_day_per_mwh(),
+        evaluate(small_steps(), small_steps().days, *policy, carried).profit_eur_per_day_per_mwh());
   }
 }
 

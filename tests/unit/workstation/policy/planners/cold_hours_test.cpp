@@ -42,9 +42,9 @@ TEST(ColdHours, KeysThatSayNothingTogetherAreRefused) {
 
 Evaluation trade(const std::string& name, const BatteryParameters& planned,
                  const BatteryParameters& real, std::vector<StepRecord>* records = nullptr) {
-  static const MarketSteps market = make_market_steps(small_series(), {});
-  const auto policy = make_baseline(name, market, planned);
-  return evaluate(market, market.days_of(Split::kTest), *policy, {real, 0.5, true}, records);
+  const auto policy = make_baseline(name, small_steps(), planned);
+  return evaluate(small_steps(), small_steps().days_of(Split::kTest), *policy, {real, 0.5, true},
+                  records);
 }
 
 TEST(ColdHours, AllDayTheyAreABatteryOfLessPower) {
@@ -79,10 +79,9 @@ TEST(ColdHours, NoMoreFlowsAndWhoeverKnowsThemEarnsMore) {
 }
 
 TEST(ColdHours, TheLearnerIsPaidForWhatFlows) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  const PriceMap map = PriceMap::fit(observed_training_prices(market));
-  const TrainingMarket warm(market, map, {}, Horizon::kContinuing, {});
-  const TrainingMarket cold(market, map, with_cold(kNights), Horizon::kContinuing, {});
+  const PriceMap map = PriceMap::fit(observed_training_prices(small_steps()));
+  const TrainingMarket warm(small_steps(), map, {}, Horizon::kContinuing, {});
+  const TrainingMarket cold(small_steps(), map, with_cold(kNights), Horizon::kContinuing, {});
   constexpr std::size_t kNoon = 360, kThree = 90;  // steps of the first day, 2 minutes each
   Transition a, b;
   const double warm_frac = warm.make_transition(kThree, 0.5, Action::kCharge, a) - 0.5;

@@ -20,15 +20,10 @@ BatteryParameters costly_battery() {
   return battery;
 }
 
-const MarketSteps& market() {
-  static const MarketSteps steps = make_market_steps(small_series(), {});
-  return steps;
-}
-
 /// Fitted with `planned`, run with what is really charged.
 Evaluation evaluate_planned(const std::string& name, const BatteryParameters& planned) {
-  const auto policy = make_baseline(name, market(), planned);
-  return evaluate(market(), market().days_of(Split::kTest), *policy,
+  const auto policy = make_baseline(name, small_steps(), planned);
+  return evaluate(small_steps(), small_steps().days_of(Split::kTest), *policy,
                   {costly_battery(), 0.5, false});
 }
 
@@ -57,22 +52,22 @@ TEST(Costs, NobodyEarnsMoreThanForesight) {
 TEST(Costs, WhereNoSpreadPaysPlannersSellWhatIsThereAndRest) {
   BatteryParameters battery;
   battery.costs.import_adder_eur_per_mwh = 1000;
-  const auto days = market().days_of(Split::kTest);
+  const auto days = small_steps().days_of(Split::kTest);
   for (const char* name : {"tabular", "mpc", "sdp", "foresight"}) {
-    const auto policy = make_baseline(name, market(), battery);
+    const auto policy = make_baseline(name, small_steps(), battery);
     std::vector<StepRecord> records;
-    evaluate(market(), days, *policy, {battery, 0.5, true}, &records);
+    evaluate(small_steps(), days, *policy, {battery, 0.5, true}, &records);
     for (const StepRecord& r : records) ASSERT_LE(r.power_w, 0) << name;
   }
 }
 
 TEST(Costs, TheReferenceWearTakesThePlaceOfTheConfiguredOne) {
-  const auto rule = make_baseline("rbc:60:140", market(), {});
-  const auto days = market().days_of(Split::kTest);
+  const auto rule = make_baseline("rbc:60:140", small_steps(), {});
+  const auto days = small_steps().days_of(Split::kTest);
   const auto run = [&](double wear) {
     BatteryParameters battery;
     battery.wear_eur_per_mwh = wear;
-    return evaluate(market(), days, *rule, {battery, 0.5, false});
+    return evaluate(small_steps(), days, *rule, {battery, 0.5, false});
   };
   const Evaluation at_10 = run(10);
   for (const double configured : {0.0, 4.0, 10.0, 25.0}) {

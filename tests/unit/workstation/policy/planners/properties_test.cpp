@@ -69,7 +69,6 @@ void expect_conserved(const std::vector<StepRecord>& records, const Evaluation& 
 }
 
 TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
-  const MarketSteps market = make_market_steps(small_series(), {});
   Random random(1);
   for (int n = 0; n < 6; ++n) {
     const BatteryParameters battery = random_battery(random);
@@ -78,9 +77,10 @@ TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
       if (n >= 3 && std::string(name) == "tabular") continue;  // fits for a tenth of a second
       std::vector<StepRecord> records;
       // Days next to each other, so that each step follows from the one before it.
-      const std::vector<MarketDay> days(market.days.begin() + 20, market.days.begin() + 25);
-      const auto policy = make_baseline(name, market, battery);
-      const Evaluation e = evaluate(market, days, *policy, options, &records);
+      const std::vector<MarketDay> days(small_steps().days.begin() + 20,
+                                        small_steps().days.begin() + 25);
+      const auto policy = make_baseline(name, small_steps(), battery);
+      const Evaluation e = evaluate(small_steps(), days, *policy, options, &records);
       SCOPED_TRACE(name);
       expect_conserved(records, e, battery);
     }

@@ -29,12 +29,11 @@ TEST(StochasticProgram, EarnsOnTheYardstickWhatTheSpikesEarn) {
 }
 
 TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  const StochasticProgram program(market, market.days_of(Split::kTrain), {});
+  const StochasticProgram program(small_steps(), small_steps().days_of(Split::kTrain), {});
   constexpr int kPoints = StochasticProgram::kSocPoints;
-  for (std::size_t i = 0; i < market.steps.size(); i += 997) {
+  for (std::size_t i = 0; i < small_steps().steps.size(); i += 997) {
     float value[kPoints];
-    program.values(StochasticProgram::situation_of(market.steps[i]), value);
+    program.values(StochasticProgram::situation_of(small_steps().steps[i]), value);
     for (int p = 2; p < kPoints; ++p) {
       const float concave = value[p] - 2 * value[p - 1] + value[p - 2];
       EXPECT_LT(concave, 0.01F * std::fabs(value[kPoints - 1] - value[0])) << i << ' ' << p;
@@ -43,9 +42,8 @@ TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
 }
 
 TEST(StochasticProgram, DoesNotBuyAboveWhatIsUsualAtTheLevel) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  const StochasticProgram program(market, market.days_of(Split::kTrain), {});
-  StochasticProgram::Situation at = StochasticProgram::situation_of(market.steps[5'000]);
+  const StochasticProgram program(small_steps(), small_steps().days_of(Split::kTrain), {});
+  StochasticProgram::Situation at = StochasticProgram::situation_of(small_steps().steps[5'000]);
   const auto best = [&] { return argmax_action(program.action_values(at, 0.5).data()); };
   at.price_eur_per_mwh = at.level_eur_per_mwh - 400;
   EXPECT_EQ(best(), Action::kCharge);
@@ -54,14 +52,13 @@ TEST(StochasticProgram, DoesNotBuyAboveWhatIsUsualAtTheLevel) {
 }
 
 TEST(StochasticProgram, KnowingTheWearItEarnsMoreNetOfIt) {
-  const MarketSteps market = make_market_steps(small_series(), {});
   BatteryParameters worn;
   worn.wear_eur_per_mwh = 40;
-  StochasticProgramPolicy unaware(market, market.days_of(Split::kTrain), {});
-  const double without =
-      evaluate(market, market.days_of(Split::kTest), unaware, {.battery = worn, .carry_soc = true})
-          .profit_eur_per_day_per_mwh();
-  EXPECT_GT(profit(market, Split::kTest, true, 0.6, worn), without + 1);
+  StochasticProgramPolicy unaware(small_steps(), small_steps().days_of(Split::kTrain), {});
+  const double without = evaluate(small_steps(), small_steps().days_of(Split::kTest), unaware,
+                                  {.battery = worn, .carry_soc = true})
+                             .profit_eur_per_day_per_mwh();
+  EXPECT_GT(profit(small_steps(), Split::kTest, true, 0.6, worn), without + 1);
 }
 
 TEST(StochasticProgram, TellsTheRowsQuarterHour) {
@@ -76,8 +73,7 @@ TEST(StochasticProgram, TellsTheRowsQuarterHour) {
 }
 
 TEST(StochasticProgram, NothingToFitOnIsAnError) {
-  const MarketSteps market = make_market_steps(small_series(), {});
-  EXPECT_THROW(StochasticProgram(market, {}, {}), UserError);
+  EXPECT_THROW(StochasticProgram(small_steps(), {}, {}), UserError);
 }
 
 }  // namespace

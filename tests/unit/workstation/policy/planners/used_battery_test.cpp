@@ -11,20 +11,17 @@
 namespace bess {
 namespace {
 
-Evaluation trade(const MarketSteps& market, const BatteryParameters& battery,
-                 std::vector<StepRecord>* records = nullptr) {
-  const auto policy = make_baseline("rbc:60:140", market, {});
-  return evaluate(market, market.days, *policy, {battery, 0.5, true}, records);
+Evaluation trade(const BatteryParameters& battery, std::vector<StepRecord>* records = nullptr) {
+  const auto policy = make_baseline("rbc:60:140", small_steps(), {});
+  return evaluate(small_steps(), small_steps().days, *policy, {battery, 0.5, true}, records);
 }
 
 TEST(CapacityFade, IsOfThePartThatIsLeftAndOff) {
-  const MarketSteps market = make_market_steps(small_series(), {});
   BatteryParameters fading;
-  EXPECT_EQ(trade(market, fading).profit_eur_per_day_per_mwh(),
-            trade(market, {}).profit_eur_per_day_per_mwh());
+  EXPECT_EQ(trade(fading).profit_eur_per_day_per_mwh(), trade({}).profit_eur_per_day_per_mwh());
   fading.fade_percent_per_1000_cycles = 40;
   std::vector<StepRecord> records;
-  const Evaluation faded = trade(market, fading, &records);
+  const Evaluation faded = trade(fading, &records);
   double capacity_wh = fading.capacity_wh;
   for (std::size_t i = 0; i + 1 < records.size(); ++i) {
     const double moved_wh = records[i].power_w / 30;
@@ -36,16 +33,15 @@ TEST(CapacityFade, IsOfThePartThatIsLeftAndOff) {
     capacity_wh -= capacity_wh * 0.4 / 1000 * std::fabs(moved_wh) / (2 * capacity_wh);
   }
   EXPECT_LT(capacity_wh, 0.98 * fading.capacity_wh);
-  EXPECT_LT(faded.profit_eur_per_day_per_mwh(), trade(market, {}).profit_eur_per_day_per_mwh());
+  EXPECT_LT(faded.profit_eur_per_day_per_mwh(), trade({}).profit_eur_per_day_per_mwh());
   EXPECT_EQ(faded.capacity_mwh, 8) << "profits are by what was bought";
 }
 
 TEST(MinimumRun, ADirectionIsKeptAndNothingElseIs) {
-  const MarketSteps market = make_market_steps(small_series(), {});
   BatteryParameters slow;
   slow.minimum_run_min = 20;
   std::vector<StepRecord> records;
-  const Evaluation kept = trade(market, slow, &records);
+  const Evaluation kept = trade(slow, &records);
   int run = 1, runs = 0, shortest = 1'000;
   for (std::size_t i = 1; i < records.size(); ++i) {
     const bool goes_on = records[i].action == records[i - 1].action;
@@ -57,10 +53,9 @@ TEST(MinimumRun, ADirectionIsKeptAndNothingElseIs) {
   }
   EXPECT_EQ(shortest, 10);
   EXPECT_GT(runs, 50);
-  EXPECT_LT(kept.switches_per_day(), trade(market, {}).switches_per_day());
+  EXPECT_LT(kept.switches_per_day(), trade({}).switches_per_day());
   slow.minimum_run_min = 2;
-  EXPECT_EQ(trade(market, slow).profit_eur_per_day_per_mwh(),
-            trade(market, {}).profit_eur_per_day_per_mwh());
+  EXPECT_EQ(trade(slow).profit_eur_per_day_per_mwh(), trade({}).profit_eur_per_day_per_mwh());
 }
 
 /// Plans under a limit of cycles are dear to make: two days of them.
