@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "shared/host/file.h"
+#include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/cli/commands.h"
 
 namespace bess {
 namespace {
@@ -18,14 +18,9 @@ class EvaluateCli : public testing::Test {
  protected:
   EvaluateCli() { write_minute_file(prices_, small_series(), ""); }
 
-  /// Standard output of `bess-train COMMAND --prices <file> ARGUMENTS`.
-  std::string output(const std::string& command, const std::string& arguments) {
-    CommandLine command_line("bess-train", "", "");
-    ProgramCommand root = command_line.root();
-    add_evaluate_command(root);
-    testing::internal::CaptureStdout();
-    command_line.parse(command + " --prices " + prices_.string() + " " + arguments);
-    return testing::internal::GetCapturedStdout();
+  /// Standard output of `bess-train evaluate --prices <file> ARGUMENTS`.
+  std::string output(const std::string& arguments) {
+    return said_by_command("evaluate --prices " + prices_.string() + " " + arguments).output;
   }
   static std::vector<std::string> lines(const std::string& text) {
     std::vector<std::string> out;
@@ -50,20 +45,20 @@ TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
     return at == std::string::npos ? NAN : std::stod(line.substr(line.find(':', at) + 1));
   };
   const auto at_10 =
-      output("evaluate", "--policy rbc --json" + config("a", "[battery]\nwear_eur_per_mwh = 10\n"));
+      output("--policy rbc --json" + config("a", "[battery]\nwear_eur_per_mwh = 10\n"));
   const double expected = number(at_10, "\"profit_eur_per_day_per_mwh\"");
   EXPECT_EQ(number(at_10, "\"profit_at_wear_10"), expected);
   for (const std::string& other :
        {std::string(), config("b", "[battery]\nwear_eur_per_mwh = 25\n")}) {
-    EXPECT_NEAR(number(output("evaluate", "--policy rbc --json" + other), "\"profit_at_wear_10"),
-                expected, 1e-3);
+    EXPECT_NEAR(number(output("--policy rbc --json" + other), "\"profit_at_wear_10"), expected,
+                1e-3);
   }
 }
 
 TEST_F(EvaluateCli, FilesHoldEveryPolicy) {
   const auto file = [&](const char* name) { return folder_.file(name); };
-  output("evaluate", "--policy rbc rbc:60:140 --csv " + file("t.csv") + " --days-out " +
-                         file("d.csv") + " --steps-out " + file("s.csv"));
+  output("--policy rbc rbc:60:140 --csv " + file("t.csv") + " --days-out " + file("d.csv") +
+         " --steps-out " + file("s.csv"));
   const auto table = lines(read_file(file("t.csv")));
   EXPECT_EQ(table.size(), 1U + 4U);
   const auto days = lines(read_file(file("d.csv")));
@@ -75,29 +70,27 @@ TEST_F(EvaluateCli, FilesHoldEveryPolicy) {
 }
 
 TEST_F(EvaluateCli, FitDelayChangesWhatIsFittedAndNothingElse) {
-  EXPECT_EQ(output("evaluate", "--policy rbc --json --fit-delay 3"),
-            output("evaluate", "--policy rbc --json"));
-  EXPECT_NE(output("evaluate", "--policy tabular --json --fit-delay 3"),
-            output("evaluate", "--policy tabular --json"));
+  EXPECT_EQ(output("--policy rbc --json --fit-delay 3"), output("--policy rbc --json"));
+  EXPECT_NE(output("--policy tabular --json --fit-delay 3"), output("--policy tabular --json"));
 }
 
 TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
   const auto split_days = folder_.file("split.csv");
   const auto one_day = folder_.file("day.csv");
-  output("evaluate", "--policy rbc tabular --days-out " + split_days);
+  output("--policy rbc tabular --days-out " + split_days);
   const std::string whole = read_file(split_days);
   const std::string last_line = whole.substr(whole.rfind('\n', whole.size() - 2) + 1);
   const std::string date = last_line.substr(0, last_line.find(','));
-  output("evaluate", "--policy rbc tabular --date " + date + " --days-out " + one_day);
+  output("--policy rbc tabular --date " + date + " --days-out " + one_day);
   EXPECT_THAT(read_file(one_day), HasSubstr(last_line));
   EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
-  EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
+  EXPECT_THAT(output("--policy rbc --json --date " + date),
               HasSubstr(R"("profit_standard_error":null)"));  // one day tells nothing of the spread
 }
 
 TEST_F(EvaluateCli, FittedThresholdsAreTold) {
-  EXPECT_THAT(output("evaluate", "--policy rbc-quartile"), Names("rbc-quartile: 23.6304 189.462"));
-  EXPECT_THAT(output("evaluate", "--policy rbc --json"), Names("11 179 EUR/MWh"));
+  EXPECT_THAT(output("--policy rbc-quartile"), Names("rbc-quartile: 23.6304 189.462"));
+  EXPECT_THAT(output("--policy rbc --json"), Names("11 179 EUR/MWh"));
 }
 
 }  // namespace

@@ -156,80 +156,71 @@ TEST(StudentFile, Version1IsStillRead) {
   EXPECT_FALSE(student.certificate.covers_lattice_without_violation());
 }
 
-struct Damage {
-  std::string name;
-  std::string text;
-  std::string names;
-};
-
 TEST(StudentFile, DamageIsRefused) {
   const std::string good = seeded_text();
   ASSERT_NO_THROW(static_cast<void>(parse_student(good, "good.json")));
-  StudentNet falling = seeded_net(21);
-  falling.price_map[100] = falling.price_map[99];
-  std::string falling_map = "[";
-  for (const int p : falling.price_map) falling_map += std::to_string(p) + ',';
-  falling_map.back() = ']';
-  std::vector<Damage> damages{
-      {"empty", "", "JSON"},
-      {"not JSON", "price,soc\n1,2\n", "JSON"},
-      {"an array", "[1,2,3]", "JSON"},
-      {"a number", "17", "JSON"},
-      {"other JSON", "{\"a\": 1}", "\"format\""},
-      {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" \"bess-student\""},
-      {"format of another type", with(good, "format", "3"), "format"},
-      {"newer version", with(good, "version", "6"), "6"},
-      {"rules are missing", with(good, "version", "4"), "rules"},
-      {"unknown context", with(good, "context", "\"week\""), "\"level\" \"month\""},
-      {"by level without edges", with(good, "context", "\"level\""), "\"level_edge_eur_per_mwh\""},
-      {"edges by month", with(good, "level_edge_eur_per_mwh", "[1,2,3,4,5,6,7,8,9,10,11]"),
-       "\"level_edge_eur_per_mwh\" 0"},
-      {"older version with a certificate", with(good, "version", "1"), "\"low_price_eur_per_mwh\""},
-      {"other architecture", with(good, "architecture_hash", "12345"), ""},
-      {"hash differs", with(good, "weights_hash", "12345"), ""},
-      {"a weight was edited", with(good, "layer3_bias", "[1,2,3]"), ""},
-      {"array too short", with(good, "layer3_bias", "[1,2]"), "\"layer3_bias\" 3"},
-      {"array too long", with(good, "layer3_bias", "[1,2,3,4]"), "\"layer3_bias\" 3"},
-      {"object for array", with(good, "layer3_bias", "{\"a\":1}"), "\"layer3_bias\" 3"},
-      {"number for array", with(good, "price_map", "5"), "\"price_map\" 2001"},
-      {"text in array", with(good, "layer3_bias", "[1,\"2\",3]"), "\"layer3_bias\" 32"},
-      {"null in array", with(good, "layer3_bias", "[1,null,3]"), "\"layer3_bias\" 32"},
-      {"fraction in array", with(good, "layer3_bias", "[1,2.5,3]"), "\"layer3_bias\" 32"},
-      {"beyond 32 bits", with(good, "layer3_bias", "[1,3000000000,3]"), "\"layer3_bias\" 32"},
-      {"huge", with(good, "layer3_bias", "[1,1e999,3]"), ""},
-      {"beyond 16 bits", with(good, "layer3_weight", array_of("40000", kStudentHidden2 * 3)),
-       "\"layer3_weight\" 16"},
-      {"below 16 bits", with(good, "layer3_weight", array_of("-32769", kStudentHidden2 * 3)),
-       "\"layer3_weight\" 16"},
-      {"shift 31", with(good, "relu1_shift", "[31]"), "31 0..30"},
-      {"shift -1", with(good, "relu2_shift", "[-1]"), "-1 0..30"},
-      {"flat price map", with(good, "price_map", falling_map), "16384"},
-      {"price map below 0", with(good, "price_map", array_of("-1", kPriceCount)), "16384"},
-      {"sums overflow", with(good, "layer3_bias", "[2147483647,0,0]"), "32"},
-      {"low price is a text", with(good, "low_price_eur_per_mwh", "\"-450\""),
-       "low_price_eur_per_mwh"},
-      {"low price is no integer", with(good, "low_price_eur_per_mwh", "-450.5"),
-       "\"low_price_eur_per_mwh\""},
-      {"low price is huge", with(good, "low_price_eur_per_mwh", "-1e300"),
-       "\"low_price_eur_per_mwh\""},
-      {"high price is implausible", with(good, "high_price_eur_per_mwh", "2147483647"),
-       "\"high_price_eur_per_mwh\""},
-      {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"),
-       "\"low_price_eur_per_mwh\""},
-      {"without certificate", without(one_line_certificate(good), "certificate"), "certificate"},
-      {"certificate is a number", with(one_line_certificate(good), "certificate", "1"),
-       "\"certificate\""},
-      {"empty certificate", with(one_line_certificate(good), "certificate", "{}"),
-       "\"low_price_eur_per_mwh\""},
-      {"half a state", with(good, "states_checked", "0.5"), "states_checked"},
-      {"fewer than no violation", with(good, "violations_property_2", "-1"),
-       "\"violations_property_2\""},
-      {"more states than can be counted", with(good, "states_evaluated", "1e300"),
-       "\"states_evaluated\""},
-      {"violations are a text", with(good, "violations_property_3", "\"0\""),
-       "violations_property_3"},
-      {"provenance is a number", with(good, "provenance", "1"), "provenance"},
+  const auto expect_refused = [](const std::string& text, const std::string& names) {
+    EXPECT_THAT(refused_with([&] { static_cast<void>(parse_student(text, "some/student.json")); }),
+                Names("some/student.json " + names));
   };
+  for (const char* text : {"", "price,soc\n1,2\n", "[1,2,3]", "17"}) expect_refused(text, "JSON");
+  expect_refused("{\"a\": 1}", "\"format\"");
+  StudentNet flat = seeded_net(21);
+  flat.price_map[100] = flat.price_map[99];
+  std::string flat_map = "[";
+  for (const int p : flat.price_map) flat_map += std::to_string(p) + ',';
+  flat_map.back() = ']';
+  const struct {
+    const char* key;
+    std::string value;
+    const char* names;
+  } edits[] = {
+      {"format", "\"bess-teacher\"", "\"format\" \"bess-student\""},
+      {"format", "3", "format"},
+      {"version", "6", "6"},      // newer
+      {"version", "4", "rules"},  // has none
+      {"context", "\"week\"", "\"level\" \"month\""},
+      {"context", "\"level\"", "\"level_edge_eur_per_mwh\""},  // without edges
+      {"level_edge_eur_per_mwh", "[1,2,3,4,5,6,7,8,9,10,11]", "\"level_edge_eur_per_mwh\" 0"},
+      {"version", "1", "\"low_price_eur_per_mwh\""},  // older, with a certificate
+      {"architecture_hash", "12345", ""},
+      {"weights_hash", "12345", ""},
+      {"layer3_bias", "[1,2,3]", ""},
+      {"layer3_bias", "[1,2]", "\"layer3_bias\" 3"},
+      {"layer3_bias", "[1,2,3,4]", "\"layer3_bias\" 3"},
+      {"layer3_bias", "{\"a\":1}", "\"layer3_bias\" 3"},
+      {"price_map", "5", "\"price_map\" 2001"},
+      {"layer3_bias", "[1,\"2\",3]", "\"layer3_bias\" 32"},
+      {"layer3_bias", "[1,null,3]", "\"layer3_bias\" 32"},
+      {"layer3_bias", "[1,2.5,3]", "\"layer3_bias\" 32"},
+      {"layer3_bias", "[1,3000000000,3]", "\"layer3_bias\" 32"},
+      {"layer3_bias", "[1,1e999,3]", ""},
+      {"layer3_weight", array_of("40000", kStudentHidden2 * 3), "\"layer3_weight\" 16"},
+      {"layer3_weight", array_of("-32769", kStudentHidden2 * 3), "\"layer3_weight\" 16"},
+      {"relu1_shift", "[31]", "31 0..30"},
+      {"relu2_shift", "[-1]", "-1 0..30"},
+      {"price_map", flat_map, "16384"},
+      {"price_map", array_of("-1", kPriceCount), "16384"},
+      {"layer3_bias", "[2147483647,0,0]", "32"},  // sums overflow
+      {"low_price_eur_per_mwh", "\"-450\"", "low_price_eur_per_mwh"},
+      {"low_price_eur_per_mwh", "-450.5", "\"low_price_eur_per_mwh\""},
+      {"low_price_eur_per_mwh", "-1e300", "\"low_price_eur_per_mwh\""},
+      {"high_price_eur_per_mwh", "2147483647", "\"high_price_eur_per_mwh\""},
+      {"low_price_eur_per_mwh", "1200", "\"low_price_eur_per_mwh\""},  // they cross
+      {"states_checked", "0.5", "states_checked"},
+      {"violations_property_2", "-1", "\"violations_property_2\""},
+      {"states_evaluated", "1e300", "\"states_evaluated\""},
+      {"violations_property_3", "\"0\"", "violations_property_3"},
+      {"provenance", "1", "provenance"},
+  };
+  for (const auto& edit : edits) {
+    SCOPED_TRACE(edit.key + (" = " + edit.value.substr(0, 30)));
+    expect_refused(with(good, edit.key, edit.value), edit.names);
+  }
+  const std::string one_line = one_line_certificate(good);
+  expect_refused(without(one_line, "certificate"), "certificate");
+  expect_refused(with(one_line, "certificate", "1"), "\"certificate\"");
+  expect_refused(with(one_line, "certificate", "{}"), "\"low_price_eur_per_mwh\"");
   std::istringstream keys(
       "format version architecture_hash weights_hash provenance low_price_eur_per_mwh "
       "high_price_eur_per_mwh states_checked "
@@ -237,18 +228,13 @@ TEST(StudentFile, DamageIsRefused) {
       "level_edge_eur_per_mwh layer1_weight "
       "layer1_bias relu1_shift layer2_weight layer2_bias relu2_shift layer3_weight");
   for (std::string key; keys >> key;) {
-    damages.push_back({"without " + key, without(good, key), key});
-    damages.push_back({"null " + key, with(good, key, "null"), key});
+    SCOPED_TRACE(key);
+    expect_refused(without(good, key), key);
+    expect_refused(with(good, key, "null"), key);
   }
-  for (std::size_t size = 0; size < good.rfind('}'); size += 997) {
-    damages.push_back({"cut at " + std::to_string(size), good.substr(0, size), "JSON"});
-  }
-  damages.push_back({"only the end is missing", good.substr(0, good.rfind('}')), "JSON"});
-  for (const Damage& d : damages) {
-    SCOPED_TRACE(d.name);
-    EXPECT_THAT(refused_with([&] { parse_student(d.text, "some/student.json"); }),
-                Names("some/student.json " + d.names));
-  }
+  const std::size_t end = good.rfind('}');
+  for (std::size_t size = 0; size < end; size += 997) expect_refused(good.substr(0, size), "JSON");
+  expect_refused(good.substr(0, end), "JSON");
 }
 
 TEST(StudentFile, EveryFlippedDigitIsNoticed) {

@@ -177,19 +177,17 @@ TEST(Size, APlanThatIsWrongIsToldWhere) {
   };
   const std::string good = "[size]\npower_kw = [5]\ncapacity_kwh = [10]\n";
   EXPECT_EQ(complaint(good), "");
-  EXPECT_THAT(complaint("[size]\npower_kw = [5]\n"), HasSubstr("capacity_kwh"));
-  EXPECT_THAT(complaint("[size]\npower_kw = [5, 5]\ncapacity_kwh = [1]\n"),
-              Names("plan.toml:2 power_kw"));
-  EXPECT_THAT(complaint("[size]\npower_kw = [0]\ncapacity_kwh = [1]\n"),
-              Names("plan.toml:2 power_kw 0.01"));
-  EXPECT_THAT(complaint("[size]\npower_kw = []\ncapacity_kwh = [1]\n"),
-              Names("plan.toml:2 [size] power_kw"));
-  EXPECT_THAT(complaint(good + "[[contract]]\nshare_percent = 5\n"), HasSubstr("name"));
-  EXPECT_THAT(complaint(good + "[[contract]]\nname = \"a\"\nshare = 5\n"),
-              HasSubstr("plan.toml:6"));
-  EXPECT_THAT(complaint(good + "[[contract]]\nname = \"a\"\n[[contract]]\nname = \"a\"\n"),
-              Names("plan.toml:6 [[contract]]"));
-  EXPECT_THAT(complaint(good + "[ageing]\nend_percent = 0\n"), HasSubstr("end_percent"));
+  const std::pair<std::string, const char*> cases[] = {
+      {"[size]\npower_kw = [5]\n", "capacity_kwh"},
+      {"[size]\npower_kw = [5, 5]\ncapacity_kwh = [1]\n", "plan.toml:2 power_kw"},
+      {"[size]\npower_kw = [0]\ncapacity_kwh = [1]\n", "plan.toml:2 power_kw 0.01"},
+      {"[size]\npower_kw = []\ncapacity_kwh = [1]\n", "plan.toml:2 [size] power_kw"},
+      {good + "[[contract]]\nshare_percent = 5\n", "name"},
+      {good + "[[contract]]\nname = \"a\"\nshare = 5\n", "plan.toml:6"},
+      {good + "[[contract]]\nname = \"a\"\n[[contract]]\nname = \"a\"\n",
+       "plan.toml:6 [[contract]]"},
+      {good + "[ageing]\nend_percent = 0\n", "end_percent"}};
+  for (const auto& [text, names] : cases) EXPECT_THAT(complaint(text), Names(names)) << text;
 }
 
 }  // namespace

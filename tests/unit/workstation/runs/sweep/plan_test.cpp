@@ -20,6 +20,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
+constexpr const char* kTwo = "[grid]\n\"distil.fidelity\" = [1, 2]\n";
+
 class SweepPlans : public testing::Test {
  protected:
   SweepPlans() {
@@ -73,25 +75,22 @@ TEST_F(SweepPlans, EachMonthThatCanBeTradedIsATask) {
 }
 
 TEST_F(SweepPlans, WhatCannotBeIsRefusedWithItsPlace) {
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1,\n 1000]\n"),
-              Names("plan.toml:3 [distil] fidelity 1000"));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelty\" = 1\n"),
-              Names("plan.toml:2 [distil] fidelty fidelity"));
-  EXPECT_THAT(refusal("[grid]\nfidelity = [1, 2]\n"), Names("plan.toml:2 \"fidelity\""));
-  EXPECT_THAT(refusal("[gird]\n"), Names("plan.toml:1 gird grid list"));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = []\n"), Names("plan.toml:2 distil.fidelity"));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 1.0]\n"),
-              Names("plan.toml:2 distil.fidelity"));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = 1\n[[list]]\n\"distil.fidelity\" = 2\n"),
-              Names("distil.fidelity"));
-  EXPECT_THAT(refusal("[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n"),
-              Names("2 initial_soc 0.5 soc_min 0.6"))
-      << "what keys are to each other is looked at before task 1 begins";
+  const std::pair<const char*, const char*> cases[] = {
+      {"[grid]\n\"distil.fidelity\" = [1,\n 1000]\n", "plan.toml:3 [distil] fidelity 1000"},
+      {"[grid]\n\"distil.fidelty\" = 1\n", "plan.toml:2 [distil] fidelty fidelity"},
+      {"[grid]\nfidelity = [1, 2]\n", "plan.toml:2 \"fidelity\""},
+      {"[gird]\n", "plan.toml:1 gird grid list"},
+      {"[grid]\n\"distil.fidelity\" = []\n", "plan.toml:2 distil.fidelity"},
+      {"[grid]\n\"distil.fidelity\" = [1, 1.0]\n", "plan.toml:2 distil.fidelity"},
+      {"[grid]\n\"distil.fidelity\" = 1\n[[list]]\n\"distil.fidelity\" = 2\n", "distil.fidelity"},
+      // What keys are to each other is looked at before task 1 begins.
+      {"[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n", "2 initial_soc 0.5 soc_min 0.6"}};
+  for (const auto& [text, names] : cases) EXPECT_THAT(refusal(text), Names(names)) << text;
   EXPECT_FALSE(fs::exists(folder_.path));
 }
 
 TEST_F(SweepPlans, PlannedAgainWithMoreEveryTaskKeepsItsNumber) {
-  write_plan(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n"), request_);
+  write_plan(plan(kTwo), request_);
   const std::string before = read_file(folder_.tasks());
   request_.seeds = 2;
   const SweepPlan more = plan("[grid]\n\"distil.fidelity\" = [0.5, 1, 2]\n");
@@ -103,21 +102,21 @@ TEST_F(SweepPlans, PlannedAgainWithMoreEveryTaskKeepsItsNumber) {
 }
 
 TEST_F(SweepPlans, AnotherPlanPricesOrConfigurationIsRefusedNamingBoth) {
-  write_plan(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n"), request_);
+  write_plan(plan(kTwo), request_);
   EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 3]\n"), Names("2 1 distil.fidelity"));
   request_.full = true;
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("kind lean full"));
+  EXPECT_THAT(refusal(kTwo), Names("kind lean full"));
   request_.full = false;
   const std::string own = request_.prices;
   request_.prices = root_.write("other name.csv", read_file(own));
-  EXPECT_EQ(plan("[grid]\n\"distil.fidelity\" = [1, 2]\n").known, 2) << "prices count by content";
+  EXPECT_EQ(plan(kTwo).known, 2) << "prices count by content";
   request_.config = root_.write("other.toml", "[train]\nsteps = 7\n");
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("[train] steps 7"));
+  EXPECT_THAT(refusal(kTwo), Names("[train] steps 7"));
   request_.config.clear();
   const std::string minutes = read_file(request_.prices);
   request_.prices =
       root_.write("fewer.csv", minutes.substr(0, minutes.rfind('\n', minutes.size() * 9 / 10) + 1));
-  EXPECT_THAT(refusal("[grid]\n\"distil.fidelity\" = [1, 2]\n"), Names("prices crc32"));
+  EXPECT_THAT(refusal(kTwo), Names("prices crc32"));
 }
 
 TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {

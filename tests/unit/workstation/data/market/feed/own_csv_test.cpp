@@ -20,44 +20,37 @@ OwnForm form(const std::string& date_format, std::optional<WallClock> clock) {
 const OwnForm kBelgian = form("dd/mm/yyyy", WallClock::kLocal);
 
 struct OwnCase {
-  const char* name;
   std::string text;
+  const char* names;  ///< what the error names, its place first; of a form that is read, the form
   OwnForm own{};
 };
 
 /// All say 10.5 at 2025-01-31T00:15Z and nothing half an hour before.
-const std::vector<OwnCase>& good() {
-  static const std::vector<OwnCase> cases{
-      {"tidy", "datetime_utc,price_eur_mwh\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n"},
-      {"semicolons", "Datetime;Price\n2025-01-31T01:15+01:00;10,5\n2025-01-31T01:00+01:00;NaN\n"},
-      {"tabs and a mark",
-       "\xEF\xBB\xBFTime (UTC)\tPrice [EUR/MWh]\r\n2025-01-31 00:15\t10,5\r\n"
-       "2025-01-31 00:00\tn/a\r\n"},
-      {"quotes and comments",
-       "# mine\n\"Timestamp\",\"EUR/MWh\",\"x\"\n"
-       "\"2025-01-31 00:15:00Z\",\"10.5\",\"a,b\"\n"
-       "2025-01-31 00:00:00.000Z,N/A,\n"},
-      {"Belgian", "DATE;IMBALANCE PRICE \xE2\x82\xAC/MWh\n31/01/2025 1:15;10,5\n31/1/2025 01:00;\n",
-       kBelgian},
-      {"American", "date,settled\n01/31/2025 00:15, 10.5 \n1/31/2025 00:00,null\n",
-       form("mm/dd/yyyy", WallClock::kUtc)},
-      {"German", "timestamp,price\n31.01.2025 01:15,10.5\n31.01.2025 01:00,\n",
-       form("dd.mm.yyyy", WallClock::kLocal)},
-      {"a quarter-hour's column",
-       "quarter_hour_utc,price\n2025-01-31T00:15:00Z,10.5\n"
-       "2025-01-31T00:00:00Z,\n"},
-      {"named",
-       "price,time,When,What\n1,2,2025-01-31T00:15:00Z,10.5\n1,2,2025-01-31T00:00:00Z,\n",
-       {.time_column = "when", .price_column = "What", .times = {}}},
-      {"equal rows",
-       "time,price\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n"
-       "2025-01-31T00:15:00Z,10.50\n"}};
-  return cases;
-}
-
 TEST(OwnCsv, FormsThatAreRead) {
-  for (const OwnCase& c : good()) {
-    SCOPED_TRACE(c.name);
+  const std::vector<OwnCase> cases{
+      {"datetime_utc,price_eur_mwh\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n", "tidy"},
+      {"Datetime;Price\n2025-01-31T01:15+01:00;10,5\n2025-01-31T01:00+01:00;NaN\n", "semicolons"},
+      {"\xEF\xBB\xBFTime (UTC)\tPrice [EUR/MWh]\r\n2025-01-31 00:15\t10,5\r\n"
+       "2025-01-31 00:00\tn/a\r\n",
+       "tabs and a mark"},
+      {"# mine\n\"Timestamp\",\"EUR/MWh\",\"x\"\n\"2025-01-31 00:15:00Z\",\"10.5\",\"a,b\"\n"
+       "2025-01-31 00:00:00.000Z,N/A,\n",
+       "quotes and comments"},
+      {"DATE;IMBALANCE PRICE \xE2\x82\xAC/MWh\n31/01/2025 1:15;10,5\n31/1/2025 01:00;\n", "Belgian",
+       kBelgian},
+      {"date,settled\n01/31/2025 00:15, 10.5 \n1/31/2025 00:00,null\n", "American",
+       form("mm/dd/yyyy", WallClock::kUtc)},
+      {"timestamp,price\n31.01.2025 01:15,10.5\n31.01.2025 01:00,\n", "German",
+       form("dd.mm.yyyy", WallClock::kLocal)},
+      {"quarter_hour_utc,price\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n",
+       "a quarter-hour's column"},
+      {"price,time,When,What\n1,2,2025-01-31T00:15:00Z,10.5\n1,2,2025-01-31T00:00:00Z,\n",
+       "named",
+       {.time_column = "when", .price_column = "What", .times = {}}},
+      {"time,price\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n2025-01-31T00:15:00Z,10.50\n",
+       "equal rows"}};
+  for (const OwnCase& c : cases) {
+    SCOPED_TRACE(c.names);
     const MarketRows rows = parse_market_text(c.text, "own.csv", c.own);
     EXPECT_TRUE(rows.minutes.empty());
     ASSERT_GE(rows.quarter_hours.size(), 2u);
@@ -68,16 +61,10 @@ TEST(OwnCsv, FormsThatAreRead) {
   }
 }
 
-struct BadCase {
-  std::string text;
-  const char* names;  ///< what the error names, its place first
-  OwnForm own{};
-};
-
 TEST(OwnCsv, FormsThatAreRefused) {
   const std::string head = "time,price\n2025-01-31T00:00:00Z,1\n";
   const std::string local = "time;price\n";
-  const std::vector<BadCase> cases{
+  const std::vector<OwnCase> cases{
       {"a,b\n1,2\n", "own.csv \"a,b\" --time-column"},
       {"2025-01-31T00:00:00Z,1\n", "own.csv datetime_utc,price_eur_mwh"},
       {"time,load\n", "own.csv \"time,load\" --price-column"},
@@ -109,7 +96,7 @@ TEST(OwnCsv, FormsThatAreRefused) {
       {head + "2025-01-31T00:15:00Z,1,5\n", "own.csv:3 3 2"},
       {head + "2025-01-31T00:15:00Z,high\n", "own.csv:3 \"high\""},
       {local + "01/02/2025 00:00;1.234,5\n", "own.csv:2 \"1.234,5\"", kBelgian}};
-  for (const BadCase& c : cases) {
+  for (const OwnCase& c : cases) {
     SCOPED_TRACE(c.text);
     const std::string error =
         user_error_of([&] { (void)parse_market_text(c.text, "own.csv", c.own); });
