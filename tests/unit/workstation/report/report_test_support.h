@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "shared/local_time.h"
+#include "tests/support/carried_over.h"
+#include "tests/support/teachers.h"
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/charge_left.h"
@@ -34,10 +36,8 @@ inline PriceMap small_price_map() {
 }
 
 inline Teacher untrained_teacher() {
-  const Support support{.v_min = -15, .v_max = 15, .count = 51};
-  const MlpShape shape = teacher_shape(Method::kDqn, support);
-  return {Method::kDqn,       support, shape, small_price_map(), initial_parameters(shape, 1),
-          "untrained teacher"};
+  return network_teacher(Method::kDqn, {.v_min = -15, .v_max = 15, .count = 51}, small_price_map(),
+                         1, "untrained teacher");
 }
 
 inline StudentNet untrained_student() {
@@ -47,10 +47,8 @@ inline StudentNet untrained_student() {
 /// As a run evaluates: both ways of counting, the charge at the end valued.
 inline NamedEvaluation named_evaluation(const std::string& name, Policy& policy) {
   const auto days = small_market().days_of(Split::kTest);
-  EvaluationOptions carried;
-  carried.carry_soc = true;
   NamedEvaluation named{name, evaluate(small_market(), days, policy, {}),
-                        evaluate(small_market(), days, policy, carried)};
+                        evaluate(small_market(), days, policy, kCarriedOver)};
   value_charge_left(named.carried_over, {}, mean_settled_eur_per_mwh(small_market(), days));
   return named;
 }

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tests/support/student_nets.h"
+#include "tests/support/teachers.h"
 #include "workstation/base/random.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/policy/rl/network_input.h"
@@ -14,13 +15,8 @@
 namespace bess {
 namespace {
 
-constexpr Support kSupport{-30, 30, 11};
-
 Teacher untrained_teacher(Method method, std::uint64_t seed) {
-  const MlpShape shape = teacher_shape(method, kSupport);
-  return {
-      method,     kSupport, shape, PriceMap(even_price_table()), initial_parameters(shape, seed),
-      "untrained"};
+  return network_teacher(method, {-30, 30, 11}, PriceMap(even_price_table()), seed);
 }
 
 Matrix some_visited(int count, std::uint64_t seed) {

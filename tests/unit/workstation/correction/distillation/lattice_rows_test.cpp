@@ -8,6 +8,7 @@
 #include "shared/action.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
+#include "tests/support/teachers.h"
 #include "workstation/correction/distillation/constraint_layer.h"
 #include "workstation/correction/distillation/distil.h"
 
@@ -103,11 +104,8 @@ TEST(LatticeRows, TheCorrectedActionsObey) {
 
 /// Through the layer alone a student comes to keep a rule that its teacher breaks.
 TEST(LatticeRows, AStudentLearnsARule) {
-  constexpr Support kNoSupport{-30, 30, 11};
-  const MlpShape shape = teacher_shape(Method::kDqn, kNoSupport);
-  const Teacher teacher{
-      Method::kDqn, kNoSupport, shape, PriceMap(even_price_table()), initial_parameters(shape, 7),
-      "untrained"};
+  const Teacher teacher =
+      network_teacher(Method::kDqn, {-30, 30, 11}, PriceMap(even_price_table()), 7);
   Random random(8);
   Matrix visited(kNetworkInputs, 300);
   const auto write = [&](const LatticeState& s, float* x) {

@@ -6,14 +6,15 @@
 
 #include <algorithm>
 
+#include "tests/support/carried_over.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
+#include "tests/support/teachers.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/correction/student/verify.h"
-#include "workstation/data/env/context_fit.h"
 
 namespace bess {
 namespace {
@@ -36,15 +37,7 @@ struct School {
   [[nodiscard]] Teacher make_teacher() const {
     std::vector<double> prices;
     for (const MarketStep& step : market.steps) prices.push_back(step.observed_eur_per_mwh);
-    return {Method::kSdp,
-            {},
-            {},
-            PriceMap::fit(prices),
-            {},
-            "program",
-            std::make_shared<const StochasticProgram>(market, market.days_of(Split::kTrain),
-                                                      BatteryParameters{}),
-            fit_context_classes(market, ContextKind::kLevel)};
+    return program_teacher(market, PriceMap::fit(prices), program_of(market));
   }
 };
 
@@ -221,9 +214,8 @@ TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
   StudentPolicy student(net);
   RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
   const auto days = school().market.days_of(Split::kTest);
-  const EvaluationOptions carried{.battery = {}, .carry_soc = true};
-  EXPECT_GT(evaluate(school().market, days, student, carried).profit_eur_per_day_per_mwh(),
-            evaluate(school().market, days, rule, carried).profit_eur_per_day_per_mwh());
+  EXPECT_GT(evaluate(school().market, days, student, kCarriedOver).profit_eur_per_day_per_mwh(),
+            evaluate(school().market, days, rule, kCarriedOver).profit_eur_per_day_per_mwh());
 }
 
 /// Contexts with a pair of neighbours at which the action rises with price or SoC.

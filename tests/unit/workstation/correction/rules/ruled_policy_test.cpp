@@ -1,6 +1,7 @@
 // A policy that obeys: the nearest action that is left, nothing else changed, and its money
 // counted.
 #include "workstation/correction/rules/ruled_policy.h"
+#include "tests/support/carried_over.h"
 #include "workstation/correction/rules/properties.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +16,7 @@ namespace {
 std::shared_ptr<Policy> restless() { return std::make_shared<RuleBasedPolicy>(99.5, 99.5); }
 
 Evaluation run(Policy& policy) {
-  return evaluate(small_steps(), small_steps().days_of(Split::kHeldOut), policy,
-                  {.battery = {}, .carry_soc = true});
+  return evaluate(small_steps(), small_steps().days_of(Split::kHeldOut), policy, kCarriedOver);
 }
 
 TEST(RuledPolicy, ObeysEveryRuleInEveryDecision) {
@@ -52,8 +52,7 @@ TEST(RuledPolicy, APowerCapHalvesTheEnergyOfAStep) {
   const RuleSet rules = one_rule("power_max = 0.5\nenforce = true");
   RuledPolicy ruled(restless(), rules, {});
   std::vector<StepRecord> steps;
-  evaluate(small_steps(), small_steps().days_of(Split::kTest), ruled,
-           {.battery = {}, .carry_soc = true}, &steps);
+  evaluate(small_steps(), small_steps().days_of(Split::kTest), ruled, kCarriedOver, &steps);
   const double most_w = BatteryParameters{}.power_w_max / 2;
   double largest_w = 0;
   for (const StepRecord& step : steps) largest_w = std::max(largest_w, std::fabs(step.power_w));

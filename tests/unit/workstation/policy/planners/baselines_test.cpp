@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
+#include "tests/support/carried_over.h"
 #include "tests/support/small_market.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/policy/planners/foresight.h"
@@ -43,10 +44,9 @@ TEST(TunedRule, IsBestOnItsTrainingDaysAndDeterministic) {
 
 TEST(Foresight, CarriedOverIsThePlanOfTheWholeSeries) {
   ForesightPolicy foresight({});
-  const EvaluationOptions carried{.battery = {}, .carry_soc = true};
-  const Evaluation all = evaluate(small_steps(), small_steps().days, foresight, carried);
+  const Evaluation all = evaluate(small_steps(), small_steps().days, foresight, kCarriedOver);
   const auto days = small_steps().days_of(Split::kTest);
-  const Evaluation test = evaluate(small_steps(), days, foresight, carried);
+  const Evaluation test = evaluate(small_steps(), days, foresight, kCarriedOver);
   ASSERT_EQ(test.days.size(), days.size());
   for (const DayResult& day : test.days) {
     const auto same = std::ranges::find(all.days, day.date, &DayResult::date);
@@ -56,9 +56,9 @@ TEST(Foresight, CarriedOverIsThePlanOfTheWholeSeries) {
   // Over all days it is a bound on every chained policy.
   for (const char* name : {"tabular", "mpc"}) {
     const auto policy = make_baseline(name, small_steps(), {});
-    EXPECT_GT(
-        all.profit_eur_per_day_per_mwh(),
-        evaluate(small_steps(), small_steps().days, *policy, carried).profit_eur_per_day_per_mwh());
+    EXPECT_GT(all.profit_eur_per_day_per_mwh(),
+              evaluate(small_steps(), small_steps().days, *policy, kCarriedOver)
+                  .profit_eur_per_day_per_mwh());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
+#include "tests/support/carried_over.h"
 #include "tests/support/market_series.h"
 #include "tests/support/outlook_market.h"
 #include "workstation/data/env/evaluate.h"
@@ -25,17 +26,6 @@ DayAheadSeries perfect_day_ahead(const OutlookMarket& market) {
     for (std::size_t k = q; k < q + 4; ++k) series.eur_per_mwh[k] = sum;
   }
   return series;
-}
-
-std::vector<Action> decisions(const MarketSteps& market, const std::vector<MarketDay>& days,
-                              Policy& policy, std::int64_t until_utc_s) {
-  std::vector<StepRecord> records;
-  evaluate(market, days, policy, {.battery = {}, .carry_soc = true}, &records);
-  std::vector<Action> actions;
-  for (const StepRecord& r : records) {
-    if (r.utc_s < until_utc_s) actions.push_back(r.action);
-  }
-  return actions;
 }
 
 /// The first moment from which other day-ahead prices of `delivery` and later change what is done.
@@ -59,7 +49,8 @@ class OutlookLookAhead : public testing::Test {
   }
   /// Whether that changes a decision before the instant, of a market that shows these prices.
   bool changes_before(const MarketSteps& shown, const MarketSteps& turned, std::int64_t until) {
-    return decisions(shown, days_, policy_, until) != decisions(turned, days_, policy_, until);
+    return actions_before(shown, days_, policy_, until) !=
+           actions_before(turned, days_, policy_, until);
   }
 
   OutlookMarket market_;
@@ -106,7 +97,7 @@ TEST_F(OutlookLookAhead, KnowsNothingOfLaterPricesAndLevels) {
 
 TEST_F(OutlookLookAhead, DecidesTheSameWhereverItIsAskedFirst) {
   std::vector<StepRecord> once, again;
-  evaluate(steps_, days_, policy_, {.battery = {}, .carry_soc = true}, &once);
+  evaluate(steps_, days_, policy_, kCarriedOver, &once);
   const OutlookPolicy fresh(steps_, {steps_.days.begin(), steps_.days.begin() + 24}, {});
   for (std::size_t i = once.size(); i-- > 0;) {  // backwards, each with a plan of its own
     if (i % 371 != 0) continue;
@@ -123,12 +114,11 @@ TEST_F(OutlookLookAhead, ADayWithoutPricesFallsBackOnWhatIsUsual) {
       holed.eur_per_mwh[q] = kNotPublished;
   }
   const MarketSteps without = market_.steps_with(holed);
-  const Evaluation e = evaluate(without, days_, policy_, {.battery = {}, .carry_soc = true});
+  const Evaluation e = evaluate(without, days_, policy_, kCarriedOver);
   EXPECT_EQ(e.days.size(), days_.size());
   EXPECT_GT(e.cycles_per_day(), 1);
   const MarketSteps never = make_market_steps(market_.minutes, {});
-  EXPECT_GT(evaluate(never, days_, policy_, {.battery = {}, .carry_soc = true}).cycles_per_day(),
-            1);
+  EXPECT_GT(evaluate(never, days_, policy_, kCarriedOver).cycles_per_day(), 1);
 }
 
 TEST(OutlookProgram, NothingToFitOnIsAnError) {
@@ -144,9 +134,8 @@ double outlook_gain(const OutlookMarket& market, const DayAheadSeries& day_ahead
   const std::vector<MarketDay> traded(steps.days.begin() + 60, steps.days.end());
   OutlookPolicy outlook(steps, fitted, {});
   StochasticProgramPolicy program(steps, fitted, {});
-  const EvaluationOptions options{.battery = {}, .carry_soc = true};
-  return paired_difference(evaluate(steps, traded, outlook, options),
-                           evaluate(steps, traded, program, options))
+  return paired_difference(evaluate(steps, traded, outlook, kCarriedOver),
+                           evaluate(steps, traded, program, kCarriedOver))
       .mean;
 }
 

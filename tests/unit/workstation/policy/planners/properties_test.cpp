@@ -3,6 +3,7 @@
 // never moves is no reason to move energy to and fro.
 #include <gtest/gtest.h>
 
+#include "tests/support/carried_over.h"
 #include "tests/support/small_market.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/policy/planners/foresight.h"
@@ -87,18 +88,6 @@ TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
   }
 }
 
-/// Decisions of `policy` before `until_utc_s`, SoC carried over.
-std::vector<Action> decisions_before(const MarketSteps& market, Policy& policy,
-                                     std::int64_t until_utc_s) {
-  std::vector<StepRecord> records;
-  evaluate(market, market.days, policy, {.battery = {}, .carry_soc = true}, &records);
-  std::vector<Action> actions;
-  for (const StepRecord& r : records) {
-    if (r.utc_s < until_utc_s) actions.push_back(r.action);
-  }
-  return actions;
-}
-
 /// Whether moving the indicative prices from some minute on, and every settled price, changes a
 /// decision that was made before the moved prices could be seen.
 bool looks_ahead(Policy& policy, const MinuteSeries& series, const MarketOptions& options) {
@@ -109,8 +98,10 @@ bool looks_ahead(Policy& policy, const MinuteSeries& series, const MarketOptions
   for (std::size_t m = 0; m < moved.size(); ++m) moved.settled[m] = 200 - moved.settled[m];
   const std::int64_t visible_utc_s =
       series.utc_s(moved_from) + 60 * std::int64_t{options.observation_delay_min};
-  return decisions_before(make_market_steps(series, options), policy, visible_utc_s) !=
-         decisions_before(make_market_steps(moved, options), policy, visible_utc_s);
+  const MarketSteps shown = make_market_steps(series, options);
+  const MarketSteps turned = make_market_steps(moved, options);
+  return actions_before(shown, shown.days, policy, visible_utc_s) !=
+         actions_before(turned, turned.days, policy, visible_utc_s);
 }
 
 TEST(Properties, NoPolicyLooksAhead) {

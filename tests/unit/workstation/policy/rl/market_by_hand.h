@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "shared/crc32.h"
 #include "shared/local_time.h"
 #include "tests/support/user_errors.h"
 #include "workstation/data/env/market_steps.h"
@@ -61,6 +63,15 @@ inline PriceMap straight_price_map() {
 inline int step_of_input(float price_input) {
   const double price = kLatticePriceMinEurPerMwh + double{price_input} * (kPriceCount - 1);
   return static_cast<int>(std::lround(price / 10));
+}
+
+/// The bytes of a teacher's file under a checksum that is right.
+inline std::string resealed(std::string bytes) {
+  bytes.resize(bytes.size() - sizeof(std::uint32_t));
+  Crc32 crc;
+  crc.add_bytes(bytes.data(), bytes.size());
+  const std::uint32_t checksum = crc.value();
+  return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
 
 inline MarketSteps simulated_market(const LocalDate& first, int days) {

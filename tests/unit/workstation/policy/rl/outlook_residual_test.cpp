@@ -5,8 +5,8 @@
 #include <functional>
 #include <optional>
 
-#include "shared/crc32.h"
 #include "shared/host/file.h"
+#include "tests/support/carried_over.h"
 #include "tests/support/outlook_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
@@ -65,17 +65,10 @@ Matrix taught(const Teacher& teacher) {
   return visited_inputs(teacher, two, {}, {});
 }
 
-std::vector<Action> decisions(const Teacher& teacher, const MarketSteps& shown,
-                              std::int64_t until_utc_s) {
+std::vector<Action> decisions(const Teacher& teacher, const MarketSteps& shown) {
   TeacherPolicy policy(teacher);
-  std::vector<StepRecord> records;
   const std::vector<MarketDay> days(shown.days.begin() + 20, shown.days.begin() + 22);
-  evaluate(shown, days, policy, {.battery = {}, .carry_soc = true}, &records);
-  std::vector<Action> actions;
-  for (const StepRecord& r : records) {
-    if (r.utc_s < until_utc_s) actions.push_back(r.action);
-  }
-  return actions;
+  return actions_before(shown, days, policy, INT64_MAX);
 }
 
 TEST(OutlookResidual, BeforeTheFirstStepItDecidesAndTeachesAsTheProgram) {
@@ -103,8 +96,7 @@ TEST(OutlookResidual, WhatItAddsDecidesAndIsTaught) {
   const Teacher other = opinionated();
   Teacher program = other;
   program.method = Method::kSdp;
-  const std::int64_t ever = INT64_MAX;
-  EXPECT_NE(decisions(other, market(), ever), decisions(program, market(), ever));
+  EXPECT_NE(decisions(other, market()), decisions(program, market()));
   EXPECT_NE(taught(other), taught(program));
 }
 
@@ -191,9 +183,9 @@ TEST(OutlookResidual, StandsInTheCurveBehindTheProgramAndIsNeverWorse) {
   ASSERT_EQ(learnt().curve.size(), 2U);
   EXPECT_EQ(learnt().curve[0].step, 0);
   OutlookPolicy program(learnt().teacher.outlook);
-  const double alone = evaluate(market(), market().days_of(Split::kValidation), program,
-                                {.battery = {}, .carry_soc = true})
-                           .profit_eur_per_day_per_mwh();
+  const double alone =
+      evaluate(market(), market().days_of(Split::kValidation), program, kCarriedOver)
+          .profit_eur_per_day_per_mwh();
   EXPECT_EQ(learnt().curve[0].validation_eur_per_day_per_mwh, alone);
   EXPECT_GE(learnt().best_validation_eur_per_day_per_mwh, alone);
   for (const CurvePoint& point : learnt().curve) EXPECT_LT(point.edge_mass_frac, 5e-3);
@@ -241,8 +233,7 @@ TEST(OutlookResidual, ItsFileIsReadBackAndOneOfAnOlderVersionIsNone) {
   const Teacher read = load_teacher(path);
   ASSERT_TRUE(read.is_residual());
   EXPECT_EQ(read.parameters, teacher.parameters);
-  const std::int64_t ever = INT64_MAX;
-  EXPECT_EQ(decisions(read, market(), ever), decisions(teacher, market(), ever));
+  EXPECT_EQ(decisions(read, market()), decisions(teacher, market()));
   save_teacher(path, read);
   EXPECT_EQ(read_file(path), bytes);
   EXPECT_EQ(bytes[8], 4);
@@ -253,12 +244,7 @@ TEST(OutlookResidual, ItsFileIsReadBackAndOneOfAnOlderVersionIsNone) {
   save_teacher(path, alone);
   EXPECT_EQ(read_file(path)[8], 3);
   bytes[8] = 3;
-  bytes.resize(bytes.size() - sizeof(std::uint32_t));
-  Crc32 crc;
-  crc.add_bytes(bytes.data(), bytes.size());
-  const std::uint32_t checksum = crc.value();
-  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  write_file(path, bytes);
+  write_file(path, resealed(bytes));
   EXPECT_NE(refused_with([&] { (void)load_teacher(path); }), "");
 }
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <numeric>
 
+#include "tests/support/teachers.h"
 #include "tests/unit/workstation/policy/nn/reference_net.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
 #include "workstation/correction/distillation/distil.h"
-#include "workstation/data/env/context_fit.h"
 #include "workstation/policy/rl/learner.h"
 #include "workstation/policy/rl/train.h"
 
@@ -20,25 +20,14 @@ const MarketSteps& market() {
   return simulated;
 }
 
-std::shared_ptr<const StochasticProgram> program_of(const MarketSteps& steps) {
-  return std::make_shared<const StochasticProgram>(steps, steps.days_of(Split::kTrain),
-                                                   BatteryParameters{});
-}
-
 const std::shared_ptr<const StochasticProgram>& market_program() {
   static const std::shared_ptr<const StochasticProgram> program = program_of(market());
   return program;
 }
 
 Teacher program_teacher() {
-  return {Method::kSdp,
-          {},
-          {},
-          PriceMap::fit(observed_training_prices(market())),
-          {},
-          "",
-          market_program(),
-          fit_context_classes(market(), ContextKind::kLevel)};
+  const PriceMap map = PriceMap::fit(observed_training_prices(market()));
+  return program_teacher(market(), map, market_program());
 }
 
 /// As it is before the first step.

@@ -5,16 +5,11 @@
 #include <map>
 #include <tuple>
 
+#include "tests/support/teachers.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
 
 namespace bess {
 namespace {
-
-Teacher untrained_teacher() {
-  const Support support{-15, 15, 11};
-  const MlpShape shape = teacher_shape(Method::kDqn, support);
-  return {Method::kDqn, support, shape, straight_price_map(), initial_parameters(shape, 81), ""};
-}
 
 auto key_of(const Transition& t) {
   return std::tuple(t.state[4], t.state[3], t.action, t.reward, t.next_state[4], t.next_state[3]);
@@ -23,7 +18,7 @@ auto key_of(const Transition& t) {
 class ReplayOf : public testing::TestWithParam<Horizon> {
  protected:
   const TrainingMarket market{uneven_market(), straight_price_map(), {}, GetParam(), {}};
-  const Teacher teacher = untrained_teacher();
+  const Teacher teacher = network_teacher(Method::kDqn, {-15, 15, 11}, straight_price_map(), 81);
 };
 
 TEST_P(ReplayOf, PlayStoresEachStepOfADayInOrder) {

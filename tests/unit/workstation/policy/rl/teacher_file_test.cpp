@@ -1,7 +1,7 @@
 #include <cstring>
 
-#include "shared/crc32.h"
 #include "shared/host/file.h"
+#include "tests/support/teachers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
@@ -12,14 +12,8 @@ namespace bess {
 namespace {
 
 Teacher teacher_of(Method method) {
-  const Support support{-14.5F, 15.25F, 21};
-  const MlpShape shape = teacher_shape(method, support);
-  return {method,
-          support,
-          shape,
-          straight_price_map(),
-          initial_parameters(shape, 91),
-          "bess-train on \"m\u00e4rkt.csv\", seed 1"};
+  return network_teacher(method, {-14.5F, 15.25F, 21}, straight_price_map(), 91,
+                         "bess-train on \"m\u00e4rkt.csv\", seed 1");
 }
 
 class TeacherFile : public testing::Test {
@@ -39,11 +33,7 @@ class TeacherFile : public testing::Test {
   /// `bytes` of a file with another value at a place, under a checksum that is right.
   static std::string changed(std::string bytes, std::size_t at, std::int32_t value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
-    Crc32 crc;
-    crc.add_bytes(bytes.data(), bytes.size() - sizeof(std::uint32_t));
-    const std::uint32_t checksum = crc.value();
-    std::memcpy(bytes.data() + bytes.size() - sizeof checksum, &checksum, sizeof checksum);
-    return bytes;
+    return resealed(bytes);
   }
   void expect_refused(std::string_view bytes, const std::string& what) const {
     EXPECT_THAT(refusal_of(bytes), Names(path)) << what;
@@ -72,8 +62,7 @@ TEST_F(TeacherFile, RoundTripIsBitForBit) {
 
 TEST_F(TeacherFile, WithTheProgramThatItAddsToItIsReadBack) {
   const MarketSteps market = simulated_market({2023, 1, 1}, 24);
-  const auto program = std::make_shared<const StochasticProgram>(
-      market, market.days_of(Split::kTrain), BatteryParameters{});
+  const auto program = program_of(market);
   for (const Method method : {Method::kC51, Method::kDqn}) {
     Teacher teacher = teacher_of(method);
     teacher.program = program;
@@ -140,12 +129,7 @@ TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
   const std::size_t count_at = bytes.find(teacher.provenance) + teacher.provenance.size();
   bytes.erase(count_at, sizeof(std::uint32_t));  // of the circumstances: none
   bytes[8] = 2;
-  bytes.resize(bytes.size() - sizeof(std::uint32_t));
-  Crc32 crc;
-  crc.add_bytes(bytes.data(), bytes.size());
-  const std::uint32_t checksum = crc.value();
-  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  EXPECT_EQ(refusal_of(bytes), "");
+  EXPECT_EQ(refusal_of(resealed(bytes)), "");
   const Teacher read = load_teacher(path);
   EXPECT_TRUE(read.learnt_for.empty());
   EXPECT_EQ(std::memcmp(read.parameters.data(), teacher.parameters.data(),

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
+#include "tests/support/carried_over.h"
 #include "tests/support/small_market.h"
 #include "workstation/policy/planners/baselines.h"
 
@@ -99,13 +100,8 @@ std::vector<Action> actions_before(const MinuteSeries& series, const FoldPolicy&
                                    std::int64_t until_utc_s) {
   const Folds folds = make_folds(make_market_steps(series, {}), {kWindowDays});
   const Fold& fold = folds.traded.front();
-  std::vector<StepRecord> records;
-  evaluate(fold.market, fold.market.days_of(Split::kTest), *make(fold), {}, &records);
-  std::vector<Action> actions;
-  for (const StepRecord& r : records) {
-    if (r.utc_s < until_utc_s) actions.push_back(r.action);
-  }
-  return actions;
+  return actions_before(fold.market, fold.market.days_of(Split::kTest), *make(fold), until_utc_s,
+                        {});
 }
 
 /// Moves all prices from an instant in the middle of a traded month on, for `instants` instants in

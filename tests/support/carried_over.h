@@ -1,0 +1,26 @@
+// Policies on days that are chained, each from the charge that the one before left.
+#pragma once
+
+#include <vector>
+
+#include "workstation/data/env/evaluate.h"
+
+namespace bess {
+
+inline constexpr EvaluationOptions kCarriedOver{.battery = {}, .carry_soc = true};
+
+/// What is done on the days before an instant.
+inline std::vector<Action> actions_before(const MarketSteps& market,
+                                          const std::vector<MarketDay>& days, Policy& policy,
+                                          std::int64_t until_utc_s,
+                                          const EvaluationOptions& options = kCarriedOver) {
+  std::vector<StepRecord> records;
+  evaluate(market, days, policy, options, &records);
+  std::vector<Action> actions;
+  for (const StepRecord& r : records) {
+    if (r.utc_s < until_utc_s) actions.push_back(r.action);
+  }
+  return actions;
+}
+
+}  // namespace bess
