@@ -32,6 +32,12 @@ class TrainCommands : public testing::Test {
   using Result = CommandResult;
 
   static Result run(std::vector<std::string> arguments) { return run_train(std::move(arguments)); }
+  /// What a command says that ends with this code.
+  static std::string said(std::vector<std::string> arguments, int exit_code = 0) {
+    const Result result = run(std::move(arguments));
+    EXPECT_EQ(result.exit_code, exit_code) << result.output;
+    return result.output;
+  }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
   [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
     write_file(path(name), text);

@@ -23,55 +23,46 @@ constexpr const char* kEliaQuarterHour =
 
 class PricesCli : public TrainCommands {
  protected:
-  static Result run(std::vector<std::string> arguments) {
+  static std::string said(std::vector<std::string> arguments, int exit_code = 0) {
     arguments.insert(arguments.begin(), "prices");
-    return TrainCommands::run(std::move(arguments));
+    return TrainCommands::said(std::move(arguments), exit_code);
   }
 };
 
 TEST_F(PricesCli, ImportNamesTheSource) {
   const std::string entsoe = written("a85.xml", kEntsoeDocument);
   const std::string elia = written("ods134.csv", kEliaQuarterHour);
-  const Result only_entsoe = run({"import", entsoe, "--out", path("entsoe.csv")});
-  EXPECT_EQ(only_entsoe.exit_code, 0) << only_entsoe.output;
-  EXPECT_THAT(only_entsoe.output, AllOf(Names("ENTSO-E"), Not(Names("Elia"))));
+  EXPECT_THAT(said({"import", entsoe, "--out", path("entsoe.csv")}),
+              AllOf(Names("ENTSO-E"), Not(Names("Elia"))));
   EXPECT_THAT(read_file(path("entsoe.csv")), AllOf(Names("ENTSO-E"), Not(Names("Elia"))));
-  EXPECT_EQ(run({"import", entsoe, elia, "--out", path("both.csv")}).exit_code, 0);
+  said({"import", entsoe, elia, "--out", path("both.csv")});
   EXPECT_THAT(read_file(path("both.csv")),
               Names("a85.xml ods134.csv ENTSO-E Elia opendata.elia.be CC BY 4.0 -30.258"));
-  const Result drawn =
-      run({"reconstruct", "--quarter-hours", entsoe, elia, "--out", path("minutes.csv")});
-  EXPECT_EQ(drawn.exit_code, 0) << drawn.output;
+  said({"reconstruct", "--quarter-hours", entsoe, elia, "--out", path("minutes.csv")});
   EXPECT_THAT(read_file(path("minutes.csv")),
               Names("a85.xml ods134.csv Elia ENTSO-E -30.258,-30.258"));
 }
 
 TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
   const std::string elia = written("ods134.csv", kEliaQuarterHour);
-  ASSERT_EQ(run({"import", elia, "--out", path("imported.csv.gz")}).exit_code, 0);
-  const Result result =
-      run({"reconstruct", "--quarter-hours", path("imported.csv.gz"), "--out", path("drawn.csv")});
-  EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, Names("drawn.csv 1 Elia"));
+  said({"import", elia, "--out", path("imported.csv.gz")});
+  EXPECT_THAT(
+      said({"reconstruct", "--quarter-hours", path("imported.csv.gz"), "--out", path("drawn.csv")}),
+      Names("drawn.csv 1 Elia"));
   EXPECT_THAT(read_file(path("drawn.csv")), Names("Elia opendata.elia.be -30.258,-30.258"));
 
-  ASSERT_EQ(run({"simulate", "--days", "1", "--out", path("s.csv")}).exit_code, 0);
-  const Result again =
-      run({"reconstruct", "--quarter-hours", path("s.csv"), "--out", path("d.csv")});
-  EXPECT_EQ(again.exit_code, 0) << again.output;
-  EXPECT_THAT(again.output, Names("d.csv 96 1440 bess-train"));
+  said({"simulate", "--days", "1", "--out", path("s.csv")});
+  EXPECT_THAT(said({"reconstruct", "--quarter-hours", path("s.csv"), "--out", path("d.csv")}),
+              Names("d.csv 96 1440 bess-train"));
 
-  const Result unsettled = run({"reconstruct", "--quarter-hours",
-                                written("m.csv",
-                                        "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
-                                        "2023-01-01T00:00:00Z,5,\n"),
-                                "--out", path("n.csv")});
-  EXPECT_EQ(unsettled.exit_code, 1);
-  EXPECT_THAT(unsettled.output, Names("m.csv ods047 ods134"));
+  const std::string unsettled =
+      written("m.csv", "minute_utc,indicative_eur_mwh,settled_eur_mwh\n2023-01-01T00:00:00Z,5,\n");
+  EXPECT_THAT(said({"reconstruct", "--quarter-hours", unsettled, "--out", path("n.csv")}, 1),
+              Names("m.csv ods047 ods134"));
 }
 
 TEST_F(PricesCli, SimulateSaysItsSeedAndSpan) {
-  EXPECT_THAT(run({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}).output,
+  EXPECT_THAT(said({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}),
               Names("s.csv 1 2023-01-01 2 1440"));
 }
 
@@ -79,21 +70,16 @@ TEST_F(PricesCli, OwnQuarterHoursLeadToMinutes) {
   const std::string own = written("own.csv",
                                   "Date;Price [EUR/MWh]\r\n01/06/2025 00:00;-1,5\r\n"
                                   "01/06/2025 00:15;2\r\n");
-  const Result unclear = run({"import", own, "--out", path("q.csv")});
-  EXPECT_EQ(unclear.exit_code, 1);
-  EXPECT_THAT(unclear.output, Names("own.csv:2 --date-format"));
+  EXPECT_THAT(said({"import", own, "--out", path("q.csv")}, 1), Names("own.csv:2 --date-format"));
   std::vector<std::string> import{"import", own, "--date-format", "dd/mm/yyyy", "--out"};
   import.push_back(path("q.csv"));
-  EXPECT_THAT(run(import).output, Names("own.csv:2 --time-zone"));
+  EXPECT_THAT(said(import, 1), Names("own.csv:2 --time-zone"));
   import.insert(import.end(), {"--time-zone", "local"});
-  const Result imported = run(import);
-  ASSERT_EQ(imported.exit_code, 0) << imported.output;
-  EXPECT_THAT(imported.output,
+  EXPECT_THAT(said(import),
               Names("prices reconstruct --quarter-hours " + path("q.csv") + " --out"));
   EXPECT_THAT(read_file(path("q.csv")), AllOf(HasSubstr("\n2025-05-31T22:00:00Z,,-1.5\n"),
                                               HasSubstr("\n2025-05-31T22:29:00Z,,2\n")));
-  EXPECT_EQ(
-      run({"reconstruct", "--quarter-hours", path("q.csv"), "--out", path("m.csv")}).exit_code, 0);
+  said({"reconstruct", "--quarter-hours", path("q.csv"), "--out", path("m.csv")});
 }
 
 }  // namespace

@@ -27,10 +27,8 @@ class RefreshCommand : public IdleRun {
  protected:
   void make_run(const std::string& config, const MinuteSeries& series) const {
     write_minute_file(path("first.csv"), series, "");
-    const Result made =
-        run({"run", "--prices", path("first.csv"), "--config", written("config.toml", config),
-             "--threads", "2", "--out", path("site")});
-    ASSERT_EQ(made.exit_code, 0) << made.output;
+    said({"run", "--prices", path("first.csv"), "--config", written("config.toml", config),
+          "--threads", "2", "--out", path("site")});
   }
   [[nodiscard]] std::vector<std::string> command(const std::string& prices, bool adopt) const {
     std::vector<std::string> words{"refresh",    "--run",         path("site"), "--prices",
@@ -63,12 +61,10 @@ TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
   make_run(kIdleProgram, small_series(31));
   EXPECT_THAT(refresh("next.csv").output, Names("next.csv"));  // is not there yet
   write_minute_file(path("next.csv"), small_series(36), "");   // learnt to 25 January
-  const Result early = refresh("next.csv");
-  EXPECT_EQ(early.exit_code, 0);
-  EXPECT_THAT(early.output, Names("2023-01-25 2023-02-05 14"));
+  EXPECT_THAT(said(command("next.csv", true)), Names("2023-01-25 2023-02-05 14"));
   EXPECT_THAT(folders(), testing::ElementsAre("site"));
   write_minute_file(path("next.csv"), small_series(75), "");
-  ASSERT_EQ(refresh("next.csv", false).exit_code, 0);
+  said(command("next.csv", false));
   const auto before = contents(path("site"));
   const auto whole = contents(path("site.proposal"));
   ASSERT_TRUE(whole.contains("proposal.json"));
@@ -90,12 +86,12 @@ TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
 
   // Between the two names: nothing is at the run's place, and the next call puts it there.
   fs::rename(path("site"), path("site.proposal"));
-  EXPECT_EQ(refresh("next.csv").exit_code, 0);
+  said(command("next.csv", true));
   expect_same(path("site"), whole);
   EXPECT_THAT(folders(), testing::ElementsAre("site", "site.before-2023-03-16"));
 
   // It is a run like any other, wherever it lies.
-  EXPECT_EQ(run({"report", "--run", path("site")}).exit_code, 0);
+  said({"report", "--run", path("site")});
   expect_same(path("site"), whole);
 }
 
@@ -120,10 +116,8 @@ MinuteSeries until(MinuteSeries series, const char* end) {
 class RefreshedByOutlook : public RefreshCommand {
  protected:
   void simulate(const char* days, const char* name) const {
-    ASSERT_EQ(run({"prices", "simulate", "--start", "2023-01-01", "--days", days, "--out",
-                   path(name), "--day-ahead-out", path("outlook.csv")})
-                  .exit_code,
-              0);
+    said({"prices", "simulate", "--start", "2023-01-01", "--days", days, "--out", path(name),
+          "--day-ahead-out", path("outlook.csv")});
   }
   [[nodiscard]] Result begun(const std::vector<std::string>& more) const {
     const std::string config = written("config.toml", kIdleProgram + "context = \"outlook\"\n");
@@ -139,8 +133,7 @@ TEST_F(RefreshedByOutlook, BringsItsDayAheadPricesAlong) {
   write_minute_file(path("first.csv"),
                     until(read_minute_file(path("next.csv")), "2023-01-31T23:00:00Z"), "");
   EXPECT_THAT(begun({}).output, Names("[train] context --day-ahead"));
-  const Result made = begun({"--day-ahead", path("outlook.csv")});
-  ASSERT_EQ(made.exit_code, 0) << made.output;
+  ASSERT_EQ(begun({"--day-ahead", path("outlook.csv")}).exit_code, 0);
   EXPECT_THAT(refresh("next.csv").output, Names("--day-ahead"));
   std::vector<std::string> words = command("next.csv", false);
   words.insert(words.end(), {"--day-ahead", path("outlook.csv")});
@@ -161,22 +154,13 @@ TEST_F(RefreshedByOutlook, FetchesWhatWasPublishedSince) {
     if (is_down) answer.status = "404 Not Found";
   });
   const FakeCharts charts;
-  const std::vector<std::string> words{"refresh",
-                                       "--run",
-                                       path("site"),
-                                       "--window-days",
-                                       "30",
-                                       "--accept",
-                                       "shifted-day,repeated-day",
-                                       "--base-url",
-                                       elia.base_url(),
-                                       "--day-ahead-base-url",
-                                       charts.base_url()};
-  const Result without = run(words);
-  EXPECT_EQ(without.exit_code, 1);
-  EXPECT_THAT(without.output, Names("404"));
+  std::vector<std::string> words{"refresh", "--run", path("site"), "--window-days", "30"};
+  words.insert(words.end(), {"--accept", "shifted-day,repeated-day"});
+  words.insert(words.end(), {"--base-url", elia.base_url()});
+  words.insert(words.end(), {"--day-ahead-base-url", charts.base_url()});
+  EXPECT_THAT(said(words, 1), Names("404"));
   is_down = false;
-  EXPECT_EQ(run(words).exit_code, 0);
+  said(words);
   const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
   const MinuteSeries prices = read_minute_file(path("site.proposal/market.csv.gz"));
   EXPECT_EQ(local_date_of(prices.utc_s(prices.size() - 1)), yesterday);

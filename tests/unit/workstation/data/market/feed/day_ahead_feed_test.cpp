@@ -228,9 +228,8 @@ using DayAheadCli = TrainCommands;
 
 TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
   const std::string good = written("good.csv", table_of_day({2025, 6, 1}, 3600, true));
-  const Result imported = run({"prices", "import", "--day-ahead", good, "--out", path("da.csv")});
-  EXPECT_EQ(imported.exit_code, 0) << imported.output;
-  EXPECT_THAT(imported.output, Names("96 2025-05-31T22:00:00Z 2025-06-01T22:00:00Z 24"));
+  EXPECT_THAT(said({"prices", "import", "--day-ahead", good, "--out", path("da.csv")}),
+              Names("96 2025-05-31T22:00:00Z 2025-06-01T22:00:00Z 24"));
   EXPECT_THAT(read_file(path("da.csv")), HasSubstr("2025-05-31T22:15:00Z,"));
   EXPECT_THAT(run({"prices", "stats", path("da.csv")}).output, Names("EUR/MWh 96 66.25"));
   const std::string other = written("other.csv",
@@ -240,8 +239,7 @@ TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
   for (const auto& files : {std::vector<std::string>{other}, {good, other}, {path("absent.xml")}}) {
     std::vector<std::string> arguments{"prices", "import", "--day-ahead", "--out", path("bad.csv")};
     arguments.insert(arguments.end(), files.begin(), files.end());
-    const Result result = run(arguments);
-    EXPECT_EQ(result.exit_code, 1) << result.output;
+    said(arguments, 1);
     EXPECT_FALSE(std::filesystem::exists(path("bad.csv")));
   }
   // Of the other kind: each says what to do.
@@ -256,38 +254,30 @@ TEST_F(DayAheadCli, FetchWritesAFileOrNothing) {
   std::vector<std::string> fetch{"prices",          "fetch", "--day-ahead",    "--from",
                                  "2025-06-01",      "--to",  "2025-06-07",     "--base-url",
                                  server.base_url(), "--out", path("da.csv.gz")};
-  const Result fetched = run(fetch);
-  EXPECT_EQ(fetched.exit_code, 0) << fetched.output;
+  said(fetch);
   EXPECT_EQ(parse_day_ahead_csv(read_file(path("da.csv.gz")), "da").size(), 7u * 96);
   std::filesystem::remove(path("da.csv.gz"));
   server.missing_utc_s = utc_of("2025-06-03T10:00:00Z");
-  const Result refused = run(fetch);
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.output, Names("92 96 2025-06-03 --allow-gaps"));
+  EXPECT_THAT(said(fetch, 1), Names("92 96 2025-06-03 --allow-gaps"));
   EXPECT_FALSE(std::filesystem::exists(path("da.csv.gz")));
   fetch.emplace_back("--allow-gaps");
-  EXPECT_EQ(run(fetch).exit_code, 0);
+  said(fetch);
 }
 
 // The planted look-ahead: every price filed a day early says today what only tomorrow's auction
 // will.
 TEST_F(DayAheadCli, AnOutlookFiledUnderTheWrongDayIsRefused) {
-  const Result simulated = run({"prices", "simulate", "--days", "90", "--out",
-                                path("market.csv.gz"), "--day-ahead-out", path("da.csv")});
-  ASSERT_EQ(simulated.exit_code, 0) << simulated.output;
+  said({"prices", "simulate", "--days", "90", "--out", path("market.csv.gz"), "--day-ahead-out",
+        path("da.csv")});
   std::vector<std::string> evaluate{
       "evaluate", "--prices", path("market.csv.gz"), "--policy",    "sdp", "sdp-outlook",
       "--split",  "val",      "--day-ahead",         path("da.csv")};
-  const Result traded = run(evaluate);
-  EXPECT_EQ(traded.exit_code, 0) << traded.output;
-  EXPECT_THAT(traded.output, HasSubstr("sdp-outlook"));
+  EXPECT_THAT(said(evaluate), HasSubstr("sdp-outlook"));
   DayAheadSeries series = parse_day_ahead_csv(read_file(path("da.csv")), "da.csv");
   series.start_utc_s -= 86'400;
   write_day_ahead_file(path("shifted.csv"), series, "");
   evaluate.back() = path("shifted.csv");
-  const Result refused = run(evaluate);
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.output, Names("shifted.csv --accept shifted-day"));
+  EXPECT_THAT(said(evaluate, 1), Names("shifted.csv --accept shifted-day"));
   evaluate.resize(evaluate.size() - 2);
   EXPECT_THAT(run(evaluate).output, Names("--policy sdp-outlook --day-ahead"));
 }
