@@ -7,6 +7,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/report/figures/policy_map.h"
 
 namespace bess {
@@ -41,12 +42,6 @@ BacktestResults results(double second_day_eur) {
           120,
           1,
           "made by hand"};
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
-  return found;
 }
 
 TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
@@ -105,9 +100,9 @@ TEST(BacktestReport, ThePageDrawsAFallWhereThereIsOne) {
   for (const double second_day_eur : {-30.0, 5.0}) {
     write_backtest_page(results(second_day_eur), folder.file(""));
     const std::string page = read_file(folder.file("backtest.html"));
-    const std::size_t falls = second_day_eur < 0 ? 1 : 0;
-    EXPECT_EQ(count(page, "<canvas id=\"falls\""), falls) << "an empty picture";
-    EXPECT_EQ(count(page, "{\"id\":\"falls\",\"kind\":\"lines\""), falls);
+    const int falls = second_day_eur < 0 ? 1 : 0;
+    EXPECT_EQ(count_of(page, "<canvas id=\"falls\""), falls) << "an empty picture";
+    EXPECT_EQ(count_of(page, "{\"id\":\"falls\",\"kind\":\"lines\""), falls);
     EXPECT_THAT(page, AllOf(HasSubstr("<li>2023-02 "), Names("31 120"),
                             HasSubstr("[[\"rbc\",\"muted\",[")));
   }

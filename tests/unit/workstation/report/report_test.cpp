@@ -1,6 +1,7 @@
 #include "workstation/report/report.h"
 
 #include <fmt/core.h>
+#include <gmock/gmock.h>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
@@ -45,12 +46,6 @@ struct FinishedRun {
 std::string html_of(const ReportInputs& inputs, const fs::path& folder) {
   write_report(inputs, folder);
   return read_file(folder / "report.html");
-}
-
-int count_of(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
 }
 
 /// The page without its scripts and their data.
@@ -113,7 +108,7 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
   }
   EXPECT_EQ(count_of(html, "Content-Security-Policy"), 1);
   EXPECT_EQ(count_of(markup, "{{"), 0);
-  EXPECT_NE(markup.find("seed 1 &lt;untrained&gt; &amp; small"), std::string::npos);
+  EXPECT_THAT(markup, testing::HasSubstr("seed 1 &lt;untrained&gt; &amp; small"));
   EXPECT_EQ(count_of(html, "\"marks\":[]"), 1) << "no price regime begins in these days";
   EXPECT_LT(html.size(), 5'000'000u);
 }
@@ -140,9 +135,9 @@ TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
     EXPECT_GT(count_of(markup, said), 0) << said;
   }
   EXPECT_EQ(count_of(markup, "data-broken=\"0\""), 0) << "no state of it is known";
-  EXPECT_NE(html.find("\"broken\":[null,[1,2,3,4,5]]"), std::string::npos);
-  EXPECT_NE(html.find("\"exported\":\"unproved student\""), std::string::npos);
-  EXPECT_NE(html.find("\"counterexamples_of\":\"unproved student\""), std::string::npos);
+  EXPECT_THAT(html, testing::HasSubstr("\"broken\":[null,[1,2,3,4,5]]"));
+  EXPECT_THAT(html, testing::HasSubstr("\"exported\":\"unproved student\""));
+  EXPECT_THAT(html, testing::HasSubstr("\"counterexamples_of\":\"unproved student\""));
   in.broken.clear();
   StudentFile proved = run.student;
   proved.certificate.set_violations_of(3, 0);
@@ -183,15 +178,14 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
         teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,
         d.mean, d.standard_error, d.standard_error_by_month, teacher.worst_day_eur_per_mwh(),
         teacher.cycles_per_day(), teacher.switches_per_day()));
-    EXPECT_NE(html.find(cells), std::string::npos) << cells;
+    EXPECT_THAT(html, testing::HasSubstr(cells));
   }
-  EXPECT_NE(html.find("<th scope=\"col\">At wear 10</th>"), std::string::npos);
+  EXPECT_THAT(html, testing::HasSubstr("<th scope=\"col\">At wear 10</th>"));
   const double at_wear =
       in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
-  EXPECT_NE(
-      html.find(with_minus(fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear))),
-      std::string::npos);
-  EXPECT_NE(html.find("<td data-label=\"Pairs out of order\">42</td></tr>"), std::string::npos);
+  EXPECT_THAT(html, testing::HasSubstr(with_minus(
+                        fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear))));
+  EXPECT_THAT(html, testing::HasSubstr("<td data-label=\"Pairs out of order\">42</td></tr>"));
 }
 
 TEST(Report, OnlyAMarketIsEnough) {

@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "shared/battery_model.h"
 #include "shared/crc32.h"
 #include "shared/local_time.h"
 #include "tests/support/user_errors.h"
 #include "workstation/data/env/market_steps.h"
+#include "workstation/data/env/policy.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/policy/rl/price_map.h"
@@ -63,6 +66,21 @@ inline PriceMap straight_price_map() {
 inline int step_of_input(float price_input) {
   const double price = kLatticePriceMinEurPerMwh + double{price_input} * (kPriceCount - 1);
   return static_cast<int>(std::lround(price / 10));
+}
+
+/// On a way through the steps; full and empty are where two actions are worth the same to the last
+/// bit.
+inline void expect_same_decisions(const Policy& a, const Policy& b,
+                                  std::span<const MarketStep> steps) {
+  const BatteryParameters battery;
+  double soc_frac = 0.5;
+  for (const MarketStep& step : steps) {
+    for (const double soc : {soc_frac, battery.soc_min_frac, battery.soc_max_frac}) {
+      ASSERT_EQ(a.decide(step, 0, soc), b.decide(step, 0, soc)) << step.utc_s;
+    }
+    const double ordered_w = power_sign(a.decide(step, 0, soc_frac)) * battery.power_w_max;
+    soc_frac = battery_step(battery, soc_frac, ordered_w, kHoursPerStep).soc_frac;
+  }
 }
 
 /// The bytes of a teacher's file under a checksum that is right.

@@ -75,20 +75,8 @@ TEST(OutlookResidual, BeforeTheFirstStepItDecidesAndTeachesAsTheProgram) {
   const Teacher teacher = beginner();
   Teacher program = teacher;
   program.method = Method::kSdp;
-  TeacherPolicy decides(teacher);
-  const OutlookPolicy plans(teacher.outlook);
-  const BatteryParameters battery;
-  double soc_frac = 0.5;
-  for (const MarketStep& step : std::span(market().steps).subspan(9 * 720, 2 * 720)) {
-    // Full and empty are where two actions are worth the same to the last bit.
-    for (const double soc : {soc_frac, battery.soc_min_frac, battery.soc_max_frac}) {
-      ASSERT_EQ(decides.decide(step, 0, soc), plans.decide(step, 0, soc)) << step.utc_s;
-    }
-    soc_frac = battery_step(battery, soc_frac,
-                            power_sign(decides.decide(step, 0, soc_frac)) * battery.power_w_max,
-                            kHoursPerStep)
-                   .soc_frac;
-  }
+  expect_same_decisions(TeacherPolicy(teacher), OutlookPolicy(teacher.outlook),
+                        std::span(market().steps).subspan(9 * 720, 2 * 720));
   EXPECT_EQ(taught(teacher), taught(program));
 }
 

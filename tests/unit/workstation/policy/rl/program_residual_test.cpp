@@ -54,21 +54,8 @@ TEST_P(BeforeTheFirstStep, ItDecidesEveryVisitedStateAsTheProgram) {
   const auto& [method, support] = GetParam();
   const Teacher teacher = beginner(method, support);
   const Teacher program = program_teacher();
-  TeacherPolicy decides(teacher);
-  TeacherPolicy is_told(program);
-  const BatteryParameters battery;
-  double soc_frac = 0.5;
-  const auto first_days = std::span(market().steps).first(std::size_t{7} * 720);
-  for (const MarketStep& step : first_days) {
-    // Full and empty are where two actions are worth the same to the last bit.
-    for (const double soc : {soc_frac, battery.soc_min_frac, battery.soc_max_frac}) {
-      ASSERT_EQ(decides.decide(step, 0, soc), is_told.decide(step, 0, soc)) << step.utc_s;
-    }
-    soc_frac = battery_step(battery, soc_frac,
-                            power_sign(decides.decide(step, 0, soc_frac)) * battery.power_w_max,
-                            kHoursPerStep)
-                   .soc_frac;
-  }
+  expect_same_decisions(TeacherPolicy(teacher), TeacherPolicy(program),
+                        std::span(market().steps).first(std::size_t{7} * 720));
 }
 
 TEST(BeforeTheFirstLesson, ItTeachesEveryVisitedStateAsTheProgram) {

@@ -37,6 +37,13 @@ class LearntFor : public testing::Test {
   void learn() const {
     warnings("train --prices " + prices_ + " --out " + teacher_ + " --steps 20 --config " + dear_);
   }
+  /// A file of days that begin elsewhere.
+  [[nodiscard]] std::string prices_from(std::int64_t start_utc_s, int days = 59) const {
+    MinuteSeries series = small_series(days);
+    series.start_utc_s = start_utc_s;
+    write_minute_file(folder_.file("moved.csv.gz"), series, "");
+    return folder_.file("moved.csv.gz");
+  }
   [[nodiscard]] std::string evaluated(const std::string& model, const std::string& more = "",
                                       const std::string& prices = "") const {
     return warnings("evaluate --split all --prices " + (prices.empty() ? prices_ : prices) +
@@ -74,19 +81,13 @@ TEST_F(LearntFor, IsInTheTeachersFileAndInThatOfItsStudent) {
 TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
   learn();
   EXPECT_THAT(evaluated(teacher_, " --config " + dear_), Not(Names("PICASSO")));
-  MinuteSeries later = small_series();
-  later.start_utc_s += 731 * kDay_s;  // January 2025
-  const std::string prices = folder_.file("later.csv.gz");
-  write_minute_file(prices, later, "");
+  const std::string prices = prices_from(small_series().start_utc_s + 731 * kDay_s);  // of 2025
   EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices), Names("2024 PICASSO"));
 }
 
 /// Two months of which the last six days are PICASSO's: what is fitted before them is told of.
 TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
-  MinuteSeries across = small_series(30);
-  across.start_utc_s = kPicasso_s - 25 * kDay_s;
-  const std::string prices = folder_.file("across.csv.gz");
-  write_minute_file(prices, across, "");
+  const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const auto told = Names("2024 PICASSO");
   const std::string test = "evaluate --prices " + prices + " --policy ";
   EXPECT_THAT(warnings(test + "sdp"), AllOf(told, Names("2024-11-01 2024-11-25")));
@@ -95,20 +96,15 @@ TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
   EXPECT_EQ(warnings("evaluate --fit " + prices + " --prices " + prices_ + " --policy rbc"), "");
   EXPECT_THAT(warnings("evaluate --fit " + prices_ + " --prices " + prices + " --policy sdp"),
               told);
-  MinuteSeries months = small_series(100);
-  months.start_utc_s = kPicasso_s - 61 * kDay_s;
-  write_minute_file(prices, months, "");
-  EXPECT_THAT(warnings("backtest --window-days 30 --policy rbc --prices " + prices + " --out " +
+  const std::string months = prices_from(kPicasso_s - 61 * kDay_s, 100);
+  EXPECT_THAT(warnings("backtest --window-days 30 --policy rbc --prices " + months + " --out " +
                        folder_.file("months")),
               AllOf(Names("2024-11 2024-10-02"), told, Not(HasSubstr("2025-01 "))));
 }
 
 /// A run's days 26 to 30 lie behind the boundary, and nothing else does.
 TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
-  MinuteSeries across = small_series(30);
-  across.start_utc_s = kPicasso_s - 25 * kDay_s;
-  const std::string prices = folder_.file("across.csv.gz");
-  write_minute_file(prices, across, "");
+  const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const std::string config = folder_.write("small.toml", "[train]\nmethod = \"sdp\"\n");
   const std::string out = folder_.file("run");
   interruption() = true;  // it ends with its first stage

@@ -32,6 +32,13 @@ class RunPlanning : public testing::Test {
     save_run_record(plan.folder, plan.record);  // as `run` begins
   }
 
+  /// Of which nothing is given but the folder.
+  static RunRequest resumed(const fs::path& out) {
+    RunRequest request;
+    request.out = out;
+    request.resume = true;
+    return request;
+  }
   static std::string refusal(const RunRequest& request) {
     return refused_with([&] { plan_run(request); });
   }
@@ -84,9 +91,7 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
   save_run_record(plan.folder, plan.record);
   EXPECT_EQ(plan.record.config(plan.folder).train.context, ContextKind::kOutlook);
   EXPECT_EQ(plan.record.config(plan.folder).train.method, Method::kC51);
-  RunRequest bare;
-  bare.out = request.out;
-  bare.resume = true;
+  RunRequest bare = resumed(request.out);
   EXPECT_EQ(plan_run(bare).record.day_ahead, folder_.file("a.csv"));
   bare.day_ahead = priced("b.csv", 80);
   EXPECT_THAT(refusal(bare), Names("day-ahead crc32 --out"));
@@ -108,9 +113,7 @@ TEST_F(RunPlanning, TheSameRunIsGoneOnWithOnlyWhenAsked) {
 }
 
 TEST_F(RunPlanning, WhatIsNotGivenIsTheFolders) {
-  RunRequest bare;
-  bare.out = request_.out;
-  bare.resume = true;
+  const RunRequest bare = resumed(request_.out);
   const RunPlan plan = plan_run(bare);
   const RunConfig config = plan.record.config(plan.folder);
   EXPECT_EQ(config.battery.power_w_max, 5e6);
@@ -127,9 +130,7 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   const fs::path file = request_.out / "config.toml";
   const std::string written = format_run_config(plan.record.config(plan.folder));
   write_file(file, written);
-  RunRequest bare;
-  bare.out = request_.out;
-  bare.resume = true;
+  const RunRequest bare = resumed(request_.out);
   EXPECT_EQ(refusal(bare), "");
   write_file(file, "# only a remark\n" + written);
   EXPECT_EQ(refusal(bare), "") << "says the same";
@@ -233,10 +234,8 @@ TEST_F(RunPlanning, ARecordOfAnotherKindIsNamed) {
 }
 
 TEST_F(RunPlanning, AStageHoldsOnlyWhileItsFilesAreWhatTheyWere) {
-  RunPlan plan = plan_run([&] {
-    request_.resume = true;
-    return request_;
-  }());
+  request_.resume = true;
+  RunPlan plan = plan_run(request_);
   const fs::path in = plan.folder.path / "in";
   const fs::path out = plan.folder.path / "out";
   write_file(in, "in");

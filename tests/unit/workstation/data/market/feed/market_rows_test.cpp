@@ -23,12 +23,10 @@ TEST(MarketCsv, PortalMinutesWithByteOrderMarkAndNulls) {
       "\xEF\xBB\xBF"
       "Datetime;Resolution code;Quarter hour;Quality status;ACE;System imbalance;Alpha;Alpha';"
       "Marginal incremental price;Marginal decremental price;Imbalance Price\r\n"
-      "2024-09-06T18:56:00+02:00;PT1M;2024-09-06T18:45:00+02:00;NV;-55.073;-107.004;0.0;0.0;369."
-      "425;"
-      "-10.338;369.425\r\n"
-      "2025-04-08T08:02:00+02:00;PT1M;2025-04-08T08:00:00+02:00;DataIssue;-69.292;-126.48;;0.0;;55."
-      "0;"
-      "\r\n",
+      "2024-09-06T18:56:00+02:00;PT1M;2024-09-06T18:45:00+02:00;NV;-55.073;-107.004;0.0;0.0;"
+      "369.425;-10.338;369.425\r\n"
+      "2025-04-08T08:02:00+02:00;PT1M;2025-04-08T08:00:00+02:00;DataIssue;-69.292;-126.48;;"
+      "0.0;;55.0;\r\n",
       "portal.csv");
   ASSERT_EQ(rows.minutes.size(), 2u);
   EXPECT_TRUE(rows.quarter_hours.empty());
@@ -39,8 +37,8 @@ TEST(MarketCsv, PortalMinutesWithByteOrderMarkAndNulls) {
 
 TEST(MarketCsv, OldQuarterHoursByLabelAndByApiName) {
   const char* row =
-      "2023-01-01T00:00:00+01:00;Validated;PT15M;-145.361;153.32;1.09;59.39;-10.19;;-11.28;-11."
-      "28\n";
+      "2023-01-01T00:00:00+01:00;Validated;PT15M;-145.361;153.32;1.09;59.39;-10.19;;-11.28;"
+      "-11.28\n";
   for (const char* header :
        {"DateTime;Quality status;Resolution code;Net regulation volume;System imbalance;Alpha;"
         "Marginal incremental price;Marginal decremental price;Strategic reserve price;Positive "

@@ -112,6 +112,12 @@ std::string belgian(std::int64_t utc_s) {
                      t.minute_of_day % 60);
 }
 
+std::string belgian_file(const std::vector<std::int64_t>& times) {
+  std::string text = "date;price\n";
+  for (const std::int64_t utc_s : times) text += belgian(utc_s) + ";1\n";
+  return text;
+}
+
 std::vector<std::int64_t> times_of(const MarketRows& rows) {
   std::vector<std::int64_t> times;
   for (const QuarterHour& row : rows.quarter_hours) times.push_back(row.utc_s);
@@ -132,9 +138,8 @@ TEST(OwnCsv, ClockChangesByTheOrderOfTheRows) {
       times.push_back(utc_of(day.from) + 900 * q);
     }
     for (const bool newest_first : {false, true}) {
-      std::string text = "date;price\n";
-      for (const std::int64_t utc_s : times) text += belgian(utc_s) + ";1\n";
-      EXPECT_EQ(times_of(parse_market_text(text, "own.csv", kBelgian)), times) << newest_first;
+      EXPECT_EQ(times_of(parse_market_text(belgian_file(times), "own.csv", kBelgian)), times)
+          << newest_first;
       std::ranges::reverse(times);
     }
   }
@@ -143,9 +148,8 @@ TEST(OwnCsv, ClockChangesByTheOrderOfTheRows) {
 TEST(OwnCsv, AnHourThatComesTwiceIsNotGuessed) {
   const std::int64_t hour_s = utc_of("2025-10-26T00:00:00Z");  // 02:00, and again at 01:00 UTC
   const auto error_of = [](const std::vector<std::int64_t>& times) {
-    std::string text = "date;price\n";
-    for (const std::int64_t utc_s : times) text += belgian(utc_s) + ";1\n";
-    return user_error_of([&] { (void)parse_market_text(text, "own.csv", kBelgian); });
+    return user_error_of(
+        [&] { (void)parse_market_text(belgian_file(times), "own.csv", kBelgian); });
   };
   const std::int64_t q = 900;
   EXPECT_THAT(error_of({hour_s - q, hour_s, hour_s + q, hour_s + 2 * q, hour_s + 3 * q}),
