@@ -30,12 +30,17 @@ class KilledRun : public IdleRun {
  protected:
   KilledRun() { write_minute_file(prices_, small_series(31), ""); }
 
+  [[nodiscard]] std::vector<std::string> arguments(const std::string& out,
+                                                   std::vector<std::string> more = {}) const {
+    std::vector<std::string> words{"run",       "--prices", prices_, "--config", config_,
+                                   "--threads", "2",        "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
   [[nodiscard]] std::vector<std::string> command(const std::string& out,
                                                  std::vector<std::string> more = {}) const {
-    std::vector<std::string> words{
-        BESS_TRAIN_PROGRAM, "run", "--prices", prices_, "--config", config_,
-        "--threads",        "2",   "--out",    out};
-    words.insert(words.end(), more.begin(), more.end());
+    std::vector<std::string> words = arguments(out, std::move(more));
+    words.insert(words.begin(), BESS_TRAIN_PROGRAM);
     return words;
   }
 
@@ -49,7 +54,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   const int kills = asked != nullptr ? std::atoi(asked) : few_or_all(3, 10);
   const std::string whole = path("whole");
   const auto start = Clock::now();
-  ASSERT_EQ(ChildProcess(command(whole)).wait(), 0);
+  said(arguments(whole));
   std::chrono::duration<double> longest_s = 0.8 * (Clock::now() - start);
   const auto expected = contents(whole);
 
@@ -79,27 +84,21 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
     fs::remove_all(out);  // begin anew, or the rest of the kills would hit nothing
     longest_s *= 0.8;     // the machine has become faster, or most of the work was done
   }
-  ASSERT_EQ(ChildProcess(command(out, {"--resume"})).wait(), 0);
+  said(arguments(out, {"--resume"}));
   expect_same(out, expected);
 
   // What was tampered with is done again, and it alone; from there on nothing is left to do.
   write_file(out + "/student_weights.h", "// mine");
   fs::remove(out + "/evaluation.csv");
-  ChildProcess mended({BESS_TRAIN_PROGRAM, "run", "--resume", "--out", out});
-  EXPECT_THAT(mended.read_all(),
-              testing::Not(HasSubstr("steps")));  // nothing is learnt again
-  EXPECT_EQ(mended.wait(), 0);
+  EXPECT_THAT(said({"run", "--resume", "--out", out}), testing::Not(HasSubstr("steps")))
+      << "nothing is learnt again";
   expect_same(out, expected);
 
   // A configuration that was edited afterwards is not what the run was made with.
   write_file(out + "/config.toml", "[battery]\npower_w = 5000000\n");
-  ChildProcess report({BESS_TRAIN_PROGRAM, "report", "--run", out});
-  EXPECT_THAT(report.read_all(), Names(out));
-  EXPECT_EQ(report.wait(), 1);
+  EXPECT_THAT(said({"report", "--run", out}, 1), Names(out));
 
-  ChildProcess compare({BESS_TRAIN_PROGRAM, "runs", "compare", whole, out});
-  EXPECT_THAT(compare.read_all(), Names(whole + " " + out + " +0.0"));
-  EXPECT_EQ(compare.wait(), 0);
+  EXPECT_THAT(said({"runs", "compare", whole, out}), Names(whole + " " + out + " +0.0"));
 }
 
 TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
@@ -126,9 +125,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   const std::string out = path("run");
   const auto expected = Names("3 201 EUR/MWh [distil] [correction] epochs repair_rounds " + out +
                               "/report.html --from-teacher " + out + " --config");
-  ChildProcess run(command(out));
-  EXPECT_THAT(run.read_all(), AllOf(expected, Names("1 3")));
-  EXPECT_EQ(run.wait(), 1);
+  EXPECT_THAT(said(arguments(out), 1), AllOf(expected, Names("1 3")));
   EXPECT_EQ(std::ranges::count(read_file(out + "/proof_rounds.csv"), '\n'), 1 + 3 * 3);
   EXPECT_THAT(read_file(out + "/report.html"),
               AllOf(HasSubstr("href=\"#failure\""), Names("201 EUR/MWh")));
@@ -137,13 +134,11 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   const auto before = contents(out);
   const std::string kept = path("kept");
   fs::copy(out, kept, fs::copy_options::recursive);
-  ChildProcess again(command(out, {"--resume"}));
-  EXPECT_THAT(again.read_all(), AllOf(expected, testing::Not(HasSubstr("distil, monotone"))));
-  EXPECT_EQ(again.wait(), 1);
+  EXPECT_THAT(said(arguments(out, {"--resume"}), 1),
+              AllOf(expected, testing::Not(HasSubstr("distil, monotone"))));
   expect_same(out, before);
   fs::remove(out + "/report.html");
-  ChildProcess page({BESS_TRAIN_PROGRAM, "report", "--run", out});
-  EXPECT_EQ(page.wait(), 0) << page.read_all();
+  said({"report", "--run", out});
   EXPECT_THAT(read_file(out + "/report.html"), HasSubstr("\"exported\":\"unproved student\""));
   fs::remove_all(out);
   fs::copy(kept, out, fs::copy_options::recursive);
@@ -151,9 +146,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   // Nothing is lost: with a mended configuration its teacher goes on to a proved student.
   config_ = written("mended.toml", kIdle + kNoThresholds);
   const std::string repaired = path("repaired");
-  ChildProcess mended(command(repaired, {"--from-teacher", out}));
-  EXPECT_THAT(mended.read_all(), Names(out + "/teacher.bin"));
-  EXPECT_EQ(mended.wait(), 0);
+  EXPECT_THAT(said(arguments(repaired, {"--from-teacher", out})), Names(out + "/teacher.bin"));
   EXPECT_TRUE(read_file(repaired + "/teacher.bin") == read_file(out + "/teacher.bin"));
   expect_same(out, before);
 }

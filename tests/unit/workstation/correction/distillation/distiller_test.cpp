@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/correction_cases.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/teachers.h"
 #include "workstation/base/random.h"
@@ -113,12 +114,6 @@ TEST(Distiller, InterruptionReturns) {
   EXPECT_FALSE(std::holds_alternative<ProvedStudent>(result.verdict));
 }
 
-Eigen::MatrixXd random_logits(Eigen::Index columns, Random& random) {
-  Eigen::MatrixXd logits(3, columns);
-  for (double& z : logits.reshaped()) z = 2 * random.normal();
-  return logits;
-}
-
 TEST(PolicyLoss, HandCases) {
   Eigen::MatrixXd even = Eigen::MatrixXd::Zero(3, 1);
   EXPECT_NEAR(log_softmax(even)(1, 0), -std::log(3.0), 1e-15);
@@ -144,8 +139,8 @@ TEST(PolicyLoss, LogSoftmaxStandsHugeLogits) {
 TEST(PolicyLoss, GradientsAreTheDerivatives) {
   constexpr double kStep = 1e-6;
   Random random(302);
-  const Eigen::MatrixXd p = random_logits(7, random);
-  const Eigen::MatrixXd q = random_logits(7, random);
+  const Eigen::MatrixXd p = random_logits(7, random, 2);
+  const Eigen::MatrixXd q = random_logits(7, random, 2);
   const Eigen::MatrixXd log_p = log_softmax(p);
   const Eigen::MatrixXd log_q = log_softmax(q);
   const auto expect_derivative = [](const Eigen::MatrixXd& at, const Eigen::MatrixXd& gradient,

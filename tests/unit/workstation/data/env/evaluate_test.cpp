@@ -79,9 +79,13 @@ class AlternatingPolicy final : public Policy {
   }
 };
 
+/// Of 100 EUR/MWh.
+MarketSteps flat_day() {
+  return make_market_steps(flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 100), {});
+}
+
 TEST(Evaluate, ABatteryThatTakesHalfAMinuteMovesThatMuchLess) {
-  const MarketSteps market =
-      make_market_steps(flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 100), {});
+  const MarketSteps market = flat_day();
   AlternatingPolicy policy;
   EvaluationOptions options;
   options.battery.response.delay_s = 30;
@@ -93,8 +97,7 @@ TEST(Evaluate, ABatteryThatTakesHalfAMinuteMovesThatMuchLess) {
 }
 
 TEST(Evaluate, StandbyIsBoughtWhateverThePolicyDoes) {
-  const MarketSteps market =
-      make_market_steps(flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 100), {});
+  const MarketSteps market = flat_day();
   AlternatingPolicy policy;
   EvaluationOptions options;
   const double without = evaluate(market, market.days, policy, options).days[0].profit_eur;
@@ -162,9 +165,7 @@ TEST(Foresight, CarriedOverItPlansAcrossMidnight) {
   const MarketSteps market = make_market_steps(series, {});
   ASSERT_EQ(market.days.size(), 2u);
   ForesightPolicy policy({});
-  EvaluationOptions options;
-  options.carry_soc = true;
-  const Evaluation result = evaluate(market, market.days, policy, options);
+  const Evaluation result = evaluate(market, market.days, policy, {{}, 0.5, true});
   EXPECT_NEAR(result.days[0].profit_eur, 0, 1e-9);
   EXPECT_NEAR(result.days[1].profit_eur, 0.9 * 8 * std::sqrt(0.9) * 100, 1e-2);
 }
