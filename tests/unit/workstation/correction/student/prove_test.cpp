@@ -1,5 +1,5 @@
-// The prover's word: what it says yes and no to, that nobody else can say yes, and what a proof that
-// failed names: what is broken, where, and what to change.
+// The prover's word: what it says yes and no to, that nobody else can say yes, and what a proof
+// that failed names: what is broken, where, and what to change.
 #include "workstation/correction/student/prove.h"
 
 #include <gmock/gmock.h>

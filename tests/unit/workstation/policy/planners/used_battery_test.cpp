@@ -1,6 +1,6 @@
-// What using a battery does to it in the environment: its capacity fades by what goes through it, a
-// direction that has begun is kept for its minimum run, and the daily cycle limit holds against every
-// policy.
+// What using a battery does to it in the environment: its capacity fades by what goes through it,
+// a direction that has begun is kept for its minimum run, and the daily cycle limit holds against
+// every policy.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -336,8 +336,8 @@ struct QuirkCase {
   int requests;       ///< for minutes, that are needed
 };
 
-/// Spellings of files are in market_rows_test and own_csv_test; cuts by length, chunk and packing in
-/// http_whole_test.
+/// Spellings of files are in market_rows_test and own_csv_test; cuts by length, chunk and packing
+/// in http_whole_test.
 std::vector<QuirkCase> quirks() {
   const auto same = [](const std::string& text) { return text; };
   const auto cut_in_a_line = [](const Ask&, Answer& a) {
