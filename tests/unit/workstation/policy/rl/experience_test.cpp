@@ -14,8 +14,6 @@ constexpr double kRewardTolerance = 1e-6;
 
 // ---- One transition by hand -----------------------------------------------------------------
 
-// Battery of the paper: 4 MW, 8 MWh, sqrt(0.9) each way. A step of 1/30 h at full power moves
-// 0.0158113883 up or 0.0175682092 down. Step 0 is paid 100 EUR/MWh: 400 EUR/h, 0.04 scaled.
 /// One training day of one step after which nothing follows, or of two.
 MarketSteps one_day(Horizon horizon) {
   return market_by_hand(
@@ -25,6 +23,8 @@ MarketSteps one_day(Horizon horizon) {
 constexpr Horizon kOn = Horizon::kContinuing;
 constexpr Horizon kEnd = Horizon::kDay;
 
+// Battery of the paper: 4 MW, 8 MWh, sqrt(0.9) each way. A step of 1/30 h at full power moves
+// 0.0158113883 up or 0.0175682092 down. Step 0 is paid 100 EUR/MWh: 400 EUR/h, 0.04 scaled.
 TEST(Transitions, RewardAndSocByHand) {
   const struct {
     const char* name;
