@@ -67,6 +67,19 @@ struct RegisterDevice {
   std::vector<WriteRecord> take_writes() { return std::exchange(writes, {}); }
 };
 
+/// What a device of alphaess.toml shows at 43.5 % of 8 kWh, on the grid.
+inline void fill_alphaess(RegisterDevice& device) {
+  device.set(0x0102, {435});
+  device.set(0x0119, {80});
+  device.set(0x012C, {4'000, 3'500});
+  device.set(0x0440, {1});
+}
+/// And one of victron_ess3.toml at 62 %, charging.
+inline void fill_victron(RegisterDevice& device) {
+  device.set(842, {1'500, 62});
+  device.set(2'902, {1});
+}
+
 class DeviceLink {
  public:
   explicit DeviceLink(RegisterDevice& device) : device_(device) {}
@@ -154,9 +167,8 @@ struct MapUnderTest {
   std::unique_ptr<DeviceDriver> driver;
   BatteryMeasurement measured;
 
-  explicit MapUnderTest(const std::string& path, const std::string& variant = "") {
-    std::string error;
-    EXPECT_TRUE(load_register_map(path, variant, map, error)) << error;
+  explicit MapUnderTest(const std::string& path, const std::string& variant = "")
+      : map(load_good_map(path, variant)) {
     driver = std::make_unique<DeviceDriver>(map, DeviceClock(device), -1, device);
   }
   Status order(std::int32_t power_w) {
@@ -166,6 +178,21 @@ struct MapUnderTest {
                           .duration_s = map.watchdog.duration_s});
   }
   Status read() { return driver->read(measured); }
+  /// What a reading that must succeed has found.
+  const BatteryMeasurement& reading() {
+    EXPECT_EQ(read(), Status::kOk);
+    return measured;
+  }
+  /// What is written for an order, a release, a refresh that must succeed.
+  std::vector<WriteRecord> writes_of(std::int32_t power_w) { return writes_after(order(power_w)); }
+  std::vector<WriteRecord> release_writes() { return writes_after(driver->release()); }
+  std::vector<WriteRecord> refresh_writes() { return writes_after(driver->refresh()); }
+
+ private:
+  std::vector<WriteRecord> writes_after(Status status) {
+    EXPECT_EQ(status, Status::kOk);
+    return device.take_writes();
+  }
 };
 
 }  // namespace bess

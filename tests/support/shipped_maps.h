@@ -41,11 +41,15 @@ inline std::string shipped_map(const std::string& name) {
   return std::string(BESS_SOURCE_DIR) + "/edge/device/maps/" + name + ".toml";
 }
 
-inline RegisterMap load_shipped_map(const MapVariant& wanted) {
+inline RegisterMap load_good_map(const std::string& path, const std::string& variant = "") {
   RegisterMap map;
   std::string error;
-  EXPECT_TRUE(load_register_map(shipped_map(wanted.map), wanted.variant, map, error)) << error;
+  EXPECT_TRUE(load_register_map(path, variant, map, error)) << error;
   return map;
+}
+
+inline RegisterMap load_shipped_map(const MapVariant& wanted) {
+  return load_good_map(shipped_map(wanted.map), wanted.variant);
 }
 
 }  // namespace bess

@@ -17,12 +17,18 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr const char* kMapToml = R"(
-[map]
-name = "test"
-unit = 1
-[power]
-charge_w_max = 10000
-discharge_w_max = 10000
+map = { name = "test", unit = 1 }
+power = { charge_w_max = 10000, discharge_w_max = 10000 }
+writes = { eeprom_writes_per_day = 5, reserve = 1 }
+point = [
+  { name = "soc", address = 0, scale = 100, min = 0, max = 10000 },
+  { name = "battery_power", address = 1, type = "s16", min = -10000, max = 10000 },
+  { name = "enable", address = 10, min = 0, max = 1 },
+  { name = "power", address = 11, type = "s16", min = -10000, max = 10000 },
+  { name = "time", address = 12, min = 0, max = 3600 },
+  { name = "mode", address = 20, storage = "eeprom", min = 0, max = 9 },
+  { name = "status", address = 21, names = { busy = 0, ready = 7 }, min = 0, max = 9 },
+]
 [watchdog]
 kind = "duration"
 duration_s = 300
@@ -31,52 +37,9 @@ refresh_s = 120
 measure = ["soc", "battery_power"]
 active = ["enable = 1"]
 order_power = "power"
-[[point]]
-name = "soc"
-address = 0
-scale = 100
-min = 0
-max = 10000
-[[point]]
-name = "battery_power"
-address = 1
-type = "s16"
-min = -10000
-max = 10000
-[[point]]
-name = "enable"
-address = 10
-min = 0
-max = 1
-[[point]]
-name = "power"
-address = 11
-type = "s16"
-min = -10000
-max = 10000
-[[point]]
-name = "time"
-address = 12
-min = 0
-max = 3600
-[[point]]
-name = "mode"
-address = 20
-storage = "eeprom"
-min = 0
-max = 9
-[[point]]
-name = "status"
-address = 21
-names = { busy = 0, ready = 7 }
-min = 0
-max = 9
 [command]
 order = [["power = power", "time = duration"], "enable = 1"]
 release = ["enable = 0"]
-[writes]
-eeprom_writes_per_day = 5
-reserve = 1
 )";
 
 /// With a check of what device it is.
@@ -99,6 +62,11 @@ class DriverTest : public ::testing::Test {
     test_->device.set(0, {50, 0});
     return *test_;
   }
+  /// And 1 kW in force.
+  MapUnderTest& with_order(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+    EXPECT_EQ(with(changes).order(1'000), Status::kOk);
+    return *test_;
+  }
 
   TemporaryFolder folder_;
   std::unique_ptr<MapUnderTest> test_;
@@ -106,17 +74,13 @@ class DriverTest : public ::testing::Test {
 
 TEST_F(DriverTest, AnOrderInForceCostsNoWriteUntilItsWatchdogIsDue) {
   MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
   t.device.pass_s(59);
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), IsEmpty());
+  EXPECT_THAT(t.writes_of(1'000), IsEmpty());
   EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
   t.device.pass_s(61);  // a cycle after the first
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
-  ASSERT_EQ(t.order(1'001), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
+  EXPECT_THAT(t.writes_of(1'001), SizeIs(2));
   EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
   EXPECT_EQ(t.driver->counters().register_writes, 6);
 }
@@ -131,61 +95,47 @@ TEST_F(DriverTest, RefreshFeedsOnlyWhenDueAndOnlyAnOrderInForce) {
   ASSERT_EQ(t.order(1'000), Status::kOk);
   t.device.take_writes();
   t.device.pass_s(5);
-  ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.writes, IsEmpty());
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());
   t.device.pass_s(15);
-  ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(WriteRecord{1, 16, 12, {60}}));
+  EXPECT_THAT(t.refresh_writes(), ElementsAre(WriteRecord{1, 16, 12, {60}}));
   ASSERT_EQ(t.driver->release(), Status::kOk);
   t.device.take_writes();
   t.device.pass_s(60);
-  ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.writes, IsEmpty());
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());
 }
 
 TEST_F(DriverTest, AFailedRefreshIsTriedAgainByTheNextOrder) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   t.device.pass_s(120);
   t.device.exception = -1;
   EXPECT_EQ(t.driver->refresh(), Status::kTimeout);
   t.device.exception = 0;
   t.device.take_writes();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
 }
 
 TEST_F(DriverTest, AnExpiredOrOverwrittenOrderIsWrittenAgain) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   t.device.set(10, {0});  // the device shows that its timer has run out
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.dispatch_active);
+  EXPECT_FALSE(t.reading().dispatch_active);
   t.device.take_writes();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
   t.device.set(11, {777});  // somebody else
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.order_power_w, 777);
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_EQ(t.reading().order_power_w, 777);
+  EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
 }
 
 TEST_F(DriverTest, AnotherMastersValueIsSeenAndNotFedAgainst) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.order_replaced);
+  MapUnderTest& t = with_order();
+  EXPECT_FALSE(t.reading().order_replaced);
   t.device.take_writes();
   t.device.set(11, {777});
   t.device.pass_s(100);  // the watchdog is due
   EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
   EXPECT_THAT(t.device.take_writes(), IsEmpty());
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.order_replaced);
+  EXPECT_TRUE(t.reading().order_replaced);
   ASSERT_EQ(t.order(1'000), Status::kOk);  // where control insists
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.order_replaced);
+  EXPECT_FALSE(t.reading().order_replaced);
 }
 
 /// Device registers: 10 enable, 11 power, 12 time.
@@ -215,13 +165,11 @@ TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
         EXPECT_EQ(t.driver->refresh(), lost ? Status::kNotApplied : Status::kOk);
       }
       for (int i = 0; i < 2; ++i) {  // told until it is ordered again
-        ASSERT_EQ(t.read(), Status::kOk);
-        EXPECT_EQ(t.measured.order_replaced, c.replaced);
+        EXPECT_EQ(t.reading().order_replaced, c.replaced);
         EXPECT_EQ(t.measured.order_ended, c.ended);
       }
       ASSERT_EQ(t.order(1'000), Status::kOk);
-      ASSERT_EQ(t.read(), Status::kOk);
-      EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+      EXPECT_FALSE(t.reading().order_replaced || t.measured.order_ended);
       EXPECT_TRUE(t.measured.dispatch_active);
     }
   }
@@ -236,8 +184,7 @@ TEST_F(DriverTest, AnotherModeThanTheReleasesIsSomebodysIntention) {
     ASSERT_EQ(t.order(1'000), Status::kOk);
     t.device.pass_s(110);
     t.device.set(20, {mode});
-    ASSERT_EQ(t.read(), Status::kOk);
-    EXPECT_EQ(t.measured.order_replaced, replaced) << mode;
+    EXPECT_EQ(t.reading().order_replaced, replaced) << mode;
     EXPECT_EQ(t.measured.order_ended, !replaced) << mode;
     t.device.day += 1;  // another day's writes to the flash
   }
@@ -245,13 +192,11 @@ TEST_F(DriverTest, AnotherModeThanTheReleasesIsSomebodysIntention) {
 
 /// Where the end of an order shows nowhere, what enabled it still does.
 TEST_F(DriverTest, AModeThatEnabledTheOrderIsLookedAfter) {
-  MapUnderTest& t = with({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
-                          {"refresh_s = 120", "refresh_s = 120\nexpiry_visible = false"}});
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
+                                {"refresh_s = 120", "refresh_s = 120\nexpiry_visible = false"}});
   t.device.pass_s(110);
   t.device.set(20, {1});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.order_replaced);
+  EXPECT_TRUE(t.reading().order_replaced);
 }
 
 TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
@@ -264,69 +209,57 @@ TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
       if (fed) {
         EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
       }
-      ASSERT_EQ(t.read(), Status::kOk);
-      EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended) << passed_s;
+      EXPECT_FALSE(t.reading().order_replaced || t.measured.order_ended) << passed_s;
     }
   }
 }
 
 /// The link fails just when the end is looked at more closely.
 TEST_F(DriverTest, AnEndIsNoHandEvenWhereTheReadingFails) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   t.device.pass_s(110);
   t.device.set(10, {0});
   t.device.unreadable_address = 0;
   EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
   t.device.unreadable_address = -1;
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.order_ended);
+  EXPECT_TRUE(t.reading().order_ended);
   EXPECT_FALSE(t.measured.order_replaced);
 }
 
 TEST_F(DriverTest, AnOrderThatRunsOutWhileItIsReadWasNotLost) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   t.device.pass_s(299);
   const int reads = t.device.reads;
   t.device.before_request = [&] {
     if (t.device.reads == reads + 3) t.device.set(10, {0});  // after the two of the measurement
   };
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_TRUE(t.reading().dispatch_active);
   EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
 }
 
 TEST_F(DriverTest, AnOrderThatShowsLateIsNotLost) {
-  MapUnderTest& t = with({{"active = [\"enable = 1\"]", "active = [\"status = ready\"]"}});
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order({{"active = [\"enable = 1\"]", "active = [\"status = ready\"]"}});
   t.device.pass_s(10);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.dispatch_active);
+  EXPECT_FALSE(t.reading().dispatch_active);
   EXPECT_FALSE(t.measured.order_ended);
   t.device.set(21, {7});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_TRUE(t.reading().dispatch_active);
   t.device.set(21, {0});
   t.device.pass_s(10);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.order_ended);
+  EXPECT_TRUE(t.reading().order_ended);
 }
 
 TEST_F(DriverTest, WhatWeGiveBackOrCannotFeedWasNotLost) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   ASSERT_EQ(t.driver->release(), Status::kOk);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+  EXPECT_FALSE(t.reading().order_replaced || t.measured.order_ended);
   ASSERT_EQ(t.order(1'000), Status::kOk);
   t.device.pass_s(100);
   t.device.exception = -1;
   EXPECT_EQ(t.driver->refresh(), Status::kTimeout);
   t.device.exception = 0;
   t.device.set(10, {0});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+  EXPECT_FALSE(t.reading().order_replaced || t.measured.order_ended);
 }
 
 TEST_F(DriverTest, NothingOfAnOrderIsWrittenAfterItsTime) {
@@ -378,8 +311,7 @@ TEST_F(DriverTest, AnOrderOfYesterdayIsNotFed) {
 }
 
 TEST_F(DriverTest, BehindANewConnectionTheDeviceIsProvedAgain) {
-  MapUnderTest& t = with(kIdentity);
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order(kIdentity);
   t.device.set(20, {8});
   ASSERT_EQ(t.read(), Status::kOk);  // known
   ++t.device.reconnects;
@@ -401,8 +333,7 @@ TEST_F(DriverTest, AndEveryTenMinutes) {
 }
 
 TEST_F(DriverTest, ItCanAlwaysLetGoOfWhatItKnew) {
-  MapUnderTest& t = with(kIdentity);
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order(kIdentity);
   t.device.set(20, {8});
   ++t.device.reconnects;
   EXPECT_EQ(t.driver->release(), Status::kOk);
@@ -421,8 +352,7 @@ TEST_F(DriverTest, AStrangerIsReleasedOnlyWhenAPersonInsists) {
 TEST_F(DriverTest, ARestartSeesWhatIsInForce) {
   MapUnderTest& t = with();
   t.device.set(10, {1, 0xF830, 300});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_TRUE(t.reading().dispatch_active);
   EXPECT_TRUE(t.measured.has_order_power);
   EXPECT_EQ(t.measured.order_power_w, -2'000);
 }
@@ -515,13 +445,12 @@ TEST_F(DriverTest, ARefusedOrderEndsTheFeedingOfTheOneBefore) {
   t.device.take_writes();
   ASSERT_EQ(t.order(-1'000), Status::kWriteBudget);
   t.device.pass_s(30);
-  EXPECT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.writes, IsEmpty());  // charging goes on no longer than its timer
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());  // charging goes on no longer than its timer
 }
 
 TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
   MapUnderTest& t = with({{"refresh_s = 120", "refresh_s = 30"},
-                          {"name = \"power\"", "name = \"power\"\nclamp_to = \"battery_power\""}});
+                          {"name = \"power\"", "name = \"power\", clamp_to = \"battery_power\""}});
   t.device.set(1, {1'000});
   ASSERT_EQ(t.order(1'000), Status::kOk);
   t.device.pass_s(181);  // the limits are too old, and the link is down
@@ -529,14 +458,12 @@ TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
   ASSERT_EQ(t.order(0), Status::kTimeout);
   t.device.exception = 0;  // it is back before the next cycle
   t.device.take_writes();
-  EXPECT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.writes, IsEmpty());
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());
 }
 
 TEST_F(DriverTest, WithoutAWatchdogARefusedOrderTakesBackTheOneBefore) {
   MapUnderTest& t =
-      with({{"kind = \"duration\"\nduration_s = 300\nrefresh_s = 120", "kind = \"none\""}});
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+      with_order({{"kind = \"duration\"\nduration_s = 300\nrefresh_s = 120", "kind = \"none\""}});
   ASSERT_EQ(t.order(10'001), Status::kNotExpressible);
   EXPECT_EQ(t.device.holding[10], 0);
 }
@@ -586,34 +513,28 @@ TEST_F(DriverTest, EnableHappensOnceAndWhatItChangedIsRestored) {
 TEST_F(DriverTest, AShortenedTimerIsFedAtOnce) {
   MapUnderTest& t =
       with({{"refresh_s = 120", "refresh_s = 120\nremaining = \"status\""},
-            {"names = { busy = 0, ready = 7 }\nmin = 0\nmax = 9", "min = 0\nmax = 999"}});
+            {"names = { busy = 0, ready = 7 }, min = 0, max = 9", "min = 0, max = 999"}});
   t.device.set(21, {300});
   ASSERT_EQ(t.order(1'000), Status::kOk);
   t.device.take_writes();
   ASSERT_EQ(t.read(), Status::kOk);
-  ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.writes, IsEmpty());
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());
   t.device.set(21, {100});  // somebody wrote a shorter time
   ASSERT_EQ(t.read(), Status::kOk);
-  ASSERT_EQ(t.driver->refresh(), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_THAT(t.refresh_writes(), SizeIs(2));
 }
 
 TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
-  MapUnderTest& t = with({{"scale = 100", "scale = 100\nmax_age_s = 600"}});
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.soc_e4, 5'000);
+  MapUnderTest& t = with({{"scale = 100", "scale = 100, max_age_s = 600"}});
+  EXPECT_EQ(t.reading().soc_e4, 5'000);
   t.device.set(0, {60});
   t.device.pass_s(599);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.soc_e4, 5'000);
+  EXPECT_EQ(t.reading().soc_e4, 5'000);
   t.device.pass_s(2);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.soc_e4, 6'000);
+  EXPECT_EQ(t.reading().soc_e4, 6'000);
   t.device.set(0, {104});
   t.device.pass_s(601);
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.soc_e4, 10'000);
+  EXPECT_EQ(t.reading().soc_e4, 10'000);
   EXPECT_EQ(t.measured.cut_point, 1);
   t.device.set(0, {106});
   t.device.pass_s(601);
@@ -622,8 +543,7 @@ TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
 }
 
 TEST_F(DriverTest, FailingMeasurementsDoNotKeepFromHoldingAndReleasing) {
-  MapUnderTest& t = with();
-  ASSERT_EQ(t.order(1'000), Status::kOk);
+  MapUnderTest& t = with_order();
   t.device.unreadable_address = 0;
   t.device.pass_s(1'000);
   EXPECT_EQ(t.read(), Status::kTimeout);
@@ -634,7 +554,7 @@ TEST_F(DriverTest, FailingMeasurementsDoNotKeepFromHoldingAndReleasing) {
 }
 
 TEST_F(DriverTest, OldLimitsDoNotGoIntoAnOrderButIntoARelease) {
-  MapUnderTest& t = with({{"name = \"power\"", "name = \"power\"\nclamp_to = \"battery_power\""}});
+  MapUnderTest& t = with({{"name = \"power\"", "name = \"power\", clamp_to = \"battery_power\""}});
   t.device.set(1, {500});
   ASSERT_EQ(t.order(1'000), Status::kOk);
   EXPECT_EQ(t.device.holding[11], 500);
@@ -661,7 +581,7 @@ TEST_F(DriverTest, HeartbeatsDifferAndWrapWithinTheirRange) {
                           {"order = [[",
                            "order = [{ write = \"mode = heartbeat\", read_back = "
                            "\"none\" }, ["},
-                          {"storage = \"eeprom\"\n", ""}});
+                          {"storage = \"eeprom\", ", ""}});
   std::vector<int> beats;
   for (int i = 0; i < 12; ++i) {
     ASSERT_EQ(t.order(1'000), Status::kOk);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <vector>
 
 namespace bess {
@@ -70,50 +69,39 @@ struct ReplyCase {
 };
 
 TEST(ModbusFrame, ATcpReplyMustRepeatWhatWasAsked) {
+  using enum Status;
   const ReplyCase cases[] = {
-      {"read", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, Status::kOk},
-      {"write one", kWriteOne, {0x12, 0x34, 0, 0, 0, 6, 85, 6, 8, 0x80, 0, 1}, Status::kOk},
-      {"write many", kWriteMany, {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x80, 0, 2}, Status::kOk},
-      {"busy", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 6}, Status::kBusBusy, 6},
-      {"at work", kWriteOne, {0x12, 0x34, 0, 0, 0, 3, 85, 0x86, 5}, Status::kBusBusy, 5},
-      {"denied", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 0x80}, Status::kNotPermitted, 0x80},
-      {"no address", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 2}, Status::kBusException, 2},
-      {"transaction", kRead, {0x12, 0x35, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, Status::kBadReply},
-      {"protocol, low", kRead, {0x12, 0x34, 0, 1, 0, 7, 85, 3, 4, 1, 2, 3, 4}, Status::kBadReply},
-      {"protocol, high", kRead, {0x12, 0x34, 1, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, Status::kBadReply},
-      {"unit", kRead, {0x12, 0x34, 0, 0, 0, 7, 7, 3, 4, 1, 2, 3, 4}, Status::kBadReply},
-      {"unit of exception", kRead, {0x12, 0x34, 0, 0, 0, 3, 7, 0x83, 6}, Status::kBadReply},
-      {"function", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 4, 4, 1, 2, 3, 4}, Status::kBadReply},
-      {"other exception", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x90, 6}, Status::kBadReply},
-      {"fewer", kRead, {0x12, 0x34, 0, 0, 0, 5, 85, 3, 2, 1, 2}, Status::kBadReply},
-      {"more", kRead, {0x12, 0x34, 0, 0, 0, 9, 85, 3, 6, 1, 2, 3, 4, 5, 6}, Status::kBadReply},
-      {"count", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 2, 1, 2, 3, 4}, Status::kBadReply},
-      {"truncated", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2}, Status::kBadReply},
-      {"trailing", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4, 5}, Status::kBadReply},
-      {"echoed address",
-       kWriteMany,
-       {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x81, 0, 2},
-       Status::kBadReply},
-      {"echoed count",
-       kWriteMany,
-       {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x80, 0, 1},
-       Status::kBadReply},
-      {"echoed address",
-       kWriteOne,
-       {0x12, 0x34, 0, 0, 0, 6, 85, 6, 9, 0x80, 0, 1},
-       Status::kBadReply},
-      {"echoed value",
-       kWriteOne,
-       {0x12, 0x34, 0, 0, 0, 6, 85, 6, 8, 0x80, 0, 0},
-       Status::kBadReply},
-      {"nothing", kRead, {}, Status::kBadReply},
+      {"read", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, kOk},
+      {"write one", kWriteOne, {0x12, 0x34, 0, 0, 0, 6, 85, 6, 8, 0x80, 0, 1}, kOk},
+      {"write many", kWriteMany, {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x80, 0, 2}, kOk},
+      {"busy", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 6}, kBusBusy, 6},
+      {"at work", kWriteOne, {0x12, 0x34, 0, 0, 0, 3, 85, 0x86, 5}, kBusBusy, 5},
+      {"denied", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 0x80}, kNotPermitted, 0x80},
+      {"no address", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x83, 2}, kBusException, 2},
+      {"transaction", kRead, {0x12, 0x35, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, kBadReply},
+      {"protocol, low", kRead, {0x12, 0x34, 0, 1, 0, 7, 85, 3, 4, 1, 2, 3, 4}, kBadReply},
+      {"protocol, high", kRead, {0x12, 0x34, 1, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, kBadReply},
+      {"unit", kRead, {0x12, 0x34, 0, 0, 0, 7, 7, 3, 4, 1, 2, 3, 4}, kBadReply},
+      {"unit of exception", kRead, {0x12, 0x34, 0, 0, 0, 3, 7, 0x83, 6}, kBadReply},
+      {"function", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 4, 4, 1, 2, 3, 4}, kBadReply},
+      {"other exception", kRead, {0x12, 0x34, 0, 0, 0, 3, 85, 0x90, 6}, kBadReply},
+      {"fewer", kRead, {0x12, 0x34, 0, 0, 0, 5, 85, 3, 2, 1, 2}, kBadReply},
+      {"more", kRead, {0x12, 0x34, 0, 0, 0, 9, 85, 3, 6, 1, 2, 3, 4, 5, 6}, kBadReply},
+      {"count", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 2, 1, 2, 3, 4}, kBadReply},
+      {"truncated", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2}, kBadReply},
+      {"trailing", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4, 5}, kBadReply},
+      {"echoed address", kWriteMany, {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x81, 0, 2}, kBadReply},
+      {"echoed count", kWriteMany, {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x80, 0, 1}, kBadReply},
+      {"echoed address", kWriteOne, {0x12, 0x34, 0, 0, 0, 6, 85, 6, 9, 0x80, 0, 1}, kBadReply},
+      {"echoed value", kWriteOne, {0x12, 0x34, 0, 0, 0, 6, 85, 6, 8, 0x80, 0, 0}, kBadReply},
+      {"nothing", kRead, {}, kBadReply},
   };
   for (const ReplyCase& c : cases) {
     std::uint16_t registers[2] = {0xDEAD, 0xDEAD};
     const ReplyCheck check = check_reply(Framing::kTcp, c.request, frame_of(c.reply), registers);
     EXPECT_EQ(check.status, c.status) << c.what;
     EXPECT_EQ(check.exception, c.exception) << c.what;
-    const bool filled = c.status == Status::kOk && !c.request.is_write();
+    const bool filled = c.status == kOk && !c.request.is_write();
     EXPECT_EQ(registers[0], filled ? 0x0102 : 0xDEAD) << c.what;
     EXPECT_EQ(registers[1], filled ? 0x0304 : 0xDEAD) << c.what;
   }

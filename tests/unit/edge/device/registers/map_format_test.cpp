@@ -8,6 +8,7 @@
 
 #include "edge/device/registers/codec.h"
 #include "edge/device/registers/map_file.h"
+#include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 
@@ -54,19 +55,18 @@ release = ["enable = off"]
 name = "power"
 address = 4
 )";
+const std::string kGood = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
 
 class MapFormat : public ::testing::Test {
  protected:
   /// A map whose point "power" has these keys.
   RegisterMap with_point(const std::string& keys) {
-    RegisterMap map;
-    std::string error;
     std::string head = kHead;  // no command writes the point under test: any type may stand there
     head.replace(head.find("power = power"), 13, "battery_power = power");
-    const std::string path =
-        folder_.write("map.toml", head + keys + "\nmin = -5000000000\nmax = 5000000000\n");
-    EXPECT_TRUE(load_register_map(path, "", map, error)) << error;
-    return map;
+    return loaded(head + keys + "\nmin = -5000000000\nmax = 5000000000\n");
+  }
+  RegisterMap loaded(const std::string& text, const std::string& variant = "") {
+    return load_good_map(folder_.write("map.toml", text), variant);
   }
   std::int64_t decoded(const std::string& keys, std::vector<std::uint16_t> raw) {
     const RegisterMap map = with_point(keys);
@@ -125,36 +125,26 @@ TEST_F(MapFormat, WideNumbers) {
 }
 
 TEST_F(MapFormat, ExtremesAreNoValuesByType) {
-  const std::string head = std::string(kHead).insert(6, "not_implemented = \"extremes\"\n");
+  const std::string head = std::string(kGood).insert(6, "not_implemented = \"extremes\"\n");
   const std::pair<const char*, std::vector<std::uint64_t>> cases[] = {
       {"u16", {0xFFFF}},
       {"s16", {0x8000, 0x7FFF}},
       {"u32", {0xFFFF'FFFF}},
       {"s32", {0x8000'0000, 0x7FFF'FFFF}}};
   for (const auto& [type, nothing] : cases) {
-    RegisterMap map;
-    std::string error;
-    const std::string point =
-        std::string("[[point]]\nname = \"probe\"\naddress = 9\nmin = -9\nmax = ") +
-        "4294967295\ntype = \"" + type + "\"\n";
-    ASSERT_TRUE(load_register_map(
-        folder_.write("map.toml", head + "type = \"s32\"\nmin = -1000\nmax = 1000\n" + point), "",
-        map, error))
-        << error;
+    const RegisterMap map = loaded(head + "[[point]]\nname = \"probe\"\naddress = 9\nmin = -9\n" +
+                                   "max = 4294967295\ntype = \"" + type + "\"\n");
     const auto& found = map.points[find_point(map, "probe")].not_implemented;
     EXPECT_EQ(std::vector<std::uint64_t>(found.begin(), found.end()), nothing) << type;
   }
 }
 
 TEST_F(MapFormat, AnOptionalPointIsNoScaleOfAnother) {
-  std::string head = kHead;
+  std::string head = kGood;
   head.insert(head.find("active ="), "alarms = [\"rare\"]\n");
   head.insert(head.rfind("[[point]]"),
               "[[point]]\nname = \"rare\"\naddress = 9\nmin = 0\nmax = 9\noptional = true\n");
-  head += "type = \"s32\"\nmin = -1000\nmax = 1000\n";
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(folder_.write("map.toml", head), "", map, error)) << error;
+  loaded(head);
   EXPECT_THAT(error_of(head + "clamp_to = \"rare\"\n"), Names("\"power\" \"rare\""));
 }
 
@@ -213,25 +203,19 @@ TEST_F(MapFormat, NamesOfValuesAndBits) {
   const RegisterMap map = with_point("type = \"s32\"");
   EXPECT_EQ(name_of_value(map, find_point(map, "enable"), 1), "on");
   EXPECT_EQ(name_of_value(map, find_point(map, "enable"), 9), "");
-  std::string text = kHead;
+  std::string text = kGood;
   text.replace(
       text.find("active = [\"enable = 1\"]"), 23,
       "active = [\"enable = on\"]\nalarms = [\"enable has failed\"]\noff_grid = \"enable != on\"");
-  RegisterMap named;
-  std::string error;
-  ASSERT_TRUE(load_register_map(
-      folder_.write("map.toml", text + "type = \"s32\"\nmin = -1000\nmax = 1000\n"), "", named,
-      error))
-      << error;
+  const RegisterMap named = loaded(text);
   EXPECT_TRUE(named.alarms[0].holds(0x8001));
   EXPECT_FALSE(named.alarms[0].holds(0x7FFF));
   EXPECT_TRUE(named.off_grid.holds(0));
 }
 
 TEST_F(MapFormat, AnIncludedFileIsChangedPointByPointAndByVariants) {
-  static_cast<void>(
-      folder_.write("base.toml", std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n"));
-  const std::string path = folder_.write("child.toml", R"(include = "base.toml"
+  static_cast<void>(folder_.write("base.toml", kGood));
+  const std::string child = R"(include = "base.toml"
 [map]
 unit = 9
 [[point]]
@@ -246,37 +230,33 @@ charge_w_max = 900
 [[variant.point]]
 name = "power"
 address = 201
-)");
-  RegisterMap map;
-  std::string error;
-  ASSERT_TRUE(load_register_map(path, "", map, error)) << error;
+)";
+  RegisterMap map = loaded(child);
   EXPECT_EQ(map.variant.view(), "small");
   EXPECT_EQ(map.unit, 9);
   EXPECT_EQ(map.points[find_point(map, "soc")].address, 100);
   EXPECT_EQ(map.points[find_point(map, "soc")].value_max, 10'000);  // the included file's
   EXPECT_EQ(map.charge_w_max, 1'000);
-  ASSERT_TRUE(load_register_map(path, "large", map, error)) << error;
+  map = loaded(child, "large");
   EXPECT_EQ(map.charge_w_max, 900);
   EXPECT_EQ(map.points[find_point(map, "power")].address, 200);
   EXPECT_EQ(map.sequence(Command::kCharge).writes[1].address, 200);
 }
 
 TEST_F(MapFormat, AWriteOfItsOwnFunctionIsReadBackExactlyUnlessSaid) {
-  std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+  std::string text = kGood;
   const std::string plain = "\"enable = on\", \"power";
   text.replace(text.find(plain), plain.size(),
                "{ write = \"enable = on\", function = 16 }, \"power");
-  RegisterMap map;
-  std::string error;
-  ASSERT_TRUE(load_register_map(folder_.write("map.toml", text), "", map, error)) << error;
+  const RegisterMap map = loaded(text);
   const BlockWrite& write = map.sequence(Command::kCharge).writes[0];
   EXPECT_EQ(write.function, 16);
   EXPECT_EQ(write.read_back, ReadBack::kExact);
 }
 
 TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
-  std::string base = std::string(kHead) + "type = \"s31\"\nmin = -1000\nmax = 1000\n";
-  const std::string base_path = folder_.write("base.toml", base);
+  const std::string base_path =
+      folder_.write("base.toml", std::string(kHead) + "type = \"s31\"\nmin = -1000\nmax = 1000\n");
   const std::string path = folder_.write("child.toml", "include = \"base.toml\"\n");
   RegisterMap map;
   std::string error;
@@ -287,13 +267,9 @@ TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   EXPECT_THAT(error_of("include = \"loop.toml\"\n"), Names("include"));
 }
 
-struct MapMistake {
-  std::string before, after, codes;
-};
-
 TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
   const auto map_with = [](const std::string& argument, const std::string& max) {
-    std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+    std::string text = kGood;
     const auto put = [&text](std::string_view before, const std::string& after) {
       text.replace(text.find(before), before.size(), after);
     };
@@ -305,16 +281,13 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
   };
   EXPECT_THAT(error_of(map_with("duration", "600")), Names("duration_s 601 s \"time\""));
   EXPECT_THAT(error_of(map_with("duration_minutes", "10")), Names("duration_s 601 11 \"time\""));
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(folder_.write("map.toml", map_with("duration_minutes", "11")), "",
-                                map, error))
-      << error;
+  loaded(map_with("duration_minutes", "11"));
 }
 
 TEST_F(MapFormat, EveryMistakeHasItsMend) {
-  const std::string good = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
-  const MapMistake mistakes[] = {
+  const struct {
+    std::string before, after, codes;
+  } mistakes[] = {
       {"unit = 7", "unit = 7\nunti = 7", "unti"},
       {"unit = 7", "unit = \"7\"", "unit"},
       {"unit = 7", "unit = 300", "unit 0 255"},
@@ -367,8 +340,8 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"[command]", "[commissioning]\nduration_s = 60\nsettle_s = 60\n[command]",
        "settle_s duration_s"},
   };
-  for (const MapMistake& mistake : mistakes) {
-    std::string text = good;
+  for (const auto& mistake : mistakes) {
+    std::string text = kGood;
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;
     text.replace(at, mistake.before.size(), mistake.after);

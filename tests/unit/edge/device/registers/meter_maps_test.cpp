@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <filesystem>
-#include <optional>
 
 #include "edge/device/battery/modbus_battery.h"
 #include "tests/support/register_device.h"
@@ -20,21 +19,22 @@ std::string meter_map(const std::string& name) {
 }
 
 struct MeterUnderTest {
-  explicit MeterUnderTest(const std::string& name, const std::string& variant = "") {
-    std::string error;
-    EXPECT_TRUE(load_register_map(meter_map(name), variant, map, error)) << error;
-    meter.emplace(map, DeviceClock(device), -1, device);
-  }
+  explicit MeterUnderTest(const std::string& name, const std::string& variant = "")
+      : map(load_good_map(meter_map(name), variant)) {}
   /// What it reads in W; -1 with `status` set where it does not.
   std::int32_t read() {
     std::int32_t power_w = -1;
-    status = meter->read(power_w);
+    status = meter.read(power_w);
     return power_w;
+  }
+  void expect_implausible() {
+    read();
+    EXPECT_EQ(status, Status::kImplausible);
   }
 
   RegisterMap map;
   RegisterDevice device;
-  std::optional<GridMeter<DeviceLink, DeviceClock>> meter;
+  GridMeter<DeviceLink, DeviceClock> meter{map, DeviceClock(device), -1, device};
   Status status = Status::kOk;
 };
 
@@ -42,10 +42,7 @@ TEST(MeterMaps, AllOfThemLoadAsMeters) {
   int maps = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(BESS_SOURCE_DIR "/edge/device/meters")) {
-    RegisterMap map;
-    std::string error;
-    EXPECT_TRUE(load_register_map(file.path().string(), "", map, error)) << error;
-    EXPECT_TRUE(map.is_meter) << file.path();
+    EXPECT_TRUE(load_good_map(file.path().string()).is_meter) << file.path();
     ++maps;
   }
   EXPECT_EQ(maps, 6);
@@ -68,13 +65,11 @@ TEST(MeterMaps, SunSpecIsTheTotalPowerAndItsScaleFactor) {
     lay_out_sunspec(t.device, model);
     EXPECT_EQ(t.read(), -1'230) << variant;
     t.device.set(40'070 + 18, {0x8000});  // "I do not have this"
-    t.read();
-    EXPECT_EQ(t.status, Status::kImplausible);
+    t.expect_implausible();
   }
   MeterUnderTest other("sunspec", "three_phase");
   lay_out_sunspec(other.device, 213);  // the float models
-  other.read();
-  EXPECT_EQ(other.status, Status::kImplausible);
+  other.expect_implausible();
 }
 
 TEST(MeterMaps, FroniusIsSunSpecUnderAnotherUnit) {
@@ -101,8 +96,7 @@ TEST(MeterMaps, EastronIsAFloatInInputRegisters) {
   put(0x0034, -2'345.4F);
   EXPECT_EQ(t.read(), -2'345);
   MeterUnderTest other("eastron_sdm630");  // no frequency there: not this meter
-  other.read();
-  EXPECT_EQ(other.status, Status::kImplausible);
+  other.expect_implausible();
 }
 
 TEST(MeterMaps, TheP1DonglesTelegramMustMoveOn) {
@@ -116,29 +110,23 @@ TEST(MeterMaps, TheP1DonglesTelegramMustMoveOn) {
   t.device.pass_s(30);
   EXPECT_EQ(t.read(), -800);
   t.device.pass_s(1);
-  t.read();
-  EXPECT_EQ(t.status, Status::kImplausible);  // the cable to the meter is pulled
+  t.expect_implausible();  // the cable to the meter is pulled
   telegram(time + 31);
   EXPECT_EQ(t.read(), -800);
   t.device.set(14, {0xFFFF, 0xFFFF});
-  t.read();
-  EXPECT_EQ(t.status, Status::kImplausible);
+  t.expect_implausible();
 }
 
 TEST(MeterMaps, ABatterysGridPointIsReadOnDemandAlone) {
   MeterUnderTest none("simulator");
   MapUnderTest t(shipped_map("alphaess"));
-  t.device.set(0x0102, {435});
-  t.device.set(0x0119, {80});
-  t.device.set(0x0440, {1});
+  fill_alphaess(t.device);
   t.device.set(0x0021, {0xFFFF, 0xFA24});  // -1500: export
   t.device.unreadable_address = 0x0021;
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_FALSE(t.measured.has_grid_power);
+  EXPECT_FALSE(t.reading().has_grid_power);
   t.device.unreadable_address = -1;
   ASSERT_TRUE(measure_grid_power(t.map));
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.has_grid_power);
+  EXPECT_TRUE(t.reading().has_grid_power);
   EXPECT_EQ(t.measured.grid_power_w, -1'500);
   MapUnderTest gx(shipped_map("victron_ess3"), "single_phase");
   EXPECT_TRUE(measure_grid_power(gx.map));
@@ -164,9 +152,7 @@ TEST(MeterMaps, WhatOnlyABatteryHasIsAMistakeInAMetersMap) {
     EXPECT_FALSE(load_register_map(folder.write("m.toml", text), "", map, error));
     EXPECT_THAT(error, Names(message));
   }
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(folder.write("m.toml", head + point), "", map, error)) << error;
+  load_good_map(folder.write("m.toml", head + point));
 }
 
 }  // namespace

@@ -3,22 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "edge/device/registers/codec.h"
-#include "edge/device/registers/map_file.h"
+#include "tests/support/shipped_maps.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-
-const std::string kMapPath = std::string(BESS_SOURCE_DIR) + "/edge/device/maps/alphaess.toml";
-
-RegisterMap load_variant(std::string_view variant) {
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(kMapPath, variant, map, error)) << error;
-  return map;
-}
 
 std::vector<std::uint16_t> registers_of(const RegisterMap& map, Command command, int write,
                                         const PowerOrder& order) {
@@ -32,23 +23,22 @@ PowerOrder order_of(std::int32_t power_w) {
 }
 
 TEST(AlphaEss, FiveWritesVariantStartsFirstAndSetsTheModeLast) {
-  const RegisterMap map = load_variant("five_writes");
+  const RegisterMap map = load_shipped_map({"alphaess", "five_writes"});
   const CommandSequence& charge = map.sequence(Command::kCharge);
   ASSERT_EQ(charge.writes.size(), 5);
   const int addresses[] = {0x0880, 0x0881, 0x0887, 0x0886, 0x0885};
   for (int i = 0; i < 5; ++i) EXPECT_EQ(charge.writes[i].address, addresses[i]);
-  EXPECT_THAT(registers_of(map, Command::kDischarge, 0, order_of(-4'000)), ElementsAre(1));
-  EXPECT_THAT(registers_of(map, Command::kDischarge, 1, order_of(-4'000)), ElementsAre(0, 36'000));
-  EXPECT_THAT(registers_of(map, Command::kDischarge, 2, order_of(-4'000)), ElementsAre(0, 300));
-  EXPECT_THAT(registers_of(map, Command::kDischarge, 3, order_of(-4'000)), ElementsAre(25));
-  EXPECT_THAT(registers_of(map, Command::kDischarge, 4, order_of(-4'000)), ElementsAre(2));
+  const std::vector<std::uint16_t> registers[] = {{1}, {0, 36'000}, {0, 300}, {25}, {2}};
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(registers_of(map, Command::kDischarge, i, order_of(-4'000)), registers[i]) << i;
+  }
   ASSERT_EQ(map.sequence(Command::kRelease).writes.size(), 2);
   EXPECT_THAT(registers_of(map, Command::kRelease, 0, {}), ElementsAre(0, 32'000));
   EXPECT_THAT(registers_of(map, Command::kRelease, 1, {}), ElementsAre(0));
 }
 
 TEST(AlphaEss, TenAndOneVariantStartsLast) {
-  const RegisterMap map = load_variant("ten_and_one");
+  const RegisterMap map = load_shipped_map({"alphaess", "ten_and_one"});
   const CommandSequence& charge = map.sequence(Command::kCharge);
   ASSERT_EQ(charge.writes.size(), 2);
   EXPECT_EQ(charge.writes[0].address, 0x0881);
@@ -59,7 +49,7 @@ TEST(AlphaEss, TenAndOneVariantStartsLast) {
 }
 
 TEST(AlphaEss, SocLimitIsRoundedInwards) {
-  const RegisterMap map = load_variant("block");
+  const RegisterMap map = load_shipped_map({"alphaess", "block"});
   PowerOrder order = order_of(4'000);
   order.soc_max_e4 = 9'550;  // 238.75 counts: a ceiling goes down
   EXPECT_EQ(registers_of(map, Command::kCharge, 0, order)[6], 238);
@@ -69,7 +59,7 @@ TEST(AlphaEss, SocLimitIsRoundedInwards) {
 }
 
 TEST(AlphaEss, PowerBeyondTheRangeIsRefusedAndNeverWraps) {
-  const RegisterMap map = load_variant("block");
+  const RegisterMap map = load_shipped_map({"alphaess", "block"});
   EXPECT_EQ(check_expressible(map, order_of(32'000)), Status::kOk);
   EXPECT_EQ(check_expressible(map, order_of(32'001)), Status::kNotExpressible);
   EXPECT_EQ(check_expressible(map, order_of(-32'001)), Status::kNotExpressible);
@@ -110,19 +100,19 @@ TEST(Codec, LowFirstSwapsTheWords) {
   point.type = RegisterType::kU32;
   point.registers = 2;
   point.value_max = UINT32_MAX;
-  RegisterBlock block;
-  ASSERT_EQ(encode(point, 0x0001'0002, Rounding::kNearest, block), Status::kOk);
-  EXPECT_THAT(std::vector<int>(block.begin(), block.end()), ElementsAre(1, 2));
-  point.word_order = WordOrder::kLowFirst;
-  block.clear();
-  ASSERT_EQ(encode(point, 0x0001'0002, Rounding::kNearest, block), Status::kOk);
-  EXPECT_THAT(std::vector<int>(block.begin(), block.end()), ElementsAre(2, 1));
+  for (const bool is_low_first : {false, true}) {
+    if (is_low_first) point.word_order = WordOrder::kLowFirst;
+    RegisterBlock block;
+    ASSERT_EQ(encode(point, 0x0001'0002, Rounding::kNearest, block), Status::kOk);
+    EXPECT_THAT(std::vector<int>(block.begin(), block.end()),
+                is_low_first ? ElementsAre(2, 1) : ElementsAre(1, 2));
+  }
 }
 
 TEST(MapFile, UnknownVariantNamesTheKnownOnes) {
   RegisterMap map;
   std::string error;
-  EXPECT_FALSE(load_register_map(kMapPath, "blok", map, error));
+  EXPECT_FALSE(load_register_map(shipped_map("alphaess"), "blok", map, error));
   EXPECT_THAT(error, Names("blok block five_writes ten_and_one"));
 }
 

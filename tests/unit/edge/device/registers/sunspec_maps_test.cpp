@@ -29,21 +29,18 @@ TEST(SunSpec704, SetPointTimerAndEnableAtTheirModelsOffsets) {
   t.device.set(bank + 22, {3});
   t.device.set(bank + 47, {1'500});            // discharging
   t.device.set(bank + 53, {1, 2, 0, 0xFFFF});  // Wh, W max, -, SoC scales
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.power_w, -1'500);
+  EXPECT_EQ(t.reading().power_w, -1'500);
   EXPECT_EQ(t.measured.soc_e4, 4'750);
   EXPECT_EQ(t.measured.capacity_wh, 8'000);
   EXPECT_EQ(t.measured.charge_w_max, 4'000);
-  ASSERT_EQ(t.order(4'000), Status::kOk);  // -4000 = 0xFFFFF060
-  EXPECT_THAT(t.device.take_writes(),
+  // -4000 = 0xFFFFF060
+  EXPECT_THAT(t.writes_of(4'000),
               ElementsAre(fc16(der + 23, {1, 0xFFFF, 0xF060}), fc16(der + 30, {0, 0, 300}),
                           fc16(bank + 19, {1}), fc16(der + 22, {1})));
-  ASSERT_EQ(t.order(-3'000), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(),
+  EXPECT_THAT(t.writes_of(-3'000),
               ElementsAre(fc16(der + 23, {1, 0, 3'000}), fc16(der + 30, {0, 0, 300}),
                           fc16(bank + 19, {2}), fc16(der + 22, {1})));
-  ASSERT_EQ(t.driver->release(), Status::kOk);
-  EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(der + 22, {0}), fc16(der + 24, {0, 0})));
+  EXPECT_THAT(t.release_writes(), ElementsAre(fc16(der + 22, {0}), fc16(der + 24, {0, 0})));
 }
 
 TEST(SunSpec704, LocalControlAndFrozenHeartbeatAreSeen) {
@@ -94,8 +91,7 @@ TEST(SunSpec124, RatesInPerCentOfTheMaximum) {
   t.device.set(storage + 2, {5'000});
   t.device.set(storage + 8, {62});
   t.device.set(storage + 25, {0xFFFF});  // rates in 0.1 %
-  ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_EQ(t.measured.power_w, -1'500);
+  EXPECT_EQ(t.reading().power_w, -1'500);
   EXPECT_EQ(t.measured.soc_e4, 6'200);
   ASSERT_EQ(t.order(2'000), Status::kOk);  // -40.0 %
   EXPECT_THAT(
