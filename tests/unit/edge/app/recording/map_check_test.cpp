@@ -18,78 +18,31 @@ using ::testing::HasSubstr;
 
 /// A battery of 8 kWh: SoC at 0 in 0.1 %, power at 1 (+ charge), capacity at 2 in two registers
 /// (Wh), the order at 10.
-constexpr const char* kPlainMap = R"([map]
-name = "plain"
-unit = 1
-
-[power]
-charge_w_max = 30000
-discharge_w_max = 30000
-
-[watchdog]
-kind = "duration"
-duration_s = 300
-refresh_s = 120
+constexpr const char* kPlainMap = R"(
+map = { name = "plain", unit = 1 }
+power = { charge_w_max = 30000, discharge_w_max = 30000 }
+watchdog = { kind = "duration", duration_s = 300, refresh_s = 120 }
+response = { settle_s = 20 }
+identity = [{ point = "soc", min = 0, max = 10000, hint = "is this the battery?" }]
+point = [
+  { name = "soc", address = 0, scale = 10, min = 0, max = 10000 },
+  { name = "battery_power", address = 1, type = "s16", min = -30000, max = 30000 },
+  { name = "capacity", address = 2, type = "u32", min = 1000, max = 2000000 },
+  { name = "start", address = 10, min = 0, max = 1 },
+  { name = "order", address = 11, type = "s16", min = -30000, max = 30000 },
+  { name = "seconds", address = 12, min = 0, max = 65535 },
+]
 
 [state]
 measure = ["soc", "battery_power", "capacity"]
 active = ["start"]
 order_power = [{ power = "order" }]
 
-[response]
-settle_s = 20
-
 [command]
 charge = [["start = 1", "order = power", "seconds = duration"]]
 idle = [["start = 1", "order = power", "seconds = duration"]]
 discharge = [["start = 1", "order = power", "seconds = duration"]]
 release = ["start = 0"]
-
-[[identity]]
-point = "soc"
-min = 0
-max = 10000
-hint = "is this the battery?"
-
-[[point]]
-name = "soc"
-address = 0
-scale = 10
-min = 0
-max = 10000
-
-[[point]]
-name = "battery_power"
-address = 1
-type = "s16"
-min = -30000
-max = 30000
-
-[[point]]
-name = "capacity"
-address = 2
-type = "u32"
-min = 1000
-max = 2000000
-
-[[point]]
-name = "start"
-address = 10
-min = 0
-max = 1
-
-[[point]]
-name = "order"
-address = 11
-type = "s16"
-min = -30000
-max = 30000
-
-[[point]]
-name = "seconds"
-address = 12
-min = 0
-max = 65535
 )";
 
 /// What a device of that map does, as one sees it on the bus.
@@ -183,22 +136,21 @@ TEST_F(MapCheckTest, AWrongSignShowsInTheStateOfCharge) {
 }
 
 TEST_F(MapCheckTest, AnOrderOfTheWrongSignIsAnotherFinding) {
-  load("type = \"s16\"\nmin = -30000\nmax = 30000\n\n[[point]]\nname = \"seconds\"",
-       "type = \"s16\"\nsign = -1\nmin = -30000\nmax = 30000\n\n[[point]]\nname = \"seconds\"");
+  load("address = 11, type = \"s16\"", "address = 11, type = \"s16\", sign = -1");
   drive();
   EXPECT_THAT(findings(), HasSubstr("order: "));
   EXPECT_EQ(finding("battery_power"), "");
 }
 
 TEST_F(MapCheckTest, AScaleOfThePowerWithinItsRangeShows) {
-  load("type = \"s16\"\nmin = -30000", "type = \"s16\"\nscale_divisor = 10\nmin = -30000");
+  load("type = \"s16\"", "type = \"s16\", scale_divisor = 10");
   drive();
   EXPECT_EQ(named(), "battery_power");
   EXPECT_THAT(findings(), Names("10 scale soc capacity"));
 }
 
 TEST_F(MapCheckTest, AScaleOfTheStateOfChargeWithinItsRangeShows) {
-  load("scale = 10\n", "scale = 1\n");
+  load("scale = 10,", "scale = 1,");
   drive();
   EXPECT_EQ(named(), "soc");
   EXPECT_THAT(findings(), Names("10th scale capacity"));
@@ -212,14 +164,14 @@ TEST_F(MapCheckTest, AStateOfChargeThatStandsStillShows) {
 }
 
 TEST_F(MapCheckTest, ValuesOutsideTheirRangeAreNamedWithWhatWouldFit) {
-  load("scale = 10\n", "scale = 100\n");
+  load("scale = 10,", "scale = 100,");
   add(3, 0, {435, 0, 0, 8'000});
   EXPECT_THAT(finding("soc"), Names("43500 [435] 0 10000 1 scale 10"));
-  load("type = \"u32\"\n", "type = \"u32\"\nword_order = \"low_first\"\n");
+  load("type = \"u32\"", "type = \"u32\", word_order = \"low_first\"");
   add(3, 0, {435, 0, 0, 8'000});
   EXPECT_THAT(finding("capacity"),
               Names("524288000 [0 8000] 1000 2000000 1 word_order = \"high_first\""));
-  load("type = \"s16\"\nmin = -30000", "type = \"u16\"\nmin = -30000");
+  load("type = \"s16\"", "type = \"u16\"");
   add(3, 0, {435, 0xF060, 0, 8'000});
   EXPECT_THAT(finding("battery_power"), Names("61536 [61536] -30000 30000 1 type = \"s16\""));
 }
@@ -238,7 +190,7 @@ TEST_F(MapCheckTest, WhatWasNeverAnsweredIsNamed) {
 }
 
 TEST_F(MapCheckTest, AnIdentityCheckThatFailsIsToldWithItsHint) {
-  load("min = 0\nmax = 10000\nhint", "min = 5000\nmax = 10000\nhint");
+  load("min = 0, max = 10000, hint", "min = 5000, max = 10000, hint");
   add(3, 0, {435, 0, 0, 8'000});
   EXPECT_THAT(finding("soc"), Names("4350"));
 }

@@ -21,41 +21,15 @@ using ::testing::HasSubstr;
 
 /// A map of a device that tells its type and serial number in one text, and a meter's number beside
 /// it.
-constexpr const char* kMap = R"([map]
-name = "talkative"
-unit = 1
-kind = "meter"
-read_gap_registers_max = 4
-
-[state]
-measure = ["grid_power", "meter_number"]
-grid_power = "grid_power"
-
-[[identity]]
-point = "type_and_serial"
-text = "X1"
-hint = "another device"
-
-[[point]]
-name = "type_and_serial"
-address = 0
-type = "text"
-registers = 4
-
-[[point]]
-name = "grid_power"
-address = 10
-type = "s16"
-min = -10000
-max = 10000
-
-[[point]]
-name = "meter_number"
-address = 13
-type = "u32"
-private = true
-min = 0
-max = 4000000000
+constexpr const char* kMap = R"(
+map = { name = "talkative", unit = 1, kind = "meter", read_gap_registers_max = 4 }
+state = { measure = ["grid_power", "meter_number"], grid_power = "grid_power" }
+identity = [{ point = "type_and_serial", text = "X1", hint = "another device" }]
+point = [
+  { name = "type_and_serial", address = 0, type = "text", registers = 4 },
+  { name = "grid_power", address = 10, type = "s16", min = -10000, max = 10000 },
+  { name = "meter_number", address = 13, type = "u32", private = true, min = 0, max = 4000000000 },
+]
 )";
 
 BusExchange reading(std::uint16_t address, std::vector<std::uint16_t> values) {

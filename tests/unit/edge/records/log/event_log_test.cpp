@@ -58,6 +58,27 @@ class Log : public ::testing::Test {
     s.ring_days = 1;
     return s;
   }
+  /// A log that has opened well.
+  std::unique_ptr<EventLog> opened(const EventLogSettings& s, const RunIdentity& run = {}) {
+    auto log = std::make_unique<EventLog>();
+    EXPECT_TRUE(log->open(s, run, error_)) << error_.c_str();
+    return log;
+  }
+  static CycleRecord newest_of(EventLog& log) {
+    CycleRecord newest;
+    EXPECT_TRUE(log.newest(newest));
+    return newest;
+  }
+  /// What stands on standard output while these are written.
+  static std::string journal_of(EventLog& log, std::initializer_list<CycleRecord> records) {
+    ::testing::internal::CaptureStdout();
+    for (const CycleRecord& record : records) log.write(record);
+    const bool drained = log.drain(kDrainNs);
+    const std::string journal = ::testing::internal::GetCapturedStdout();
+    EXPECT_TRUE(drained);
+    return journal;
+  }
+  [[nodiscard]] std::string status() const { return text_of_file(folder_.file("status.json")); }
 
   const TemporaryFolder folder_;
   FileMessage error_;
@@ -65,25 +86,21 @@ class Log : public ::testing::Test {
 
 TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
   {
-    const auto log = std::make_unique<EventLog>();
+    const auto log = opened(settings());
     CycleRecord newest;
-    ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
     EXPECT_FALSE(log->newest(newest));
-    EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 0"));
+    EXPECT_THAT(status(), HasSubstr("\"cycles\": 0"));
     for (int cycle = 1; cycle <= 100; ++cycle) {
       log->write(record_of(cycle));
       ASSERT_TRUE(log->drain(kDrainNs));
     }
-    EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 100"));
+    EXPECT_THAT(status(), HasSubstr("\"cycles\": 100"));
     EXPECT_THAT(text_of_file(folder_.file("metrics.prom")),
                 ContainsRegex("bess_cycles_total[{].*[}] 100\n"));
     const std::string csv = text_of_file(folder_.file("log.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
   }
-  const auto log = std::make_unique<EventLog>();
-  CycleRecord newest;
-  ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
-  ASSERT_TRUE(log->newest(newest));
+  const CycleRecord newest = newest_of(*opened(settings()));
   EXPECT_EQ(newest.cycle, 100);
   EXPECT_EQ(newest.counters.flash_day, 19'442);
   EXPECT_EQ(newest.counters.flash_writes_today, 100);
@@ -99,8 +116,7 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   const int reader = open(pipe_path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   ASSERT_GE(reader, 0);
   fcntl(reader, F_SETPIPE_SZ, 4'096);
-  const auto log = std::make_unique<EventLog>();
-  ASSERT_TRUE(log->open(s, RunIdentity{}, error_)) << error_.c_str();
+  const auto log = opened(s);
   constexpr int kRecords = 1'000;
   for (int cycle = 1; cycle <= kRecords; ++cycle) log->write(record_of(cycle));
   EXPECT_FALSE(
@@ -111,10 +127,9 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   }
   log->write(record_of(kRecords + 1));
   ASSERT_TRUE(log->drain(kDrainNs));
-  const std::string status = text_of_file(folder_.file("status.json"));
-  EXPECT_THAT(status, HasSubstr("\"utc\": \"2023-03-27T09:22:00Z\", \"cycle\": 1001"));
-  EXPECT_THAT(status, HasSubstr("\"records_dropped\": 9"));  // 9xx: all but queue and pipe
-  EXPECT_THAT(status, HasSubstr("\"disk_failures\": 0"));
+  EXPECT_THAT(status(), HasSubstr("\"utc\": \"2023-03-27T09:22:00Z\", \"cycle\": 1001"));
+  EXPECT_THAT(status(), HasSubstr("\"records_dropped\": 9"));  // 9xx: all but queue and pipe
+  EXPECT_THAT(status(), HasSubstr("\"disk_failures\": 0"));
   close(reader);
 }
 
@@ -127,7 +142,7 @@ TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   const std::string journal = ::testing::internal::GetCapturedStdout();
   ASSERT_TRUE(opened) << error_.c_str();
   EXPECT_THAT(journal, Names("[log]"));
-  EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
+  EXPECT_THAT(status(), HasSubstr("\"disk_is_failing\": true"));
 }
 
 /// What a process makes of a disk that has room for files of this size and no larger ones.
@@ -164,20 +179,15 @@ TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
     return log->drain(kDrainNs) ? 0 : 4;
   });
   EXPECT_EQ(code, 0);
-  EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 2"));
+  EXPECT_THAT(status(), HasSubstr("\"cycles\": 2"));
   EXPECT_THAT(text_of_file(folder_.file("log.csv")), ::testing::StartsWith("utc,"));
-  const auto log = std::make_unique<EventLog>();
-  CycleRecord newest;
-  ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
-  ASSERT_TRUE(log->newest(newest));
-  EXPECT_EQ(newest.cycle, 2);
+  EXPECT_EQ(newest_of(*opened(settings())).cycle, 2);
 }
 
 /// A larger log has no room: the one that is there goes on, with what it knows.
 TEST_F(Log, ALogThatCannotGrowGoesOnAtItsSize) {
   {
-    const auto log = std::make_unique<EventLog>();
-    ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
+    const auto log = opened(settings());
     log->write(record_of(1));
     ASSERT_TRUE(log->drain(kDrainNs));
   }
@@ -196,11 +206,7 @@ TEST_F(Log, ALogThatCannotGrowGoesOnAtItsSize) {
   EXPECT_EQ(std::filesystem::file_size(folder_.file("decisions.ring")), size);
   EXPECT_FALSE(std::filesystem::exists(folder_.file("decisions.ring.old")));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("decisions.ring.new")));
-  const auto log = std::make_unique<EventLog>();
-  CycleRecord newest;
-  ASSERT_TRUE(log->open(larger, RunIdentity{}, error_)) << error_.c_str();
-  ASSERT_TRUE(log->newest(newest));
-  EXPECT_EQ(newest.cycle, 2);
+  EXPECT_EQ(newest_of(*opened(larger)).cycle, 2);
   EXPECT_GT(std::filesystem::file_size(folder_.file("decisions.ring")), size);
 }
 
@@ -208,63 +214,43 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   EventLogSettings s = settings();
   std::filesystem::create_directory(folder_.file("metrics"));
   s.metrics = folder_.file("metrics/bess.prom").c_str();
-  const auto log = std::make_unique<EventLog>();
-  ASSERT_TRUE(log->open(s, RunIdentity{}, error_)) << error_.c_str();
+  const auto log = opened(s);
   std::filesystem::remove_all(folder_.file("metrics"));
-  ::testing::internal::CaptureStdout();
-  log->write(record_of(1));
-  log->write(record_of(2));
-  const bool drained = log->drain(kDrainNs);
-  const std::string journal = ::testing::internal::GetCapturedStdout();
-  ASSERT_TRUE(drained);
+  const std::string journal = journal_of(*log, {record_of(1), record_of(2)});
   EXPECT_EQ(std::ranges::count_if(lines_of(journal), is_about_a_file), 1) << journal;
-  const std::string status = text_of_file(folder_.file("status.json"));
-  EXPECT_THAT(status, HasSubstr("\"cycles\": 2"));
-  EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
+  EXPECT_THAT(status(), HasSubstr("\"cycles\": 2"));
+  EXPECT_THAT(status(), HasSubstr("\"disk_is_failing\": true"));
 }
 
 /// What a disk in trouble does not change: the line promises nothing that is not so.
 TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
   struct Case {
     bool control;
-    void (*change)(CycleRecord& record);
+    Mode mode;
+    Reason reason, trip;
     const char* codes;
   };
-  const Case cases[] = {{true, [](CycleRecord& record) { record.mode = Mode::kRunning; }, ""},
-                        {false, [](CycleRecord& record) { record.mode = Mode::kRunning; }, ""},
-                        {true,
-                         [](CycleRecord& record) {
-                           record.mode = Mode::kSafe;
-                           record.reason = Reason::kNoPrice;
-                         },
-                         "no_price"},
-                        {true,
-                         [](CycleRecord& record) {
-                           record.mode = Mode::kSafe;
-                           record.is_tripped = true;
-                           record.trip = {.reason = Reason::kStateLost, .utc_s = 1};
-                         },
-                         "state_lost"}};
+  const Case cases[] = {{true, Mode::kRunning, Reason::kLink, Reason::kStudent, ""},
+                        {false, Mode::kRunning, Reason::kLink, Reason::kStudent, ""},
+                        {true, Mode::kSafe, Reason::kNoPrice, Reason::kStudent, "no_price"},
+                        {true, Mode::kSafe, Reason::kLink, Reason::kStateLost, "state_lost"}};
   std::set<std::string> told;
   for (const Case& one : cases) {
     EventLogSettings s = settings();
     s.metrics = folder_.file("metrics").c_str();
     RunIdentity identity;
     identity.control = one.control;
-    const auto log = std::make_unique<EventLog>();
-    ASSERT_TRUE(log->open(s, identity, error_)) << error_.c_str();
+    const auto log = opened(s, identity);
     std::filesystem::remove(folder_.file("metrics"));
     std::filesystem::create_directory(folder_.file("metrics"));
     CycleRecord record = record_of(1);
-    one.change(record);
-    ::testing::internal::CaptureStdout();
-    log->write(record);
-    const bool drained = log->drain(kDrainNs);
-    const std::string journal = ::testing::internal::GetCapturedStdout();
-    ASSERT_TRUE(drained);
-    const std::vector<std::string> lines = lines_of(journal);
+    record.mode = one.mode;
+    record.reason = one.reason;
+    record.is_tripped = one.trip != Reason::kStudent;
+    record.trip = {.reason = one.trip, .utc_s = 1};
+    const std::vector<std::string> lines = lines_of(journal_of(*log, {record}));
     const auto line = std::ranges::find_if(lines, is_about_a_file);
-    ASSERT_NE(line, lines.end()) << journal;
+    ASSERT_NE(line, lines.end());
     EXPECT_THAT(*line, Names(one.codes));
     EXPECT_TRUE(told.insert(*line).second) << *line;
     std::filesystem::remove(folder_.file("metrics"));

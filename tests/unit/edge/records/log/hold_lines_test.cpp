@@ -19,9 +19,7 @@ constexpr HoldReport kUnreadable{.unreadable = true};
 struct Journal {
   /// Empty: nothing was worth a line.
   std::string after(int cycle, const HoldReport& hold, bool is_in_control = true) {
-    CycleRecord record;
-    record.utc_s = kTickUtcS + 120 * cycle;
-    record.mode = Mode::kRunning;
+    CycleRecord record{.utc_s = kTickUtcS + 120 * cycle, .mode = mode};
     record.hold = hold;
     char text[256];
     TextBuffer line(text);
@@ -32,6 +30,7 @@ struct Journal {
   }
 
   HoldLines lines;
+  Mode mode = Mode::kRunning;
 };
 
 TEST(HoldLines, ABeginningAndAnEnd) {
@@ -61,16 +60,10 @@ TEST(HoldLines, AnUnreadableFileOnce) {
 }
 
 TEST(HoldLines, TheEndOfTheProcessIsNotTheEndOfTheHold) {
-  HoldLines lines;
-  CycleRecord record;
-  record.mode = Mode::kRunning;
-  record.hold = kHeld;
-  char text[256];
-  TextBuffer line(text);
-  EXPECT_TRUE(lines.add_line(record, true, line));
-  record.mode = Mode::kStopping;
-  record.hold = {};
-  EXPECT_FALSE(lines.add_line(record, true, line));
+  Journal journal;
+  EXPECT_NE(journal.after(0, kHeld), "");
+  journal.mode = Mode::kStopping;
+  EXPECT_EQ(journal.after(1, {}), "");
 }
 
 struct MeterJournal {

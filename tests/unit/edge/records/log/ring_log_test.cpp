@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -73,6 +72,8 @@ void write_file(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
+using Cycles = std::vector<std::int64_t>;
+
 class Ring : public ::testing::Test {
  protected:
   void append(std::int64_t capacity, std::int64_t first_cycle, std::int64_t count) {
@@ -82,10 +83,17 @@ class Ring : public ::testing::Test {
       ASSERT_TRUE(ring.append(full_record(first_cycle + i)));
     }
   }
+  /// Opens it, which must succeed, and has its newest record.
+  CycleRecord newest_in(RingLog& ring, std::int64_t capacity) {
+    CycleRecord newest;
+    EXPECT_TRUE(ring.open(path_.c_str(), capacity, error_)) << error_.c_str();
+    EXPECT_TRUE(ring.newest(newest));
+    return newest;
+  }
   /// Cycles that a reader finds, in order.
-  std::vector<std::int64_t> cycles() {
+  Cycles cycles() {
     RingLog ring;
-    std::vector<std::int64_t> found;
+    Cycles found;
     EXPECT_TRUE(ring.open_to_read(path_.c_str(), error_)) << error_.c_str();
     CycleRecord record;
     for (std::uint64_t n = ring.oldest_number(); n <= ring.newest_number(); ++n) {
@@ -115,28 +123,24 @@ TEST(RecordCodec, ZerosAndUnknownCodesAreNoRecord) {
 TEST_F(Ring, NewestSurvivesReopeningAndTheRingWraps) {
   append(5, 1, 3);
   RingLog ring;
-  CycleRecord newest;
-  ASSERT_TRUE(ring.open(path_.c_str(), 5, error_));
-  ASSERT_TRUE(ring.newest(newest));
+  const CycleRecord newest = newest_in(ring, 5);
   EXPECT_EQ(newest.cycle, 3);
   EXPECT_EQ(newest.counters.flash_writes_today, 25);
   append(5, 4, 9);
-  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{8, 9, 10, 11, 12}));
+  EXPECT_EQ(cycles(), (Cycles{8, 9, 10, 11, 12}));
   EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 5 * kRecordBytes);
 }
 
 TEST_F(Ring, OneOfAnOlderProgramIsReadAndContinuedInANewFile) {
   write_file(path_, older_ring(5, 3));
-  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{1, 2, 3}));
+  EXPECT_EQ(cycles(), (Cycles{1, 2, 3}));
   RingLog ring;
-  CycleRecord newest;
-  ASSERT_TRUE(ring.open(path_.c_str(), 5, error_)) << error_.c_str();
-  ASSERT_TRUE(ring.newest(newest));
+  const CycleRecord newest = newest_in(ring, 5);
   EXPECT_EQ(newest.cycle, 3);
   EXPECT_EQ(newest.context_class, 12);
   EXPECT_FALSE(newest.is_tripped);
   ASSERT_TRUE(ring.append(full_record(4)));
-  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{3, 4}));
+  EXPECT_EQ(cycles(), (Cycles{3, 4}));
   EXPECT_EQ(text_of_file(path_ + ".old"), older_ring(5, 3));
 }
 
@@ -152,7 +156,7 @@ TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
     torn.replace(begin, length, after, begin, length);
     if (torn == before || torn == after) continue;
     write_file(path_, torn);
-    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{2, 3})) << length << " bytes written";
+    ASSERT_EQ(cycles(), (Cycles{2, 3})) << length << " bytes written";
   }
 }
 
@@ -161,19 +165,16 @@ TEST_F(Ring, AFileCutAtEveryByteOfItsLastRecordStillOpens) {
   const std::string whole = text_of_file(path_);
   for (std::size_t missing = 1; missing <= kRecordBytes; ++missing) {
     write_file(path_, whole.substr(0, whole.size() - missing));
-    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{1})) << missing << " bytes missing";
+    ASSERT_EQ(cycles(), (Cycles{1})) << missing << " bytes missing";
     append(3, 3, 1);
-    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{1, 3})) << missing << " bytes missing";
+    ASSERT_EQ(cycles(), (Cycles{1, 3})) << missing << " bytes missing";
   }
 }
 
 TEST_F(Ring, AnotherCapacitySetsTheFileAsideAndTakesOver) {
   append(5, 1, 4);
   RingLog larger;
-  CycleRecord newest;
-  ASSERT_TRUE(larger.open(path_.c_str(), 9, error_)) << error_.c_str();
-  ASSERT_TRUE(larger.newest(newest));
-  EXPECT_EQ(newest.cycle, 4);
+  EXPECT_EQ(newest_in(larger, 9).cycle, 4);
   ASSERT_TRUE(larger.append(full_record(5)));
   EXPECT_EQ(larger.newest_number(), 5U);
   EXPECT_TRUE(std::filesystem::exists(path_ + ".old"));
@@ -185,10 +186,7 @@ TEST_F(Ring, TheNewestIsInTheNewFileFromItsBeginning) {
   append(5, 1, 4);
   append(9, 5, 0);
   RingLog ring;
-  CycleRecord newest;
-  ASSERT_TRUE(ring.open(path_.c_str(), 9, error_)) << error_.c_str();
-  ASSERT_TRUE(ring.newest(newest));
-  EXPECT_EQ(newest.cycle, 4);
+  EXPECT_EQ(newest_in(ring, 9).cycle, 4);
 }
 
 TEST_F(Ring, WhatIsNoLogIsSetAsideAndTold) {
@@ -211,7 +209,7 @@ TEST_F(Ring, NumbersMayBeLeftOut) {
   ASSERT_TRUE(ring.open(path_.c_str(), 5, error_)) << error_.c_str();
   ASSERT_TRUE(ring.append(full_record(7), 7));
   EXPECT_EQ(ring.newest_number(), 7U);
-  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 7}));
+  EXPECT_EQ(cycles(), (Cycles{3, 4, 7}));
   EXPECT_FALSE(ring.damage().is_any());
 }
 
@@ -238,7 +236,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
   for (const std::size_t begin : {std::size_t{0}, std::size_t{2'048}}) {
     for (std::size_t i = begin; i < begin + 28; ++i) {
       write_file(path_, flipped(whole, i, 0x10));
-      ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6, 7})) << "byte " << i;
+      ASSERT_EQ(cycles(), (Cycles{3, 4, 5, 6, 7})) << "byte " << i;
       const std::string line = damage_line(path_, 5);
       ASSERT_EQ(has_code(line, "decisions.ring"), begin == 0) << "byte " << i;
       ASSERT_EQ(text_of_file(path_), whole) << "byte " << i;
@@ -253,14 +251,11 @@ TEST_F(Ring, WithoutAnyHeaderTheRecordsSayHowTheyLie) {
   headless.replace(0, kHeaderBytes, kHeaderBytes, '\xff');
   for (const std::int64_t configured : {std::int64_t{5}, std::int64_t{9}}) {
     write_file(path_, headless);
-    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6, 7}));
+    ASSERT_EQ(cycles(), (Cycles{3, 4, 5, 6, 7}));
     EXPECT_THAT(damage_line(path_, configured), Names("decisions.ring"));
   }
-  CycleRecord newest;
   RingLog ring;
-  ASSERT_TRUE(ring.open(path_.c_str(), 9, error_));
-  ASSERT_TRUE(ring.newest(newest));
-  EXPECT_EQ(newest.cycle, 7);
+  EXPECT_EQ(newest_in(ring, 9).cycle, 7);
 }
 
 TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
@@ -270,7 +265,7 @@ TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
   cut.resize(cut.size() - kRecordBytes);
   write_file(path_, cut);
   EXPECT_THAT(damage_line(path_, 9), Names("decisions.ring 1"));
-  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{9, 10, 11, 12, 13, 14, 15, 16}));
+  EXPECT_EQ(cycles(), (Cycles{9, 10, 11, 12, 13, 14, 15, 16}));
   EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 9 * kRecordBytes);
 }
 
@@ -283,13 +278,13 @@ TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsTold) {
     std::filesystem::remove(path_);
     append(kCapacity, 1, written);
     const std::string whole = text_of_file(path_);
-    const std::vector<std::int64_t> before = cycles();
+    const Cycles before = cycles();
     for (int draw = 0; draw < 1'500; ++draw) {
       const std::size_t at = random() % whole.size();
       const auto mask = static_cast<unsigned char>(1 + random() % 255);
       write_file(path_, flipped(whole, at, mask));
       const std::string line = damage_line(path_, kCapacity);
-      const std::vector<std::int64_t> after = cycles();
+      const Cycles after = cycles();
       ASSERT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
       ASSERT_GE(after.size() + 1, before.size()) << "byte " << at;
       const bool is_lost = after.size() < before.size();
@@ -341,7 +336,7 @@ TEST_F(Ring, SurvivesKillsAtRandomInstants) {
     waitpid(child, &status, 0);
     close(ends[0]);
     ASSERT_TRUE(WIFSIGNALED(status)) << "round " << round;
-    const std::vector<std::int64_t> found = cycles();
+    const Cycles found = cycles();
     for (std::size_t i = 1; i < found.size(); ++i) ASSERT_EQ(found[i], found[i - 1] + 1);
     ASSERT_FALSE(found.empty());
     const auto newest = static_cast<std::uint64_t>(found.back());

@@ -18,8 +18,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 CycleRecord good_record() {
   CycleRecord r;
   r.utc_s = 1'679'788'920;
