@@ -1,6 +1,8 @@
 // What the guard sees when all is well.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 
 #include "edge/core/control/safety_guard.h"
@@ -19,6 +21,11 @@ inline GuardInputs healthy(Action action = Action::kCharge) {
   in.price_centi_eur_per_mwh = 5'000;
   in.student_action = action;
   return in;
+}
+
+inline void expect(const GuardDecision& decision, std::int32_t power_w, Reason reason) {
+  EXPECT_EQ(decision.power_w, power_w);
+  EXPECT_EQ(reason_name(decision.reason), reason_name(reason));
 }
 
 }  // namespace bess

@@ -8,8 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
-
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 

@@ -24,7 +24,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string write_secret(const TemporaryFolder& folder, const char* name, const char* text,
                          mode_t mode = 0600) {

@@ -6,7 +6,6 @@
 #include <signal.h>
 
 #include <atomic>
-#include <cmath>
 #include <random>
 #include <set>
 #include <sstream>

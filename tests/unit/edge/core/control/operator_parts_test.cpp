@@ -2,8 +2,6 @@
 // then what the guard makes of them.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "edge/core/control/full_charge.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/control/outlook.h"
@@ -168,11 +166,6 @@ constexpr GuardSettings kSettings{.full_charge_power_w = 2'000};
 
 GuardDecision decide(const GuardInputs& in, const GuardSettings& settings = kSettings) {
   return SafetyGuard(settings).decide(in);
-}
-
-void expect(const GuardDecision& decision, std::int32_t power_w, Reason reason) {
-  EXPECT_EQ(decision.power_w, power_w);
-  EXPECT_EQ(reason_name(decision.reason), reason_name(reason));
 }
 
 TEST(GuardOfHolds, StandsForTheStudentTheThresholdsAndTheNeedOfAPrice) {

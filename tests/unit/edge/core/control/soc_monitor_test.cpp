@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edge/core/supervision/response_monitor.h"
+#include "tests/support/driven_reading.h"
 
 namespace bess {
 namespace {
@@ -48,15 +49,9 @@ struct CountedBattery {
     age_s = ordered_w == ordered_before_w ? age_s + kReadingS : kReadingS - 3;
     ordered_before_w = ordered_w;
     const double shown_e4 = std::clamp(count(stored_frac), 0.0, 1.0) * 1e4;
-    monitor.observe(
-        {.steady_s = utc_s,
-         .is_driven = true,
-         .ordered_power_w = ordered_w,
-         .order_age_s = age_s,
-         .measurement = {
-             .soc_e4 = static_cast<std::int32_t>(std::lround(shown_e4 / step_e4)) * step_e4,
-             .power_w = static_cast<std::int32_t>(std::lround(meter(ordered_w, flowing_w))),
-             .capacity_wh = 8'000}});
+    const auto soc_e4 = static_cast<std::int32_t>(std::lround(shown_e4 / step_e4)) * step_e4;
+    const auto power_w = static_cast<std::int32_t>(std::lround(meter(ordered_w, flowing_w)));
+    monitor.observe(driven_reading(utc_s, ordered_w, power_w, age_s, soc_e4));
   }
 
   /// Honest readings at rest first: the fault has a reading before it.
@@ -183,11 +178,7 @@ TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   SeldomSoc soc(settings);
   ASSERT_TRUE(soc.is_seldom());
   const auto reading = [](int i) {
-    return Response{.steady_s = 1'000 + kReadingS * i,
-                    .is_driven = true,
-                    .ordered_power_w = 4'000,
-                    .order_age_s = kReadingS * i,
-                    .measurement = {.soc_e4 = 5'000, .power_w = 4'000}};
+    return driven_reading(1'000 + kReadingS * i, 4'000, 4'000, kReadingS * i, 5'000, 0);
   };
   soc.begin(reading(0));
   std::vector<int> taken;
@@ -230,14 +221,8 @@ struct SeldomBattery {
       if (now_s % refresh_s == 0 && !is_frozen) shown_frac = stored_frac;
     }
     before_w = ordered_w;
-    monitor.observe(
-        {.steady_s = now_s,
-         .is_driven = true,
-         .ordered_power_w = ordered_w,
-         .order_age_s = age_s,
-         .measurement = {.soc_e4 = static_cast<std::int32_t>(std::lround(shown_frac * 1e3)) * 10,
-                         .power_w = ordered_w,
-                         .capacity_wh = 8'000}});
+    const auto soc_e4 = static_cast<std::int32_t>(std::lround(shown_frac * 1e3)) * 10;
+    monitor.observe(driven_reading(now_s, ordered_w, ordered_w, age_s, soc_e4));
   }
   int steps_until(const std::function<bool(const ResponseMonitor&)>& is_found,
                   const OrdersByCycle& orders, int most) {
@@ -295,17 +280,16 @@ TEST(EnergyPath, OfAWindowIsTheLeastAndTheMostAndTheForgottenEitherWay) {
   path.add(1'200, 9'999);  // no time has passed
   path.add(1'250, 0);
   EXPECT_EQ(path.energy_ws(), 0);
-  const EnergyRange all = path.since(1'000, 4'000);
-  EXPECT_EQ(all.least_ws, 0);
-  EXPECT_EQ(all.most_ws, 400'000);
-  const EnergyRange half = path.since(1'150, 4'000);
-  EXPECT_EQ(half.least_ws, 0);
-  EXPECT_EQ(half.most_ws, 200'000);
+  const auto expect_since = [&](std::int64_t begin_s, EnergyRange expected) {
+    const EnergyRange range = path.since(begin_s, 4'000);
+    EXPECT_EQ(range.least_ws, expected.least_ws) << begin_s;
+    EXPECT_EQ(range.most_ws, expected.most_ws) << begin_s;
+  };
+  expect_since(1'000, {0, 400'000});
+  expect_since(1'150, {0, 200'000});
   const EnergyRange now = path.since(1'250, 4'000);
   EXPECT_EQ(now.most_ws - now.least_ws, 0);
-  const EnergyRange before = path.since(990, 4'000);
-  EXPECT_EQ(before.least_ws, -40'000);
-  EXPECT_EQ(before.most_ws, 400'000);
+  expect_since(990, {-40'000, 400'000});
   for (int i = 0; i < 1'000; ++i) path.add(1'250 + i, 1'000);
   EXPECT_EQ(path.since(2'200, 4'000).least_ws, 950'000);
   // Of the oldest points nothing is left.

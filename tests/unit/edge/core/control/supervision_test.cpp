@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/driven_reading.h"
+
 namespace bess {
 namespace {
 
@@ -10,14 +12,16 @@ const SupervisionSettings kSettings{
     .response = {}, .capacity_wh_min = 6'000, .capacity_wh_max = 10'000};
 
 Response reading(std::int64_t utc_s, std::int32_t ordered_w, std::int32_t measured_w) {
-  return {
-      .utc_s = utc_s,
-      .steady_s = utc_s,
-      .is_driven = true,
-      .ordered_power_w = ordered_w,
-      .order_age_s = 120,
-      .measurement = {
-          .soc_e4 = 5'000, .power_w = measured_w, .capacity_wh = 8'000, .dispatch_active = true}};
+  Response now = driven_reading(utc_s, ordered_w, measured_w);
+  now.measurement.dispatch_active = true;
+  return now;
+}
+
+/// In its own mode, without an order.
+Response resting(std::int64_t utc_s, std::int32_t measured_w = 0) {
+  Response now = driven_reading(utc_s, 0, measured_w);
+  now.is_driven = false;
+  return now;
 }
 
 Response replaced(std::int64_t utc_s) {
@@ -52,12 +56,9 @@ TEST(Supervision, NoAnswerPausesLongerEachTime) {
   for (std::int64_t pause_s = Pause::kFirstS; pause_s < Pause::kLongestS; pause_s *= 2) {
     for (int i = 0; i < 2; ++i) supervision.observe(reading(utc_s += 120, 4'000, 0), false);
     ASSERT_EQ(supervision.stop_reason(), Reason::kNoAnswer);
-    Response own = reading(utc_s + pause_s - 1, 0, 0);
-    own.is_driven = own.measurement.dispatch_active = false;
-    supervision.observe(own, true);
+    supervision.observe(resting(utc_s + pause_s - 1), true);
     EXPECT_EQ(supervision.stop_reason(), Reason::kNoAnswer);
-    own.utc_s = own.steady_s = utc_s += pause_s;
-    supervision.observe(own, true);
+    supervision.observe(resting(utc_s += pause_s), true);
     EXPECT_EQ(supervision.stop_reason(), std::nullopt);
   }
 }
@@ -72,9 +73,7 @@ TEST(Supervision, AGoodAnswerMakesTheNextPauseShortAgain) {
   supervision.observe(reading(utc_s += Pause::kFirstS, 4'000, 4'000), false);
   unanswered_twice();
   ASSERT_EQ(supervision.stop_reason(), Reason::kNoAnswer);
-  Response own = reading(utc_s += Pause::kFirstS, 0, 0);
-  own.is_driven = own.measurement.dispatch_active = false;
-  supervision.observe(own, true);
+  supervision.observe(resting(utc_s += Pause::kFirstS), true);
   EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 

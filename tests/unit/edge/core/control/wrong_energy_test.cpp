@@ -5,43 +5,35 @@
 #include <gtest/gtest.h>
 
 #include "edge/core/loop/cycle_parts.h"
+#include "tests/support/driven_reading.h"
 
 namespace bess {
 namespace {
 
 constexpr std::int64_t kCapacityWh = 8'000;
 
-Response reading(std::int64_t steady_s, std::int32_t ordered_w, std::int32_t measured_w) {
-  return {.utc_s = steady_s,
-          .steady_s = steady_s,
-          .is_driven = true,
-          .ordered_power_w = ordered_w,
-          .order_age_s = 120,
-          .measurement = {.soc_e4 = 5'000, .power_w = measured_w, .capacity_wh = 8'000}};
-}
-
 /// 4 kW for two minutes of 8 kWh are 1.6667 %, of which 2.5 % / 720 are forgiven.
 TEST(WrongEnergy, IsASumOfSharesOfTheCapacity) {
   WrongEnergy sum;
-  sum.add(reading(120, 4'000, 4'000), 0, kCapacityWh);
-  sum.add(reading(240, 4'000, -4'000), 4'000, kCapacityWh);
+  sum.add(driven_reading(120, 4'000, 4'000), 0, kCapacityWh);
+  sum.add(driven_reading(240, 4'000, -4'000), 4'000, kCapacityWh);
   EXPECT_NEAR(sum.share_e6(), 16'667 - 35, 1);
-  for (int i = 0; i < 240; ++i) sum.add(reading(360 + 120 * i, 0, 0), 0, kCapacityWh);
+  for (int i = 0; i < 240; ++i) sum.add(driven_reading(360 + 120 * i, 0, 0), 0, kCapacityWh);
   EXPECT_NEAR(sum.share_e6(), 16'667 - 241 * 34.72, 3);
-  sum.add(reading(360 + 86'400, 0, 0), 0, kCapacityWh);
+  sum.add(driven_reading(360 + 86'400, 0, 0), 0, kCapacityWh);
   EXPECT_EQ(sum.share_e6(), 0);
 }
 
 TEST(WrongEnergy, IsOfTheOrderAndOfKnownTimeOnly) {
   WrongEnergy young;
-  young.add(reading(120, 0, 0), 0, kCapacityWh);
-  Response now = reading(240, 4'000, -4'000);
+  young.add(driven_reading(120, 0, 0), 0, kCapacityWh);
+  Response now = driven_reading(240, 4'000, -4'000);
   now.order_age_s = 30;
   young.add(now, 4'000, kCapacityWh);
   EXPECT_NEAR(young.share_e6(), 16'667 / 4 - 35, 1);
   WrongEnergy long_ago;
-  long_ago.add(reading(120, 0, 0), 0, kCapacityWh);
-  now = reading(7'320, 4'000, -4'000);
+  long_ago.add(driven_reading(120, 0, 0), 0, kCapacityWh);
+  now = driven_reading(7'320, 4'000, -4'000);
   now.order_age_s = 7'200;
   long_ago.add(now, 4'000, kCapacityWh);
   EXPECT_NEAR(long_ago.share_e6(), 16'667 * 5 / 2 - 2'083, 3);
@@ -49,7 +41,7 @@ TEST(WrongEnergy, IsOfTheOrderAndOfKnownTimeOnly) {
 
 TEST(WrongEnergy, WhateverADeviceSaysIsWithinItsBounds) {
   WrongEnergy sum;
-  for (int i = 1; i < 10; ++i) sum.add(reading(i * 300, 0, 0), std::int64_t{1} << 31, 1);
+  for (int i = 1; i < 10; ++i) sum.add(driven_reading(i * 300, 0, 0), std::int64_t{1} << 31, 1);
   EXPECT_TRUE(sum.is_found());
   EXPECT_LE(sum.share_e6(), 2 * WrongEnergy::kFoundE6);
   for (const std::int32_t logged : {INT32_MIN, INT32_MAX}) {
@@ -80,7 +72,7 @@ struct RarelyWrong {
     for (int i = 0; i < readings && !supervision.trip(); ++i) {
       const bool is_wrong = i % 5 == 4;
       wrong += is_wrong ? 1 : 0;
-      Response now = reading(steady_s += 120, ordered_w, is_wrong ? wrong_w : ordered_w);
+      Response now = driven_reading(steady_s += 120, ordered_w, is_wrong ? wrong_w : ordered_w);
       cells.move(now, 120);
       supervision.observe(now, false);
     }
@@ -147,7 +139,7 @@ struct WatchedSite {
     Reading now{.look = s % 120 == 100 ? Look::kTick : Look::kCheck,
                 .is_read = true,
                 .is_under_control = true,
-                .response = reading(s, ordered_w(s), power_w)};
+                .response = driven_reading(s, ordered_w(s), power_w)};
     now.response.order_age_s = static_cast<std::int32_t>(s % 2'400);
     cells.move(now.response, every_s);
     part.observe(now);

@@ -5,8 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "edge/records/account/settled_prices.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
