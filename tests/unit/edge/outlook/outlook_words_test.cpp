@@ -1,6 +1,5 @@
 // What people are told of an outlook: why, status.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/app/program/startup.h"
 #include "edge/core/control/policy.h"

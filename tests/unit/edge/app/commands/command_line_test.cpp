@@ -1,7 +1,6 @@
 // The words of bess-edge in this process: where they may stand, what is said of a slip, and what
 // each command refuses before it reads a file.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <sstream>
 

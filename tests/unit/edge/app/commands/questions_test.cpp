@@ -1,7 +1,6 @@
 // `why` and `earned` as an operator asks them: on a configuration and its log, by the clock on the
 // wall.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <ctime>
 #include <filesystem>

@@ -1,7 +1,6 @@
 // A hold from the command to the mailbox: the file's text, what is no such text, and the thread
 // that looks.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>

@@ -2,7 +2,6 @@
 #include "edge/app/program/startup.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 

@@ -1,6 +1,5 @@
 // What ties the controller to its machine: lock files, systemd's notify socket, journal levels.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

@@ -3,7 +3,6 @@
 #include "edge/app/recording/map_check.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/device/registers/map_file.h"
 #include "shared/scaled_clock.h"

@@ -1,7 +1,6 @@
 // What is recorded of a device: the mask hides what is nobody else's business, the recorder writes
 // whole lines, keeps within its bound and renames at the end.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>

@@ -4,7 +4,6 @@
 #include "edge/app/settings/idle_keys.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>

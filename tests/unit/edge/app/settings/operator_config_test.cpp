@@ -3,7 +3,6 @@
 #include "edge/app/settings/edge_config.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/app/program/startup.h"
 #include "shared/local_time.h"

@@ -3,7 +3,6 @@
 #include "edge/app/settings/price_config.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"

@@ -2,7 +2,6 @@
 #include "edge/app/settings/control_config.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/app/settings/edge_config.h"
 #include "edge/records/why/explanation.h"

@@ -2,7 +2,6 @@
 #include "edge/app/storage/commission_file.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>

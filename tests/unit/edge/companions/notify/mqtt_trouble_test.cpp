@@ -1,7 +1,6 @@
 // Why a broker cannot be reached is told by its cause: each cause by a real server, or
 // a real broker, that has it.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <set>

@@ -1,7 +1,6 @@
 // Channels that hang, beside ones that do not: the whole program with a command that sleeps and a
 // broker that comes and goes. What is reported, when, how often, and what survives a kill.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/child_process.h"
 #include "shared/scaled_clock.h"

@@ -1,7 +1,6 @@
 // The notifier's parts: settings and their mistakes, a child program, troubles of a status, the
 // alarm command, topics, what is kept over restarts.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
 

@@ -1,7 +1,6 @@
 // Whole rounds of the notifier: a status that changes, a command that is a script, and a real
 // broker on loopback. Time is an argument.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <random>
 

@@ -1,6 +1,5 @@
 // What the page is made of, each by itself.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <random>
 

@@ -1,7 +1,6 @@
 // The page over HTTP, on a site whose log is made up and whose answers are those of the real
 // bess-edge.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <httplib.h>
 #include <signal.h>
 

@@ -4,7 +4,6 @@
 #include "edge/device/battery/battery_driver.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/register_device.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,6 @@
 // Where the shipped maps find alarms, warnings and the state of the device, register by register as
 // the sources in their heads name them; what a state must not hinder; what a device need not have.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/register_device.h"
 

@@ -1,7 +1,6 @@
 // Every map at devices that are another's, still starting, empty or mad: nothing aborts, nothing is
 // written before the device has proved to be the map's, and what is said names a register or model.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <random>
 

@@ -2,7 +2,6 @@
 // values, included files, variants; and that every mistake is one line with file, line and the
 // mend.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <bit>
 

@@ -1,7 +1,6 @@
 // Every shipped meter map through the real reader: the registers that the sources name, signs, and
 // what is refused. And the batteries' own grid points.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <bit>
 #include <filesystem>

@@ -1,6 +1,5 @@
 // The AlphaESS map, register by register in its dispatch variants, and the codec.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/device/registers/codec.h"
 #include "tests/support/shipped_maps.h"

@@ -2,7 +2,6 @@
 // one by one, as the sources named in the maps state them; signs; what release restores. SunSpec:
 // sunspec_maps_test.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 

@@ -1,7 +1,6 @@
 // The SunSpec maps through the real driver: models found by walking, points at their offsets, scale
 // factors, and the registers of every order. The other shipped maps: shipped_maps_test.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/register_device.h"
 

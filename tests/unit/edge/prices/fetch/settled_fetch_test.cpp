@@ -3,7 +3,6 @@
 #include "edge/prices/fetch/settled_fetch.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/records/account/settled_prices.h"
 #include "shared/local_time.h"

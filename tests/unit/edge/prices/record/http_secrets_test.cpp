@@ -2,7 +2,6 @@
 #include "edge/prices/record/http_trust.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"

@@ -3,7 +3,6 @@
 #include "edge/records/account/earnings.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

@@ -3,7 +3,6 @@
 #include "edge/records/account/settled_prices.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.h"
 

@@ -2,7 +2,6 @@
 #include "edge/records/log/health.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 

@@ -2,7 +2,6 @@
 #include "edge/records/log/event_log.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/tokens.h"
 

@@ -2,7 +2,6 @@
 #include "edge/records/log/log_reader.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 

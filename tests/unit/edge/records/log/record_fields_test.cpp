@@ -3,7 +3,6 @@
 #include "edge/records/log/record_fields.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 #include <sstream>

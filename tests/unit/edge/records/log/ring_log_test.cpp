@@ -3,7 +3,6 @@
 #include "edge/records/log/ring_log.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

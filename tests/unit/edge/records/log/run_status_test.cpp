@@ -3,7 +3,6 @@
 #include "edge/records/log/run_status.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <map>
 #include <random>

@@ -3,7 +3,6 @@
 #include "edge/records/why/explanation.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/core/control/policy.h"
 #include "shared/local_time.h"

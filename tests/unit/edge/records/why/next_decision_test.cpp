@@ -2,7 +2,6 @@
 #include "edge/records/why/next_decision.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/app/settings/idle_keys.h"
 #include "edge/records/why/explanation.h"
