@@ -171,6 +171,9 @@ struct MapUnderTest {
       : map(load_good_map(path, variant)) {
     driver = std::make_unique<DeviceDriver>(map, DeviceClock(device), -1, device);
   }
+  MapUnderTest(const std::string& path, void (*fill)(RegisterDevice&)) : MapUnderTest(path) {
+    fill(device);
+  }
   Status order(std::int32_t power_w) {
     return driver->order({.power_w = power_w,
                           .soc_min_e4 = 1'000,

@@ -160,8 +160,7 @@ TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
       t.device.pass_s(110);
       for (const auto& [address, value] : c.registers) t.device.set(address, {value});
       if (fed) {
-        const bool lost = c.replaced || c.ended;
-        EXPECT_EQ(t.driver->refresh(), lost ? Status::kNotApplied : Status::kOk);
+        EXPECT_EQ(t.driver->refresh(), c.replaced || c.ended ? Status::kNotApplied : Status::kOk);
       }
       for (int i = 0; i < 2; ++i) {  // told until it is ordered again
         EXPECT_EQ(t.reading().order_replaced, c.replaced);

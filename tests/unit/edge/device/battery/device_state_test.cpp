@@ -192,8 +192,7 @@ TEST(DeviceState, SunSpec) {
 
 /// A battery that the house lives on must be let go by whoever comes back.
 TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   t.device.set(0x0440, {2});
   t.device.set(0x0880, {1, 0, 28'000, 0, 32'000, 2, 225, 0, 300, 255, 0});
   EXPECT_TRUE(t.reading().off_grid);
@@ -220,16 +219,14 @@ TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
 }
 
 TEST(DeviceState, TheLowestBatteryPowerIsNoPower) {
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.set(0x0126, {0x8000});
   EXPECT_EQ(t.read(), Status::kImplausible);
 }
 
 TEST(OptionalPoint, ARegisterThatEveryDeviceHasIsNotDoneWithout) {
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.missing = {{.address = 0x0126}};
   EXPECT_EQ(t.read(), Status::kBusException);
@@ -238,8 +235,7 @@ TEST(OptionalPoint, ARegisterThatEveryDeviceHasIsNotDoneWithout) {
 /// Behind a GX the battery's service may be absent, as other exceptions say.
 TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
   for (const int exception : {2, 10, 11}) {
-    MapUnderTest t(shipped_map("victron_ess3"));
-    fill_victron(t.device);
+    MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
     for (int address = 259; address < 330; ++address) {
       t.device.missing.push_back({.address = address, .exception = exception});
     }
@@ -251,8 +247,7 @@ TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
 
 /// Any other answer may pass: the register is not given up for it.
 TEST(OptionalPoint, IsNotGivenUpForAnotherException) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  fill_victron(t.device);
+  MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   t.device.missing = {{.address = 267, .exception = 4}};
   EXPECT_EQ(t.read(), Status::kBusException);
   t.device.missing.clear();
@@ -261,8 +256,7 @@ TEST(OptionalPoint, IsNotGivenUpForAnotherException) {
 }
 
 TEST(OptionalPoint, AModelThatIsThereAgainIsReadAgain) {
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   t.device.set(0x08D4, {0, 1});
   t.device.missing = {{.address = 0x08D4}};
   EXPECT_FALSE(t.reading().alarm);

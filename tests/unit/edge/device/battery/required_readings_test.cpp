@@ -16,8 +16,7 @@ constexpr int kActiveInput = 29;
 /// A gateway that answers for an absent unit, or is busy, for some seconds.
 TEST(RequiredReading, IsAskedForAgainWhileTheTroubleMayPass) {
   for (const int exception : {5, 6, 10, 11, -1}) {
-    MapUnderTest t(shipped_map("victron_ess3"));
-    fill_victron(t.device);
+    MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
     ASSERT_EQ(t.read(), Status::kOk);
     t.device.missing = {{.address = kBatteryAlarm, .exception = exception}};
     t.device.set(kBatteryAlarm, {2});
@@ -32,8 +31,7 @@ TEST(RequiredReading, IsAskedForAgainWhileTheTroubleMayPass) {
 
 TEST(RequiredReading, ThatStaysAwayIsNamed) {
   for (const int exception : {2, 4, 6, 10, 11, -1}) {
-    MapUnderTest t(shipped_map("victron_ess3"));
-    fill_victron(t.device);
+    MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
     ASSERT_EQ(t.read(), Status::kOk);
     t.device.missing = {{.address = kBatteryAlarm, .exception = exception}};
     const std::int64_t start_ns = t.device.now_ns;
@@ -49,8 +47,7 @@ TEST(RequiredReading, ThatStaysAwayIsNamed) {
 }
 
 TEST(RequiredReading, TheGridIsUnknownWithoutItsRegister) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  fill_victron(t.device);
+  MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.missing = {{.address = kActiveInput, .exception = 10}};
   EXPECT_TRUE(t.reading().grid_unknown);
@@ -58,8 +55,7 @@ TEST(RequiredReading, TheGridIsUnknownWithoutItsRegister) {
 }
 
 TEST(RequiredReading, OfAnEarlierRunIsRequiredFromTheStart) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  fill_victron(t.device);
+  MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   const int alarm = find_point(t.map, "battery_alarm");
   t.driver->require(static_cast<std::int8_t>(alarm));
   t.device.missing = {{.address = kBatteryAlarm, .exception = 11}};
@@ -67,8 +63,7 @@ TEST(RequiredReading, OfAnEarlierRunIsRequiredFromTheStart) {
 }
 
 TEST(RequiredReading, ThatTurnsNotImplementedIsLost) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  fill_victron(t.device);
+  MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.set(kBatteryAlarm, {0xFFFF});
   EXPECT_NE(t.reading().lost_point, 0);
@@ -125,8 +120,7 @@ TEST_P(LostReadings, StopOrCome) {
     for (int tick = 0; tick < 6; ++tick) {
       t.device.pass_s(120);
       const std::int64_t from_ns = t.device.now_ns;
-      const Status status = t.read();
-      const bool is_driven = status == Status::kOk && t.measured.lost_point == 0;
+      const bool is_driven = t.read() == Status::kOk && t.measured.lost_point == 0;
       if (loss.covers(from_ns, t.device.now_ns)) {
         EXPECT_FALSE(is_driven) << t.map.points[point].name.c_str() << " " << loss.exception;
         ++lost;

@@ -77,8 +77,7 @@ class MapFormat : public ::testing::Test {
                            Rounding rounding = Rounding::kNearest) {
     const RegisterMap map = with_point(keys);
     RegisterBlock block;
-    const RegisterPoint& point = map.points[find_point(map, "power")];
-    status_ = encode(point, value, rounding, block);
+    status_ = encode(map.points[find_point(map, "power")], value, rounding, block);
     return {block.begin(), block.end()};
   }
   std::string error_of(const std::string& text) {
@@ -213,7 +212,7 @@ TEST_F(MapFormat, NamesOfValuesAndBits) {
 }
 
 TEST_F(MapFormat, AnIncludedFileIsChangedPointByPointAndByVariants) {
-  static_cast<void>(folder_.write("base.toml", kGood));
+  folder_.write("base.toml", kGood);
   const std::string child = R"(include = "base.toml"
 [map]
 unit = 9
@@ -262,7 +261,7 @@ TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   EXPECT_FALSE(load_register_map(path, "", map, error));
   EXPECT_THAT(error, StartsWith(base_path + ":37: "));
   EXPECT_THAT(error_of("include = \"../secret.toml\"\n"), Names("include"));
-  static_cast<void>(folder_.write("loop.toml", "include = \"map.toml\"\n"));
+  folder_.write("loop.toml", "include = \"map.toml\"\n");
   EXPECT_THAT(error_of("include = \"loop.toml\"\n"), Names("include"));
 }
 

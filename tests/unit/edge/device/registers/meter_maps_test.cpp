@@ -118,8 +118,7 @@ TEST(MeterMaps, TheP1DonglesTelegramMustMoveOn) {
 
 TEST(MeterMaps, ABatterysGridPointIsReadOnDemandAlone) {
   MeterUnderTest none("simulator");
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   t.device.set(0x0021, {0xFFFF, 0xFA24});  // -1500: export
   t.device.unreadable_address = 0x0021;
   EXPECT_FALSE(t.reading().has_grid_power);

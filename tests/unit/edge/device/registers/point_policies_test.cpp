@@ -24,8 +24,7 @@ std::string role_of(const RegisterMap& map, int point) {
 
 std::string beyond(const RegisterPoint& p) {
   if (p.slack == 0) return "rejected";
-  const bool is_any = p.slack >= p.value_max - p.value_min;
-  return is_any ? "cut" : "cut within " + std::to_string(p.slack);
+  return p.slack >= p.value_max - p.value_min ? "cut" : "cut within " + std::to_string(p.slack);
 }
 
 TEST(PointPolicies, StandInTheTable) {

@@ -25,8 +25,7 @@ TEST(ShippedMaps, EveryVariantLoads) {
 }
 
 TEST(AlphaEssDriver, OneBlockAndItsRelease) {
-  MapUnderTest t(shipped_map("alphaess"));
-  fill_alphaess(t.device);
+  MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   t.device.set(0x0126, {0xFA24});  // -1500: charging
   EXPECT_EQ(t.reading().soc_e4, 4'350);
   EXPECT_EQ(t.measured.power_w, 1'500);
@@ -56,8 +55,7 @@ void fill_fronius(RegisterDevice& device) {
 }
 
 TEST(FroniusGen24, ControlModeIsLastToStartAndFirstToStop) {
-  MapUnderTest t(shipped_map("fronius_gen24"));
-  fill_fronius(t.device);
+  MapUnderTest t(shipped_map("fronius_gen24"), fill_fronius);
   EXPECT_EQ(t.reading().soc_e4, 4'700);
   EXPECT_EQ(t.measured.power_w, 1'200);
   t.device.set(40'314, {0});
@@ -80,16 +78,14 @@ TEST(FroniusGen24, ControlModeIsLastToStartAndFirstToStop) {
 }
 
 TEST(FroniusGen24, MoreThanTheInvertersRatingIsRefusedWithoutAWrite) {
-  MapUnderTest t(shipped_map("fronius_gen24"));
-  fill_fronius(t.device);
+  MapUnderTest t(shipped_map("fronius_gen24"), fill_fronius);
   EXPECT_EQ(t.order(5'001), Status::kNotExpressible);
   EXPECT_EQ(t.order(-5'001), Status::kNotExpressible);
   EXPECT_THAT(t.device.writes, IsEmpty());
 }
 
 TEST(FroniusGen24, FloatRegisterTypeIsTheWrongDevice) {
-  MapUnderTest t(shipped_map("fronius_gen24"));
-  fill_fronius(t.device);
+  MapUnderTest t(shipped_map("fronius_gen24"), fill_fronius);
   t.device.set(40'343, {0});
   EXPECT_EQ(t.read(), Status::kImplausible);
   EXPECT_EQ(t.order(1'000), Status::kImplausible);
@@ -104,8 +100,7 @@ void fill_huawei(RegisterDevice& device) {
 }
 
 TEST(HuaweiLuna2000, ForcibleIsLastAndFlashOnlyWhenItDiffers) {
-  MapUnderTest t(shipped_map("huawei_luna2000"));
-  fill_huawei(t.device);
+  MapUnderTest t(shipped_map("huawei_luna2000"), fill_huawei);
   EXPECT_EQ(t.reading().power_w, -1'500);
   EXPECT_EQ(t.measured.soc_e4, 5'050);
   EXPECT_EQ(t.measured.capacity_wh, 10'000);
@@ -124,8 +119,7 @@ TEST(HuaweiLuna2000, ForcibleIsLastAndFlashOnlyWhenItDiffers) {
 }
 
 TEST(HuaweiLuna2000, PowerIsCutToTheRatedOneAndRefreshedEvery30s) {
-  MapUnderTest t(shipped_map("huawei_luna2000"));
-  fill_huawei(t.device);
+  MapUnderTest t(shipped_map("huawei_luna2000"), fill_huawei);
   EXPECT_EQ(t.driver->refresh_interval_s(), 30);
   ASSERT_EQ(t.order(9'000), Status::kOk);
   EXPECT_EQ(t.device.holding[47'248], 5'000);
@@ -136,8 +130,7 @@ TEST(HuaweiLuna2000, PowerIsCutToTheRatedOneAndRefreshedEvery30s) {
 }
 
 TEST(HuaweiLuna2000, PermissionDeniedIsToldApart) {
-  MapUnderTest t(shipped_map("huawei_luna2000"));
-  fill_huawei(t.device);
+  MapUnderTest t(shipped_map("huawei_luna2000"), fill_huawei);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.exception = 0x80;
   EXPECT_EQ(t.order(1'000), Status::kNotPermitted);
@@ -148,8 +141,7 @@ TEST(HuaweiLuna2000, PermissionDeniedIsToldApart) {
 }
 
 TEST(VictronEss3, SetPointOfTheVebusDeviceAndEssModeOfTheSystem) {
-  MapUnderTest t(shipped_map("victron_ess3"));
-  fill_victron(t.device);
+  MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   EXPECT_EQ(t.reading().power_w, 1'500);
   EXPECT_EQ(t.measured.soc_e4, 6'200);
   EXPECT_EQ(t.driver->refresh_interval_s(), 5);
@@ -200,8 +192,7 @@ void fill_sungrow(RegisterDevice& device) {
 }
 
 TEST(SungrowSh, ExternalEmsWithHeartbeat) {
-  MapUnderTest t(shipped_map("sungrow_sh"));
-  fill_sungrow(t.device);
+  MapUnderTest t(shipped_map("sungrow_sh"), fill_sungrow);
   EXPECT_THAT(t.writes_of(4'000),
               ElementsAre(fc6(13'079, 60), fc6(13'050, 0xCC), fc6(13'049, 3), fc6(13'079, 60),
                           fc6(13'051, 4'000), fc6(13'050, 0xAA)));
