@@ -111,8 +111,7 @@ TEST(ConnectionGuard, HoldsItsPromisesForAnyLoadAndLimit) {
   std::mt19937_64 random(12);
   int limited = 0;
   for (int i = 0; i < 200'000; ++i) {
-    const Draw d = drawn(random);
-    const auto& [settings, state] = d;
+    const auto& [settings, state] = drawn(random);
     const SiteRange range = range_of(settings, state);
     const std::int64_t house_w = std::int64_t{state.grid_w} - state.battery_w;
     const auto& now = state.quarter_hour;

@@ -235,8 +235,7 @@ TEST(LostOrders, PausesGrowUntilOrdersHold) {
   std::int64_t utc_s = kFirstUtcS;
   std::int32_t soc_e4 = 5'000;
   const auto observe = [&](Fate fate, bool own = false) {
-    const bool charges = soc_e4 < 5'000;
-    Response now = reading(++number, fate, charges ? kW : -kW);
+    Response now = reading(++number, fate, soc_e4 < 5'000 ? kW : -kW);
     now.steady_s = utc_s += kSecondsPerStep;
     if (own) now.measurement.power_w = 0;
     soc_e4 += now.measurement.power_w / 24;  // of 8 kWh, in two minutes

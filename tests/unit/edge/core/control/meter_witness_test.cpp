@@ -178,8 +178,7 @@ TEST(MeterWitness, AClockThatWasSteppedBackMakesNoPauseLonger) {
   c.meter = [](double) { return 400.0; };
   c.cycles(4);
   ASSERT_EQ(c.witness.power_w_max(c.utc_s), 0);
-  const std::int64_t slot_utc_s = (c.utc_s - 86'400) / 240 * 240 + 120;
-  EXPECT_EQ(c.witness.power_w_max(slot_utc_s), 500);
+  EXPECT_EQ(c.witness.power_w_max((c.utc_s - 86'400) / 240 * 240 + 120), 500);
 }
 
 TEST(MeterWitness, NothingIsJudgedOfABatteryInItsOwnModeOrWithoutPower) {

@@ -13,30 +13,29 @@ struct Row {
 };
 
 TEST(Mode, EveryTransition) {
+  using enum Mode;
   const Row table[] = {
-      {Mode::kStart, false, false, false, false, false, Mode::kRunning},
-      {Mode::kStart, false, true, false, false, false, Mode::kStart},
-      {Mode::kStart, false, true, true, false, false,
-       Mode::kStart},  // nothing was ordered: nothing to hold
-      {Mode::kStart, false, true, false, false, true, Mode::kHolding},  // of the run before
-      {Mode::kStart, false, false, false, false, true, Mode::kRunning},
-      {Mode::kSafe, false, true, true, false, true, Mode::kSafe},
-      {Mode::kRunning, false, false, true, false, false, Mode::kRunning},
-      {Mode::kRunning, false, true, false, false, false, Mode::kHolding},
-      {Mode::kRunning, false, true, true, false, false,
-       Mode::kHolding},  // 0 W is always held first
-      {Mode::kHolding, false, false, false, false, false, Mode::kRunning},
-      {Mode::kHolding, false, true, false, false, false, Mode::kHolding},
-      {Mode::kHolding, false, true, true, false, false, Mode::kSafe},
-      {Mode::kSafe, false, true, true, false, false, Mode::kSafe},
-      {Mode::kSafe, false, true, false, false, false, Mode::kSafe},
-      {Mode::kSafe, false, false, false, false, false, Mode::kRunning},
+      {kStart, false, false, false, false, false, kRunning},
+      {kStart, false, true, false, false, false, kStart},
+      {kStart, false, true, true, false, false, kStart},    // nothing was ordered: nothing to hold
+      {kStart, false, true, false, false, true, kHolding},  // of the run before
+      {kStart, false, false, false, false, true, kRunning},
+      {kSafe, false, true, true, false, true, kSafe},
+      {kRunning, false, false, true, false, false, kRunning},
+      {kRunning, false, true, false, false, false, kHolding},
+      {kRunning, false, true, true, false, false, kHolding},  // 0 W is always held first
+      {kHolding, false, false, false, false, false, kRunning},
+      {kHolding, false, true, false, false, false, kHolding},
+      {kHolding, false, true, true, false, false, kSafe},
+      {kSafe, false, true, true, false, false, kSafe},
+      {kSafe, false, true, false, false, false, kSafe},
+      {kSafe, false, false, false, false, false, kRunning},
       // Off-grid: 0 W is not held.
-      {Mode::kRunning, false, true, false, true, false, Mode::kSafe},
-      {Mode::kHolding, false, true, false, true, false, Mode::kSafe},
-      {Mode::kStart, false, true, false, true, true, Mode::kSafe},
-      {Mode::kStart, false, true, false, true, false, Mode::kStart},
-      {Mode::kStopping, false, false, false, false, false, Mode::kStopping},  // final
+      {kRunning, false, true, false, true, false, kSafe},
+      {kHolding, false, true, false, true, false, kSafe},
+      {kStart, false, true, false, true, true, kSafe},
+      {kStart, false, true, false, true, false, kStart},
+      {kStopping, false, false, false, false, false, kStopping},  // final
   };
   for (const Row& row : table) {
     EXPECT_EQ(next_mode(row.from, {row.stop_requested, row.stop_reason, row.hold_elapsed,

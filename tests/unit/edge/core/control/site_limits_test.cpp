@@ -104,10 +104,20 @@ struct SiteUnderTest {
     m.power_w = battery_w;
     site.observe(utc_s, is_read, m, {});
   }
+  [[nodiscard]] SiteRange range(std::int64_t utc_s, Margin margin = Margin::kWhole) const {
+    return site.range(utc_s, 4'000, margin);
+  }
   StubMeter meter;
   StubLimits limits;
   Site site;
 };
+
+/// A site with a limit from outside and no meter.
+SiteSettings limited() {
+  SiteSettings settings;
+  settings.has_outside_limits = true;
+  return settings;
+}
 
 SiteSettings metered() {
   SiteSettings settings;
@@ -121,7 +131,7 @@ TEST(SiteLimits, TheHouseIsWhatGridAndBatteryLeave) {
   SiteUnderTest t(metered());
   t.meter.grid_w = 4'500;
   t.observe(kQuarter, true, 3'000);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 3'500);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, 3'500);
   EXPECT_TRUE(t.site.report(kQuarter).has_grid_power);
   EXPECT_EQ(t.site.report(kQuarter).grid_power_w, 4'500);
 }
@@ -131,8 +141,8 @@ TEST(SiteLimits, AnOrderInForceMayUseHalfOfTheMargin) {
   settings.connection.margin_w = 300;
   SiteUnderTest t(settings);
   t.observe(kQuarter);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 4'700);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kHalf).charge_w_max, 4'850);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, 4'700);
+  EXPECT_EQ(t.range(kQuarter, Margin::kHalf).charge_w_max, 4'850);
 }
 
 TEST(SiteLimits, ALostMeterIsIdleOnlyAfterItsLastReadingIsTooOld) {
@@ -140,9 +150,9 @@ TEST(SiteLimits, ALostMeterIsIdleOnlyAfterItsLastReadingIsTooOld) {
   t.observe(kQuarter);
   t.meter.status = Status::kTimeout;
   t.observe(kQuarter + 30);
-  EXPECT_EQ(t.site.range(kQuarter + 30, 4'000, Margin::kWhole).charge_reason, Reason::kImportLimit);
+  EXPECT_EQ(t.range(kQuarter + 30).charge_reason, Reason::kImportLimit);
   EXPECT_EQ(t.site.report(kQuarter + 30).meter_status, Status::kTimeout);
-  const SiteRange lost = t.site.range(kQuarter + 31, 4'000, Margin::kWhole);
+  const SiteRange lost = t.range(kQuarter + 31);
   EXPECT_EQ(lost.charge_w_max, 0);
   EXPECT_EQ(lost.discharge_w_max, 0);
   EXPECT_EQ(lost.charge_reason, Reason::kMeterLost);
@@ -150,13 +160,13 @@ TEST(SiteLimits, ALostMeterIsIdleOnlyAfterItsLastReadingIsTooOld) {
   SiteSettings ignoring = metered();
   ignoring.idle_without_meter = false;
   SiteUnderTest u(ignoring);
-  EXPECT_EQ(u.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, kAnyPowerW);
+  EXPECT_EQ(u.range(kQuarter).charge_w_max, kAnyPowerW);
 }
 
 TEST(SiteLimits, WithoutTheBatterysPowerThereIsNoReading) {
   SiteUnderTest t(metered());
   t.observe(kQuarter, false);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_reason, Reason::kMeterLost);
+  EXPECT_EQ(t.range(kQuarter).charge_reason, Reason::kMeterLost);
 }
 
 TEST(SiteLimits, TheBatterysOwnGridPointServesAsWell) {
@@ -167,50 +177,45 @@ TEST(SiteLimits, TheBatterysOwnGridPointServesAsWell) {
   m.has_grid_power = true;
   m.grid_power_w = 1'000;
   t.site.observe(kQuarter, true, m, {});
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 4'000);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, 4'000);
   m.has_grid_power = false;
   t.site.observe(kQuarter + 40, true, m, {});
-  EXPECT_EQ(t.site.range(kQuarter + 40, 4'000, Margin::kWhole).charge_reason, Reason::kMeterLost);
+  EXPECT_EQ(t.range(kQuarter + 40).charge_reason, Reason::kMeterLost);
 }
 
 TEST(SiteLimits, AnOutsideLimitEndsByItself) {
-  SiteSettings settings;
-  settings.has_outside_limits = true;
-  SiteUnderTest t(settings);
+  SiteUnderTest t(limited());
   t.limits.is_set = true;
   t.limits.limit = {
       .charge_w_max = 700, .discharge_w_max = kAnyPowerW, .until_utc_s = kQuarter + 60};
   t.observe(kQuarter);
-  EXPECT_EQ(t.site.range(kQuarter + 59, 4'000, Margin::kWhole).charge_w_max, 700);
-  EXPECT_EQ(t.site.range(kQuarter + 59, 4'000, Margin::kWhole).charge_reason,
-            Reason::kOutsideLimit);
-  EXPECT_EQ(t.site.range(kQuarter + 59, 4'000, Margin::kWhole).discharge_w_max, kAnyPowerW);
-  EXPECT_EQ(t.site.range(kQuarter + 60, 4'000, Margin::kWhole).charge_w_max, kAnyPowerW);
+  EXPECT_EQ(t.range(kQuarter + 59).charge_w_max, 700);
+  EXPECT_EQ(t.range(kQuarter + 59).charge_reason, Reason::kOutsideLimit);
+  EXPECT_EQ(t.range(kQuarter + 59).discharge_w_max, kAnyPowerW);
+  EXPECT_EQ(t.range(kQuarter + 60).charge_w_max, kAnyPowerW);
   EXPECT_EQ(t.site.report(kQuarter + 60).limit_status, Status::kOk);
 }
 
 TEST(SiteLimits, AControllerThatMustSpeakLeavesTheBatteryIdleWhenItDoesNot) {
-  SiteSettings settings;
-  settings.has_outside_limits = settings.idle_after_timeout = true;
+  SiteSettings settings = limited();
+  settings.idle_after_timeout = true;
   SiteUnderTest t(settings);
   t.observe(kQuarter);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 0);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, 0);
   EXPECT_EQ(t.site.report(kQuarter).limit_status, Status::kTimeout);
   t.limits.is_set = true;
   t.limits.limit.until_utc_s = kQuarter + 60;  // without any cap: only a sign of life
   t.observe(kQuarter);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, kAnyPowerW);
-  EXPECT_EQ(t.site.range(kQuarter + 60, 4'000, Margin::kWhole).charge_w_max, 0);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, kAnyPowerW);
+  EXPECT_EQ(t.range(kQuarter + 60).charge_w_max, 0);
 }
 
 TEST(SiteLimits, AMalformedLimitIsIdle) {
-  SiteSettings settings;
-  settings.has_outside_limits = true;
-  SiteUnderTest t(settings);
+  SiteUnderTest t(limited());
   t.limits.status = Status::kMalformed;
   t.observe(kQuarter);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 0);
-  EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).discharge_w_max, 0);
+  EXPECT_EQ(t.range(kQuarter).charge_w_max, 0);
+  EXPECT_EQ(t.range(kQuarter).discharge_w_max, 0);
   EXPECT_EQ(t.site.report(kQuarter).limit_status, Status::kMalformed);
 }
 
@@ -222,7 +227,7 @@ TEST(SiteLimits, OfSeveralLimitsTheTightestNamesTheReason) {
   t.limits.limit = {.charge_w_max = 2'000, .discharge_w_max = 100, .until_utc_s = kQuarter + 60};
   t.meter.grid_w = 4'000;
   t.observe(kQuarter);
-  const SiteRange range = t.site.range(kQuarter, 4'000, Margin::kWhole);
+  const SiteRange range = t.range(kQuarter);
   EXPECT_EQ(range.charge_w_max, 1'000);
   EXPECT_EQ(range.charge_reason, Reason::kImportLimit);
   EXPECT_EQ(range.discharge_w_max, 100);

@@ -164,8 +164,7 @@ TEST(WrongEnergy, ABatteryOnItsWayBetweenTicksIsNotWrong) {
   WatchedSite site;
   std::int32_t power_w = 4'000;
   for (std::int64_t s = 10; s < 12 * 3'600; s += 10) {
-    const std::int32_t apart_w = WatchedSite::ordered_w(s) - power_w;
-    power_w += std::clamp(apart_w, -300, 300);  // 30 W/s
+    power_w += std::clamp(WatchedSite::ordered_w(s) - power_w, -300, 300);  // 30 W/s
     site.look(s, power_w, 10);
     ASSERT_EQ(site.record.findings.wrong_energy_e6, 0) << s;
     ASSERT_FALSE(site.record.is_tripped) << s;
