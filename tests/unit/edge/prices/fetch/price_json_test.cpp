@@ -1,6 +1,7 @@
 // The price answer: real shapes, nulls, disorder, the future, nonsense.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,32 +23,32 @@ Status parse(std::string_view json, PriceRow& row) {
   return parse_newest_price(json, PriceFields{}, kAsked, row);
 }
 
-TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
+/// Of an answer that must have one.
+PriceRow newest_of(std::string_view json) {
   PriceRow row;
-  ASSERT_EQ(parse(R"({"total_count": 4, "results": [
+  EXPECT_EQ(parse(json, row), Status::kOk) << json;
+  return row;
+}
+
+TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
+  const PriceRow row = newest_of(R"({"total_count": 4, "results": [
  {"datetime":"2025-08-17T00:00:00+00:00","resolutioncode":"PT1M","imbalanceprice":43.944},
  {"datetime":"2025-08-17T00:36:00+00:00","qualitystatus":"DataIssue","imbalanceprice":-30.258},
- {"datetime":"2025-08-17T00:35:00+00:00","imbalanceprice":1.0}]})",
-                  row),
-            Status::kOk);
+ {"datetime":"2025-08-17T00:35:00+00:00","imbalanceprice":1.0}]})");
   EXPECT_EQ(row.minute_utc_s, utc("2025-08-17T00:36:00Z"));
   EXPECT_EQ(row.price_centi_eur_per_mwh, -3'026);
 }
 
 TEST(PriceJson, PassesOverNullsAndKeepsTheOneBefore) {
-  PriceRow row;
-  ASSERT_EQ(parse(R"({"results":[{"datetime":"2025-08-17T00:37:00+00:00","imbalanceprice":null},
-                     {"datetime":"2025-08-17T02:36:00+02:00","imbalanceprice":7}]})",
-                  row),
-            Status::kOk);
+  const PriceRow row =
+      newest_of(R"({"results":[{"datetime":"2025-08-17T00:37:00+00:00","imbalanceprice":null},
+                     {"datetime":"2025-08-17T02:36:00+02:00","imbalanceprice":7}]})");
   EXPECT_EQ(row.minute_utc_s, utc("2025-08-17T00:36:00Z"));  // local offset understood
   EXPECT_EQ(row.price_centi_eur_per_mwh, 700);
 }
 
 TEST(PriceJson, UnderstandsABareList) {
-  PriceRow row;
-  EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":1.005}])", row),
-            Status::kOk);
+  const PriceRow row = newest_of(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":1.005}])");
   EXPECT_EQ(row.price_centi_eur_per_mwh, 100);
 }
 
@@ -63,30 +64,27 @@ TEST(PriceJson, AMinuteCountsFromItsEndButForTheClocksTolerance) {
 
 /// What markets have settled at, what may be bid, and the limit itself: each to the cent.
 TEST(PriceJson, PricesAreExactToTheLimit) {
-  const struct {
-    const char* text;
-    std::int32_t centi;
-  } cases[] = {{"25907.54", 2'590'754},
-               {"-25907.54", -2'590'754},
-               {"99999", 9'999'900},
-               {"-99999", -9'999'900},
-               {"99999.99", 9'999'999},
-               {"1e5", 10'000'000},
-               {"-1.0E+5", -10'000'000},
-               {"-999", -99'900},
-               {"15000.01", 1'500'001},
-               {"2.590754e4", 2'590'754},
-               {"-0", 0},
-               {"-0.004", 0},
-               {"0.005", 1},
-               {"-9999", -999'900},
-               {"1e-300", 0}};
-  for (const auto& c : cases) {
+  const std::map<std::string, std::int32_t> centi_of = {{"25907.54", 2'590'754},
+                                                        {"-25907.54", -2'590'754},
+                                                        {"99999", 9'999'900},
+                                                        {"-99999", -9'999'900},
+                                                        {"99999.99", 9'999'999},
+                                                        {"1e5", 10'000'000},
+                                                        {"-1.0E+5", -10'000'000},
+                                                        {"-999", -99'900},
+                                                        {"15000.01", 1'500'001},
+                                                        {"2.590754e4", 2'590'754},
+                                                        {"-0", 0},
+                                                        {"-0.004", 0},
+                                                        {"0.005", 1},
+                                                        {"-9999", -999'900},
+                                                        {"1e-300", 0}};
+  for (const auto& [text, centi] : centi_of) {
     PriceRow row{.price_centi_eur_per_mwh = 7};
-    const std::string text =
-        std::string(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":)") + c.text + "}]";
-    EXPECT_EQ(parse(text, row), Status::kOk) << c.text;
-    EXPECT_EQ(row.price_centi_eur_per_mwh, c.centi) << c.text;
+    EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":)" + text + "}]", row),
+              Status::kOk)
+        << text;
+    EXPECT_EQ(row.price_centi_eur_per_mwh, centi) << text;
   }
 }
 

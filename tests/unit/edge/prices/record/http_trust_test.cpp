@@ -3,33 +3,29 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace bess {
 namespace {
 
 TEST(HttpTrust, LoopbackIsANumberOfThisMachine) {
-  const struct {
-    const char* url;
-    UrlTransport transport;
-  } table[] = {
-      {"https://a.example/x", UrlTransport::kSecure},
-      {"https://127.0.0.1/x", UrlTransport::kSecure},
-      {"http://127.0.0.1:8080/x", UrlTransport::kLoopback},
-      {"http://127.255.0.9/", UrlTransport::kLoopback},
-      {"http://127.1/", UrlTransport::kLoopback},  // the same number
-      {"http://[::1]:8080/x", UrlTransport::kLoopback},
-      {"http://[0:0:0:0:0:0:0:1]/x", UrlTransport::kLoopback},
-      {"http://localhost/x", UrlTransport::kOpen},  // what it is, the resolver says
-      {"http://a.example/x", UrlTransport::kOpen},
-      {"http://192.168.1.9/x", UrlTransport::kOpen},
-      {"http://127.0.0.1.example/x", UrlTransport::kOpen},
-      {"http://127.0.0.1@a.example/x", UrlTransport::kOpen},
-      {"http://[fe80::1]/x", UrlTransport::kOpen},
-      {"ftp://127.0.0.1/", UrlTransport::kUnusable},
-      {"http://", UrlTransport::kUnusable},
-      {"https://user:pa/ss@a.example/", UrlTransport::kUnusable},
-      {"", UrlTransport::kUnusable},
+  const std::pair<UrlTransport, std::vector<const char*>> table[] = {
+      {UrlTransport::kSecure, {"https://a.example/x", "https://127.0.0.1/x"}},
+      // 127.1 is the same number.
+      {UrlTransport::kLoopback,
+       {"http://127.0.0.1:8080/x", "http://127.255.0.9/", "http://127.1/", "http://[::1]:8080/x",
+        "http://[0:0:0:0:0:0:0:1]/x"}},
+      // What localhost is, the resolver says.
+      {UrlTransport::kOpen,
+       {"http://localhost/x", "http://a.example/x", "http://192.168.1.9/x",
+        "http://127.0.0.1.example/x", "http://127.0.0.1@a.example/x", "http://[fe80::1]/x"}},
+      {UrlTransport::kUnusable,
+       {"ftp://127.0.0.1/", "http://", "https://user:pa/ss@a.example/", ""}},
   };
-  for (const auto& row : table) EXPECT_EQ(transport_of(row.url), row.transport) << row.url;
+  for (const auto& [transport, urls] : table) {
+    for (const char* url : urls) EXPECT_EQ(transport_of(url), transport) << url;
+  }
 }
 
 TEST(HttpTrust, ALoginIsWhatStandsBeforeTheHost) {

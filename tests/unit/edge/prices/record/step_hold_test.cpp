@@ -12,12 +12,16 @@ constexpr PriceRow row_at(std::int64_t minute, std::int32_t price_centi) {
   return {.minute_utc_s = 60 * minute, .price_centi_eur_per_mwh = price_centi};
 }
 
-TEST(StepHold, ASmallStepIsTakenAndTheExactLimitIsSmall) {
-  StepHold hold;
-  for (const std::int32_t price : {10'001, -220'000, 240'000}) {
-    const auto verdict = hold.judge(kBefore, row_at(11, price));
-    EXPECT_TRUE(verdict.is_taken) << price;
-    EXPECT_FALSE(verdict.is_large_step) << price;
+TEST(StepHold, ASmallStepIsTakenAndTheExactLimitIsSmallAndALieBeforeItIsForgotten) {
+  for (const bool has_lied : {false, true}) {
+    for (const std::int32_t price : {10'001, 12'000, -220'000, 240'000}) {
+      StepHold hold;
+      EXPECT_FALSE(has_lied && hold.judge(kBefore, row_at(11, -900'000)).is_taken);
+      const auto verdict = hold.judge(kBefore, row_at(12, price));
+      EXPECT_TRUE(verdict.is_taken) << price;
+      EXPECT_FALSE(verdict.is_large_step) << price;
+      EXPECT_FALSE(hold.has_held());
+    }
   }
 }
 
@@ -31,15 +35,6 @@ TEST(StepHold, ALargeStepIsHeldUntilALaterRowConfirmsIt) {
   const auto verdict = hold.judge(kBefore, row_at(12, 800'000));
   EXPECT_TRUE(verdict.is_taken);
   EXPECT_TRUE(verdict.is_large_step);
-  EXPECT_FALSE(hold.has_held());
-}
-
-TEST(StepHold, OneLieIsForgottenWithTheNextHonestRow) {
-  StepHold hold;
-  EXPECT_FALSE(hold.judge(kBefore, row_at(11, -900'000)).is_taken);
-  const auto verdict = hold.judge(kBefore, row_at(12, 12'000));
-  EXPECT_TRUE(verdict.is_taken);
-  EXPECT_FALSE(verdict.is_large_step);
   EXPECT_FALSE(hold.has_held());
 }
 

@@ -85,8 +85,7 @@ TEST(EarningsOfDays, AreBilledByQuarterHoursAsFarAsTheyAreSettled) {
   EXPECT_EQ(money.contract_eur, 0);
   EXPECT_EQ(money.published, 2);
   EXPECT_EQ(money.validated, 1);
-  const Json json = Json::parse(both.json().text());
-  EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 2);
+  EXPECT_EQ(Json::parse(both.json().text()).value()["settled_quarter_hours"].number(), 2);
   EXPECT_THAT(both.text(), HasSubstr("2 at the settled price (1 validated)"));
 }
 

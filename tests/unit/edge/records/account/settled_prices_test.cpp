@@ -14,11 +14,12 @@ using ::testing::HasSubstr;
 constexpr std::int64_t kSettledQuarter = 1'679'785'200;
 constexpr PriceState kAsPublished = PriceState::kPublished, kAsValidated = PriceState::kValidated;
 
+void put(SettledPrices& prices, const std::vector<SettledQuarter>& some) { prices.put(some); }
+
 TEST(SettledPrices, AreWhatWasWritten) {
   SettledPrices prices;
-  const SettledQuarter some[] = {{kSettledQuarter + 900, -999.99, kAsPublished},
-                                 {kSettledQuarter, 131.07, kAsValidated}};
-  prices.put(some);
+  put(prices,
+      {{kSettledQuarter + 900, -999.99, kAsPublished}, {kSettledQuarter, 131.07, kAsValidated}});
   SettledPrices read;
   ASSERT_TRUE(read.parse(prices.text()));
   EXPECT_EQ(read.quarters(), prices.quarters());
@@ -31,19 +32,16 @@ TEST(SettledPrices, AreWhatWasWritten) {
 
 TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {
   SettledPrices prices;
-  const SettledQuarter first[] = {{kSettledQuarter, 10, kAsPublished},
-                                  {kSettledQuarter + 900, 20, kAsValidated}};
-  const SettledQuarter then[] = {{kSettledQuarter, 11, kAsPublished},
-                                 {kSettledQuarter + 900, 21, kAsPublished}};
-  const SettledQuarter last[] = {{kSettledQuarter, 12, kAsValidated},
-                                 {kSettledQuarter + 900, 22, kAsValidated}};
-  prices.put(first);
+  const auto put_both = [&](double first, PriceState state, double second, PriceState other) {
+    put(prices, {{kSettledQuarter, first, state}, {kSettledQuarter + 900, second, other}});
+  };
+  put_both(10, kAsPublished, 20, kAsValidated);
   EXPECT_EQ(prices.first_open(kSettledQuarter), kSettledQuarter);
   EXPECT_EQ(prices.first_open(kSettledQuarter + 900), kSettledQuarter + 1'800);
-  prices.put(then);
+  put_both(11, kAsPublished, 21, kAsPublished);
   EXPECT_EQ(prices.find(kSettledQuarter)->eur_per_mwh, 11);
   EXPECT_EQ(prices.find(kSettledQuarter + 900)->eur_per_mwh, 20);
-  prices.put(last);
+  put_both(12, kAsValidated, 22, kAsValidated);
   EXPECT_EQ(prices.find(kSettledQuarter + 900)->eur_per_mwh, 22);
   EXPECT_EQ(prices.first_open(kSettledQuarter), kSettledQuarter + 1'800);
   prices.drop_before(kSettledQuarter + 1);
@@ -53,9 +51,7 @@ TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {
 /// A card that forgets: every byte of the file, one after the other.
 TEST(SettledPrices, ADamagedFileIsNotBelieved) {
   SettledPrices prices;
-  const SettledQuarter some[] = {{kSettledQuarter, 131.07, kAsValidated},
-                                 {kSettledQuarter + 900, 5, kAsPublished}};
-  prices.put(some);
+  put(prices, {{kSettledQuarter, 131.07, kAsValidated}, {kSettledQuarter + 900, 5, kAsPublished}});
   const std::string text = prices.text();
   for (std::size_t i = 0; i < text.size(); ++i) {
     std::string broken = text;

@@ -259,8 +259,7 @@ TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
 TEST_F(Log, WhatCannotBeOpenedStopsTheStartWithOneLine) {
   EventLogSettings s = settings();
   s.metrics = "/nonexistent/bess.prom";
-  const auto log = std::make_unique<EventLog>();
-  EXPECT_FALSE(log->open(s, RunIdentity{}, error_));
+  EXPECT_FALSE(std::make_unique<EventLog>()->open(s, RunIdentity{}, error_));
   EXPECT_THAT(error_.c_str(), Names("/nonexistent/bess.prom"));
 }
 

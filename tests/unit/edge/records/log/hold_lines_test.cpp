@@ -46,8 +46,7 @@ TEST(HoldLines, AChangeAndARelease) {
   EXPECT_NE(journal.after(0, kHeld), "");
   HoldReport other = kHeld;
   other.power_w = 0;
-  const std::string unwritten = journal.after(1, other, false);
-  EXPECT_THAT(unwritten, Names("hold 0 W 2023-03-27T00:06:00Z"));
+  EXPECT_THAT(journal.after(1, other, false), Names("hold 0 W 2023-03-27T00:06:00Z"));
   EXPECT_THAT(journal.after(1, {}), AllOf(Names("hold"), Not(Names("W"))));
 }
 

@@ -236,8 +236,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
     for (std::size_t i = begin; i < begin + 28; ++i) {
       write_file(path_, flipped(whole, i, 0x10));
       ASSERT_EQ(cycles(), (Cycles{3, 4, 5, 6, 7})) << "byte " << i;
-      const std::string line = damage_line(path_, 5);
-      ASSERT_EQ(has_code(line, "decisions.ring"), begin == 0) << "byte " << i;
+      ASSERT_EQ(has_code(damage_line(path_, 5), "decisions.ring"), begin == 0) << "byte " << i;
       ASSERT_EQ(text_of_file(path_), whole) << "byte " << i;
     }
   }
@@ -245,8 +244,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
 
 TEST_F(Ring, WithoutAnyHeaderTheRecordsSayHowTheyLie) {
   append(5, 1, 7);
-  const std::string whole = text_of_file(path_);
-  std::string headless = whole;
+  std::string headless = text_of_file(path_);
   headless.replace(0, kHeaderBytes, kHeaderBytes, '\xff');
   for (const std::int64_t configured : {std::int64_t{5}, std::int64_t{9}}) {
     write_file(path_, headless);

@@ -118,10 +118,10 @@ TEST(StoredStatus, IsReadWholeOrNotAtAll) {
   for (int i = 0; i < 200; ++i) {
     std::string damaged = whole;
     damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
-    static_cast<void>(folder.write("status.bin", damaged));
+    folder.write("status.bin", damaged);
     EXPECT_EQ(read_status(path.c_str(), read), StatusFile::kDamaged) << i;
   }
-  static_cast<void>(folder.write("status.bin", whole.substr(0, whole.size() - 1)));
+  folder.write("status.bin", whole.substr(0, whole.size() - 1));
   EXPECT_EQ(read_status(path.c_str(), read), StatusFile::kDamaged);
 }
 

@@ -44,7 +44,7 @@ TEST(WholeFile, APlantedLinkDoesNotLeadTheNewLogAway) {
 TEST(WholeFile, WhatAKilledProgramLeftBesideIsReplaced) {
   const TemporaryFolder folder;
   const std::string path = folder.file("status.json");
-  static_cast<void>(folder.write("status.json.new", "half of a longer te"));
+  folder.write("status.json.new", "half of a longer te");
   EXPECT_TRUE(replace_file(path.c_str(), "now"));
   EXPECT_EQ(text_of_file(path), "now");
   EXPECT_FALSE(fs::exists(path + ".new"));

@@ -114,8 +114,7 @@ TEST_F(Why, WhatTheGuardForbidsSaysWhatEndsIt) {
   r.reason = Reason::kSocEmpty;
   r.ordered_power_w = 0;
   log(r);
-  const std::string text = explanation_text(explained(), settings_);
-  EXPECT_THAT(text, Names("0 W soc_empty 10.5 % student"));
+  EXPECT_THAT(explanation_text(explained(), settings_), Names("0 W soc_empty 10.5 % student"));
 }
 
 TEST_F(Why, EveryReasonButTheStudentsHasAnEnd) {

@@ -66,8 +66,7 @@ TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
 TEST(NextDecision, NamesWhatStandsAboveTheStudent) {
   CycleRecord late = at_noon(60);
   late.reason = Reason::kPriceAge;
-  const std::string text = next_decision_text(find_next_decision(late, kNoon, {}));
-  EXPECT_THAT(text, Names("price_age"));
+  EXPECT_THAT(next_decision_text(find_next_decision(late, kNoon, {})), Names("price_age"));
   late.price.has_row = false;
   const NextDecision blind = find_next_decision(late, kNoon, {});
   EXPECT_THAT(next_decision_text(blind), testing::Not(Names("W")));
