@@ -41,8 +41,7 @@ TEST(LevelNote, SaysHowTheLevelWasComeBy) {
     const std::string note(level_note(c.news));
     EXPECT_THAT(note, Names(c.codes));
     EXPECT_TRUE(notes.insert(note).second) << note;
-    const bool is_warning = journal_level_of(c.news) == JournalLevel::kWarning;
-    EXPECT_EQ(is_warning, c.news.start.source == kNone);
+    EXPECT_EQ(journal_level_of(c.news) == JournalLevel::kWarning, c.news.start.source == kNone);
   }
 }
 

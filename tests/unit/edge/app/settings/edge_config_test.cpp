@@ -41,6 +41,7 @@ class ConfigFile : public ::testing::Test {
     error_.clear();
     return load_edge_config(folder_.write("edge.toml", text), *config_, error_);
   }
+  void load_good(const std::string& text) { ASSERT_TRUE(load(text)) << error_; }
   /// The valid text with `more` before the first `place`.
   static std::string with(std::string_view place, const std::string& more) {
     std::string text = valid_text();
@@ -62,9 +63,7 @@ TEST_F(ConfigFile, TheDocumentedExampleIsValidAndReadOnly) {
 }
 
 TEST_F(ConfigFile, ReadsEveryUnit) {
-  ASSERT_TRUE(
-      load(with("soc_min", "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n")))
-      << error_;
+  load_good(with("soc_min", "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n"));
   EXPECT_TRUE(config_->control.control);
   EXPECT_EQ(config_->control.guard.thresholds, (PriceThresholds{-120, 640}));
   EXPECT_EQ(config_->control.guard.soc_min_e4, 2'000);
@@ -76,18 +75,17 @@ TEST_F(ConfigFile, ReadsEveryUnit) {
 /// They bound what a price source that lies can do, and honest prices never come near:
 /// edge/prices/record/README.md.
 TEST_F(ConfigFile, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
-  ASSERT_TRUE(load(valid_text())) << error_;
+  load_good(valid_text());
   EXPECT_EQ(config_->control.cycles_per_day_max_e4, 60'000);
   EXPECT_EQ(config_->control.reversals_per_hour_max, 20);
   EXPECT_EQ(config_->control.guard.ramp_w_max, 0);
-  ASSERT_TRUE(load(with("soc_min", "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n")))
-      << error_;
+  load_good(with("soc_min", "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n"));
   EXPECT_EQ(config_->control.cycles_per_day_max_e4, 0);
   EXPECT_EQ(config_->control.reversals_per_hour_max, 0);
 }
 
 TEST_F(ConfigFile, ABatteryThatIsFullSoonerMayCycleMore) {
-  ASSERT_TRUE(load(with("power_w", "capacity_wh = 4000\n"))) << error_;
+  load_good(with("power_w", "capacity_wh = 4000\n"));
   EXPECT_EQ(config_->control.cycles_per_day_max_e4, 120'000);
 }
 
@@ -95,7 +93,7 @@ TEST_F(ConfigFile, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   std::string text = valid_text();
   text.replace(text.find("alphaess"), 8, "victron_ess3");
   text.insert(text.find("power_w"), "units = { vebus = 246 }\n");
-  ASSERT_TRUE(load(text)) << error_;
+  load_good(text);
   const RegisterPoint& set_point =
       config_->battery.map.points[find_point(config_->battery.map, "set_l1")];
   EXPECT_EQ(config_->battery.map.unit_of(set_point), 246);
@@ -107,10 +105,9 @@ TEST_F(ConfigFile, UnitGroupsOfTheMapAreTheOperatorsToSet) {
 }
 
 TEST_F(ConfigFile, ReadsTheSerialLinesSettings) {
-  ASSERT_TRUE(load(with("power_w",
-                        "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
-                        "parity = \"even\"\nstop_bits = 2\n")))
-      << error_;
+  load_good(with("power_w",
+                 "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
+                 "parity = \"even\"\nstop_bits = 2\n"));
   EXPECT_TRUE(config_->battery.link.rtu);
   EXPECT_EQ(config_->battery.link.device.view(), "/dev/ttyS1");
   EXPECT_EQ(config_->battery.link.baud, 19'200);
@@ -119,7 +116,7 @@ TEST_F(ConfigFile, ReadsTheSerialLinesSettings) {
 }
 
 TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
-  ASSERT_TRUE(load(valid_text())) << error_;
+  load_good(valid_text());
   EXPECT_EQ(config_->state.folder, folder_.file("state"));
   EXPECT_EQ(config_->log.ring, folder_.file("state/decisions.ring"));
   EXPECT_EQ(config_->log.status, folder_.file("state/status.json"));
@@ -131,7 +128,7 @@ TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
                            "[state]\nfolder = \"/var/lib/bess\"\n"
                            "[log]\ndays = 365\ncsv = \"edge.csv\"\n"
                            "[metrics]\nprometheus = \"/tmp/bess.prom\"\n";
-  ASSERT_TRUE(load(text)) << error_;
+  load_good(text);
   EXPECT_EQ(config_->log.ring, "/var/lib/bess/decisions.ring");
   EXPECT_EQ(config_->log.csv, folder_.file("edge.csv"));
   EXPECT_EQ(config_->log.metrics, "/tmp/bess.prom");
@@ -142,7 +139,7 @@ TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
 TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateBesideIt) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::create_directory(folder_.file("etc"));
-  static_cast<void>(folder_.write("etc/edge.toml", valid_text()));
+  folder_.write("etc/edge.toml", valid_text());
   std::filesystem::current_path(folder_.file(""));
   EXPECT_TRUE(load_edge_config("etc/edge.toml", *config_, error_)) << error_;
   std::filesystem::current_path(before);
@@ -230,14 +227,13 @@ TEST_F(ConfigFile, EveryMistakeIsOneClearLineWithItsPlace) {
 }
 
 TEST_F(ConfigFile, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
-  ASSERT_TRUE(load(valid_text())) << error_;
+  load_good(valid_text());
   EXPECT_EQ(config_->price.history.hours, 72);
   EXPECT_TRUE(config_->price.history.url.empty());
   EXPECT_FALSE(config_->price.level_start_centi_eur_per_mwh.has_value());
-  ASSERT_TRUE(load(with("[guard]",
-                        "history_hours = 0\nhistory_url = \"http://127.0.0.1:1/past\"\n"
-                        "level_start_eur_per_mwh = -12.5\n")))
-      << error_;
+  load_good(with("[guard]",
+                 "history_hours = 0\nhistory_url = \"http://127.0.0.1:1/past\"\n"
+                 "level_start_eur_per_mwh = -12.5\n"));
   EXPECT_EQ(config_->price.history.hours, 0);
   EXPECT_EQ(config_->price.history.url, "http://127.0.0.1:1/past");
   EXPECT_EQ(config_->price.level_start_centi_eur_per_mwh, -1'250);
@@ -251,7 +247,7 @@ TEST_F(ConfigFile, ReadsTheKeysOfAnotherPriceServer) {
   text.replace(
       text.find("[price]"), 7,
       "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"");
-  ASSERT_TRUE(load(text)) << error_;
+  load_good(text);
   EXPECT_EQ(config_->price.feed.http.headers, "X-Api-Key: k");
   EXPECT_EQ(config_->price.feed.http.ca_file, headers);  // relative to the configuration
   EXPECT_EQ(config_->price.feed.fields.rows, "data.rows");
@@ -295,7 +291,7 @@ TEST_F(ConfigFile, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
   text.insert(text.find("[guard]") + 7, "\nhold_s = 10\norder_deadline_s = 5");
   text.insert(text.find("[price]") + 7, "\ntimeout_ms = 70\nresolve_every_s = 30");
   text += "\n[outlook]\nask_spread_s = 0\n[state]\nlock_folder = \"x\"\n";
-  ASSERT_TRUE(load(text)) << error_;
+  load_good(text);
   EXPECT_EQ(config_->control.hold_s, 300);
   EXPECT_EQ(config_->price.feed.http.timeout_ms, 5'000);
   std::vector<std::string> named;
@@ -317,8 +313,7 @@ TEST_F(ConfigFile, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
   text.erase(text.find("[simulation]"));
   std::set<std::int32_t> seconds;
   for (int i = 0; i < 100; ++i) {
-    const std::string state = "\n[state]\nfolder = \"state" + std::to_string(i) + "\"\n";
-    ASSERT_TRUE(load(text + state)) << error_;
+    load_good(text + "\n[state]\nfolder = \"state" + std::to_string(i) + "\"\n");
     const std::int32_t offset_s = day_ahead_offset_s(*config_);
     EXPECT_EQ(offset_s, day_ahead_offset_s(*config_));
     EXPECT_GE(offset_s, 0);

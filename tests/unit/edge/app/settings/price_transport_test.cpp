@@ -19,8 +19,7 @@ class PriceTransport : public ::testing::Test {
  protected:
   /// Loads a configuration with these lines in [price]; the first is line 4.
   bool load(const std::string& price_keys) {
-    const std::string headers = folder_.write("headers", "X-Api-Key: s3cret\n");
-    chmod(headers.c_str(), 0600);
+    chmod(folder_.write("headers", "X-Api-Key: s3cret\n").c_str(), 0600);
     path_ = folder_.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
                                        "/edge/device/maps/alphaess.toml\"\n[price]\n" +
                                            price_keys);

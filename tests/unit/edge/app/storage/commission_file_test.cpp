@@ -62,11 +62,11 @@ TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
 }
 
 TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
-  static_cast<void>(folder_.write("base.toml", "# version 1\n"));
-  static_cast<void>(folder_.write("map.toml", "include = \"base.toml\"\n"));
+  folder_.write("base.toml", "# version 1\n");
+  folder_.write("map.toml", "include = \"base.toml\"\n");
   ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
-  static_cast<void>(folder_.write("base.toml", "# version 2\n"));
+  folder_.write("base.toml", "# version 2\n");
   EXPECT_THAT(complaint(), Names("map_crc32"));
 }
 
@@ -89,8 +89,7 @@ TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
     EXPECT_THAT(text, HasSubstr(line));
   }
   EXPECT_EQ(text.find("discharge"), std::string::npos);
-  static_cast<void>(
-      folder_.write("state/commissioned.toml", text.substr(0, text.find("charge_measured_w"))));
+  folder_.write("state/commissioned.toml", text.substr(0, text.find("charge_measured_w")));
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
 }
 
@@ -119,7 +118,7 @@ TEST_F(CommissionCopies, AnyFlippedByteOfAnyPlaceIsToldAndMended) {
     for (std::size_t i = 0; i < text_.size(); i += 7) {
       std::string flipped = text_;
       flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
-      static_cast<void>(folder_.write(place, flipped));
+      folder_.write(place, flipped);
       ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
       ASSERT_THAT(commission_file_losses(config_),
                   ::testing::ElementsAre(Names(folder_.file(place))))
@@ -154,7 +153,7 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
     ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
     EXPECT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(path)));
     fs::remove(path);
-    static_cast<void>(folder_.write(place, text_));
+    folder_.write(place, text_);
   }
 }
 
@@ -162,7 +161,7 @@ TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
   std::string changed = text_;
   changed[changed.find("2023-03-26")] = '3';
   for (const std::string& broken : {std::string(3, '\0'), changed}) {
-    for (const char* place : kPlaces) static_cast<void>(folder_.write(place, broken));
+    for (const char* place : kPlaces) folder_.write(place, broken);
     EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
     EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
   }
@@ -180,8 +179,7 @@ TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
 /// A program before this one kept it once, and without a checksum: no loss.
 TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
   for (const char* place : kPlaces) std::filesystem::remove(folder_.file(place));
-  const std::string older = text_.substr(0, text_.rfind("# crc32="));
-  static_cast<void>(folder_.write(kPlaces[0], older));
+  folder_.write(kPlaces[0], text_.substr(0, text_.rfind("# crc32=")));
   ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
   EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
   expect_all_whole();

@@ -87,7 +87,7 @@ TEST_F(TwoPlaces, TheWordOfEitherIsEnough) {
 }
 
 TEST_F(TwoPlaces, WhatCannotBeReadIsNoWordAndIsWrittenAnew) {
-  static_cast<void>(folder_.write("state", "nonsense"));
+  folder_.write("state", "nonsense");
   EXPECT_TRUE(read_cleared(paths_.state.c_str()).unreadable);
   EXPECT_FALSE(is_trip_cleared(paths_, kTrip));
   ASSERT_TRUE(clear_trip_of(paths_.state.c_str(), kTrip));

@@ -137,7 +137,7 @@ TEST_F(Channels, ACommandThatHangsIsKilledAndRunAgain) {
   EXPECT_EQ(pending().size(), 1U);
   const pid_t pid = std::stoi(text_of_file(folder_.file("command_began")));
   EXPECT_NE(kill(pid, 0), 0) << "it is gone";
-  static_cast<void>(folder_.write("well", ""));
+  folder_.write("well", "");
   whole_round(notifier, kNow + 30);
   EXPECT_EQ(told(), "x\n");
   EXPECT_TRUE(pending().empty());

@@ -31,12 +31,16 @@ std::string write_secret(const TemporaryFolder& folder, const char* name, const 
   return path;
 }
 
-TEST(NotifySettings, WithoutASectionThereIsNoWay) {
-  const TemporaryFolder folder;
+NotifySettings loaded_settings(const std::string& path) {
   NotifySettings settings;
   std::string error;
-  ASSERT_TRUE(load_notify_settings(folder.write("edge.toml", "control = true\n"), settings, error))
-      << error;
+  EXPECT_TRUE(load_notify_settings(path, settings, error)) << error;
+  return settings;
+}
+
+TEST(NotifySettings, WithoutASectionThereIsNoWay) {
+  const TemporaryFolder folder;
+  const NotifySettings settings = loaded_settings(folder.write("edge.toml", "control = true\n"));
   EXPECT_FALSE(settings.has_channel());
   EXPECT_EQ(settings.state_folder, folder.file("state"));
   EXPECT_THAT(settings.memories, ElementsAre(folder.file("notify/told.json")));
@@ -47,28 +51,20 @@ TEST(NotifySettings, WithoutASectionThereIsNoWay) {
 
 TEST(NotifySettings, TheInstalledFolderHasItsPlaceInMemory) {
   const TemporaryFolder folder;
-  NotifySettings settings;
-  std::string error;
-  ASSERT_TRUE(load_notify_settings(
-      folder.write("edge.toml", "[notify]\nfolder = \"/var/lib/bess-notify\"\n"), settings, error))
-      << error;
+  const NotifySettings settings =
+      loaded_settings(folder.write("edge.toml", "[notify]\nfolder = \"/var/lib/bess-notify\"\n"));
   EXPECT_THAT(settings.memories,
               ElementsAre("/var/lib/bess-notify/told.json", "/run/bess-notify/told.json"));
 }
 
 TEST(NotifySettings, TheDocumentedExampleIsValid) {
-  NotifySettings settings;
-  std::string error;
-  EXPECT_TRUE(load_notify_settings(BESS_SOURCE_DIR "/edge/bess-edge.toml", settings, error))
-      << error;
+  loaded_settings(BESS_SOURCE_DIR "/edge/bess-edge.toml");
 }
 
 TEST(NotifySettings, ReadsEveryKey) {
   const TemporaryFolder folder;
   write_secret(folder, "password", "open sesame\n");
-  NotifySettings settings;
-  std::string error;
-  ASSERT_TRUE(load_notify_settings(
+  const NotifySettings settings = loaded_settings(
       folder.write("edge.toml",
                    "[state]\nfolder = \"/var/lib/bess\"\n[battery]\nname = \"garage-1\"\n"
                    "[settled]\nurl = \"https://example.org/\"\n[notify]\n"
@@ -76,9 +72,7 @@ TEST(NotifySettings, ReadsEveryKey) {
                    "run_folder = \"run\"\n"
                    "program = \"/opt/bess-edge\"\ncommand = 'apprise -b \"$BESS_TEXT\" x://'\n"
                    "mqtt_host = \"127.0.0.1\"\nmqtt_port = 1884\nmqtt_user = \"u\"\n"
-                   "mqtt_password_file = \"password\"\n"),
-      settings, error))
-      << error;
+                   "mqtt_password_file = \"password\"\n"));
   EXPECT_TRUE(settings.has_channel());
   EXPECT_EQ(settings.settled_file, "/var/lib/bess/settled.csv");
   EXPECT_THAT(settings.memories,
@@ -370,8 +364,7 @@ class NotifierStateFile : public ::testing::Test {
     ASSERT_EQ(write_notifier_state(paths_, text_), "");
   }
   void keep_fails(const std::vector<std::string>& paths, const std::string& where) const {
-    const std::string trouble = write_notifier_state(paths, text_);
-    EXPECT_THAT(trouble, Names(paths[0] + " " + where));
+    EXPECT_THAT(write_notifier_state(paths, text_), Names(paths[0] + " " + where));
   }
   void expect_known(const std::string& day, std::size_t losses) {
     EXPECT_EQ(read().day, day);
@@ -393,8 +386,7 @@ TEST_F(NotifierStateFile, OutlastsARestart) {
                  {.key = "new"}},
       .pending = {kAlarm, {.severity = "day", .key = "2023-11-25", .text = "d", .utc_s = 9}}};
   ASSERT_EQ(write_notifier_state(paths_, notifier_state_text(state)), "");
-  const NotifierState after = read();
-  EXPECT_EQ(notifier_state_text(after), notifier_state_text(state));
+  EXPECT_EQ(notifier_state_text(read()), notifier_state_text(state));
 }
 
 TEST_F(NotifierStateFile, TheNewestCounts) {

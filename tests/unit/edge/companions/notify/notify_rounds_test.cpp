@@ -54,7 +54,7 @@ TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
     const int kind = static_cast<int>(random() % kKinds);
     is_there[kind] = !is_there[kind];
     ++changes[kind];
-    if (random() % 4 == 0) static_cast<void>(folder_.write("fails", ""));
+    if (random() % 4 == 0) folder_.write("fails", "");
     if (random() % 3 == 0) std::filesystem::remove(folder_.file("fails"));
     if (random() % 5 == 0) notifier.reset(), notifier = std::make_unique<Notifier>(settings_);
     round(s);
@@ -101,7 +101,7 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
   echo '{"days": [{"date": "2023-03-27", "line": "2023-03-27: +0.77 EUR"}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
   const auto cycle = [&](std::int64_t utc_s, const std::string& today) {
-    static_cast<void>(folder_.write("today", R"({"days": [{"date": ")" + today + R"("}]})"));
+    folder_.write("today", R"({"days": [{"date": ")" + today + R"("}]})");
     set_status("ok", "", utc_s);
     round_of_its_own(settings_, utc_s);
   };
@@ -199,7 +199,7 @@ TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
 "earned yesterday") echo '{"days": [{"date": "2023-03-27", "earned_eur": 0.125, "cycles": 9}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
   const auto cycle = [&](std::int64_t utc_s, const char* today) {
-    static_cast<void>(folder_.write("today", today));
+    folder_.write("today", today);
     set_status("ok", "", utc_s);
     round_of_its_own(settings_, utc_s);
   };
