@@ -80,6 +80,30 @@ inline void fill_victron(RegisterDevice& device) {
   device.set(2'902, {1});
 }
 
+inline void fill_fronius(RegisterDevice& device) {
+  device.set(40'253, {160});
+  device.set(40'314, {1'200});  // module 3 charges
+  device.set(40'343, {124});
+  device.set(40'345, {5'000});   // WChaMax
+  device.set(40'351, {4'700});   // SoC 47.00 %
+  device.set(40'365, {0xFFFE});  // scale -2
+  device.set(40'368, {0xFFFE});
+}
+
+inline void fill_huawei(RegisterDevice& device) {
+  device.set(37'046, {0, 5'000, 0, 4'500});
+  device.set(37'758, {0, 10'000, 505});
+  device.set(37'765, {0xFFFF, 0xFA24});  // -1500: discharging
+  device.set(47'075, {0, 5'000, 0, 2'500});
+}
+
+inline void fill_sungrow(RegisterDevice& device) {
+  device.set_input(13'000, {2});
+  device.set_input(13'021, {1'500, 505});
+  device.set_input(13'024, {215});
+  device.set(33'046, {500, 450});
+}
+
 class DeviceLink {
  public:
   explicit DeviceLink(RegisterDevice& device) : device_(device) {}

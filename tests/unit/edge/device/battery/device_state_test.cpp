@@ -57,10 +57,8 @@ TEST(DeviceState, AlphaEss) {
 
 TEST(DeviceState, SungrowSh) {
   const auto fill = [](RegisterDevice& device) {
-    device.set_input(12'999, {0x40, 2});
-    device.set_input(13'021, {1'500, 505});
-    device.set_input(13'024, {215});
-    device.set(33'046, {500, 450});
+    fill_sungrow(device);
+    device.set_input(12'999, {0x40});
     device.set(13'049, {3, 0xAA, 4'000});  // holding: an order, and no alarm
   };
   std::vector<StateCase> cases = {{4, 12'999, {0x0100}, Told::kAlarm},
@@ -80,9 +78,8 @@ TEST(DeviceState, SungrowSh) {
 
 TEST(DeviceState, HuaweiLuna2000) {
   const auto fill = [](RegisterDevice& device) {
+    fill_huawei(device);
     device.set(32'089, {0x0200});
-    device.set(37'046, {0, 5'000, 0, 4'500});
-    device.set(37'758, {0, 10'000, 505});
     device.set(37'762, {2});
   };
   expect_told("huawei_luna2000", fill,
@@ -103,13 +100,8 @@ TEST(DeviceState, HuaweiLuna2000) {
 
 TEST(DeviceState, FroniusGen24) {
   const auto fill = [](RegisterDevice& device) {
+    fill_fronius(device);
     device.set(40'107, {4});
-    device.set(40'253, {160});
-    device.set(40'343, {124});
-    device.set(40'345, {5'000});
-    device.set(40'351, {4'700});
-    device.set(40'365, {0xFFFE});
-    device.set(40'368, {0xFFFE});
   };
   expect_told("fronius_gen24", fill,
               {{3, 40'107, {7}, Told::kAlarm},

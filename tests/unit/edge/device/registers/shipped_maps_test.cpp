@@ -44,16 +44,6 @@ TEST(AlphaEssDriver, OneBlockAndItsRelease) {
   EXPECT_EQ(t.driver->refresh_interval_s(), 0);
 }
 
-void fill_fronius(RegisterDevice& device) {
-  device.set(40'253, {160});
-  device.set(40'314, {1'200});  // module 3 charges
-  device.set(40'343, {124});
-  device.set(40'345, {5'000});   // WChaMax
-  device.set(40'351, {4'700});   // SoC 47.00 %
-  device.set(40'365, {0xFFFE});  // scale -2
-  device.set(40'368, {0xFFFE});
-}
-
 TEST(FroniusGen24, ControlModeIsLastToStartAndFirstToStop) {
   MapUnderTest t(shipped_map("fronius_gen24"), fill_fronius);
   EXPECT_EQ(t.reading().soc_e4, 4'700);
@@ -90,13 +80,6 @@ TEST(FroniusGen24, FloatRegisterTypeIsTheWrongDevice) {
   EXPECT_EQ(t.read(), Status::kImplausible);
   EXPECT_EQ(t.order(1'000), Status::kImplausible);
   EXPECT_THAT(t.device.writes, IsEmpty());
-}
-
-void fill_huawei(RegisterDevice& device) {
-  device.set(37'046, {0, 5'000, 0, 4'500});
-  device.set(37'758, {0, 10'000, 505});
-  device.set(37'765, {0xFFFF, 0xFA24});  // -1500: discharging
-  device.set(47'075, {0, 5'000, 0, 2'500});
 }
 
 TEST(HuaweiLuna2000, ForcibleIsLastAndFlashOnlyWhenItDiffers) {
@@ -182,13 +165,6 @@ TEST(VictronEss3, ThreePhasesShareThePower) {
   EXPECT_THAT(t.writes_of(-4'000),
               ElementsAre(fc16(37, {64'203, 0, 0}, 228), fc16(40, {64'203, 64'203}, 228)));
   EXPECT_EQ(t.reading().order_power_w, -3'999);
-}
-
-void fill_sungrow(RegisterDevice& device) {
-  device.set_input(13'000, {2});
-  device.set_input(13'021, {1'500, 505});
-  device.set_input(13'024, {215});
-  device.set(33'046, {500, 450});
 }
 
 TEST(SungrowSh, ExternalEmsWithHeartbeat) {
