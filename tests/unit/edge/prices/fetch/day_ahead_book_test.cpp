@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -140,9 +141,16 @@ TEST_P(BookOfToday, AnswersAsTheTableSays) {
 }
 
 std::vector<Spoilt> spoilt_answers() {
-  const auto shift = [](std::int64_t seconds) {
-    return [seconds](std::vector<DayAheadRow>& rows) {
-      for (DayAheadRow& row : rows) row.utc_s += seconds;
+  using Rows = std::vector<DayAheadRow>;
+  const auto each_row = [](const std::function<void(DayAheadRow&)>& change) {
+    return [change](Rows& rows) { std::ranges::for_each(rows, change); };
+  };
+  const auto shift = [&](std::int64_t seconds) {
+    return each_row([seconds](DayAheadRow& row) { row.utc_s += seconds; });
+  };
+  const auto prices_from = [](std::size_t first, std::size_t end, auto price) {
+    return [=](Rows& rows) {
+      for (std::size_t i = first; i < end; ++i) rows[i].eur_per_mwh = price(rows, i);
     };
   };
   return {
@@ -152,33 +160,17 @@ std::vector<Spoilt> spoilt_answers() {
       {"shifted_back_by_a_day", shift(-24 * kHour), Status::kImplausible, 0},
       {"of_another_year", shift(-365 * 24 * kHour), Status::kNoRow, 0},
       {"no_quarter_hours", shift(60), Status::kNoRow, 0},
-      {"another_market",
-       [](auto& rows) {
-         for (DayAheadRow& row : rows) row.eur_per_mwh += 3.11;
-       },
+      {"another_market", each_row([](DayAheadRow& row) { row.eur_per_mwh += 3.11; }),
        Status::kImplausible, 0},
       {"yesterdays_again",
-       [](auto& rows) {
-         for (std::size_t i = 96; i < rows.size(); ++i) {
-           rows[i].eur_per_mwh = rows[i - 96].eur_per_mwh;
-         }
-       },
+       prices_from(96, 192, [](Rows& rows, std::size_t i) { return rows[i - 96].eur_per_mwh; }),
        Status::kImplausible, 0},
       {"falling_times", [](auto& rows) { std::swap(rows[3], rows[4]); }, Status::kOk, 96},
-      {"zeros_until_the_auction",
-       [](auto& rows) {
-         for (std::size_t i = 96; i < rows.size(); ++i) rows[i].eur_per_mwh = 0;
-       },
+      {"zeros_until_the_auction", prices_from(96, 192, [](Rows&, std::size_t) { return 0; }),
        Status::kImplausible, 0},
-      {"in_eur_per_kwh",
-       [](auto& rows) {
-         for (DayAheadRow& row : rows) row.eur_per_mwh /= 1'000;
-       },
+      {"in_eur_per_kwh", each_row([](DayAheadRow& row) { row.eur_per_mwh /= 1'000; }),
        Status::kDoubtfulUnit, 0},
-      {"no_price_as_minus_999",
-       [](auto& rows) {
-         for (std::size_t i = 100; i < 110; ++i) rows[i].eur_per_mwh = -999;
-       },
+      {"no_price_as_minus_999", prices_from(100, 110, [](Rows&, std::size_t) { return -999; }),
        Status::kOk, 86},
       {"doubles_that_agree", [](auto& rows) { rows.insert(rows.begin() + 100, rows[100]); },
        Status::kOk, 96},
