@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/support/user_errors.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 
@@ -28,36 +29,10 @@ inline std::filesystem::path outside_sample(const std::string& name) {
   }
 
 /// An empty folder of this test, removed at its end.
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::path(testing::TempDir()) /
-              (std::string("bess_market_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+struct ScratchFolder : TemporaryFolder {
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
+    return file(name);
   }
-
- private:
-  std::filesystem::path path_;
 };
-
-/// Runs `action` and returns the text of the UserError it throws; fails the test when it throws
-/// none.
-template <typename Action>
-std::string user_error_of(Action action) {
-  const std::string error = refused_with(action);
-  EXPECT_NE(error, "") << "expected a UserError";
-  return error;
-}
 
 }  // namespace bess

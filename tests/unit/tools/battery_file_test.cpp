@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "shared/battery_keys.h"
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -48,13 +48,10 @@ TEST(BatteryFile, MistakesAreOneLineThatNamesThePlace) {
                {"[battery\n", "battery.toml:1"}};
   for (const auto& row : table) {
     BatteryParameters battery;
-    try {
-      read_battery_file(folder.write("battery.toml", row.text), battery);
-      ADD_FAILURE() << "taken: " << row.text;
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names(row.complaint));
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    }
+    const std::string said =
+        user_error_of([&] { read_battery_file(folder.write("battery.toml", row.text), battery); });
+    EXPECT_THAT(said, Names(row.complaint)) << row.text;
+    EXPECT_EQ(said.find('\n'), std::string::npos);
   }
 }
 

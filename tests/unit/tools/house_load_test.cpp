@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -41,12 +41,8 @@ TEST(HouseLoad, AMistakeNamesItsLine) {
       {"minute_utc,house_w\n2023-03-26T00:00:00Z,nan\n", "house.csv:2 house_w nan"},
       {"minute_utc,house_w\n2023-03-26T00:00:00Z,1\n2023-03-26T00:02:00Z,1\n", "house.csv:3"}};
   for (const auto& [text, message] : mistakes) {
-    try {
-      HouseLoad::from_csv(text, "house.csv");
-      ADD_FAILURE() << text;
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), Names(message));
-    }
+    EXPECT_THAT(user_error_of([&, rows = text] { HouseLoad::from_csv(rows, "house.csv"); }),
+                Names(message));
   }
 }
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "edge/device/battery/modbus_battery.h"
-#include "shared/host/user_error.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 #include "tests/unit/tools/loopback_battery.h"
 
 namespace bess {
@@ -77,12 +77,8 @@ TEST(BatteryServer, PortInUseIsOneClearLine) {
   BatteryServerSettings settings;
   settings.port = loopback.link().port;
   SimulatedBattery other({.power_w_max = 4'000, .capacity_wh = 8'000}, 0.5, 0);
-  try {
-    BatteryServer second(settings, loopback.map, other, loopback.clock);
-    ADD_FAILURE() << "two servers on one port";
-  } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), Names(std::to_string(settings.port)));
-  }
+  EXPECT_THAT(user_error_of([&] { BatteryServer(settings, loopback.map, other, loopback.clock); }),
+              Names(std::to_string(settings.port)));
 }
 
 }  // namespace

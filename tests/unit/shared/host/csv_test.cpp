@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "shared/host/user_error.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -17,14 +17,11 @@ std::vector<std::string> fields_of(std::string_view line, char separator) {
 }
 
 std::string csv_complaint(std::string_view text) {
-  try {
+  return user_error_of([&] {
     const CsvTable table(text, "f.csv");
     static_cast<void>(table.number(0, table.column("price")));
     static_cast<void>(table.utc_s(0, table.column("utc")));
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "none";
+  });
 }
 
 TEST(Csv, FieldsKeepSeparatorsInsideQuotes) {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -17,12 +17,7 @@ class DistinctFiles : public testing::Test {
 
   static std::string refusal(const std::vector<GivenPath>& outputs,
                              const std::vector<GivenPath>& inputs) {
-    try {
-      require_distinct(outputs, inputs);
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { require_distinct(outputs, inputs); });
   }
 
   TemporaryFolder folder_;

@@ -9,12 +9,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -76,18 +75,12 @@ TEST_F(File, APlantedLinkIsNotFollowed) {
 }
 
 std::string complaint_about(const fs::path& path, std::size_t bytes_max = kFileBytesMax) {
-  try {
-    static_cast<void>(read_file(path, bytes_max));
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { return read_file(path, bytes_max); });
 }
 
 std::string packed(const TemporaryFolder& folder, const std::string& text) {
   write_file(folder.file("packed.gz"), text);
-  std::ifstream file(folder.file("packed.gz"), std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return text_of_file(folder.file("packed.gz"));
 }
 
 TEST_F(File, GzipIsReadByItsContentInOneMemberOrMore) {

@@ -10,6 +10,7 @@
 
 #include "shared/host/json_reader.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -90,14 +91,7 @@ TEST(JsonReader, NamesFileAndMember) {
       {[&] { reader.wholes("text", std::span(two)); }, "some.json text 2"},
       {[&] { reader.wholes("list", std::span(two)); }, "some.json list 8"},
   };
-  for (const auto& [read, codes] : mistakes) {
-    try {
-      read();
-      ADD_FAILURE() << codes;
-    } catch (const UserError& error) {
-      EXPECT_THAT(std::string(error.what()), Names(codes));
-    }
-  }
+  for (const auto& [read, codes] : mistakes) EXPECT_THAT(user_error_of(read), Names(codes));
   reader.wholes("list", std::span(wide));
   EXPECT_THAT(wide, ElementsAre(1, 200));
 }

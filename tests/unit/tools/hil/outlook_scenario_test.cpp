@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <set>
 
-#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 #include "tools/hil_runner/base/work_folder.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
@@ -26,12 +26,7 @@ Scenario scenario_of(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    static_cast<void>(scenario_of(text));
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { return scenario_of(text); });
 }
 
 /// What the rule says of a run whose log was changed.

@@ -7,10 +7,10 @@
 
 #include <map>
 
-#include "shared/host/user_error.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -129,12 +129,9 @@ TEST(RealBattery, WhatItWasToldIsReadOffItsBus) {
 TEST(RealBattery, ADamagedRecordingOfItsBusIsNamed) {
   const TemporaryFolder folder;
   const std::string path = folder.write("bus.jsonl", std::string(kHead) + "{]\n");
-  try {
-    static_cast<void>(orders_on_the_bus({path}, load_shipped_map({"alphaess", "block"}), 0));
-    FAIL() << "it was taken";
-  } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), Names("bus.jsonl:2"));
-  }
+  const RegisterMap map = load_shipped_map({"alphaess", "block"});
+  EXPECT_THAT(user_error_of([&] { return orders_on_the_bus({path}, map, 0); }),
+              Names("bus.jsonl:2"));
 }
 
 }  // namespace

@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <set>
 
-#include "shared/host/user_error.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/user_error_of.h"
 #include "tools/simulators/battery_sim/battery_faults.h"
 
 namespace bess {
@@ -29,12 +29,7 @@ std::vector<Scenario> shipped() {
 
 std::string refusal(const std::string& text) {
   const TemporaryFolder folder;
-  try {
-    static_cast<void>(read_scenario(folder.write("s.toml", text)));
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { return read_scenario(folder.write("s.toml", text)); });
 }
 
 TEST(Scenarios, AtLeastThirtyAreShippedEachWithATitle) {
