@@ -1,7 +1,9 @@
-// The three things around the control loop, without any io: a clock that jumps from deadline to
-// deadline, the simulator's physics behind the battery interface, and a price source. Faults are
+// The control loop, and the three things around it without any io: a clock that jumps from deadline
+// to deadline, the simulator's physics behind the battery interface, and a price source. Faults are
 // switched by public fields.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "edge/core/control/control_types.h"
+#include "edge/core/loop/control_loop.h"
 #include "edge/device/registers/codec.h"
 #include "shared/scaled_clock.h"
 #include "tools/simulators/battery_sim/simulated_battery.h"
@@ -133,6 +135,40 @@ struct FakePrices {
     const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
     return static_cast<std::int32_t>(std::lround(10'000 + 20'000 * std::sin(hours)));
   };
+};
+
+inline constexpr std::int32_t kCheapCenti = -60'000;  ///< below every threshold: charge
+inline constexpr std::int32_t kDearCenti = 160'000;   ///< above every threshold: discharge
+
+template <typename Loop>
+CycleRecord run_cycle(Loop& loop) {
+  CycleRecord record;
+  EXPECT_TRUE(loop.run_cycle(record));
+  return record;
+}
+
+/// In control, unless the settings say otherwise.
+struct FakePlant {
+  using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+  explicit FakePlant(double soc = 0.5,
+                     const ControlSettings& settings = {.control = true, .guard = {}})
+      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {}
+  CycleRecord cycle() { return run_cycle(loop); }
+  CycleRecord stop() {
+    CycleRecord record;
+    loop.stop(record);
+    return record;
+  }
+  /// Always the same.
+  void set_price(std::int32_t centi) {
+    prices.price = [centi](std::int64_t) { return centi; };
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  Loop loop;
 };
 
 }  // namespace bess

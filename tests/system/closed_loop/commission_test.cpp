@@ -30,7 +30,11 @@ struct CommissionMeter {
 };
 
 struct CommissionSite {
-  explicit CommissionSite(double soc = 0.3) : battery(clock, soc) {}
+  explicit CommissionSite(double soc = 0.3, const BatteryHabits& habits = {})
+      : battery(clock, soc) {
+    battery.physics.set_habits(habits);
+  }
+  explicit CommissionSite(const BatteryHabits& habits) : CommissionSite(0.3, habits) {}
   CommissionResult commission(const CommissionSettings& settings = {}) {
     return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
   }
@@ -87,8 +91,7 @@ TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
 /// 4029 W were once measured for 500, and "the sign is right".
 TEST(Commission, RefusesMorePowerThanOrderedAndEndsItAtOnce) {
   for (const double gain : {8.06, 1.5, -8.0}) {
-    CommissionSite site;
-    site.battery.physics.set_habits({.gain = gain});
+    CommissionSite site({.gain = gain});
     const std::int64_t start_ns = site.clock.now_ns;
     site.expect_refused(gain > 0 ? CommissionVerdict::kTooMuch : CommissionVerdict::kWrongSign);
     EXPECT_LE(site.clock.now_ns - start_ns, 13 * kNanosecondsPerSecond);
@@ -113,44 +116,33 @@ TEST(Commission, TheOtherDirectionIsLookedAtAsWell) {
 }
 
 TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
-  CommissionSite site;
-  site.battery.physics.set_habits({.gain = 0.55});
+  CommissionSite site({.gain = 0.55});
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kTooLittle);
   EXPECT_EQ(result.wanted_tolerance_w, 300);  // 225 W are missing
   CommissionSettings told;
   told.response.tolerance_w = 300;
-  CommissionSite again;
-  again.battery.physics.set_habits({.gain = 0.55});
-  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(CommissionSite({.gain = 0.55}).commission(told).verdict, CommissionVerdict::kPassed);
 }
 
 TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
-  CommissionSite quick;
-  quick.battery.physics.set_habits({.delay_s = 5});
-  const CommissionResult passed = quick.commission();
+  const CommissionResult passed = CommissionSite({.delay_s = 5}).commission();
   EXPECT_EQ(passed.verdict, CommissionVerdict::kPassed);
   EXPECT_NEAR(passed.charge.speed.dynamics.dead_time_s, 5, 1.001);
   EXPECT_NEAR(static_cast<double>(passed.charge.came_ms), 5'000, 1'001);
-  CommissionSite late;
-  late.battery.physics.set_habits({.delay_s = 25});
-  const CommissionResult refused = late.commission();
+  const CommissionResult refused = CommissionSite({.delay_s = 25}).commission();
   EXPECT_EQ(refused.verdict, CommissionVerdict::kSlow);
   EXPECT_GE(refused.wanted_settle_s, 25);
   EXPECT_LE(refused.wanted_settle_s, 32);
   EXPECT_EQ(refused.wanted_ramp_w_max, 0);
   CommissionSettings told;
   told.response.settle_s = refused.wanted_settle_s;
-  CommissionSite again;
-  again.battery.physics.set_habits({.delay_s = 25});
-  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(CommissionSite({.delay_s = 25}).commission(told).verdict, CommissionVerdict::kPassed);
 }
 
 /// 500 W are there in 17 s; a reversal of 8 kW takes 267 s, longer than any map may say.
 TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
-  CommissionSite site;
-  site.battery.physics.set_habits({.ramp_w_per_s = 30});
-  const CommissionResult result = site.commission();
+  const CommissionResult result = CommissionSite({.ramp_w_per_s = 30}).commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kSlow);
   EXPECT_NEAR(ramp_w_per_s(result.charge.speed), 30, 2);
   EXPECT_EQ(result.wanted_settle_s, 100);
@@ -158,12 +150,10 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   CommissionSettings told;
   told.response.settle_s = result.wanted_settle_s;
   told.step_w_max = result.wanted_ramp_w_max;
-  CommissionSite again;
-  again.battery.physics.set_habits({.ramp_w_per_s = 30});
-  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
-  CommissionSite brisk;
-  brisk.battery.physics.set_habits({.ramp_w_per_s = 200});  // 500 W in 2.5 s, 8 kW in 40
-  const CommissionResult seen = brisk.commission();
+  EXPECT_EQ(CommissionSite({.ramp_w_per_s = 30}).commission(told).verdict,
+            CommissionVerdict::kPassed);
+  // 500 W in 2.5 s, 8 kW in 40.
+  const CommissionResult seen = CommissionSite({.ramp_w_per_s = 200}).commission();
   EXPECT_EQ(seen.verdict, CommissionVerdict::kSlow);
   EXPECT_NEAR(ramp_w_per_s(seen.discharge.speed), 200, 10);
   EXPECT_NEAR(seen.wanted_settle_s, 45, 2);  // 37 s and a fifth
@@ -269,12 +259,6 @@ TEST(Commission, AHouseThatMovesTooMuchIsNoReasonToAccuse) {
   EXPECT_EQ(site.commission_with(meter).verdict, CommissionVerdict::kMeterRestless);
 }
 
-TEST(Commission, RefusesAWrongSign) {
-  CommissionSite site;
-  site.battery.inverted = true;
-  site.expect_refused(CommissionVerdict::kWrongSign);
-}
-
 TEST(Commission, RefusesABatteryThatDoesNothing) {
   CommissionSite site;
   site.battery.physics =
@@ -282,11 +266,15 @@ TEST(Commission, RefusesABatteryThatDoesNothing) {
   site.expect_refused(CommissionVerdict::kDoesNotFollow);
 }
 
-TEST(Commission, RefusesAnAlarmWithoutOrderingAnything) {
-  CommissionSite site;
-  site.battery.alarm = true;
-  site.expect_refused(CommissionVerdict::kAlarm);
-  EXPECT_TRUE(site.battery.orders.empty());
+TEST(Commission, RefusesWrongSignsAndAnInterruptAndAnAlarmWithoutOrderingAnything) {
+  CommissionSite reversed, alarmed, interrupted;
+  reversed.battery.inverted = true;
+  reversed.expect_refused(CommissionVerdict::kWrongSign);
+  alarmed.battery.alarm = true;
+  alarmed.expect_refused(CommissionVerdict::kAlarm);
+  EXPECT_TRUE(alarmed.battery.orders.empty());
+  interrupted.clock.stop = true;
+  interrupted.expect_refused(CommissionVerdict::kInterrupted);
 }
 
 TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
@@ -310,12 +298,6 @@ TEST(Commission, SaysWhyTheLinkFailed) {
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kNoLink);
   EXPECT_EQ(result.status, Status::kTimeout);
-}
-
-TEST(Commission, AnInterruptReleases) {
-  CommissionSite site;
-  site.clock.stop = true;
-  site.expect_refused(CommissionVerdict::kInterrupted);
 }
 
 TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {

@@ -12,24 +12,9 @@
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+using Plant = FakePlant;
 
 ControlSettings in_control() { return {.control = true, .guard = {}}; }
-
-struct Plant {
-  explicit Plant(double soc = 0.5, ControlSettings settings = in_control())
-      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {}
-  CycleRecord cycle() {
-    CycleRecord record;
-    EXPECT_TRUE(loop.run_cycle(record));
-    return record;
-  }
-
-  FakeClock clock;
-  FakeBattery battery;
-  FakePrices prices;
-  Loop loop;
-};
 
 TEST(ClosedLoop, ADayEndsWhereTheOrdersLead) {
   set_market_time_zone();
@@ -49,7 +34,7 @@ TEST(ClosedLoop, ADayEndsWhereTheOrdersLead) {
 
 TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -20'000; };
+  plant.set_price(-20'000);
   EXPECT_EQ(plant.cycle().ordered_power_w, 4'000);
   plant.prices.outage = true;
   std::vector<Mode> modes;
@@ -77,33 +62,21 @@ TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
 TEST(ClosedLoop, ReadOnlyNeverWrites) {
   Plant plant(0.5, ControlSettings{});
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(plant.cycle().written);
-  CycleRecord record;
-  plant.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_EQ(plant.stop().battery_status, Status::kOk);
   EXPECT_TRUE(plant.battery.orders.empty());
   EXPECT_EQ(plant.battery.releases, 0);
 }
 
 TEST(ClosedLoop, StopOrdersZeroAndReleases) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -20'000; };
+  plant.set_price(-20'000);
   plant.cycle();
-  CycleRecord record;
-  plant.loop.stop(record);
+  const CycleRecord record = plant.stop();
   EXPECT_EQ(record.battery_status, Status::kOk);
   EXPECT_EQ(plant.battery.orders.back().power_w, 0);
   EXPECT_EQ(plant.battery.releases, 1);
   EXPECT_EQ(record.mode, Mode::kStopping);
   EXPECT_EQ(record.reason, Reason::kStopRequested);
-}
-
-TEST(ClosedLoop, StopWithoutLinkSaysSo) {
-  Plant plant;
-  plant.cycle();
-  plant.battery.link = false;
-  CycleRecord record;
-  plant.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kTimeout);
 }
 
 TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
@@ -127,7 +100,7 @@ TEST(ClosedLoop, CountsTheTicksThatAnOverrunSkipped) {
 
 TEST(ClosedLoop, ARestartTakesOverWhatTheBatteryIsDoing) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.battery.physics.start_dispatch(4'000, 1.0, 300);  // the order of the run before
   const CycleRecord record = plant.cycle();
   EXPECT_EQ(record.measurement.order_power_w, 4'000);
@@ -147,24 +120,15 @@ TEST(ClosedLoop, ARestartWithoutAPriceHoldsZeroAndReleasesTheOldOrder) {
 }
 
 TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
-  Plant plant;
-  plant.prices.outage = true;
-  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
-  plant.cycle();
-  CycleRecord record;
-  plant.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kOk);
-  EXPECT_FALSE(plant.battery.physics.dispatch_active());
-}
-
-TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
-  Plant plant;
-  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
-  CycleRecord record;
-  plant.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kOk);
-  EXPECT_EQ(plant.battery.releases, 1);
-  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  for (const int cycles : {0, 1}) {  // before the first as well
+    Plant plant;
+    plant.prices.outage = true;
+    plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+    for (int i = 0; i < cycles; ++i) plant.cycle();
+    EXPECT_EQ(plant.stop().battery_status, Status::kOk);
+    EXPECT_EQ(plant.battery.releases, 1);
+    EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  }
 }
 
 TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutAWatchdog) {
@@ -178,16 +142,13 @@ TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
   Plant plant;
   plant.cycle();
   plant.battery.failing_releases = 3;
-  CycleRecord record;
-  plant.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_EQ(plant.stop().battery_status, Status::kOk);
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
   Plant unreachable;  // gives up in the end
   unreachable.cycle();
   unreachable.battery.link = false;
   const std::int64_t start_ns = unreachable.clock.now_ns;
-  unreachable.loop.stop(record);
-  EXPECT_EQ(record.battery_status, Status::kTimeout);
+  EXPECT_EQ(unreachable.stop().battery_status, Status::kTimeout);
   EXPECT_LE(unreachable.clock.now_ns - start_ns, 90 * kNanosecondsPerSecond);
 }
 
@@ -200,9 +161,7 @@ TEST(ClosedLoop, AStopWithADeadManTriesOnceAndSaysWhatFailed) {
     plant.battery.link = has_link;
     plant.battery.failing_releases = 100;
     const std::int64_t start_ns = plant.clock.now_ns;
-    CycleRecord record;
-    plant.loop.stop(record);
-    EXPECT_EQ(record.battery_status, Status::kTimeout) << "also where its 0 W was taken";
+    EXPECT_EQ(plant.stop().battery_status, Status::kTimeout) << "also where its 0 W was taken";
     EXPECT_LT(plant.clock.now_ns - start_ns, 5 * kNanosecondsPerSecond);
   }
 }
@@ -220,9 +179,7 @@ TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
 }
 
 TEST(ClosedLoop, NothingIsFedWithoutAnOrderOrInReadOnly) {
-  ControlSettings settings = in_control();
-  settings.control = false;
-  Plant reader(0.5, settings);
+  Plant reader(0.5, ControlSettings{});
   Plant safe;
   reader.battery.refresh_s = safe.battery.refresh_s = 30;
   safe.prices.outage = true;
@@ -240,7 +197,7 @@ TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
   settings.cycles_per_day_max_e4 = 5'000;  // half a cycle: 100 % of charge moved
   Plant plant(0.5, settings);
   plant.prices.price = [&](std::int64_t minute_utc_s) {
-    return minute_utc_s / 7'200 % 2 == 0 ? -60'000 : 160'000;  // two hours each way
+    return minute_utc_s / 7'200 % 2 == 0 ? kCheapCenti : kDearCenti;  // two hours each way
   };
   std::int32_t moved_e4_max = 0;
   bool spent = false, reopened = false;
@@ -265,7 +222,7 @@ TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
   settings.cycles_per_day_max_e4 = 5'000;
   Plant plant(0.5, settings);
   plant.loop.take_over({.throughput = {.local_day = 20'230'325, .soc_moved_e4 = 10'000}});
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   EXPECT_EQ(plant.cycle().reason, Reason::kCycleBudget);
 }
 
@@ -273,10 +230,10 @@ TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
 /// battery.
 int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   std::vector<CycleRecord> log;
   for (int run = 1; run <= 20; ++run) {
-    Loop loop(in_control(), plant.battery, plant.prices, plant.clock);
+    Plant::Loop loop(in_control(), plant.battery, plant.prices, plant.clock);
     for (const CycleRecord& record : log) loop.recall(record);
     if (!log.empty()) {
       const CycleRecord& newest = log.back();
@@ -285,10 +242,8 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
     }
     for (int i = 0; i < cycles_per_run; ++i) {
       fault(plant.battery, static_cast<int>(log.size()));
-      CycleRecord record;
-      EXPECT_TRUE(loop.run_cycle(record));
-      log.push_back(record);
-      if (record.is_tripped) return static_cast<int>(log.size());
+      log.push_back(run_cycle(loop));
+      if (log.back().is_tripped) return static_cast<int>(log.size());
     }
   }
   return 99;
@@ -307,26 +262,22 @@ TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
 
 TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.battery.inverted = true;
   std::vector<CycleRecord> log;
   for (int i = 0; i < 2; ++i) log.push_back(plant.cycle());
   ASSERT_FALSE(log.back().is_tripped);  // short of it by one reading
-  Loop next(in_control(), plant.battery, plant.prices, plant.clock);
-  Loop forgetful(in_control(), plant.battery, plant.prices, plant.clock);
+  Plant::Loop next(in_control(), plant.battery, plant.prices, plant.clock);
+  Plant::Loop forgetful(in_control(), plant.battery, plant.prices, plant.clock);
   for (const CycleRecord& record : log) next.recall(record);
-  CycleRecord record;
-  ASSERT_TRUE(next.run_cycle(record));
-  EXPECT_FALSE(record.is_tripped);  // an order of unknown age proves nothing
-  ASSERT_TRUE(next.run_cycle(record));
-  EXPECT_TRUE(record.is_tripped);
-  ASSERT_TRUE(forgetful.run_cycle(record));
-  EXPECT_FALSE(record.is_tripped);
+  EXPECT_FALSE(run_cycle(next).is_tripped);  // an order of unknown age proves nothing
+  EXPECT_TRUE(run_cycle(next).is_tripped);
+  EXPECT_FALSE(run_cycle(forgetful).is_tripped);
 }
 
 TEST(ClosedLoop, AFailedReadingKeepsItsCauseThoughTheOrderSucceeds) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.cycle();
   plant.battery.is_implausible = true;
   const CycleRecord record = plant.cycle();
@@ -338,14 +289,14 @@ TEST(ClosedLoop, AFailedReadingKeepsItsCauseThoughTheOrderSucceeds) {
 
 TEST(ClosedLoop, ThePriceIsLoggedAsOldAsAtTheWrite) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.prices.arrives_after_ns = 7 * kNanosecondsPerSecond;
   EXPECT_EQ(plant.cycle().price_age_s, 7);
 }
 
 TEST(ClosedLoop, ATripOfTheRunBeforeHoldsUntilItIsCleared) {
   Plant plant;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.loop.take_over({}, Trip{.reason = Reason::kUncontrolledPower, .utc_s = 7});
   for (int i = 0; i < 5; ++i) {
     const CycleRecord record = plant.cycle();
@@ -364,7 +315,7 @@ TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
   Plant plant;
   plant.battery.refuses_orders = true;  // external control is switched off on the device
   plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
   EXPECT_EQ(plant.cycle().reason, Reason::kOrdersFail);  // tried again after a pause
   plant.battery.refuses_orders = false;
@@ -379,7 +330,7 @@ TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
   Plant plant;
   plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
   plant.battery.refuses_orders = true;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
 }
 
@@ -387,30 +338,24 @@ TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
   Plant plant(1.0);
   plant.battery.physics =
       SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.5, plant.clock.now_ns);
-  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.set_price(kCheapCenti);
   plant.cycle();
   EXPECT_EQ(plant.cycle().unanswered_orders, 1);
   EXPECT_EQ(plant.cycle().reason, Reason::kNoAnswer);
 }
 
-TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
-  Plant plant;
-  plant.prices.price = [&](std::int64_t) {
-    plant.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
-    return -60'000;
+TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPriceOrReading) {
+  Plant price, reading;
+  price.prices.price = [&](std::int64_t) {
+    price.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
+    return kCheapCenti;
   };
-  const CycleRecord record = plant.cycle();
-  EXPECT_EQ(record.reason, Reason::kLink);  // the reading is as old as the price
-  EXPECT_TRUE(plant.battery.orders.empty());
-}
-
-TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldReading) {
-  Plant plant;
-  plant.prices.price = [&](std::int64_t) { return -60'000; };
-  plant.prices.arrives_after_ns = 300 * kNanosecondsPerSecond;  // fresh, the reading is not
-  const CycleRecord record = plant.cycle();
-  EXPECT_EQ(record.reason, Reason::kLink);
-  EXPECT_TRUE(plant.battery.orders.empty());
+  reading.set_price(kCheapCenti);
+  reading.prices.arrives_after_ns = 300 * kNanosecondsPerSecond;  // fresh, the reading is not
+  for (Plant* plant : {&price, &reading}) {
+    EXPECT_EQ(plant->cycle().reason, Reason::kLink);  // the reading is as old as the price
+    EXPECT_TRUE(plant->battery.orders.empty());
+  }
 }
 
 TEST(ClosedLoop, CountsOrdersThatComeTooLateOrNotAtAll) {

@@ -1,25 +1,16 @@
 // Holds, reserve, full charges and the spread of starts in the real control loop, on a fake clock.
 #include <gtest/gtest.h>
 
-#include "edge/core/loop/control_loop.h"
 #include "tests/support/fake_plant.h"
 
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
-
-struct Site {
-  explicit Site(double soc, const ControlSettings& settings)
-      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {
+struct Site : FakePlant {
+  explicit Site(const ControlSettings& settings = {.control = true, .guard = {}})
+      : FakePlant(0.5, settings) {
     set_market_time_zone();
     loop.follow_holds(holds);
-  }
-  explicit Site(double soc = 0.5) : Site(soc, {.control = true, .guard = {}}) {}
-  CycleRecord cycle() {
-    CycleRecord record;
-    EXPECT_TRUE(loop.run_cycle(record));
-    return record;
   }
   void hold(std::int32_t power_w, std::int64_t seconds) {
     const std::int64_t now_utc_s = clock.now_ns / kNanosecondsPerSecond;
@@ -27,16 +18,12 @@ struct Site {
         {.power_w = power_w, .until_utc_s = static_cast<std::uint32_t>(now_utc_s + seconds)});
   }
 
-  FakeClock clock;
-  FakeBattery battery;
-  FakePrices prices;
   HoldMailbox holds;
-  Loop loop;
 };
 
 TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
   Site site;
-  site.prices.price = [](std::int64_t) { return -20'000; };
+  site.set_price(-20'000);
   site.holds.publish({.unreadable = true});
   const CycleRecord record = site.cycle();
   EXPECT_TRUE(record.hold.unreadable);
@@ -44,7 +31,7 @@ TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
 }
 
 TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
-  Site site(0.5, ControlSettings{});
+  Site site(ControlSettings{});
   site.hold(-500, 3'600);
   const CycleRecord record = site.cycle();
   EXPECT_EQ(record.ordered_power_w, -500);
@@ -56,8 +43,8 @@ TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
 TEST(LoopWithAReserve, KeepsItWhateverThePriceAndTellsTheBattery) {
   ControlSettings settings{.control = true, .guard = {}};
   settings.reserve.push_back({.soc_e4 = 4'000});
-  Site site(0.5, settings);
-  site.prices.price = [](std::int64_t) { return 200'000; };
+  Site site(settings);
+  site.set_price(200'000);
   CycleRecord record;
   for (int i = 0; i < 60; ++i) record = site.cycle();
   EXPECT_EQ(record.reason, Reason::kReserve);
@@ -70,7 +57,7 @@ TEST(LoopWithAReserve, KeepsItWhateverThePriceAndTellsTheBattery) {
 TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
   ControlSettings settings{.control = true, .guard = {}};
   settings.reserve.push_back({.soc_e4 = 500});
-  Site site(0.5, settings);
+  Site site(settings);
   site.cycle();
   EXPECT_EQ(site.battery.orders.back().soc_min_e4, 1'000);
 }
@@ -80,7 +67,7 @@ TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
   ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
   settings.full_charge_every_days = 3;
   settings.guard.soc_max_e4 = 10'000;
-  Site site(0.5, settings);
+  Site site(settings);
   site.prices.price = [](std::int64_t minute_utc_s) {  // dear: the student sells, or rests
     const auto cents = static_cast<std::int32_t>(minute_utc_s / 60 % 97);  // it is not frozen
     return (minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000) + cents;
@@ -104,8 +91,8 @@ TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
 TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
   ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
   settings.full_charge_every_days = 3;
-  Site site(0.5, settings);
-  site.prices.price = [](std::int64_t) { return 5'000; };
+  Site site(settings);
+  site.set_price(5'000);
   site.loop.take_over(
       {.utc_s = kDayStartS, .price_level = PriceLevel::starting_at(8'000), .days_since_full = 3});
   const CycleRecord record = site.cycle();

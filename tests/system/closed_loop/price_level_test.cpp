@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "edge/core/control/level_start.h"
-#include "edge/core/loop/control_loop.h"
 #include "edge/prices/fetch/history_pages.h"
 #include "edge/prices/fetch/price_fetcher.h"
 #include "edge/prices/fetch/price_json.h"
@@ -72,10 +71,8 @@ class Replay {
     loop_->take_over({.throughput = {}, .price_level = level});
   }
   void run_until(std::int64_t utc_s) {
-    CycleRecord record;
     while (clock_.now_ns / kNanosecondsPerSecond < utc_s - kSecondsPerStep) {
-      ASSERT_TRUE(loop_->run_cycle(record));
-      records.push_back(record);
+      records.push_back(run_cycle(*loop_));
     }
   }
   /// The program ends; the next one starts later, from the record as it lies on the disk.

@@ -6,32 +6,22 @@
 #include <vector>
 
 #include "edge/app/program/take_over.h"
-#include "edge/core/loop/control_loop.h"
 #include "tests/support/fake_plant.h"
 
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+using Loop = FakePlant::Loop;
 
 constexpr std::int32_t kExtremeCenti = 1'000'000;
 
 /// Dear and cheap in turns, beyond every threshold: the most that a source can ask for.
-struct Liar {
-  Liar() : battery(clock, 0.5), prices(clock) {
+struct Liar : FakePlant {
+  Liar() {
     prices.price = [](std::int64_t minute_utc_s) {
       return minute_utc_s / kSecondsPerStep % 2 == 0 ? kExtremeCenti : -kExtremeCenti;
     };
   }
-  std::vector<CycleRecord> run(Loop& loop, int cycles) {
-    std::vector<CycleRecord> records(static_cast<std::size_t>(cycles));
-    for (CycleRecord& record : records) EXPECT_TRUE(loop.run_cycle(record));
-    return records;
-  }
-
-  FakeClock clock;
-  FakeBattery battery;
-  FakePrices prices;
 };
 
 /// Changes of sign among the last orders of an hour, counted without the loop's help.
@@ -54,8 +44,8 @@ int most_reversals_in_an_hour(const std::vector<CycleRecord>& records) {
 
 TEST(PriceLies, ReversalsStayUnderTheCapWhateverThePricesAsk) {
   Liar liar;
-  Loop loop({.control = true, .guard = {}}, liar.battery, liar.prices, liar.clock);
-  const std::vector<CycleRecord> records = liar.run(loop, 10 * kStepsPerHour);
+  std::vector<CycleRecord> records;
+  for (int i = 0; i < 10 * kStepsPerHour; ++i) records.push_back(liar.cycle());
   EXPECT_EQ(most_reversals_in_an_hour(records), 20);  // the default
   int capped = 0;
   for (const CycleRecord& record : records) {
@@ -75,7 +65,7 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
     Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 6}, liar.battery,
               liar.prices, liar.clock);
     loop.take_over(before);
-    for (const CycleRecord& record : liar.run(loop, 5)) records.push_back(record);
+    for (int i = 0; i < 5; ++i) records.push_back(run_cycle(loop));
     before.reversals = records.back().reversals;
     before.utc_s = records.back().utc_s;
   }
@@ -83,22 +73,15 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
 }
 
 /// The loop before a source that hangs: the same price under new stamps.
-struct Hung {
-  Hung() : battery(clock, 0.5), prices(clock) {
-    prices.price = [this](std::int64_t) { return centi; };
-  }
-  FakeClock clock;
-  FakeBattery battery;
-  FakePrices prices;
-  std::int32_t centi = 9'000;
+struct Hung : FakePlant {
+  Hung() { set_price(9'000); }
 };
 
 TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
   Hung hung;
-  Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
   CycleRecord record;
   for (int cycle = 0; cycle < 92; ++cycle) {
-    ASSERT_TRUE(loop.run_cycle(record));
+    record = hung.cycle();
     EXPECT_EQ(record.standing_price.unchanged_s, cycle * kSecondsPerStep);
     EXPECT_EQ(record.price_frozen, cycle >= 15) << cycle;
     EXPECT_EQ(record.reason == Reason::kFrozenPrice, cycle >= 90) << cycle;
@@ -107,8 +90,8 @@ TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
     }
   }
   EXPECT_EQ(record.mode, Mode::kHolding);
-  hung.centi += 1;
-  ASSERT_TRUE(loop.run_cycle(record));
+  hung.set_price(9'001);
+  record = hung.cycle();
   EXPECT_EQ(record.mode, Mode::kRunning);
   EXPECT_FALSE(record.price_frozen);
   EXPECT_EQ(record.standing_price.unchanged_s, 0);
@@ -130,7 +113,7 @@ TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
   for (int run = 0; run < 20; ++run) {
     Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
     loop.take_over(take_over_of(record, record.price_level));
-    for (int cycle = 0; cycle < 5; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
+    for (int cycle = 0; cycle < 5; ++cycle) record = run_cycle(loop);
     EXPECT_EQ(record.reason == Reason::kFrozenPrice, run >= 18) << run;
     if (run % 2 == 0) loop.stop(record);  // else killed
   }
