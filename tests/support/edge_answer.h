@@ -1,6 +1,8 @@
 // What bess-edge answers to one command line, once it has ended, and what it says as it runs.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,35 @@ inline std::string await_line(ChildProcess& child, const std::string& piece) {
   while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
   return line;
 }
+
+/// A simulated site, and the configuration with which bess-edge drives it.
+class SiteTest : public ::testing::Test {
+ protected:
+  explicit SiteTest(std::int32_t time_scale) : site_(time_scale) {}
+
+  /// Both simulators, and the sign check.
+  void start_site(int minutes = 150) {
+    site_.start_both(minutes);
+    config_ = site_.commission();
+  }
+  /// bess-edge's answer, by that configuration.
+  [[nodiscard]] Said ask(std::vector<std::string> words) const {
+    return edge(joined(std::move(words), {"--config", config_}));
+  }
+  /// A controller that runs by it.
+  [[nodiscard]] ChildProcess controller(const std::vector<std::string>& options = {}) const {
+    return ChildProcess(joined({edge_program(), "--config", config_}, options));
+  }
+  [[nodiscard]] std::vector<CsvRow> edge_log() const {
+    return read_csv(site_.folder.file("edge.csv"));
+  }
+  [[nodiscard]] std::vector<CsvRow> battery_record() const {
+    return read_csv(site_.folder.file("battery.csv"));
+  }
+
+  SimulatedSite site_;
+  std::string config_;
+};
 
 /// A moment as `status` and `why` show it to a person.
 inline std::string local_text_of(const std::string& utc) {

@@ -1,20 +1,12 @@
 // Minute series for tests: flat, drawn from a seed, or the yardstick.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
-#include "shared/utc_text.h"
+#include "tests/support/utc_of.h"
 #include "workstation/base/random.h"
 
 namespace bess {
-
-inline std::int64_t utc_of(std::string_view text) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
-  return utc_s;
-}
 
 inline MinuteSeries flat_series(std::string_view start_utc, int minutes, double price) {
   MinuteSeries series;

@@ -9,6 +9,13 @@
 
 namespace bess {
 
+/// The words, and more behind them.
+inline std::vector<std::string> joined(std::vector<std::string> words,
+                                       const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 struct Said {
   int exit_code;
   std::string text;

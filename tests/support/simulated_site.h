@@ -54,6 +54,9 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     return text.str();
   }
   static std::string minute_prices(int minutes) { return minute_prices(minutes, PriceWave{}); }
+  static std::string flat_prices(int minutes, double eur_per_mwh) {
+    return minute_prices(minutes, {.mean_eur_per_mwh = eur_per_mwh, .amplitude_eur_per_mwh = 0});
+  }
 
   /// `port` 0: any free one. A simulator that comes back is given the port that it had.
   void start_battery(const std::vector<std::string>& options = {}, int port = 0) {
@@ -64,6 +67,10 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     std::vector<std::string> all = at(port, options);
     all.insert(all.end(), {"--prices", folder.write("minutes.csv", prices)});
     SitePrograms::start_market(all);
+  }
+  void start_both(int minutes = 150) {
+    start_battery();
+    start_market({}, minute_prices(minutes));
   }
 
   /// Lines of TOML for [battery]: the device, and how long it may take to answer.

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "shared/host/child_process.h"
 #include "shared/host/file.h"
+#include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -22,9 +22,8 @@ struct CommandResult {
 
 inline CommandResult run_train(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
-  ChildProcess program(arguments);
-  std::string output = program.read_all();
-  return {program.wait(), std::move(output)};
+  auto [exit_code, output] = answer_of(std::move(arguments));
+  return {exit_code, std::move(output)};
 }
 
 class TrainCommands : public testing::Test {

@@ -8,11 +8,11 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <functional>
 
 #include "tests/support/edge_answer.h"
 #include "tests/support/journal_fields.h"
 #include "tests/support/tokens.h"
+#include "tests/support/utc_of.h"
 
 namespace bess {
 namespace {
@@ -28,11 +28,7 @@ constexpr std::int32_t kScale = 300;
 constexpr int kCyclesToTrip = 12;  ///< at most, with the change of the battery in between
 
 /// As the metrics have it.
-std::string utc_number(const std::string& utc) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(utc, utc_s)) << utc;
-  return std::to_string(utc_s);
-}
+std::string utc_number(const std::string& utc) { return std::to_string(utc_of(utc)); }
 
 /// As a boot does; bess-prices may just be leaving it.
 void lose_folder(const std::string& folder) {
@@ -113,9 +109,9 @@ class StateDisk {
   bool is_mounted_ = false;
 };
 
-class DyingDisk : public ::testing::Test {
+class DyingDisk : public SiteTest {
  protected:
-  DyingDisk() : disk_(site_) {}
+  DyingDisk() : SiteTest(kScale), disk_(site_) {}
 
   void SetUp() override {
 #ifdef BESS_SANITIZED
@@ -123,8 +119,7 @@ class DyingDisk : public ::testing::Test {
 #endif
     if (!disk_.is_mounted()) GTEST_SKIP() << "needs root, to mount a small disk";
     site_.start_battery();
-    site_.start_market({}, SimulatedSite::minute_prices(
-                               6'000, {.mean_eur_per_mwh = 1'700, .amplitude_eur_per_mwh = 0}));
+    site_.start_market({}, SimulatedSite::flat_prices(6'000, 1'700));
   }
 
   void commission(bool has_run_folder, const std::string& keys = "") {
@@ -136,6 +131,12 @@ class DyingDisk : public ::testing::Test {
   void start() {
     controller_ = std::make_unique<ChildProcess>(
         std::vector<std::string>{edge_program(), "--config", config_});
+  }
+  void await_running() { ASSERT_NE(await_cycle("mode", "running", 8), "") << said_; }
+  void start_and_run(bool has_run_folder) {
+    commission(has_run_folder);
+    start();
+    await_running();
   }
   /// The first line of a cycle that has this word, among so many; empty when none has.
   std::string await_cycle(const std::string& name, const std::string& word, int cycles_max) {
@@ -182,10 +183,10 @@ class DyingDisk : public ::testing::Test {
   Answers ask_all() {
     controller_->signal(SIGSTOP);
     Answers answers;
-    answers.decided = read_csv(site_.folder.file("edge.csv")).back();
-    answers.status = edge({"status", "--config", config_}).text;
-    answers.json = edge({"status", "--json", "--no-lock", "--config", config_}).text;
-    answers.metrics = edge({"status", "--prometheus", "--config", config_}).text;
+    answers.decided = edge_log().back();
+    answers.status = ask({"status"}).text;
+    answers.json = ask({"status", "--json", "--no-lock"}).text;
+    answers.metrics = ask({"status", "--prometheus"}).text;
     controller_->signal(SIGCONT);
     return answers;
   }
@@ -227,9 +228,7 @@ class DyingDisk : public ::testing::Test {
             ContainsRegex("bess_last_cycle_timestamp_seconds[{].*[}] " + utc_number(utc) + "\n")));
   }
 
-  SimulatedSite site_{kScale};
   StateDisk disk_;
-  std::string config_;
   std::unique_ptr<ChildProcess> controller_;
   std::string said_;
 };
@@ -249,9 +248,7 @@ constexpr Death kDeaths[] = {
 class DyingDiskRun : public DyingDisk, public ::testing::WithParamInterface<Death> {};
 
 TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
-  commission(true);
-  start();
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NO_FATAL_FAILURE(start_and_run(true));
   GetParam().happen(disk_);
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   expect_all_agree(false);
@@ -264,7 +261,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   start();  // on the dead disk
   await_cycles(2, "reason", "wrong_direction", 6);
   expect_all_agree(false);
-  const Said cleared = edge({"clear", "--yes", "--config", config_});
+  const Said cleared = ask({"clear", "--yes"});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
   EXPECT_THAT(cleared.text, HasSubstr(site_.folder.file("run"))) << "where alone it is kept";
   await_cycles(2, "mode", "running", 8);
@@ -281,9 +278,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
 }
 
 TEST_P(DyingDiskRun, WithoutARunFolderTheyKnowOrSayThatTheyDoNot) {
-  commission(false);
-  start();
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NO_FATAL_FAILURE(start_and_run(false));
   GetParam().happen(disk_);
   await_cycle("mode", "running", 8);
   trip();
@@ -319,9 +314,7 @@ constexpr Accident kAccidents[] = {
 class DyingDiskStart : public DyingDisk, public ::testing::WithParamInterface<Accident> {};
 
 TEST_P(DyingDiskStart, ATripIsNotForgotten) {
-  commission(true);
-  start();
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NO_FATAL_FAILURE(start_and_run(true));
   trip();
   await_cycle("reason", "wrong_direction", 6);
   end_run();
@@ -335,7 +328,7 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
   EXPECT_THAT(said_, Not(HasSubstr("mode=running")));
   ASSERT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
   expect_all_agree(false);
-  const Said cleared = edge({"clear", "--yes", "--config", config_});
+  const Said cleared = ask({"clear", "--yes"});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
   EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
   end_run();
@@ -349,8 +342,7 @@ class DyingDiskWords : public DyingDisk {
  protected:
   Said hold(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "hold");
-    arguments.insert(arguments.end(), {"--config", config_});
-    return edge(std::move(arguments));
+    return ask(std::move(arguments));
   }
   void break_disk(bool is_full) { is_full ? disk_.fill() : disk_.go_read_only(); }
   void mend_disk(bool is_full) { is_full ? disk_.free_again() : disk_.come_back(); }
@@ -360,7 +352,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesTheOneBefore) {
   commission(false);
   std::ofstream(config_, std::ios::app) << "[limits]\nfile = \"" << disk_.file("limit") << "\"\n";
   const auto limit = [&](const std::string& power_w) {
-    return edge({"limit", "--charge", power_w, "--for", "15m", "--config", config_});
+    return ask({"limit", "--charge", power_w, "--for", "15m"});
   };
   for (const bool is_full : {true, false}) {
     ASSERT_EQ(hold({"-1000", "--for", "2h"}).exit_code, 0);
@@ -383,9 +375,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesTheOneBefore) {
 TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheBoot) {
   for (const bool is_full : {true, false}) {
     lose_folder(site_.folder.file("run"));
-    commission(true);
-    start();
-    ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+    ASSERT_NO_FATAL_FAILURE(start_and_run(true));
     ASSERT_EQ(hold({"-1000", "--for", "6h"}).exit_code, 0);
     ASSERT_NE(await_cycle("ordered_power_w", "-1000", 8), "") << said_;
     break_disk(is_full);
@@ -434,9 +424,7 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
 
 /// The folder is suddenly empty: what was known goes on in it.
 TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
-  commission(true);
-  start();
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NO_FATAL_FAILURE(start_and_run(true));
   disk_.unmount();
   await_cycles(2, "mode", "running", 8);
   expect_all_agree(false);
@@ -453,7 +441,7 @@ TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
   lose_folder(site_.folder.file("run"));  // and after a boot
   fs::remove(disk_.file("commissioned.toml"));
   fs::remove(disk_.file("commissioned.copy"));
-  const Said refused = edge({"--config", config_});
+  const Said refused = ask({});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.text, Names("commissioned.toml [state] folder"));
 }
@@ -461,9 +449,7 @@ TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
 /// A disk that is mounted after the start, and knows of a trip.
 TEST_F(DyingDisk, MountedLateItsTripCounts) {
   disk_.unmount();
-  commission(false);
-  start();
-  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NO_FATAL_FAILURE(start_and_run(false));
   trip();
   await_cycle("reason", "wrong_direction", 6);
   end_run();

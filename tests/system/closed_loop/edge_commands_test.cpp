@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <filesystem>
-
 #include "tests/support/edge_answer.h"
 #include "tests/support/tokens.h"
 
@@ -16,28 +14,17 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-class EdgeCommands : public ::testing::Test {
+class EdgeCommands : public SiteTest {
  protected:
-  static constexpr std::int32_t kScale = 900;
-
-  void start_site() {
-    site_.start_battery();
-    site_.start_market({}, SimulatedSite::minute_prices(1'200));
-    config_ = site_.commission();
-  }
+  EdgeCommands() : SiteTest(900) {}
   /// The words, with the configuration where an operator may put it: before or behind.
   Said with_config(std::vector<std::string> words) {
-    std::vector<std::string> before = {"--config", config_};
-    before.insert(before.end(), words.begin(), words.end());
-    words.insert(words.end(), {"--config", config_});
-    const Said said = edge(words);
-    EXPECT_EQ(edge(before).exit_code, said.exit_code);
+    const Said said = ask(words);
+    words.insert(words.begin(), {"--config", config_});
+    EXPECT_EQ(edge(words).exit_code, said.exit_code);
     return said;
   }
   int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
-
-  SimulatedSite site_{kScale};
-  std::string config_;
 };
 
 /// The table of exit codes in edge/README.md, row by row; the command line's 2 is above.
@@ -65,7 +52,7 @@ TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
 }
 
 TEST_F(EdgeCommands, ExitCodesWhereAllIsWell) {
-  start_site();
+  start_site(1'200);
   EXPECT_EQ(code_of({"--check"}), 0);
   EXPECT_EQ(code_of({"--self-test"}), 0);
   EXPECT_EQ(code_of({"commission", "--yes"}), 0);
@@ -77,45 +64,45 @@ TEST_F(EdgeCommands, ExitCodesWhereAllIsWell) {
   EXPECT_EQ(code_of({"hold", "100", "--for", "2h"}), 0);
   EXPECT_EQ(code_of({"hold", "--release"}), 0);
   const std::string recording = site_.folder.file("device.jsonl");
-  EXPECT_EQ(edge({"record", "--for", "20m", "--config", config_, "--out", recording}).exit_code, 0);
+  EXPECT_EQ(ask({"record", "--for", "20m", "--out", recording}).exit_code, 0);
   EXPECT_EQ(code_of({"map", "check", "--against", recording}), 0);
-  ChildProcess controller({edge_program(), "--config", config_});
-  ASSERT_NE(await_line(controller, "mode=running"), "");
+  ChildProcess running = controller();
+  ASSERT_NE(await_line(running, "mode=running"), "");
   EXPECT_EQ(code_of({"--check"}), 1);  // the battery is in use
   site_.market->signal(SIGKILL);
-  ASSERT_NE(await_line(controller, "mode=holding"), "");
+  ASSERT_NE(await_line(running, "mode=holding"), "");
   EXPECT_EQ(code_of({"status"}), 1);
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
   EXPECT_EQ(code_of({"status"}), 3);
 }
 
 TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
-  start_site();
-  ChildProcess controller({edge_program(), "--config", config_});
+  start_site(1'200);
+  ChildProcess running = controller();
   int code = -1;
   for (int i = 0; i < 50 && code != 0; ++i) {
-    ASSERT_NE(await_line(controller, "mode=running"), "");
-    code = edge({"status", "--config", config_}).exit_code;
+    ASSERT_NE(await_line(running, "mode=running"), "");
+    code = ask({"status"}).exit_code;
   }
   EXPECT_EQ(code, 0);
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
 /// A hold cannot make a battery be driven that the supervision has given back: that is said where
 /// it is asked for.
 TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
-  start_site();
+  start_site(1'200);
   const int port = site_.battery_port;
   site_.battery.reset();
   site_.start_battery({"--fault", "excess-power"}, port);
-  ChildProcess controller({edge_program(), "--config", config_});
-  ASSERT_NE(await_line(controller, "reason=uncontrolled_power"), "");
-  const auto hold = [&] { return edge({"hold", "-500", "--for", "6h", "--config", config_}).text; };
+  ChildProcess running = controller();
+  ASSERT_NE(await_line(running, "reason=uncontrolled_power"), "");
+  const auto hold = [&] { return ask({"hold", "-500", "--for", "6h"}).text; };
   EXPECT_THAT(hold(), Names("uncontrolled_power bess-edge clear --yes"));
-  EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));
-  EXPECT_EQ(edge({"clear", "--yes", "--config", config_}).exit_code, 0);
+  EXPECT_THAT(await_line(running, "utc="), Not(HasSubstr("reason=held")));
+  EXPECT_EQ(ask({"clear", "--yes"}).exit_code, 0);
   EXPECT_THAT(hold(), Not(Names("uncontrolled_power")));
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
 }  // namespace

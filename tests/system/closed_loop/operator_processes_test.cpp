@@ -22,55 +22,46 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class People : public ::testing::Test {
+class People : public SiteTest {
  protected:
-  static constexpr std::int32_t kScale = 900;
-
-  void start_site(int minutes = 600) {
-    site_.start_battery();
-    site_.start_market({}, SimulatedSite::minute_prices(minutes));
-    config_ = site_.commission();
-  }
-
-  SimulatedSite site_{kScale};
-  std::string config_;
+  People() : SiteTest(900) {}
 };
 
 TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
-  start_site();
-  ChildProcess controller({edge_program(), "--config", config_});
-  ASSERT_NE(await_line(controller, "mode=running"), "");
-  const Said hold = edge({"hold", "-1000", "--for", "6h", "--config", config_});
+  start_site(600);
+  ChildProcess running = controller();
+  ASSERT_NE(await_line(running, "mode=running"), "");
+  const Said hold = ask({"hold", "-1000", "--for", "6h"});
   EXPECT_EQ(hold.exit_code, 0);
   EXPECT_THAT(hold.text, AllOf(Names("-1000 W"), HasSubstr(" 2023-03-26T")));
-  EXPECT_THAT(await_line(controller, "reason=held"), Names("ordered_power_w=-1000 written=1"));
-  EXPECT_THAT(edge({"status", "--config", config_}).text, Names("held -1000 W 2023-03-26"));
-  EXPECT_THAT(edge({"status", "--prometheus", "--config", config_}).text,
+  EXPECT_THAT(await_line(running, "reason=held"), Names("ordered_power_w=-1000 written=1"));
+  EXPECT_THAT(ask({"status"}).text, Names("held -1000 W 2023-03-26"));
+  EXPECT_THAT(ask({"status", "--prometheus"}).text,
               AllOf(ContainsRegex("\nbess_hold_watts[{].*[}] -1000\n"),
                     HasSubstr(",reason=\"held\",mode=\"running\"} 1\n"),
                     HasSubstr("\nbess_charge_up_to_eur_per_mwh{")));
-  EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);
-  EXPECT_NE(await_line(controller, "reason=student"), "");
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(ask({"hold", "--release"}).exit_code, 0);
+  EXPECT_NE(await_line(running, "reason=student"), "");
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
 TEST_F(People, AHoldOutlastsARestartAndNeedsNoPrice) {
-  start_site();
-  EXPECT_EQ(edge({"hold", "+1500", "--for", "6h", "--config", config_}).exit_code, 0);
+  start_site(600);
+  EXPECT_EQ(ask({"hold", "+1500", "--for", "6h"}).exit_code, 0);
   for (int run = 0; run < 2; ++run) {
     if (run == 1) site_.market->signal(SIGKILL);
-    const Said controller = edge({"--config", config_, "--cycles", "2"});
-    EXPECT_EQ(controller.exit_code, 0);
-    EXPECT_THAT(controller.text, Names("cycle=1 mode=running reason=held ordered_power_w=1500"));
+    const Said said = ask({"--cycles", "2"});
+    EXPECT_EQ(said.exit_code, 0);
+    EXPECT_THAT(said.text, Names("cycle=1 mode=running reason=held ordered_power_w=1500"));
   }
 }
 
 /// A lock that cannot even be opened without waiting for ever shows who tries.
 TEST_F(People, StatusWithoutLockTouchesNone) {
-  start_site();
-  EXPECT_EQ(edge({"--config", config_, "--cycles", "1"}).exit_code, 0);
+  start_site(600);
+  EXPECT_EQ(ask({"--cycles", "1"}).exit_code, 0);
   ASSERT_EQ(mkfifo(site_.folder.file("state/lock").c_str(), 0600), 0);
-  const Said said = edge({"status", "--no-lock", "--config", config_});
+  const Said said = ask({"status", "--no-lock"});
   EXPECT_EQ(said.exit_code, 3) << said.text;
 }
 
@@ -98,10 +89,10 @@ class Notify : public People {
 
 /// Stopped while it asks or writes, killed, started again: no cycle is late, none is missed.
 TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
-  start_site();
+  start_site(600);
   use_mail();
-  ChildProcess controller({edge_program(), "--config", config_, "--cycles", "60"});
-  ASSERT_NE(await_line(controller, "mode=running"), "");
+  ChildProcess running = controller({"--cycles", "60"});
+  ASSERT_NE(await_line(running, "mode=running"), "");
   for (int i = 0; i < 6; ++i) {
     ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
     usleep(static_cast<useconds_t>(300'000 + 37'000 * i));
@@ -110,10 +101,10 @@ TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
     notify.signal(SIGKILL);
     notify.wait();
   }
-  controller.read_all();
-  EXPECT_EQ(controller.wait(), 0);
+  running.read_all();
+  EXPECT_EQ(running.wait(), 0);
   int cycles = 0;  // since the first price came
-  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+  for (const CsvRow& row : edge_log()) {
     if (row.at("mode") == "stopping" || (cycles == 0 && row.at("mode") == "start")) continue;
     ++cycles;
     EXPECT_EQ(row.at("mode"), "running");
@@ -127,16 +118,16 @@ TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
   use_mail();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
   {
-    ChildProcess controller({edge_program(), "--config", config_});
-    ASSERT_NE(await_line(controller, "mode=running"), "");
-    controller.signal(SIGKILL);
-    controller.wait();
+    ChildProcess killed = controller();
+    ASSERT_NE(await_line(killed, "mode=running"), "");
+    killed.signal(SIGKILL);
+    killed.wait();
   }
   EXPECT_TRUE(is_mailed("ALARM: CRITICAL: "));
-  ChildProcess controller({edge_program(), "--config", config_});
+  ChildProcess running = controller();
   EXPECT_TRUE(is_mailed("over: CRITICAL: "));
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
 /// The members of `bess-edge status` and `earned` that the topics are made of are there.
@@ -148,8 +139,8 @@ TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   std::ofstream(config_, std::ios::app)
       << "mqtt_host = \"127.0.0.1\"\nmqtt_port = " << broker.port() << "\n";
   Listener all(broker.port(), "bess/#");
-  ChildProcess controller({edge_program(), "--config", config_});
-  ASSERT_NE(await_line(controller, "mode=running"), "");
+  ChildProcess running = controller();
+  ASSERT_NE(await_line(running, "mode=running"), "");
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
   const Json state = Json::parse(all.await("/state", "\"price_eur_per_mwh\""));
   for (const char* number :
@@ -159,7 +150,7 @@ TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   }
   EXPECT_STREQ(state.value()["mode"].text(), "running");
   EXPECT_THAT(state.value()["today_since_utc"].text_or(""), HasSubstr(":00:00Z"));
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
 }
 

@@ -25,11 +25,9 @@ std::string day_ahead() {
   return text.str();
 }
 
-class OutlookSite : public testing::Test {
+class OutlookSite : public SiteTest {
  protected:
-  static constexpr std::int32_t kScale = 300;
-
-  OutlookSite() : site_(kScale) {
+  OutlookSite() : SiteTest(300) {
     setenv("BESS_EDGE_UNDER_TEST", BESS_OUTLOOK_EDGE, 1);
     site_.clock.start_utc_s = kPublishedS - 40 * 60;
     site_.start_clock();
@@ -43,19 +41,18 @@ class OutlookSite : public testing::Test {
     }
     site_.start_market(options, SimulatedSite::minute_prices(13 * 60), port);
   }
-  std::string configure() {
-    const std::string config = site_.commission();
-    std::ofstream(config, std::ios::app)
+  void configure() {
+    config_ = site_.commission();
+    std::ofstream(config_, std::ios::app)
         << "[outlook]\nurl = \"http://127.0.0.1:" << site_.market_port
         << "/price?bzn=BE&start={today}&end={tomorrow}\"\n";
-    return config;
   }
-  static void run(const std::string& config, int cycles) {
-    const Said said = edge({"--config", config, "--cycles", std::to_string(cycles)});
+  void run(int cycles) const {
+    const Said said = ask({"--cycles", std::to_string(cycles)});
     EXPECT_EQ(said.exit_code, 0) << said.text;
   }
   [[nodiscard]] std::vector<CsvRow> cycles() const {
-    std::vector<CsvRow> rows = read_csv(site_.folder.file("edge.csv"));
+    std::vector<CsvRow> rows = edge_log();
     std::erase_if(rows, [](const CsvRow& row) { return row.at("mode") != "running"; });
     return rows;
   }
@@ -63,13 +60,12 @@ class OutlookSite : public testing::Test {
     return static_cast<int>(std::ranges::count_if(
         rows, [&](const CsvRow& row) { return row.at("outlook") == source; }));
   }
-
-  SimulatedSite site_;
 };
 
 TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
   start_market(Publishes::kDayAhead);
-  run(configure(), 40);
+  configure();
+  run(40);
   const std::vector<CsvRow> rows = cycles();
   ASSERT_GT(rows.size(), 30U);
   EXPECT_GT(count(rows, "planned"), static_cast<int>(rows.size()) * 3 / 4);
@@ -95,11 +91,11 @@ TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
 TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
   start_market(Publishes::kDayAhead);
   const int port = site_.market_port;
-  const std::string config = configure();
-  run(config, 8);
+  configure();
+  run(8);
   site_.market.reset();
   start_market(Publishes::kNothing, port);
-  run(config, 8);
+  run(8);
   const std::vector<CsvRow> rows = cycles();
   EXPECT_EQ(rows.back().at("outlook"), "planned");
   EXPECT_EQ(rows.back().at("day_ahead_status"), "http_error");
@@ -107,7 +103,8 @@ TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
 
 TEST_F(OutlookSite, WithoutAnyItPlansOnWhatIsUsual) {
   start_market(Publishes::kNothing);
-  run(configure(), 12);
+  configure();
+  run(12);
   const std::vector<CsvRow> rows = cycles();
   EXPECT_GT(count(rows, "usual"), static_cast<int>(rows.size()) / 2);
   EXPECT_EQ(count(rows, "planned"), 0);

@@ -8,11 +8,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "tests/support/edge_answer.h"
 #include "tests/support/tokens.h"
+#include "tests/support/utc_of.h"
 
 namespace bess {
 namespace {
@@ -30,12 +29,6 @@ std::int32_t outlasting_scale() {
   return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 10 : 3);
 }
 
-std::int64_t utc_of(const std::string& text) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
-  return utc_s;
-}
-
 /// Follows a controller until it orders power; the line of that cycle, empty when it ended before.
 std::string line_with_power(ChildProcess& edge) {
   std::string line;
@@ -45,20 +38,20 @@ std::string line_with_power(ChildProcess& edge) {
   return line;
 }
 
-/// Starts the two simulators; the edge is started by each test.
-class Processes : public ::testing::Test {
+class Processes : public SiteTest {
  protected:
-  void start_simulators() {
-    site_.start_battery();
-    site_.start_market();
-  }
+  Processes() : SiteTest(kScale) {}
+};
 
-  SimulatedSite site_{kScale};
+/// Slower than the others, so that an order outlasts the start of a process.
+class SlowProcesses : public SiteTest {
+ protected:
+  SlowProcesses() : SiteTest(outlasting_scale()) {}
 };
 
 TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
-  start_simulators();
-  ChildProcess edge({edge_program(), "--config", site_.commission(), "--cycles", "45"});
+  start_site();
+  ChildProcess edge = controller({"--cycles", "45"});
   edge.read_all();
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
@@ -66,7 +59,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
 
   double ordered_wh = 0;
   int moves = 0;
-  const std::vector<CsvRow> log = read_csv(site_.folder.file("edge.csv"));
+  const std::vector<CsvRow> log = edge_log();
   ASSERT_EQ(log.size(), 46U);  // 45 cycles and the stop
   for (const CsvRow& row : log) {
     if (row.at("mode") == "stopping") continue;
@@ -79,7 +72,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
   }
   EXPECT_GT(moves, 10);
   double exchanged_wh = 0;
-  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+  for (const CsvRow& row : battery_record()) {
     exchanged_wh += std::stod(row.at("energy_wh"));
     EXPECT_GE(std::stod(row.at("soc")), 0.1);
     EXPECT_LE(std::stod(row.at("soc")), 1.0);
@@ -89,14 +82,14 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
 }
 
 TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
-  start_simulators();
-  ChildProcess edge({edge_program(), "--config", site_.commission()});
+  start_site();
+  ChildProcess edge = controller();
   ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
   edge.signal(SIGTERM);
   EXPECT_THAT(edge.read_all(), HasSubstr("mode=stopping"));
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  const std::vector<CsvRow> record = read_csv(site_.folder.file("battery.csv"));
+  const std::vector<CsvRow> record = battery_record();
   ASSERT_FALSE(record.empty());
   EXPECT_EQ(record.back().at("commanded_power_w"), "0");
 }
@@ -104,10 +97,9 @@ TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
 /// A second controller, with a state folder of its own: the battery's lock stands between them, for
 /// one that only reads as well, because the battery serves one connection.
 TEST_F(Processes, TwoControllersCannotShareABattery) {
-  start_simulators();
-  const std::string mine = site_.commission();
+  start_site();
   const std::string other = site_.commission({.state = "other"});
-  ChildProcess edge({edge_program(), "--config", mine});
+  ChildProcess edge = controller();
   EXPECT_THAT(await_line(edge, "utc="), HasSubstr("cycle=1 "));
   ChildProcess ways[] = {
       ChildProcess({edge_program(), "--config", other}),
@@ -124,15 +116,15 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   EXPECT_THAT(await_line(edge, "utc="), HasSubstr("mode=running")) << "undisturbed";
   edge.signal(SIGKILL);
   edge.wait();
-  ChildProcess successor({edge_program(), "--config", other, "--cycles", "1"});
-  EXPECT_THAT(successor.read_all(), HasSubstr("mode=stopping"));
-  EXPECT_EQ(successor.wait(), 0);
+  const Said successor = bess::edge({"--config", other, "--cycles", "1"});
+  EXPECT_THAT(successor.text, HasSubstr("mode=stopping"));
+  EXPECT_EQ(successor.exit_code, 0);
 }
 
 /// Two batteries, one state folder: the logs would overwrite each other.
 TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
-  start_simulators();
-  ChildProcess edge({edge_program(), "--config", site_.commission()});
+  start_site();
+  ChildProcess edge = controller();
   ASSERT_NE(await_line(edge, "utc="), "");
   const auto first_battery = std::move(site_.battery);
   site_.start_battery();
@@ -142,11 +134,9 @@ TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
 }
 
 TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
-  start_simulators();
-  const std::string config = site_.commission();
-  const auto run = [&](std::vector<std::string> arguments, int expected_exit_code) {
-    arguments.insert(arguments.end(), {"--config", config});
-    const Said said = edge(arguments);
+  start_site();
+  const auto run = [&](const std::vector<std::string>& arguments, int expected_exit_code) {
+    const Said said = ask(arguments);
     EXPECT_EQ(said.exit_code, expected_exit_code) << said.text;
     return said.text;
   };
@@ -154,35 +144,30 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_THAT(run({"log"}, 1), Names("state/decisions.ring"));
   EXPECT_THAT(run({"status", "--prometheus"}, 1), Names("/state status"));
   {
-    ChildProcess edge({edge_program(), "--config", config});
+    ChildProcess edge = controller();
     for (int i = 0; i < 15; ++i) await_line(edge, "utc=");
     // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both honest here.
-    const Said status = bess::edge({"status", "--config", config});
+    const Said status = ask({"status"});
     EXPECT_LE(status.exit_code, 1) << status.text;
     EXPECT_THAT(status.text, Names(std::to_string(edge.pid()) + " running alphaess block EUR/MWh"));
     EXPECT_THAT(status.text, HasSubstr(" 2023-03-26 0"));
-    const Json json = status_of(config);
+    const Json json = status_of(config_);
     EXPECT_TRUE(json.value()["control"].boolean().value_or(false));
     EXPECT_EQ(json.value()["pid"].number(), edge.pid());
     EXPECT_STREQ(json.value()["last"]["mode"].text_or(""), "running");
-    EXPECT_THAT(bess::edge({"status", "--prometheus", "--config", config}).text,
+    EXPECT_THAT(ask({"status", "--prometheus"}).text,
                 ContainsRegex("bess_state[{].*state=\"running\"[}] 1\n"));
     EXPECT_EQ(SimulatedSite::stop(edge), 0);
   }
-  EXPECT_STREQ(status_of(config).value()["last"]["mode"].text_or(""), "stopping");
-  ChildProcess follower({edge_program(), "status", "--follow", "--config", config});
-  for (int views = 0; views < 2;) {
-    const std::string line = await_line(follower, " stopping ");
-    ASSERT_FALSE(line.empty());
-    ++views;
-  }
+  EXPECT_STREQ(status_of(config_).value()["last"]["mode"].text_or(""), "stopping");
+  ChildProcess follower({edge_program(), "status", "--follow", "--config", config_});
+  for (int views = 0; views < 2; ++views) ASSERT_NE(await_line(follower, " stopping "), "");
   // The ring and the CSV that the controller wrote besides are the same log, line by line.
-  std::ifstream csv(site_.folder.file("edge.csv"));
-  EXPECT_EQ(run({"log", "--csv"}, 0), std::string(std::istreambuf_iterator<char>(csv), {}));
+  EXPECT_EQ(run({"log", "--csv"}, 0), text_of_file(site_.folder.file("edge.csv")));
   const std::string last = run({"log", "--last", "2"}, 0);
   EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 2) << last;
   EXPECT_THAT(last, HasSubstr("mode=stopping"));
-  const std::vector<CsvRow> rows = read_csv(site_.folder.file("edge.csv"));
+  const std::vector<CsvRow> rows = edge_log();
   const std::string& middle = rows.at(rows.size() / 2).at("utc");
   EXPECT_THAT(run({"log", "--since", middle}, 0), ::testing::StartsWith("utc=" + middle + " "));
 }
@@ -196,13 +181,10 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   ASSERT_LT(name.size(), sizeof address.sun_path);
   name.copy(address.sun_path, name.size());
   ASSERT_EQ(bind(systemd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  start_simulators();
-  const std::string config = site_.commission();
+  start_site();
   setenv("NOTIFY_SOCKET", name.c_str(), 1);
-  ChildProcess edge({edge_program(), "--config", config, "--cycles", "3"});
+  EXPECT_EQ(ask({"--cycles", "3"}).exit_code, 0);
   unsetenv("NOTIFY_SOCKET");
-  edge.read_all();
-  EXPECT_EQ(edge.wait(), 0);
   std::vector<std::string> told;
   char text[512];
   for (ssize_t n = 0; (n = recv(systemd, text, sizeof text, MSG_DONTWAIT)) >= 0;) {
@@ -220,7 +202,7 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
 }
 
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
-  start_simulators();
+  site_.start_both();
   sleep_until_monotonic(site_.anchor_ns());
   const Said early = edge({"--config", site_.write_config(), "--check"});
   EXPECT_EQ(early.exit_code, 1);  // as the start would
@@ -243,59 +225,50 @@ TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
 }
 
 TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
-  start_simulators();
-  const std::string config = site_.write_config();
-  const Said refused = edge({"--config", config});
+  site_.start_both();
+  config_ = site_.write_config();
+  const Said refused = ask({});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.text, Names("bess-edge commission --config --yes"));
-  const Said hesitant = edge({"commission", "--config", config});
+  const Said hesitant = ask({"commission"});
   EXPECT_EQ(hesitant.exit_code, 2);
   EXPECT_THAT(hesitant.text, Names("500 W 30 --yes"));
-  const Said reader = edge({"--config", config, "--dry-run", "--cycles", "1"});
+  const Said reader = ask({"--dry-run", "--cycles", "1"});
   EXPECT_EQ(reader.exit_code, 0);
   EXPECT_THAT(reader.text, Names("cycle=1 written=0"));
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+  for (const CsvRow& row : battery_record()) {
     EXPECT_EQ(row.at("commanded_power_w"), "0");
   }
 }
 
 TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
-  start_simulators();
-  const std::string config = site_.commission();
-  ChildProcess({edge_program(), "--config", config, "--cycles", "2"}).wait();
-  const auto status = [&] {
-    std::ifstream file(site_.folder.file("state/status.json"));
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  };
+  start_site();
+  EXPECT_EQ(ask({"--cycles", "2"}).exit_code, 0);
+  const auto status = [&] { return text_of_file(site_.folder.file("state/status.json")); };
   const std::string before = status();
   ASSERT_THAT(before, HasSubstr("\"reason\": \"stop_requested\""));
   for (const char* name : {"state/commissioned.toml", "state/commissioned.copy"}) {
     std::filesystem::remove(site_.folder.file(name));
   }
-  ChildProcess refused({edge_program(), "--config", config});
-  EXPECT_EQ(refused.wait(), 1);
+  EXPECT_EQ(ask({}).exit_code, 1);
   EXPECT_EQ(status(), before);
 }
 
-/// As for an upgrade: SIGHUP, and a new process goes on where the old one was. Slower than the
-/// others, so that the order outlasts the start of a process.
-TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
-  SimulatedSite site(outlasting_scale());
-  site.start_battery();
-  site.start_market();
-  const std::string config = site.commission();
-  const ChildProcess prices({BESS_PRICES_PROGRAM, "--config", config});  // it outlasts the change
-  ChildProcess before({edge_program(), "--config", config});
+/// As for an upgrade: SIGHUP, and a new process goes on where the old one was.
+TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartGoesOn) {
+  start_site();
+  const ChildProcess prices({BESS_PRICES_PROGRAM, "--config", config_});  // it outlasts the change
+  ChildProcess before = controller();
   ASSERT_THAT(line_with_power(before), HasSubstr("mode=running"));
   before.signal(SIGHUP);
   EXPECT_THAT(before.read_all(), HasSubstr("reason=hand_over"));
   EXPECT_EQ(before.wait(), 0);
-  const Said after = edge({"--config", config, "--cycles", "3"});
+  const Said after = ask({"--cycles", "3"});
   EXPECT_THAT(after.text, HasSubstr("reason=stop_requested"));
   EXPECT_EQ(after.exit_code, 0);
   int first_cycles = 0;
-  for (const CsvRow& row : read_csv(site.folder.file("edge.csv"))) {
+  for (const CsvRow& row : edge_log()) {
     EXPECT_NE(row.at("mode"), "holding") << row.at("utc");
     if (row.at("mode") != "running" || row.at("cycle") != "1" || ++first_cycles != 2) continue;
     EXPECT_NE(row.at("battery_power_w"), "0") << "the order did not outlast the change";
@@ -303,27 +276,24 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
   EXPECT_EQ(first_cycles, 2);
 }
 
-/// A killed controller's order, ended by hand before its watchdog does; as slow as the one above.
-TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
-  SimulatedSite site(outlasting_scale());
-  site.start_battery();
-  site.start_market();
-  const std::string config = site.commission();
-  ChildProcess edge({edge_program(), "--config", config});
+/// A killed controller's order, ended by hand before its watchdog does.
+TEST_F(SlowProcesses, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
+  start_site();
+  ChildProcess edge = controller();
   const std::string order = line_with_power(edge);
   ASSERT_THAT(order, ::testing::StartsWith("utc="));
   edge.signal(SIGKILL);
   edge.wait();
-  const Said hesitant = bess::edge({"release", "--config", config});
+  const Said hesitant = ask({"release"});
   EXPECT_THAT(hesitant.text, Names("--yes"));
   EXPECT_EQ(hesitant.exit_code, 2);
-  EXPECT_EQ(bess::edge({"release", "--config", config, "--yes"}).exit_code, 0);
+  EXPECT_EQ(ask({"release", "--yes"}).exit_code, 0);
   const std::int64_t ordered_utc_s = utc_of(order.substr(4, order.find(' ') - 4));
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) +
                         100 * kNanosecondsPerSecond / outlasting_scale());
-  EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
   bool ended_by_hand = false;  // the watchdog would have after 300 s
-  for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
+  for (const CsvRow& row : battery_record()) {
     const std::int64_t age_s = utc_of(row.at("minute_utc")) - ordered_utc_s;
     ended_by_hand |= age_s > 0 && age_s < 240 && row.at("commanded_power_w") == "0";
   }
@@ -350,12 +320,12 @@ TEST_F(Processes, ASinglePriceFarFromTheOthersIsNotActedOn) {
   }
   site_.start_battery();
   site_.start_market({}, prices);
-  const std::string config = site_.commission();
-  const Said said = edge({"--config", config, "--cycles", "60"});
+  config_ = site_.commission();
+  const Said said = ask({"--cycles", "60"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.text, Names("step_held=1 held_centi=900000"));
   int held = 0;
-  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+  for (const CsvRow& row : edge_log()) {
     EXPECT_NE(row.at("reason"), "price_high") << row.at("utc");
     EXPECT_NE(row.at("price_centi_eur_per_mwh"), "900000") << row.at("utc");
     if (row.at("step_held") == "1") ++held;
@@ -367,8 +337,7 @@ Said self_test(const std::string& config) { return edge({"--config", config, "--
 
 TEST(SelfTest, PassesWhereTheControllerCanWork) {
   SimulatedSite site(60);
-  site.start_battery();
-  site.start_market();
+  site.start_both();
   const Said said = self_test(site.write_config());
   EXPECT_EQ(said.exit_code, 0) << said.text;
   EXPECT_THAT(said.text, AllOf(ContainsRegex("student +ok +[0-9]+ of"),

@@ -64,8 +64,7 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     const MapVariant& m = GetParam().map;
     std::vector<std::string> options = {"--map", shipped_map(m.map)};
     if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
-    options.insert(options.end(), GetParam().faults.begin(), GetParam().faults.end());
-    return options;
+    return joined(options, GetParam().faults);
   }
   /// Both simulators at the same ports, and the clock from its start on.
   void start_again(const std::vector<std::string>& options) {
@@ -84,23 +83,18 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     std::filesystem::copy_file(site_.folder.file("state/commissioned.toml"),
                                folder + "/commissioned.toml",
                                std::filesystem::copy_options::overwrite_existing);
-    std::vector<std::string> arguments = {
-        edge_program(), "--config",
-        site_.write_config({.battery_keys = battery_keys(), .state = state}), "--cycles",
-        std::to_string(kCycles)};
-    arguments.insert(arguments.end(), options.begin(), options.end());
+    const std::string config = site_.write_config({.battery_keys = battery_keys(), .state = state});
     std::filesystem::remove(site_.folder.file("edge.csv"));
-    const Said driven = answer_of(arguments);
+    const Said driven =
+        edge(joined({"--config", config, "--cycles", std::to_string(kCycles)}, options));
     EXPECT_EQ(driven.exit_code, 0) << driven.text;
     return decisions(site_.folder.file("edge.csv"));
   }
-  Said check(const std::string& map, const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {edge_program(), "map",   "check", "--against",
-                                          recording_,     "--map", map};
+  Said check(const std::string& map) const {
+    std::vector<std::string> words = {"map", "check", "--against", recording_, "--map", map};
     const char* const variant = GetParam().map.variant;
-    if (*variant != '\0') arguments.insert(arguments.end(), {"--variant", variant});
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return answer_of(arguments);
+    if (*variant != '\0') words.insert(words.end(), {"--variant", variant});
+    return edge(words);
   }
   /// The shipped map with a few keys of a point changed.
   [[nodiscard]] std::string map_with(const Mistake& mistake) const {
@@ -168,23 +162,19 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 /// `bess-edge record`, and what becomes of a file that is no longer whole.
-class RecordCommand : public ::testing::Test {
+class RecordCommand : public SiteTest {
  protected:
+  RecordCommand() : SiteTest(kScale) {}
   void SetUp() override {
     site_.start_battery();
     config_ = site_.write_config();
   }
-  Said record(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = {edge_program(), "record", "--config", config_};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return answer_of(arguments);
+  Said record(std::vector<std::string> options) const {
+    options.insert(options.begin(), "record");
+    return ask(std::move(options));
   }
-  Said check(const std::string& path) const {
-    return edge({"map", "check", "--against", path, "--config", config_});
-  }
+  Said check(const std::string& path) const { return ask({"map", "check", "--against", path}); }
 
-  SimulatedSite site_{kScale};
-  std::string config_;
   std::string path_ = site_.folder.file("device.jsonl");
 };
 
@@ -215,18 +205,12 @@ TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
 TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
   const PtyBridge line;
   const auto serve = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {sim_program(),
-                                          "battery",
-                                          "--serial",
-                                          line.device(0),
-                                          "--utc-start",
-                                          std::string(utc_text(SimulatedSite::kStartS).view()),
-                                          "--time-scale",
-                                          std::to_string(kScale),
-                                          "--anchor-monotonic-ns",
-                                          std::to_string(site_.anchor_ns())};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    auto simulator = std::make_unique<ChildProcess>(arguments);
+    const std::string start(utc_text(SimulatedSite::kStartS).view());
+    const std::string anchor = std::to_string(site_.anchor_ns());
+    auto simulator = std::make_unique<ChildProcess>(
+        joined({sim_program(), "battery", "--serial", line.device(0), "--utc-start", start,
+                "--time-scale", std::to_string(kScale), "--anchor-monotonic-ns", anchor},
+               options));
     EXPECT_THAT(simulator->read_line(), HasSubstr("listening on " + line.device(0)));
     return simulator;
   };
@@ -238,7 +222,7 @@ TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
   SimulatedSite::stop(*simulator);
   EXPECT_THAT(text_of_file(path_), HasSubstr("\"transport\":\"rtu\""));
   simulator = serve({"--replay", path_});
-  const Said seen = edge({"--config", config_, "--check"});
+  const Said seen = ask({"--check"});
   EXPECT_THAT(seen.text, Names("85 43.0 0 W 8000 Wh"));
   EXPECT_EQ(SimulatedSite::stop(*simulator), 0);
 }
@@ -250,11 +234,8 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
   std::string changed = whole;
   changed[changed.find("{\"utc\"") + 1] = '?';
   const std::string damaged = site_.folder.write("damaged.jsonl", changed);
-  const auto replay = [](const std::string& path, const std::vector<std::string>& options = {}) {
-    std::vector<std::string> arguments = {sim_program(), "battery",  "--port",
-                                          "0",           "--replay", path};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return arguments;
+  const auto replay = [](const std::string& path) -> std::vector<std::string> {
+    return {sim_program(), "battery", "--port", "0", "--replay", path};
   };
   for (const auto& [path, what] :
        {std::pair(cut, "cut.jsonl"), std::pair(damaged, "damaged.jsonl:2")}) {
@@ -264,7 +245,7 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
       EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
     }
   }
-  ChildProcess accepted(replay(cut, {"--accept-cut"}));
+  ChildProcess accepted(joined(replay(cut), {"--accept-cut"}));
   EXPECT_THAT(accepted.read_line(), HasSubstr("listening on"));
 }
 

@@ -18,8 +18,9 @@ using ::testing::HasSubstr;
 
 constexpr std::int32_t kScale = 120;
 
-class SiteProcesses : public ::testing::Test {
+class SiteProcesses : public SiteTest {
  protected:
+  SiteProcesses() : SiteTest(kScale) {}
   /// Prices at which the battery charges all the time, or by turns of six minutes; the house takes
   /// 1500 W.
   void start(const std::vector<std::string>& meter_options,
@@ -28,8 +29,7 @@ class SiteProcesses : public ::testing::Test {
     if (std::find(meter_options.begin(), meter_options.end(), "--house") == meter_options.end()) {
       options.insert(options.end(), {"--house", "1500"});
     }
-    options.insert(options.end(), meter_options.begin(), meter_options.end());
-    site_.start_battery(options);
+    site_.start_battery(joined(options, meter_options));
     site_.start_market({}, turns_of(prices));
   }
   static std::string turns_of(const std::vector<int>& prices) {
@@ -42,8 +42,9 @@ class SiteProcesses : public ::testing::Test {
     }
     return text.str();
   }
-  static std::vector<std::string> own_meter(const std::string& map = "simulator") {
-    return {"--meter-map", BESS_SOURCE_DIR "/edge/device/meters/" + map + ".toml"};
+  static std::vector<std::string> own_meter(const std::string& map,
+                                            const std::vector<std::string>& options = {}) {
+    return joined({"--meter-map", BESS_SOURCE_DIR "/edge/device/meters/" + map + ".toml"}, options);
   }
   [[nodiscard]] std::string meter_section(const std::string& keys,
                                           const std::string& map = "simulator") const {
@@ -51,22 +52,19 @@ class SiteProcesses : public ::testing::Test {
            ".toml\"\nresponse_timeout_ms = 30\nport = " + std::to_string(site_.meter_port) + "\n" +
            keys;
   }
-  std::string commission(const std::string& sections) {
-    return site_.commission({.guard_keys = sections});
+  void commission(const std::string& sections) {
+    config_ = site_.commission({.guard_keys = sections});
   }
-  /// Runs a controller to its end; its log.
-  std::vector<CsvRow> run(const std::string& config, int cycles) {
-    EXPECT_EQ(edge({"--config", config, "--cycles", std::to_string(cycles)}).exit_code, 0);
-    return read_csv(site_.folder.file("edge.csv"));
+  void configure(const std::string& sections) {
+    config_ = site_.write_config({.guard_keys = sections});
   }
-
-  SimulatedSite site_{kScale};
 };
 
 TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
   start(own_meter("sunspec"));
-  const std::string config = commission(meter_section("import_w_max = 3000\n", "sunspec"));
-  const std::vector<CsvRow> log = run(config, 6);
+  commission(meter_section("import_w_max = 3000\n", "sunspec"));
+  EXPECT_EQ(ask({"--cycles", "6"}).exit_code, 0);
+  const std::vector<CsvRow> log = edge_log();
   ASSERT_EQ(log.size(), 7U);
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_EQ(log[i].at("reason"), "import_limit");
@@ -75,7 +73,7 @@ TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
     EXPECT_EQ(log[i].at("meter_status"), "ok");
   }
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+  for (const CsvRow& row : battery_record()) {
     EXPECT_NEAR(std::stod(row.at("house_wh")), 25, 1e-6);
     EXPECT_LE(std::stod(row.at("grid_wh")), 3'000 / 60.0);
   }
@@ -83,16 +81,16 @@ TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
 
 TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   start({});
-  const std::string config = commission("[limits]\nfile = \"limit\"\n");
+  commission("[limits]\nfile = \"limit\"\n");
   const auto limit = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"limit", "--config", config});
-    const Said said = edge(options);
+    options.insert(options.begin(), "limit");
+    const Said said = ask(options);
     EXPECT_EQ(said.exit_code, 0) << said.text;
     return said.text;
   };
   EXPECT_THAT(limit({"--charge", "700", "--for", "2h"}),
               AllOf(Names("700 W"), HasSubstr(" 2023-03-26T")));
-  ChildProcess edge({edge_program(), "--config", config});
+  ChildProcess edge = controller();
   EXPECT_THAT(await_line(edge, " written=1 "), Names("ordered_power_w=700 reason=outside_limit"));
   limit({"--clear"});
   EXPECT_THAT(await_line(edge, " ordered_power_w=4000 "), Names("reason=student"));
@@ -102,13 +100,11 @@ TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
 }
 
 TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
-  std::vector<std::string> options = own_meter();
-  options.insert(options.end(), {"--meter-fault", "wrong-sign"});
-  start(options);
+  start(own_meter("simulator", {"--meter-fault", "wrong-sign"}));
   usleep(600'000);  // faults begin with simulated time
   for (const auto& [keys, code] : {std::pair{"", 1}, std::pair{"pv_w_max = 2000\n", 0}}) {
-    const std::string config = site_.write_config({.guard_keys = meter_section(keys)});
-    const Said said = edge({"--config", config, "--check", "--dry-run"});
+    configure(meter_section(keys));
+    const Said said = ask({"--check", "--dry-run"});
     EXPECT_THAT(said.text, Names("grid house -1500"));
     EXPECT_EQ(has_code(said.text, "pv_w_max"), code == 1);
     EXPECT_EQ(said.exit_code, code) << said.text;
@@ -118,24 +114,20 @@ TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
 /// Larger than the sign needs is only ordered where nobody forbids it.
 TEST_F(SiteProcesses, CommissionOrdersNothingLargerUnderALimit) {
   start({});
-  const std::string config = site_.write_config({.guard_keys = "[limits]\nfile = \"limit\"\n"});
-  const std::vector<std::string> limit = {edge_program(), "limit", "--config", config,
-                                          "--charge",     "700",   "--for",    "2h"};
-  EXPECT_EQ(ChildProcess(limit).wait(), 0);
-  EXPECT_EQ(edge({"commission", "--config", config, "--yes"}).exit_code, 0);
+  configure("[limits]\nfile = \"limit\"\n");
+  EXPECT_EQ(ask({"limit", "--charge", "700", "--for", "2h"}).exit_code, 0);
+  EXPECT_EQ(ask({"commission", "--yes"}).exit_code, 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+  for (const CsvRow& row : battery_record()) {
     EXPECT_LE(std::abs(std::stoi(row.at("commanded_power_w"))), 500);
   }
 }
 
 TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
-  std::vector<std::string> options = own_meter();
-  options.insert(options.end(), {"--meter-fault", "wrong-sign"});
-  start(options);
+  start(own_meter("simulator", {"--meter-fault", "wrong-sign"}));
   usleep(600'000);  // faults begin with simulated time
-  const std::string config = site_.write_config({.guard_keys = meter_section("")});
-  const Said liar = edge({"commission", "--config", config, "--yes"});
+  configure(meter_section(""));
+  const Said liar = ask({"commission", "--yes"});
   EXPECT_THAT(liar.text, Names("meter -100 %"));
   EXPECT_EQ(liar.exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
@@ -143,18 +135,17 @@ TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
 
 /// bess-sim's own liars, told by journal, status and log.
 TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
-  std::vector<std::string> options = own_meter();
-  options.insert(options.end(), {"--meter-fault", "grid-scaled", "--meter-fault-from-s", "480"});
-  start(options, {-600, 1'600});
-  const std::string config = commission(meter_section("import_w_max = 9000\n"));
-  ChildProcess edge({edge_program(), "--config", config});
+  start(own_meter("simulator", {"--meter-fault", "grid-scaled", "--meter-fault-from-s", "480"}),
+        {-600, 1'600});
+  commission(meter_section("import_w_max = 9000\n"));
+  ChildProcess edge = controller();
   EXPECT_THAT(await_line(edge, " reason=meter_mismatch "), Names("ordered_power_w=0 mode=running"));
   await_line(edge, " cycle=");
-  const Said status = bess::edge({"status", "--config", config});
+  const Said status = ask({"status"});
   EXPECT_THAT(status.text, Names("WARN meter meter_mismatch"));
   EXPECT_EQ(status.exit_code, 1);
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
-  const Said again = bess::edge({"--config", config, "--cycles", "1"});
+  const Said again = ask({"--cycles", "1"});
   EXPECT_THAT(again.text, HasSubstr(" reason=meter_mismatch "));  // over a restart
   EXPECT_EQ(again.exit_code, 0);
 }

@@ -60,22 +60,22 @@ std::size_t count_of(const std::string& text, const std::string& piece) {
 }
 
 /// A battery that an operator holds at 0 W: the prices alone would discharge it.
-class StateFiles : public ::testing::Test {
+class StateFiles : public SiteTest {
  protected:
+  StateFiles() : SiteTest(kScale) {}
   static constexpr const char* kFolders[] = {"state", "run", "notify", "notify_run"};
 
   void SetUp() override {
     site_.start_battery();
-    site_.start_market({}, SimulatedSite::minute_prices(
-                               6'000, {.mean_eur_per_mwh = 1'700, .amplitude_eur_per_mwh = 0}));
+    site_.start_market({}, SimulatedSite::flat_prices(6'000, 1'700));
     config_ =
         site_.commission({.guard_keys = "price_age_s_max = 1800\n",
                           .state_keys = "run_folder = \"" + site_.folder.file("run") + "\"\n"});
     add_notifier();
-    ASSERT_EQ(edge({"hold", "0", "--for", "7d", "--config", config_}).exit_code, 0);
+    ASSERT_EQ(ask({"hold", "0", "--for", "7d"}).exit_code, 0);
     ASSERT_THAT(run_controller(), AllOf(HasSubstr("reason=held"), Not(HasSubstr("commissioned"))));
     ASSERT_THAT(notify(), HasSubstr("ALARM: CRITICAL: "));
-    newest_utc_ = read_csv(site_.folder.file("edge.csv")).back().at("utc");
+    newest_utc_ = edge_log().back().at("utc");
     newest_local_ = local_text_of(newest_utc_);
     for (const char* folder : kFolders) {
       fs::copy(site_.folder.file(folder), pristine(folder), fs::copy_options::recursive);
@@ -100,7 +100,7 @@ class StateFiles : public ::testing::Test {
     }
   }
   std::string run_controller() {
-    const Said said = edge({"--config", config_, "--cycles", "2"});
+    const Said said = ask({"--cycles", "2"});
     exit_code_ = said.exit_code;
     return said.text;
   }
@@ -140,13 +140,13 @@ class StateFiles : public ::testing::Test {
 
   /// Of a controller that has ended, with its newest cycle, whoever has to tell it.
   void expect_status_is_true() {
-    const Said json = edge({"status", "--json", "--config", config_});
+    const Said json = ask({"status", "--json"});
     EXPECT_EQ(json.exit_code, 3) << json.text;
     EXPECT_THAT(json.text, HasSubstr(newest_utc_));
-    const Said text = edge({"status", "--config", config_});
+    const Said text = ask({"status"});
     EXPECT_EQ(text.exit_code, 3) << text.text;
     EXPECT_THAT(text.text, HasSubstr(newest_local_));
-    const Said metrics = edge({"status", "--prometheus", "--config", config_});
+    const Said metrics = ask({"status", "--prometheus"});
     EXPECT_THAT(metrics.text, AllOf(ContainsRegex("bess_tripped[{].*[}] 0\n"),
                                     HasSubstr("bess_last_cycle_timestamp_seconds{")))
         << metrics.text;
@@ -191,8 +191,6 @@ class StateFiles : public ::testing::Test {
     EXPECT_TRUE(said_.find(path) != std::string::npos || is_of_the_words || !file.is_read) << said_;
   }
 
-  SimulatedSite site_{kScale};
-  std::string config_;
   std::string newest_utc_, newest_local_;
   std::string said_;
   int exit_code_ = 0;
@@ -239,15 +237,12 @@ TEST_F(StateFiles, AWornCardIsToldByEverybody) {
   setenv("BESS_ROOT", root.file("").c_str(), 1);
   write_card(root, site_.folder.file("state"),
              {.life_time = "0x02 0x0a\n", .pre_eol_info = "0x03\n", .errors = "7\n"});
-  ChildProcess controller({edge_program(), "--config", config_});
-  std::string line;
-  for (int cycles = 0; cycles < 2 && !(line = controller.read_line()).empty();) {
-    cycles += line.starts_with("utc=") ? 1 : 0;
-  }
-  const std::string status = edge({"status", "--config", config_}).text;
-  const std::string metrics = edge({"status", "--prometheus", "--config", config_}).text;
+  ChildProcess running = controller();
+  for (int cycles = 0; cycles < 2; ++cycles) await_line(running, "utc=");
+  const std::string status = ask({"status"}).text;
+  const std::string metrics = ask({"status", "--prometheus"}).text;
   const std::string told = notify();
-  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(SimulatedSite::stop(running), 0);
   unsetenv("BESS_ROOT");
   for (const std::string& text : {status, told}) {
     EXPECT_THAT(text,

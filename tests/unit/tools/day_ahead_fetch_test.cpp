@@ -47,10 +47,8 @@ class FetchFromSimulatedAuction : public TrainCommands {
   Result fetch(const std::vector<std::string>& more = {}) {
     SitePrograms site(BESS_SIM_PROGRAM, path(""));
     site.clock = {.start_utc_s = kStartS};
-    std::vector<std::string> options{"--prices", path("minutes.csv"), "--day-ahead",
-                                     path("da.csv")};
-    options.insert(options.end(), more.begin(), more.end());
-    site.start_market(options);
+    site.start_market(
+        joined({"--prices", path("minutes.csv"), "--day-ahead", path("da.csv")}, more));
     return fetch_from(site.market_port);
   }
   Result fetch_from(int port) {
@@ -97,9 +95,7 @@ TEST_F(FetchFromSimulatedAuction, OptionsSayWhichDaysAreStruck) {
       {{"--day-ahead-mend-s", "0"}, false},
       {{"--day-ahead-mend-s", "3600"}, true}};
   for (const auto& [more, is_missing] : cases) {
-    std::vector<std::string> options = missing;
-    options.insert(options.end(), more.begin(), more.end());
-    EXPECT_EQ(fetch(options).exit_code, is_missing ? 1 : 0) << more[0];
+    EXPECT_EQ(fetch(joined(missing, more)).exit_code, is_missing ? 1 : 0) << more[0];
   }
 }
 
