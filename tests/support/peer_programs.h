@@ -1,12 +1,15 @@
-// Programs that share nothing with bess: where they are, and whether they are there.
+// Programs that share nothing with bess: where they are, whether they are there, and what a test
+// asks of them.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
-#include "shared/host/child_process.h"
+#include "tests/support/said.h"
 
 namespace bess {
 
@@ -24,6 +27,36 @@ inline std::string missing_peer(const std::string& modules,
   if (access(kPython, X_OK) != 0) return std::string(kPython) + " is not installed";
   ChildProcess probe({kPython, "-c", "import " + modules});
   return probe.wait() == 0 ? "" : "not all of " + modules + " is installed";
+}
+
+/// A test that is skipped where one of them is missing.
+class PeerTest : public ::testing::Test {
+ protected:
+  explicit PeerTest(const std::string& modules, std::initializer_list<const char*> programs = {})
+      : missing_(missing_peer(modules, programs)) {}
+  void SetUp() override {
+    if (!missing_.empty()) GTEST_SKIP() << missing_;
+  }
+
+ private:
+  std::string missing_;
+};
+
+/// Behind the last colon of "listening on HOST:PORT".
+inline std::string port_in(const std::string& ready) {
+  return ready.substr(ready.find_last_of(':') + 1);
+}
+
+/// master_peer.py, at the simulated battery of a site.
+template <typename Site, typename Map>
+std::vector<std::string> master_peer(const Site& site, const Map& m,
+                                     const std::vector<std::string>& more = {}) {
+  return joined(
+      {kPython, BESS_SOURCE_DIR "/tests/system/peers/master_peer.py", "--map", m.map, "--variant",
+       m.variant, "--port", std::to_string(site.battery_port), "--scale",
+       std::to_string(site.clock.time_scale), "--start-s", std::to_string(site.clock.start_utc_s),
+       "--anchor-ns", std::to_string(site.anchor_ns())},
+      more);
 }
 
 }  // namespace bess

@@ -3,7 +3,6 @@
 // times time, worked out by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include "tests/support/peer_programs.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
+#include "tests/support/utc_of.h"
 
 namespace bess {
 namespace {
@@ -19,38 +19,23 @@ using ::testing::HasSubstr;
 
 constexpr double kTolerance = 0.001;
 
-class BatteryPeers : public ::testing::Test {
+class BatteryPeers : public PeerTest {
  protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("pymodbus", {kMbpoll});
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
-  static std::vector<std::string> map_options(const MapVariant& m) {
-    std::vector<std::string> options = {"--map", shipped_map(m.map), "--clients-max", "4"};
+  BatteryPeers() : PeerTest("pymodbus", {kMbpoll}) {}
+  static std::vector<std::string> options(const MapVariant& m, const char* soc) {
+    std::vector<std::string> options = {"--map", shipped_map(m.map), "--clients-max", "4", "--soc",
+                                        soc};
     if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
     return options;
-  }
-  static std::vector<std::string> master(const SimulatedSite& site, const MapVariant& m,
-                                         int scale) {
-    return {kPython,       BESS_SOURCE_DIR "/tests/system/peers/master_peer.py",
-            "--map",       m.map,
-            "--variant",   m.variant,
-            "--port",      std::to_string(site.battery_port),
-            "--scale",     std::to_string(scale),
-            "--start-s",   std::to_string(SimulatedSite::kStartS),
-            "--anchor-ns", std::to_string(site.anchor_ns())};
   }
 };
 
 class EveryMapsPeers : public BatteryPeers, public ::testing::WithParamInterface<MapVariant> {};
 
 TEST_P(EveryMapsPeers, WhatTheyOrderFlowsAndIsCounted) {
-  constexpr int kScale = 60;
-  SimulatedSite site(kScale);
-  std::vector<std::string> options = map_options(GetParam());
-  options.insert(options.end(), {"--soc", "0.43"});
-  site.start_battery(options);
-  ChildProcess peer(master(site, GetParam(), kScale));
+  SimulatedSite site(60);
+  site.start_battery(options(GetParam(), "0.43"));
+  ChildProcess peer(master_peer(site, GetParam()));
   double soc_permille = 0;
   ASSERT_EQ(std::sscanf(peer.read_line().c_str(), "soc %lf", &soc_permille), 1) << peer.read_all();
   EXPECT_DOUBLE_EQ(soc_permille, 430);
@@ -73,11 +58,9 @@ TEST_P(EveryMapsPeers, WhatTheyOrderFlowsAndIsCounted) {
   EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
   int minutes = 0;
   for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
-    std::int64_t minute_s = 0;
-    ASSERT_TRUE(parse_utc(row.at("minute_utc"), minute_s));
+    const auto minute_s = static_cast<double>(utc_of(row.at("minute_utc")));
     for (const Order& o : orders) {
-      if (static_cast<double>(minute_s) < o.from_s || static_cast<double>(minute_s) + 60 > o.to_s)
-        continue;
+      if (minute_s < o.from_s || minute_s + 60 > o.to_s) continue;
       ++minutes;
       EXPECT_NEAR(std::stod(row.at("energy_wh")), o.watts / 60,
                   kTolerance * std::abs(o.watts) / 60);
@@ -96,14 +79,10 @@ INSTANTIATE_TEST_SUITE_P(
 /// battery loses the square root of its round trip (90 %) each way: SoC 0.2 + 8000 * 0.948683 /
 /// 8000 - 6600 / 0.948683 / 8000 = 0.279057.
 TEST_F(BatteryPeers, TheEnergyOfADayIsTheHandCalculation) {
-  constexpr int kScale = 7'200;  // a day in 12 s
-  SimulatedSite site(kScale);
-  std::vector<std::string> options = map_options({"alphaess", "block"});
-  options.insert(options.end(), {"--soc", "0.2"});
-  site.start_battery(options);
-  std::vector<std::string> day = master(site, {"alphaess", "block"}, kScale);
-  day.push_back("--day");
-  ChildProcess peer(day);
+  constexpr MapVariant kMap{"alphaess", "block"};
+  SimulatedSite site(7'200);  // a day in 12 s
+  site.start_battery(options(kMap, "0.2"));
+  ChildProcess peer(master_peer(site, kMap, {"--day"}));
   EXPECT_THAT(peer.read_all(), HasSubstr("day over"));
   EXPECT_EQ(peer.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);

@@ -2,7 +2,6 @@
 // reads must be what the meter shows, in both directions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
@@ -13,18 +12,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class MeterPeers : public ::testing::TestWithParam<const char*> {
+class MeterPeers : public PeerTest, public ::testing::WithParamInterface<const char*> {
  protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("pymodbus");
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
+  MeterPeers() : PeerTest("pymodbus") {}
 };
 
 TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
   SimulatedSite site(60);
-  site.start_battery();
-  site.start_market();
+  site.start_both();
   for (const int watts : {2'340, -1'230}) {
     ChildProcess meter({kPython, BESS_SOURCE_DIR "/tests/system/peers/meter_peer.py", "--map",
                         GetParam(), "--watts", std::to_string(watts)});
@@ -32,8 +27,8 @@ TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
     ASSERT_THAT(ready, HasSubstr("listening on"));
     const std::string config = site.write_config(
         {.guard_keys = "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/device/meters/" +
-                       std::string(GetParam()) + ".toml\"\nhost = \"127.0.0.1\"\nport = " +
-                       ready.substr(ready.find_last_of(':') + 1) + "\n"});
+                       std::string(GetParam()) +
+                       ".toml\"\nhost = \"127.0.0.1\"\nport = " + port_in(ready) + "\n"});
     ChildProcess check({edge_program(), "--config", config, "--check", "--dry-run"});
     EXPECT_THAT(check.read_all(), Names("meter grid " + std::to_string(watts) + " W"));
     check.wait();

@@ -55,12 +55,25 @@ std::vector<std::string> writes_of(const std::vector<int>& d, const std::string&
   return {line(0, 1), line(1, 2), line(7, 2), line(6, 1), line(5, 1)};
 }
 
-class Peers : public ::testing::TestWithParam<Setup> {
+/// Starts alphaess_peer.py in place of the site's battery; the line that says where it listens.
+std::string start_peer(SimulatedSite& site, int soc_permille,
+                       const std::vector<std::string>& options) {
+  site.start_clock();
+  site.battery = std::make_unique<ChildProcess>(
+      joined({kPython, BESS_SOURCE_DIR "/tests/system/peers/alphaess_peer.py", "--soc",
+              std::to_string(soc_permille)},
+             options));
+  std::string ready = site.battery->read_line();
+  EXPECT_THAT(ready, HasSubstr("listening on"));
+  return ready;
+}
+
+class Peers : public PeerTest, public ::testing::WithParamInterface<Setup> {
  protected:
+  Peers() : PeerTest("pymodbus, serial_asyncio", {kMbpoll, kSocat}) {}
   void SetUp() override {
-    const std::string missing = missing_peer("pymodbus, serial_asyncio", {kMbpoll, kSocat});
-    if (!missing.empty()) GTEST_SKIP() << missing;
-    if (GetParam().rtu) start_line();
+    PeerTest::SetUp();
+    if (!IsSkipped() && GetParam().rtu) start_line();
   }
 
   void start_line() {
@@ -74,16 +87,11 @@ class Peers : public ::testing::TestWithParam<Setup> {
     }
   }
   void start_battery(int soc_permille) {
-    std::vector<std::string> arguments = {kPython,
-                                          BESS_SOURCE_DIR "/tests/system/peers/alphaess_peer.py",
-                                          "--soc", std::to_string(soc_permille)};
     if (GetParam().rtu) {
-      arguments.insert(arguments.end(), {"--serial", site_.folder.file("battery_end")});
+      start_peer(site_, soc_permille, {"--serial", site_.folder.file("battery_end")});
+    } else {
+      site_.battery_port = std::stoi(port_in(start_peer(site_, soc_permille, {})));
     }
-    site_.battery = std::make_unique<ChildProcess>(arguments);
-    const std::string ready = site_.battery->read_line();
-    ASSERT_THAT(ready, HasSubstr("listening on"));
-    if (!GetParam().rtu) site_.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
   }
   std::string battery_keys() const {
     const std::string keys =
@@ -93,13 +101,9 @@ class Peers : public ::testing::TestWithParam<Setup> {
   }
   /// Runs the edge in a situation up to its first order; then it ends by this signal.
   void run_edge(const Situation& situation, int signal) {
-    site_.start_clock();
     start_battery(situation.soc_permille);
-    if (HasFatalFailure()) return;
-    const SimulatedSite::PriceWave flat{
-        .mean_eur_per_mwh = static_cast<double>(situation.price_eur_per_mwh),
-        .amplitude_eur_per_mwh = 0};
-    site_.start_market({}, SimulatedSite::minute_prices(60, flat));
+    ASSERT_FALSE(HasFailure());
+    site_.start_market({}, SimulatedSite::flat_prices(60, situation.price_eur_per_mwh));
     const std::string config = site_.commission({.battery_keys = battery_keys()});
     ChildProcess edge({edge_program(), "--config", config});
     std::string line;
@@ -210,22 +214,16 @@ std::string breakdown_name(const ::testing::TestParamInfo<Breakdown>& info) {
   return name.append("_from_").append(std::to_string(b.soc_permille));
 }
 
-class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
+class PeersBreakdown : public PeerTest, public ::testing::WithParamInterface<Breakdown> {
  protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("pymodbus, serial_asyncio");
-    if (!missing.empty()) GTEST_SKIP() << missing;
-    site_.start_clock();
-    site_.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
-        kPython, BESS_SOURCE_DIR "/tests/system/peers/alphaess_peer.py", "--soc",
-        std::to_string(GetParam().soc_permille), "--scale", std::to_string(kBreakdownScale),
-        "--fault", GetParam().fault, "--every", std::to_string(GetParam().every)});
-    const std::string ready = site_.battery->read_line();
-    site_.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
-    const SimulatedSite::PriceWave flat{
-        .mean_eur_per_mwh = static_cast<double>(GetParam().price_eur_per_mwh),
-        .amplitude_eur_per_mwh = 0};
-    site_.start_market({}, SimulatedSite::minute_prices(600, flat));
+  PeersBreakdown() : PeerTest("pymodbus, serial_asyncio") {}
+
+  void start(const std::vector<std::string>& options, const std::string& prices) {
+    const std::string ready = start_peer(
+        site_, GetParam().soc_permille,
+        joined({"--scale", std::to_string(kBreakdownScale), "--fault", GetParam().fault}, options));
+    site_.battery_port = std::stoi(port_in(ready));
+    site_.start_market({}, prices);
     config_ = site_.commission(
         {.battery_keys = SimulatedSite::alphaess_keys(2'000), .guard_keys = GetParam().guard_keys});
   }
@@ -249,6 +247,8 @@ class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
 
 TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
   constexpr int kGoodCycles = 2;
+  start({"--every", std::to_string(GetParam().every)},
+        SimulatedSite::flat_prices(600, GetParam().price_eur_per_mwh));
   ChildProcess edge({edge_program(), "--config", config_});
   const std::string reason = std::string("reason=") + GetParam().reason + " ";
   const int noticed = cycle_with(edge, reason, kGoodCycles + 2 + GetParam().cycles_until_noticed);
@@ -295,27 +295,12 @@ INSTANTIATE_TEST_SUITE_P(
     breakdown_name);
 
 /// Lag, ramp, noise and taper, and whatever else a healthy battery does, for two hours of its time.
-class PeersHealthy : public ::testing::TestWithParam<Breakdown> {
- protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("pymodbus, serial_asyncio");
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
-};
+class PeersHealthy : public PeersBreakdown {};
 
 TEST_P(PeersHealthy, IsDrivenOn) {
   constexpr int kCycles = 60;
-  SimulatedSite site(kBreakdownScale);
-  site.start_clock();
-  site.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
-      kPython, BESS_SOURCE_DIR "/tests/system/peers/alphaess_peer.py", "--soc",
-      std::to_string(GetParam().soc_permille), "--scale", std::to_string(kBreakdownScale),
-      "--habits", "--fault", GetParam().fault});
-  const std::string ready = site.battery->read_line();
-  site.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
-  site.start_market({}, SimulatedSite::minute_prices(600, {}));
-  const std::string config = site.commission({.battery_keys = SimulatedSite::alphaess_keys(2'000)});
-  ChildProcess edge({edge_program(), "--config", config, "--cycles", std::to_string(kCycles)});
+  start({"--habits"}, SimulatedSite::minute_prices(600));
+  ChildProcess edge({edge_program(), "--config", config_, "--cycles", std::to_string(kCycles)});
   int driven = 0;
   for (std::string line = edge.read_line(); !line.empty(); line = edge.read_line()) {
     driven += line.find("mode=running") != std::string::npos ? 1 : 0;

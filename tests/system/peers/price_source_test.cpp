@@ -100,18 +100,11 @@ constexpr Behaviour kBehaviours[] = {
     {"large", R"({"pad": 20000})", kAll},
 };
 
-struct Cycle {
-  std::int64_t utc_s = 0;
-  std::string mode, reason, prices;
-  double ordered_w = 0;
-  [[nodiscard]] bool drives() const { return mode == "running" && ordered_w != 0; }
-};
-
 /// + charge at the cheap price, - discharge at the dear one, of a minute.
 int right_sign(std::int64_t minute) { return minute / kHalfMin % 2 == 0 ? 1 : -1; }
 
 /// An order may follow any price that is not older than [guard] allows.
-bool may_be_right(const Cycle& cycle) {
+bool may_be_right(const JournalCycle& cycle) {
   const int sign = cycle.ordered_w > 0 ? 1 : -1;
   for (std::int64_t age_s = 60; age_s <= 300; age_s += 60) {
     if (right_sign((cycle.utc_s - age_s) / 60) == sign) return true;
@@ -119,12 +112,9 @@ bool may_be_right(const Cycle& cycle) {
   return false;
 }
 
-class PriceSources : public ::testing::TestWithParam<Behaviour> {
+class PriceSources : public PeerTest, public ::testing::WithParamInterface<Behaviour> {
  protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("json");
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
+  PriceSources() : PeerTest("json") {}
   void start() {
     const Behaviour& behaviour = GetParam();
     site_.start_battery(
@@ -142,16 +132,11 @@ class PriceSources : public ::testing::TestWithParam<Behaviour> {
         edge_program(), "--config", config_, "--cycles", std::to_string(kCycles)});
     unsetenv("LD_PRELOAD");
   }
-  std::vector<Cycle> cycles() {
-    std::vector<Cycle> all;
+  std::vector<JournalCycle> cycles() {
+    std::vector<JournalCycle> all;
     for (std::string line; !(line = edge_->read_line()).empty();) {
       if (!is_cycle_line(line)) continue;
-      std::map<std::string, std::string> value = journal_fields(line);
-      Cycle cycle{.mode = value["mode"],
-                  .reason = value["reason"],
-                  .prices = value["prices"],
-                  .ordered_w = std::atof(value["ordered_power_w"].c_str())};
-      EXPECT_TRUE(parse_utc(value["utc"], cycle.utc_s)) << line;
+      const JournalCycle cycle = journal_cycle(line);
       if (cycle.mode != "stopping") all.push_back(cycle);
     }
     EXPECT_EQ(edge_->wait(), 0);
@@ -167,15 +152,15 @@ TEST_P(PriceSources, AreTradedOnRightOrNotAtAll) {
   const Behaviour& behaviour = GetParam();
   start();
   if (HasFatalFailure()) return;
-  const std::vector<Cycle> all = cycles();
+  const std::vector<JournalCycle> all = cycles();
   ASSERT_GE(all.size(), 10U);
   int driven = 0, wrong = 0;
   std::string shown;
-  for (const Cycle& cycle : all) {
-    driven += cycle.drives() ? 1 : 0;
+  for (const JournalCycle& cycle : all) {
+    driven += cycle.wants() ? 1 : 0;
     const bool is_wave = std::string_view(behaviour.prices) == "wave";
-    wrong += is_wave && cycle.drives() && !may_be_right(cycle) ? 1 : 0;
-    shown += cycle.drives() ? (cycle.ordered_w > 0 ? "+ " : "- ") : cycle.reason + " ";
+    wrong += is_wave && cycle.wants() && !may_be_right(cycle) ? 1 : 0;
+    shown += cycle.wants() ? (cycle.ordered_w > 0 ? "+ " : "- ") : cycle.reason + " ";
   }
   EXPECT_EQ(wrong, 0);
   const auto count = static_cast<int>(all.size());

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <climits>
-#include <cstdio>
 
 #include "tests/support/peer_programs.h"
 #include "tests/support/shipped_maps.h"
@@ -26,12 +25,9 @@ struct SecondMaster {
   }
 };
 
-class SecondMasterPeer : public ::testing::TestWithParam<SecondMaster> {
+class SecondMasterPeer : public PeerTest, public ::testing::WithParamInterface<SecondMaster> {
  protected:
-  void SetUp() override {
-    const std::string missing = missing_peer("pymodbus", {});
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
+  SecondMasterPeer() : PeerTest("pymodbus") {}
 
   /// Commissioned, at a price that asks for charging in every cycle.
   std::string start_site() {
@@ -41,26 +37,12 @@ class SecondMasterPeer : public ::testing::TestWithParam<SecondMaster> {
                                         "0.3"};
     if (!variant.empty()) options.insert(options.end(), {"--variant", variant});
     site_.start_battery(options);
-    site_.start_market({}, SimulatedSite::minute_prices(
-                               600, {.mean_eur_per_mwh = -600, .amplitude_eur_per_mwh = 0}));
+    site_.start_market({}, SimulatedSite::flat_prices(600, -600));
     std::string keys = "map = \"" + shipped_map(m.map) + "\"\nresponse_timeout_ms = 2000\n";
     if (!variant.empty()) keys += "variant = \"" + variant + "\"\n";
     if (load_shipped_map(m).watchdog.kind == Watchdog::Kind::kNone)
       keys += "allow_without_watchdog = true\n";
     return site_.commission({.battery_keys = keys});
-  }
-
-  std::vector<std::string> master() const {
-    const SecondMaster& m = GetParam();
-    return {kPython,       BESS_SOURCE_DIR "/tests/system/peers/master_peer.py",
-            "--map",       m.map.map,
-            "--variant",   m.map.variant,
-            "--port",      std::to_string(site_.battery_port),
-            "--scale",     std::to_string(kScale),
-            "--start-s",   std::to_string(SimulatedSite::kStartS),
-            "--anchor-ns", std::to_string(site_.anchor_ns()),
-            "--interfere", m.writes,
-            "--every",     std::to_string(m.every)};
   }
 
   /// The first cycle line that holds one of the texts; empty when there is none within `lines_max`.
@@ -97,7 +79,9 @@ TEST_P(SecondMasterPeer, IsFoundAndTheBatteryGivenBack) {
   const std::string config = start_site();
   ChildProcess edge({edge_program(), "--config", config});
   ASSERT_NE(line_with(edge, {" written=1"}, 4), "");
-  ChildProcess other(master());
+  ChildProcess other(
+      master_peer(site_, GetParam().map,
+                  {"--interfere", GetParam().writes, "--every", std::to_string(GetParam().every)}));
   const std::string first = other.read_line();
   ASSERT_TRUE(first.starts_with("tick ")) << first << other.read_all();
   const std::int64_t first_utc_s = std::atoll(first.c_str() + 5);
