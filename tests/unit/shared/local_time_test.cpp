@@ -6,7 +6,7 @@
 #include <set>
 
 #include "shared/units_and_limits.h"
-#include "shared/utc_text.h"
+#include "tests/support/utc_of.h"
 
 namespace bess {
 namespace {
@@ -15,12 +15,6 @@ class LocalTime : public testing::Test {
  protected:
   void SetUp() override { set_market_time_zone(); }
 };
-
-std::int64_t utc(std::string_view text) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
-  return utc_s;
-}
 
 TEST_F(LocalTime, InstantsOfBothOffsetsAndAroundTheChanges) {
   const struct {
@@ -35,7 +29,7 @@ TEST_F(LocalTime, InstantsOfBothOffsetsAndAroundTheChanges) {
       {"2024-02-29T22:59:00Z", 2024, 2, 29, 95, 14}, {"2024-02-29T23:00:00Z", 2024, 3, 1, 0, 0},
   };
   for (const auto& c : cases) {
-    const LocalMinute local = local_minute_of(utc(c.utc));
+    const LocalMinute local = local_minute_of(utc_of(c.utc));
     EXPECT_EQ(local.year, c.year) << c.utc;
     EXPECT_EQ(local.month, c.month) << c.utc;
     EXPECT_EQ(local.day, c.day) << c.utc;
@@ -54,7 +48,7 @@ TEST_F(LocalTime, DaysHaveNinetyTwoNinetySixOrHundredQuarterHours) {
   for (const auto& c : cases) {
     int quarter_hours = 0;
     std::set<int> distinct;
-    std::int64_t at = utc(c.midnight_utc);
+    std::int64_t at = utc_of(c.midnight_utc);
     ASSERT_NE(local_minute_of(at - 1).day, c.day) << c.midnight_utc;
     for (; local_minute_of(at).day == c.day; at += 60 * kMinutesPerQuarterHour) {
       const LocalMinute local = local_minute_of(at);
@@ -68,7 +62,7 @@ TEST_F(LocalTime, DaysHaveNinetyTwoNinetySixOrHundredQuarterHours) {
 }
 
 TEST_F(LocalTime, FieldsStayInRangeAndFitTogetherForThreeYears) {
-  for (std::int64_t at = utc("2023-01-01T00:00:00Z"); at < utc("2026-01-01T00:00:00Z");
+  for (std::int64_t at = utc_of("2023-01-01T00:00:00Z"); at < utc_of("2026-01-01T00:00:00Z");
        at += 7 * 60) {
     const LocalMinute local = local_minute_of(at);
     ASSERT_TRUE(local.month >= 1 && local.month <= 12);
@@ -83,7 +77,7 @@ TEST_F(LocalTime, FieldsStayInRangeAndFitTogetherForThreeYears) {
 }
 
 TEST_F(LocalTime, TheWallClockLeadsBackToItsInstant) {
-  for (std::int64_t at = utc("2023-01-01T00:00:00Z"); at < utc("2026-01-01T00:00:00Z");
+  for (std::int64_t at = utc_of("2023-01-01T00:00:00Z"); at < utc_of("2026-01-01T00:00:00Z");
        at += 13 * 60) {
     const LocalMinute local = local_minute_of(at);
     const std::int64_t found = utc_from_local({.year = local.year,
@@ -97,23 +91,23 @@ TEST_F(LocalTime, TheWallClockLeadsBackToItsInstant) {
     const bool is_second = an_hour_ago.minute_of_day == local.minute_of_day;
     ASSERT_EQ(found, is_second ? at - 3'600 : at) << utc_text(at).c_str();
   }
-  EXPECT_EQ(utc_from_local({2024, 3, 31, 2, 30, 0}), utc("2024-03-31T01:30:00Z"))
+  EXPECT_EQ(utc_from_local({2024, 3, 31, 2, 30, 0}), utc_of("2024-03-31T01:30:00Z"))
       << "left out: half an hour behind 02:00, which is 03:00";
-  EXPECT_EQ(utc_from_local({2024, 10, 27, 2, 30, 15}), utc("2024-10-27T00:30:15Z"));
+  EXPECT_EQ(utc_from_local({2024, 10, 27, 2, 30, 15}), utc_of("2024-10-27T00:30:15Z"));
 }
 
 TEST_F(LocalTime, InstantsReadAndWriteAsText) {
   for (const char* text : {"1970-01-01T00:00:00Z", "2000-02-29T23:59:59Z", "2023-10-29T01:00:00Z",
                            "2038-01-19T03:14:08Z", "2100-03-01T00:00:00Z"}) {
-    EXPECT_EQ(utc_text(utc(text)).view(), text);
+    EXPECT_EQ(utc_text(utc_of(text)).view(), text);
   }
   for (const char* text :
        {"2023-10-29T02:30:00+01:00", "2023-10-29T00:00:00-01:30", "2023-10-29T01:30:00.456Z"}) {
-    EXPECT_EQ(utc(text), utc("2023-10-29T01:30Z"));
+    EXPECT_EQ(utc_of(text), utc_of("2023-10-29T01:30Z"));
   }
   std::int64_t utc_s = 0;
   EXPECT_TRUE(parse_utc("2023-10-29 01:30:00.000Z", utc_s, kAlsoBlank));
-  EXPECT_EQ(utc_s, utc("2023-10-29T01:30Z"));
+  EXPECT_EQ(utc_s, utc_of("2023-10-29T01:30Z"));
   for (const char* text :
        {"", "2023", "2023-02-29T00:00:00Z", "2023-01-01T24:00:00Z", "2023-01-01T00:00:00",
         "2023-01-01T00:00:00ZZ", "2023-01-01 00:00:00Z", "2023-13-01T00:00:00Z", "2023-03-26",

@@ -6,9 +6,9 @@
 #include <map>
 
 #include "shared/host/json.h"
-#include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
+#include "tests/support/utc_of.h"
 #include "tools/simulators/market_sim/auction_view.h"
 
 namespace bess {
@@ -16,12 +16,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::int64_t utc(std::string_view text) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
-  return utc_s;
-}
 
 constexpr const char* kStart = "2025-03-28T00:00:00Z";
 /// 28 to 31 March 2025, local; on the 30th the clock goes forward.
@@ -32,15 +26,15 @@ constexpr const char* kUntil = "2025-03-31T22:00:00Z";
 /// hour's first.
 std::vector<AuctionRow> four_days(std::int64_t step_s = 900) {
   std::vector<AuctionRow> rows;
-  for (std::int64_t utc_s = utc(kFrom); utc_s < utc(kUntil); utc_s += 900) {
-    const auto number = static_cast<double>((utc_s / step_s * step_s - utc(kFrom)) / 900);
+  for (std::int64_t utc_s = utc_of(kFrom); utc_s < utc_of(kUntil); utc_s += 900) {
+    const auto number = static_cast<double>((utc_s / step_s * step_s - utc_of(kFrom)) / 900);
     rows.push_back({utc_s, number, step_s, 0});
   }
   return rows;
 }
 
 AuctionView with(AuctionSettings settings = {}, std::int64_t step_s = 900) {
-  settings.start_utc_s = utc(kStart);
+  settings.start_utc_s = utc_of(kStart);
   return {four_days(step_s), settings};
 }
 
@@ -64,7 +58,7 @@ std::vector<Published> rows_of(const AuctionAnswer& answer) {
 
 /// The local day whose prices came on the 28th at 12:57, seen at 14:00 local.
 AuctionAnswer tomorrow(const AuctionView& view, std::string_view now = "2025-03-28T13:00:00Z") {
-  return view.answer("2025-03-29", "2025-03-29", utc(now));
+  return view.answer("2025-03-29", "2025-03-29", utc_of(now));
 }
 
 TEST(Auction, ADayIsOutFromItsTimeOfTheDayBeforeOn) {
@@ -74,8 +68,8 @@ TEST(Auction, ADayIsOutFromItsTimeOfTheDayBeforeOn) {
   EXPECT_THAT(before.body, HasSubstr("no content available"));
   const std::vector<Published> after = rows_of(tomorrow(view, "2025-03-28T11:57:00Z"));
   ASSERT_EQ(after.size(), 96u);
-  EXPECT_EQ(after.front(), (Published{utc("2025-03-28T23:00:00Z"), 96}));
-  EXPECT_EQ(after.back(), (Published{utc("2025-03-29T22:45:00Z"), 191}));
+  EXPECT_EQ(after.front(), (Published{utc_of("2025-03-28T23:00:00Z"), 96}));
+  EXPECT_EQ(after.back(), (Published{utc_of("2025-03-29T22:45:00Z"), 191}));
   const AuctionView later({four_days(), {.published_min = 14 * 60}});
   EXPECT_EQ(tomorrow(later, "2025-03-28T12:59:59Z").status, 404);
   EXPECT_EQ(tomorrow(later).status, 200);
@@ -83,7 +77,7 @@ TEST(Auction, ADayIsOutFromItsTimeOfTheDayBeforeOn) {
 
 TEST(Auction, TheFilesOwnTimeOfPublicationCounts) {
   std::vector<AuctionRow> rows = four_days();
-  rows[96].published_utc_s = utc("2025-03-28T15:30:00Z");  // the first of the 29th
+  rows[96].published_utc_s = utc_of("2025-03-28T15:30:00Z");  // the first of the 29th
   const AuctionView view(std::move(rows), {});
   EXPECT_EQ(tomorrow(view, "2025-03-28T15:29:59Z").status, 404);
   EXPECT_EQ(rows_of(tomorrow(view, "2025-03-28T15:30:00Z")).size(), 96u);
@@ -91,8 +85,8 @@ TEST(Auction, TheFilesOwnTimeOfPublicationCounts) {
 
 TEST(Auction, AnswersInTheShapeOfEnergyCharts) {
   const AuctionAnswer answer =
-      AuctionView({{utc(kFrom), 0, 3'600, 0}, {utc(kStart), 4.255, 3'600, 0}}, {})
-          .answer("2025-03-28", "2025-03-28", utc(kStart));
+      AuctionView({{utc_of(kFrom), 0, 3'600, 0}, {utc_of(kStart), 4.255, 3'600, 0}}, {})
+          .answer("2025-03-28", "2025-03-28", utc_of(kStart));
   EXPECT_EQ(answer.body,
             "{\"license_info\":\"simulated by bess-sim market, no real prices\","
             "\"unix_seconds\":[1743116400,1743120000],\"price\":[0.00,4.25],"
@@ -101,7 +95,7 @@ TEST(Auction, AnswersInTheShapeOfEnergyCharts) {
 }
 
 TEST(Auction, ADayHasTheQuarterHoursOrHoursThatTheClockGivesIt) {
-  const std::int64_t now_utc_s = utc("2025-03-29T13:00:00Z");
+  const std::int64_t now_utc_s = utc_of("2025-03-29T13:00:00Z");
   EXPECT_EQ(rows_of(with({}).answer("2025-03-30", "2025-03-30", now_utc_s)).size(), 92u);
   EXPECT_EQ(rows_of(with({}, 3'600).answer("2025-03-30", "2025-03-30", now_utc_s)).size(), 23u);
   EXPECT_EQ(rows_of(with({}).answer("2025-03-28", "2025-04-30", now_utc_s)).size(), 284u);
@@ -109,8 +103,8 @@ TEST(Auction, ADayHasTheQuarterHoursOrHoursThatTheClockGivesIt) {
 
 TEST(Auction, TakesDatesAndRefusesOthers) {
   const AuctionView view = with({});
-  const std::int64_t now_utc_s = utc("2025-03-28T13:00:00Z");
-  EXPECT_EQ(rows_of(view.answer("", "", now_utc_s)).front().utc_s, utc(kFrom));  // today
+  const std::int64_t now_utc_s = utc_of("2025-03-28T13:00:00Z");
+  EXPECT_EQ(rows_of(view.answer("", "", now_utc_s)).front().utc_s, utc_of(kFrom));  // today
   EXPECT_EQ(rows_of(view.answer("", "", now_utc_s)).size(), 96u);
   EXPECT_EQ(rows_of(view.answer("2025-03-29", "", now_utc_s)).size(), 96u);
   EXPECT_EQ(rows_of(view.answer("1970-01-01", "9999-12-31", now_utc_s)).size(), 192u);
@@ -141,7 +135,7 @@ std::vector<bool> missing_days(const AuctionSettings& schedule,
                                std::string_view now = "2025-04-28T00:00:00Z") {
   std::vector<bool> missing;
   for (const char* day : {"2025-03-28", "2025-03-29", "2025-03-30", "2025-03-31"}) {
-    missing.push_back(with(schedule).answer(day, day, utc(now)).status == 404);
+    missing.push_back(with(schedule).answer(day, day, utc_of(now)).status == 404);
   }
   return missing;
 }
@@ -162,11 +156,12 @@ TEST(AuctionFaults, ComeAndGoByDay) {
 TEST(AuctionFaults, AllComeInTurn) {
   const AuctionView view = with({.fault = AuctionFault::kAll});
   EXPECT_EQ(tomorrow(view).fault, AuctionFault::kLate);
-  EXPECT_EQ(view.answer("2025-03-30", "", utc("2025-03-30T00:00:00Z")).fault,
+  EXPECT_EQ(view.answer("2025-03-30", "", utc_of("2025-03-30T00:00:00Z")).fault,
             AuctionFault::kMissing);
-  EXPECT_EQ(view.answer("2025-03-31", "", utc("2025-03-31T00:00:00Z")).fault, AuctionFault::kHalf);
+  EXPECT_EQ(view.answer("2025-03-31", "", utc_of("2025-03-31T00:00:00Z")).fault,
+            AuctionFault::kHalf);
   const AuctionView every_other = with({.fault = AuctionFault::kAll, .every = 2});
-  EXPECT_EQ(every_other.answer("2025-03-30", "", utc("2025-03-29T13:00:00Z")).fault,
+  EXPECT_EQ(every_other.answer("2025-03-30", "", utc_of("2025-03-29T13:00:00Z")).fault,
             AuctionFault::kLate);
 }
 
@@ -184,9 +179,9 @@ TEST(AuctionRows, AreReadFromADayAheadFile) {
   EXPECT_EQ(rows[0].eur_per_mwh, -3.5);
   EXPECT_EQ(rows[0].step_s, 3'600);
   EXPECT_EQ(rows[0].published_utc_s, 0);
-  EXPECT_EQ(rows[1].utc_s, utc("2025-03-28T01:00:00Z"));
+  EXPECT_EQ(rows[1].utc_s, utc_of("2025-03-28T01:00:00Z"));
   EXPECT_EQ(rows[1].step_s, 900);
-  EXPECT_EQ(rows[1].published_utc_s, utc("2025-03-27T12:10:00Z"));
+  EXPECT_EQ(rows[1].published_utc_s, utc_of("2025-03-27T12:10:00Z"));
 }
 
 TEST(AuctionRows, BadOnesAreNamedWithTheirLine) {

@@ -14,6 +14,18 @@ namespace {
 constexpr PowerOrder kTrustingOrder{
     .power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 86'400};
 
+double energy_wh(const SimulatedBattery& battery) {
+  double sum_wh = 0;
+  for (const MinuteRecord& minute : battery.record()) sum_wh += minute.energy_wh;
+  return sum_wh;
+}
+
+constexpr BatteryParameters kWithoutLosses{.power_w_max = 4'000,
+                                           .capacity_wh = 8'000,
+                                           .charge_efficiency = 1,
+                                           .discharge_efficiency = 1,
+                                           .soc_min_frac = 0};
+
 BatteryServerSettings always(BatteryFault fault) {
   BatteryServerSettings settings;
   settings.faults = {.faults = {fault}, .every = 1};
@@ -30,11 +42,7 @@ TEST(BatteryFaults, EveryFaultHasItsPlaceInTheTable) {
 }
 
 TEST(BatteryFaults, ThrottleLetsAQuarterFlowNearTheLimit) {
-  SimulatedBattery battery({.power_w_max = 4'000,
-                            .capacity_wh = 8'000,
-                            .charge_efficiency = 1,
-                            .discharge_efficiency = 1},
-                           0.94, 0);
+  SimulatedBattery battery(kWithoutLosses, 0.94, 0);
   battery.set_habits({.slows_near_limits = true});
   battery.start_dispatch(4'000, 1.0, 100'000);
   EXPECT_EQ(battery.power_w(), 4'000);
@@ -46,12 +54,6 @@ TEST(BatteryFaults, ThrottleLetsAQuarterFlowNearTheLimit) {
   battery.start_dispatch(-4'000, 0.1, 100'000);
   EXPECT_EQ(battery.power_w(), -4'000);  // away from the limit
 }
-
-constexpr BatteryParameters kWithoutLosses{.power_w_max = 4'000,
-                                           .capacity_wh = 8'000,
-                                           .charge_efficiency = 1,
-                                           .discharge_efficiency = 1,
-                                           .soc_min_frac = 0};
 
 TEST(BatteryFaults, ASlowRampTakesItsTimeFromOrderToOrder) {
   SimulatedBattery battery(kWithoutLosses, 0.5, 0);
@@ -99,9 +101,7 @@ TEST(BatteryFaults, AHiddenDrainEmptiesTheCellsAndShowsNothing) {
   battery.advance(3'600 * kNanosecondsPerSecond);
   EXPECT_EQ(battery.power_w(), 0);
   EXPECT_NEAR(battery.soc_frac(), 0.5 - 0.125, 1e-9);
-  double energy_wh = 0;
-  for (const MinuteRecord& minute : battery.record()) energy_wh += minute.energy_wh;
-  EXPECT_EQ(energy_wh, 0);
+  EXPECT_EQ(energy_wh(battery), 0);
 }
 
 TEST(BatteryFaults, AForcedChargeEndsAboveWhereItBegan) {
@@ -122,9 +122,7 @@ TEST(BatteryFaults, BalancingBurnsPowerWhileItIsFull) {
   battery.advance(3'600 * kNanosecondsPerSecond);
   EXPECT_EQ(battery.power_w(), 450);
   EXPECT_EQ(battery.soc_frac(), 1);
-  double energy_wh = 0;
-  for (const MinuteRecord& minute : battery.record()) energy_wh += minute.energy_wh;
-  EXPECT_NEAR(energy_wh, 450, 1e-6);
+  EXPECT_NEAR(energy_wh(battery), 450, 1e-6);
   battery.start_dispatch(-1'000, 0.1, 100'000);
   EXPECT_EQ(battery.power_w(), -1'000);
 }

@@ -4,7 +4,7 @@
 
 #include "edge/prices/fetch/price_json.h"
 #include "shared/scaled_clock.h"
-#include "shared/utc_text.h"
+#include "tests/support/utc_of.h"
 #include "tools/simulators/market_sim/market_fault.h"
 #include "tools/simulators/market_sim/market_view.h"
 
@@ -20,11 +20,7 @@ constexpr const char* kFile =
     "2023-03-26T00:14:00Z,,20\n"
     "2023-03-26T00:15:00Z,-3.25,30\n";
 
-std::int64_t utc_ns(std::string_view text) {
-  std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
-  return utc_s * kNanosecondsPerSecond;
-}
+std::int64_t utc_ns(std::string_view text) { return utc_of(text) * kNanosecondsPerSecond; }
 
 TEST(MarketFaultPlan, StrikesEveryNthRequestWithinItsSpan) {
   MarketFaultPlan plan({.fault = MarketFault::kHttp500, .every = 2, .from_s = 10, .to_s = 20});

@@ -56,6 +56,16 @@ struct HandMade {
   DispatchEvent& order_of(int minute) {
     return evidence.orders[static_cast<std::size_t>(minute / 2)];
   }
+  /// A cycle that wrote an order of such power.
+  CycleRecord& log_cycle(int minute, std::int32_t power_w) {
+    CycleRecord cycle;
+    cycle.utc_s = kStartS + 60 * minute;
+    cycle.mode = Mode::kRunning;
+    cycle.written = true;
+    cycle.ordered_power_w = power_w;
+    cycle.reason = Reason::kPriceAge;
+    return *evidence.log.insert(evidence.log.begin(), cycle);
+  }
 
   /// The rules that are broken, in one text.
   std::string broken() {
@@ -71,19 +81,41 @@ struct HandMade {
   }
 };
 
-TEST(Judge, FindsNothingInAGoodRecord) { EXPECT_EQ(HandMade().broken(), ""); }
+/// What is wrong with a record, and the rules that it breaks.
+struct Defect {
+  void (*make)(HandMade& run);
+  const char* broken;
+};
+constexpr Defect kDefects[] = {
+    {[](HandMade&) {}, ""},
+    {[](HandMade& run) {
+       for (MinuteRecord& m : run.evidence.minutes) m.soc_frac = 0.09;
+       run.scenario.battery.soc_frac = 0.09;
+     },
+     "soc_window"},
+    {[](HandMade& run) { run.order_of(8).power_w = 4'100; }, "power_limit"},
+    {[](HandMade& run) {  // too late
+       run.order_of(8).utc_ns = HandMade::at_ns(9, 30);
+       run.order_of(8).power_w = 2'000;
+     },
+     "in_time"},
+    {[](HandMade& run) { run.order_of(8).kind = DispatchEvent::Kind::kExpiry; }, "fed in_control"},
+    {[](HandMade& run) {  // released without a hold
+       run.order_of(8).power_w = 2'000;
+       run.order_of(10).kind = DispatchEvent::Kind::kStop;
+     },
+     "held in_control"},
+    {[](HandMade& run) { run.evidence.orders.pop_back(); }, "released"},
+    {[](HandMade& run) { run.evidence.minutes[3].energy_wh = 60; }, "energy"},
+    {[](HandMade& run) { run.evidence.edge_exit_code = 1; }, "end"},
+};
 
-TEST(Judge, SeesASocOutsideTheWindow) {
-  HandMade run;
-  for (MinuteRecord& m : run.evidence.minutes) m.soc_frac = 0.09;
-  run.scenario.battery.soc_frac = 0.09;
-  EXPECT_EQ(run.broken(), "soc_window");
-}
-
-TEST(Judge, SeesTooLargeAnOrder) {
-  HandMade run;
-  run.order_of(8).power_w = 4'100;
-  EXPECT_EQ(run.broken(), "power_limit");
+TEST(Judge, FindsEachDefectAndNothingInAGoodRecord) {
+  for (const Defect& defect : kDefects) {
+    HandMade run;
+    defect.make(run);
+    EXPECT_EQ(run.broken(), defect.broken);
+  }
 }
 
 TEST(Judge, SeesPowerOnAStalePrice) {
@@ -167,51 +199,13 @@ TEST(Judge, SeesMoreWritesOfFlashThanTheMapAllows) {
   EXPECT_EQ(run.broken(), "flash");
 }
 
-TEST(Judge, SeesAnOrderThatComesTooLate) {
-  HandMade run;
-  run.order_of(8) = {.utc_ns = HandMade::at_ns(9, 30),
-                     .kind = DispatchEvent::Kind::kOrder,
-                     .power_w = 2'000,
-                     .duration_s = 300,
-                     .soc_frac = 0.5};
-  EXPECT_EQ(run.broken(), "in_time");
-}
-
-TEST(Judge, SeesAnOrderThatRanOut) {
-  HandMade run;
-  run.order_of(8).kind = DispatchEvent::Kind::kExpiry;
-  EXPECT_EQ(run.broken(), "fed in_control");
-}
-
-TEST(Judge, SeesAReleaseWithoutAHold) {
-  HandMade run;
-  run.order_of(8).power_w = 2'000;
-  run.order_of(10).kind = DispatchEvent::Kind::kStop;
-  EXPECT_EQ(run.broken(), "held in_control");
-}
-
-TEST(Judge, SeesAnOrderThatIsLeftAtTheEnd) {
-  HandMade run;
-  run.evidence.orders.pop_back();
-  EXPECT_EQ(run.broken(), "released");
-}
-
 TEST(Judge, SeesPowerAfterTheLinkIsLost) {
   HandMade run;
-  FaultSchedule& schedule = run.scenario.battery_faults.emplace_back().schedule;
-  schedule.faults = {BatteryFault::kSilence};
-  schedule.every = 1;
-  schedule.from_s = 60;
-  schedule.to_s = 1'200;
+  run.scenario.battery_faults.emplace_back().schedule = {
+      .faults = {BatteryFault::kSilence}, .every = 1, .from_s = 60, .to_s = 1'200};
   EXPECT_EQ(run.broken(), "");
   run.order_of(10).power_w = 2'000;
   EXPECT_EQ(run.broken(), "safe_state");
-}
-
-TEST(Judge, SeesEnergyThatTheSocDoesNotKnow) {
-  HandMade run;
-  run.evidence.minutes[3].energy_wh = 60;
-  EXPECT_EQ(run.broken(), "energy");
 }
 
 /// A house of 500 W behind a meter, with these limits of the connection.
@@ -291,12 +285,7 @@ TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
 TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
   HandMade run = with_house("import_w_max = 3000");
   run.scenario.invariants = {"order"};
-  CycleRecord cycle;
-  cycle.utc_s = kStartS + 600;
-  cycle.mode = Mode::kRunning;
-  cycle.written = true;
-  cycle.ordered_power_w = 2'000;
-  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  run.log_cycle(10, 2'000);
   run.order_of(8).power_w = 2'000;
   run.order_of(10).utc_ns = HandMade::at_ns(10, 11);  // the cut; nothing at the tick itself
   EXPECT_EQ(run.broken(), "");
@@ -312,15 +301,12 @@ TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
 
 TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   HandMade run;
-  CycleRecord cycle;
-  cycle.utc_s = kStartS + 480;
-  cycle.mode = Mode::kRunning;
-  cycle.has_measurement = cycle.price.has_row = cycle.written = true;
-  cycle.measurement.soc_e4 = 5'000;
-  cycle.price.minute_utc_s = kStartS + 420;
-  cycle.price.price_centi_eur_per_mwh = 10'000;
-  cycle.reason = Reason::kPriceAge;
-  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  CycleRecord& logged = run.log_cycle(8, 0);
+  logged.has_measurement = logged.price.has_row = true;
+  logged.measurement.soc_e4 = 5'000;
+  logged.price.minute_utc_s = kStartS + 420;
+  logged.price.price_centi_eur_per_mwh = 10'000;
+  const CycleRecord cycle = logged;
   EXPECT_EQ(run.broken(), "");
   run.evidence.log[0].ordered_power_w = 4'000;
   EXPECT_EQ(run.broken(), "order");
@@ -338,13 +324,7 @@ TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
 /// Half a minute late: a bus with a fault may take so long, one without may not.
 TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   HandMade run;
-  CycleRecord cycle;
-  cycle.utc_s = kStartS + 480;
-  cycle.mode = Mode::kRunning;
-  cycle.written = true;
-  cycle.ordered_power_w = 2'000;
-  cycle.reason = Reason::kPriceAge;
-  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  run.log_cycle(8, 2'000);
   run.order_of(8).power_w = 2'000;
   run.order_of(8).utc_ns = HandMade::at_ns(8, 40);
   run.scenario.invariants = {"order"};
@@ -382,9 +362,6 @@ TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {
   run.scenario.expectations[0].command = Expectation::Command::kAny;
   run.scenario.expectations[0].reason = "alarm";
   EXPECT_EQ(run.broken(), "expect 1");
-  run.scenario.expectations.clear();
-  run.evidence.edge_exit_code = 1;
-  EXPECT_EQ(run.broken(), "end");
 }
 
 }  // namespace
