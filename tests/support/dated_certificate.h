@@ -15,8 +15,8 @@ namespace bess {
 class DatedCertificate {
  public:
   /// Valid from `from_s` to `to_s` seconds from now; `name` is a subjectAltName ("IP:127.0.0.1").
-  DatedCertificate(const std::string& name, long from_s, long to_s,
-                   const char* ca_name = "throw-away CA")
+  explicit DatedCertificate(const std::string& name, long from_s = -kDayS, long to_s = kDayS,
+                            const char* ca_name = "throw-away CA")
       : ca_key_(EVP_EC_gen("P-256")), key_(EVP_EC_gen("P-256")) {
     X509* const ca = make(ca_name, -kDayS, 2 * kDayS, nullptr, ca_key_);
     extend(ca, ca, NID_basic_constraints, "critical,CA:TRUE");

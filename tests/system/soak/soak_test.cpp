@@ -12,11 +12,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 
+#include "tests/support/dated_certificate.h"
 #include "tests/support/dropping_proxy.h"
 #include "tests/support/simulated_site.h"
-#include "tests/support/throwaway_ca.h"
 
 namespace bess {
 namespace {
@@ -93,11 +92,8 @@ class Soak : public ::testing::Test {
   }
   /// The test's authority among those of a real system.
   std::string write_bundle() const {
-    std::ifstream system("/etc/ssl/certs/ca-certificates.crt");
-    std::ifstream own(ca_.ca());
-    std::ostringstream text;
-    text << system.rdbuf() << own.rdbuf();
-    return site_.folder.write("bundle.pem", text.str());
+    const std::string system = text_of_file("/etc/ssl/certs/ca-certificates.crt");
+    return site_.folder.write("bundle.pem", system + text_of_file(ca_.ca()));
   }
   RunResult run(int cycles);
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
@@ -105,7 +101,7 @@ class Soak : public ::testing::Test {
 
   SimulatedSite site_{wish("BESS_SOAK_SCALE", 2'000)};  // a cycle is 60 ms
   std::string name_ = resolvable_name();
-  ThrowawayCa ca_{"DNS:" + name_};
+  DatedCertificate ca_{"DNS:" + name_};
   std::string bundle_ = write_bundle();
   std::string prices_;
   int battery_port_ = 0;  ///< behind the proxy

@@ -7,9 +7,9 @@
 
 #include <chrono>
 
+#include "tests/support/dated_certificate.h"
 #include "tests/support/fake_resolver.h"
 #include "tests/support/test_server.h"
-#include "tests/support/throwaway_ca.h"
 
 namespace bess {
 namespace {
@@ -20,8 +20,8 @@ using Kind = HttpOutcome::Kind;
 
 constexpr const char* kName = "prices.example";
 
-const ThrowawayCa& ca() {
-  static const ThrowawayCa authority(std::string("DNS:") + kName);
+const DatedCertificate& ca() {
+  static const DatedCertificate authority(std::string("DNS:") + kName);
   return authority;
 }
 
@@ -47,6 +47,26 @@ double seconds_of(const std::function<void()>& action) {
 
 bool good_answer(TestConnection& connection, const std::string&) { return connection.answer("[]"); }
 bool no_answer(TestConnection&, const std::string&) { return false; }
+
+std::string url_of(const TestServer& server) {
+  return "http://127.0.0.1:" + std::to_string(server.port()) + "/";
+}
+
+/// Takes a request and says nothing until somebody gives up.
+class SilentServer {
+ public:
+  explicit SilentServer(std::uint16_t port = 0)
+      : server_(
+            [this](TestConnection&, const std::string&) {
+              server_.wait_for_end();
+              return false;
+            },
+            tls_at("127.0.0.1", port)) {}
+  [[nodiscard]] const TestServer& server() const { return server_; }
+
+ private:
+  TestServer server_;
+};
 
 /// Takes connections, as the kernel does, and never says a word.
 class SilentPlace {
@@ -83,24 +103,15 @@ TEST_F(HostOfManyAddresses, OneThatConnectsAndHangsInTlsCostsOneTimeOut) {
 TEST_F(HostOfManyAddresses, OneThatBreaksOffIsPassedOver) {
   use({"127.0.0.1", "127.0.0.2", "127.0.0.3"});
   TestServer mute(no_answer, tls_at("127.0.0.1", good_.port()));
-  TestServer::Options in_clear;
-  in_clear.address = "127.0.0.2";
-  in_clear.port = good_.port();
-  const TestServer plain(no_answer, in_clear);
+  const TestServer plain(
+      no_answer, {.address = "127.0.0.2", .port = good_.port(), .certificate = "", .key = ""});
   EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
   EXPECT_EQ(mute.requests(), 1);
 }
 
 TEST_F(HostOfManyAddresses, OneThatTakesTheRequestAndIsSilentIsLeftByTheNext) {
   use({"127.0.0.1", "127.0.0.3"});
-  const TestServer* place = nullptr;
-  TestServer silent(
-      [&](TestConnection&, const std::string&) {
-        place->wait_for_end();
-        return false;
-      },
-      tls_at("127.0.0.1", good_.port()));
-  place = &silent;
+  const SilentServer silent(good_.port());
   EXPECT_NE(get(request_of(good_)).kind, Kind::kDone);
   EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
 }
@@ -116,35 +127,32 @@ TEST_F(HostOfManyAddresses, AHostThatMovedIsFound) {
 TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
   fake_resolver::set(kName, {"127.0.0.1"});
   std::string seen;
-  TestServer elsewhere(
-      [&](TestConnection& connection, const std::string& request) {
-        seen = request;
-        return connection.answer("[]");
-      },
-      TestServer::Options{});
+  TestServer elsewhere([&](TestConnection& connection, const std::string& request) {
+    seen = request;
+    return connection.answer("[]");
+  });
   std::string target;
+  const auto redirect = [&](TestConnection& connection, const std::string&) {
+    return connection.answer("", "HTTP/1.1 302 Found\r\nLocation: " + target + "\r\n");
+  };
   TestServer server(
       [&](TestConnection& connection, const std::string& request) {
         if (request.starts_with("GET /here")) {
           EXPECT_THAT(request, HasSubstr("X-Key: secret"));
           return connection.answer("[]");
         }
-        return connection.answer("", "HTTP/1.1 302 Found\r\nLocation: " + target + "\r\n");
+        return redirect(connection, request);
       },
       tls_at("127.0.0.1"));
   HttpRequest request = request_of(server, "/from");
   request.headers = {"X-Key: secret"};
   target = "/here";
   EXPECT_EQ(get(request).kind, Kind::kDone);
-  target = "http://127.0.0.1:" + std::to_string(elsewhere.port()) + "/";
+  target = url_of(elsewhere);
   EXPECT_EQ(get(request).status, 302);  // from https to http
   EXPECT_EQ(elsewhere.requests(), 0);
-  TestServer plain(
-      [&](TestConnection& connection, const std::string&) {
-        return connection.answer("", "HTTP/1.1 302 Found\r\nLocation: " + target + "\r\n");
-      },
-      TestServer::Options{});
-  request.url = "http://127.0.0.1:" + std::to_string(plain.port()) + "/";
+  const TestServer plain(redirect);
+  request.url = url_of(plain);
   EXPECT_EQ(get(request).kind, Kind::kDone);
   EXPECT_EQ(elsewhere.requests(), 1);
   EXPECT_THAT(seen, Not(HasSubstr("secret")));
@@ -153,12 +161,10 @@ TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
 }
 
 TEST(HttpClient, AServerThatAsksForLessIsHeard) {
-  TestServer server(
-      [](TestConnection& connection, const std::string&) {
-        return connection.answer("slow down", "HTTP/1.1 429 No\r\nRetry-After: 600\r\n");
-      },
-      TestServer::Options{});
-  const HttpOutcome outcome = get({.url = "http://127.0.0.1:" + std::to_string(server.port())});
+  TestServer server([](TestConnection& connection, const std::string&) {
+    return connection.answer("slow down", "HTTP/1.1 429 No\r\nRetry-After: 600\r\n");
+  });
+  const HttpOutcome outcome = get({.url = url_of(server)});
   EXPECT_EQ(outcome.kind, Kind::kBusy);
   EXPECT_EQ(outcome.status, 429);
   EXPECT_EQ(outcome.wait_s, 600);
@@ -166,18 +172,11 @@ TEST(HttpClient, AServerThatAsksForLessIsHeard) {
 
 TEST(HttpClient, StopsWhenItIsAskedTo) {
   fake_resolver::set(kName, {"127.0.0.1"});
-  const TestServer* place = nullptr;
-  TestServer silent(
-      [&](TestConnection&, const std::string&) {
-        place->wait_for_end();
-        return false;
-      },
-      tls_at("127.0.0.1"));
-  place = &silent;
+  const SilentServer silent;
   int asked = 0;
   HttpOutcome outcome;
-  const double took_s =
-      seconds_of([&] { outcome = http_request(request_of(silent), [&] { return ++asked > 1; }); });
+  const double took_s = seconds_of(
+      [&] { outcome = http_request(request_of(silent.server()), [&] { return ++asked > 1; }); });
   EXPECT_EQ(outcome.kind, Kind::kInterrupted);
   EXPECT_LT(took_s, 3);
 }
