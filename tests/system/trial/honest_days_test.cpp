@@ -1,8 +1,6 @@
 // The supervision among healthy batteries: days of real prices on each variant, without a trip.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdio>
 #include <span>
 #include <string_view>
 
