@@ -137,6 +137,14 @@ struct FakePrices {
   };
 };
 
+/// Behind a meter, with these limits of the connection.
+inline SiteSettings metered(const ConnectionSettings& connection = {}) {
+  SiteSettings settings;
+  settings.meter = MeterSource::kMap;
+  settings.connection = connection;
+  return settings;
+}
+
 inline constexpr std::int32_t kCheapCenti = -60'000;  ///< below every threshold: charge
 inline constexpr std::int32_t kDearCenti = 160'000;   ///< above every threshold: discharge
 

@@ -124,6 +124,13 @@ class SupervisedSite {
   SiteSettings site_;
 };
 
+/// Two cycles of charging, two of discharging, beyond the thresholds.
+inline void trade_both_ways(SupervisedSite& site) {
+  site.prices.price = [](std::int64_t minute_utc_s) {
+    return minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000;
+  };
+}
+
 inline void set_habits(SupervisedSite& site, const BatteryHabits& habits) {
   site.device.battery.advance(site.clock.now_utc_ns());
   site.device.battery.set_habits(habits);

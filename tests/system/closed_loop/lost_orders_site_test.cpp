@@ -84,13 +84,6 @@ Reason found_as(const Shows& map, Interference::Kind kind) {
   return is_end ? Reason::kNoAnswer : Reason::kOtherMaster;
 }
 
-/// Two cycles of charging, two of discharging, beyond the thresholds.
-void trade_both_ways(SupervisedSite& site) {
-  site.prices.price = [](std::int64_t minute_utc_s) {
-    return minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000;
-  };
-}
-
 /// Thirty seconds after every `every`th tick.
 void interfere(SupervisedSite& site, const Interference& what, int every) {
   site.clock.every_half_minute = [&site, &what, every] {
@@ -185,8 +178,21 @@ bool is_full_or_empty(const SimulatedBattery& battery) {
          (power_w < 0 && battery.soc_frac() <= 0.195);
 }
 
-void stop_process(SupervisedSite& site, std::int64_t seconds) {
-  site.device.test.device.now_ns += seconds * kNanosecondsPerSecond;
+auto process_is_stopped(std::int64_t seconds) {
+  return [seconds](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+    const bool now = cycle % 3 == 0 && second == 60;
+    if (now) s.device.test.device.now_ns += seconds * kNanosecondsPerSecond;
+    return now;
+  };
+}
+
+/// To and fro.
+auto clock_steps(std::int64_t every, std::int64_t step_s) {
+  return [every, step_s](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+    const bool now = second == 60 && cycle % every == 2;
+    if (now) s.clock.step_ns += (cycle % 2 == 0 ? step_s : -step_s) * kNanosecondsPerSecond;
+    return now;
+  };
 }
 
 void set_link(SupervisedSite& site, bool is_up) {
@@ -200,18 +206,8 @@ bool end_order(SupervisedSite& site) {
 }
 
 const std::vector<Innocent> kInnocents = {
-    {"a process that is stopped for twenty minutes",
-     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       const bool now = cycle % 3 == 0 && second == 60;
-       if (now) stop_process(s, 1'200);
-       return now;
-     }},
-    {"a process that is stopped for three minutes",
-     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       const bool now = cycle % 3 == 0 && second == 60;
-       if (now) stop_process(s, 180);
-       return now;
-     }},
+    {"a process that is stopped for twenty minutes", process_is_stopped(1'200)},
+    {"a process that is stopped for three minutes", process_is_stopped(180)},
     {"a device that boots for four minutes",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
        if (cycle % 12 == 5 && second == 30) set_link(s, true);
@@ -262,18 +258,8 @@ const std::vector<Innocent> kInnocents = {
          return minute_utc_s / 3'600 % 4 == 0 ? 160'000 : -60'000;
        };
      }},
-    {"a clock that steps by an hour",
-     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       const bool now = second == 60 && cycle % 5 == 2;
-       if (now) s.clock.step_ns += (cycle % 2 == 0 ? 3'600 : -3'600) * kNanosecondsPerSecond;
-       return now;
-     }},
-    {"a clock that steps by seventy seconds",
-     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       const bool now = second == 60 && cycle % 3 == 2;
-       if (now) s.clock.step_ns += (cycle % 2 == 0 ? 70 : -70) * kNanosecondsPerSecond;
-       return now;
-     }},
+    {"a clock that steps by an hour", clock_steps(5, 3'600)},
+    {"a clock that steps by seventy seconds", clock_steps(3, 70)},
     {"prices that are away for half an hour",
      [](SupervisedSite& s, std::int64_t, std::int64_t) { return !s.prices.published(now_s(s)); },
      [](SupervisedSite& s) {

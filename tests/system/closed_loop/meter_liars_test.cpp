@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <deque>
 #include <functional>
-#include <random>
 
 #include "shared/host/minute_file.h"
 #include "tests/support/fake_plant.h"
@@ -108,13 +107,6 @@ struct Trial {
   LyingMeter meter;
   Loop loop;
 };
-
-SiteSettings metered(const ConnectionSettings& connection = {}) {
-  SiteSettings settings;
-  settings.meter = MeterSource::kMap;
-  settings.connection = connection;
-  return settings;
-}
 
 TEST(MeterLiars, AnHonestMeterIsNeverAccused) {
   constexpr int kDays = 30;

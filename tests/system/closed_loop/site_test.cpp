@@ -45,13 +45,6 @@ struct FakeLimits {
 using Site = SiteLimits<FakeMeter, FakeLimits>;
 using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock, Site>;
 
-SiteSettings metered(const ConnectionSettings& connection) {
-  SiteSettings settings;
-  settings.meter = MeterSource::kMap;
-  settings.connection = connection;
-  return settings;
-}
-
 struct House {
   House(const SiteSettings& settings, HouseLoad load, const ReservePeriod& reserve)
       : House(settings, std::move(load), 0.5, reserve) {}

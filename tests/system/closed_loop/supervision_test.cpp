@@ -75,11 +75,8 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
     const RegisterMap& map = site.device.test.map;
     if (fault.reason == Reason::kCapacity && !shows_capacity(map)) continue;
     if (fault.reason == Reason::kOtherMaster && !reads_back(map)) continue;
-    // Two cycles of charging, two of discharging, beyond the thresholds.
-    site.prices.price = [&](std::int64_t minute_utc_s) {
-      const bool charge = fault.rests || minute_utc_s / 240 % 2 == 0;
-      return charge ? -60'000 : 160'000;
-    };
+    trade_both_ways(site);
+    if (fault.rests) site.prices.price = [](std::int64_t) { return -60'000; };
     for (int i = 0; i < 8; ++i) {
       const CycleRecord record = site.cycle();
       ASSERT_FALSE(is_stop_reason(record.reason))
@@ -146,9 +143,7 @@ TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
 
 TEST_P(EveryMapSupervised, LessThanOrderedIsToldWithinTwoCycles) {
   SupervisedSite site(GetParam());
-  site.prices.price = [](std::int64_t minute_utc_s) {
-    return minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000;
-  };
+  trade_both_ways(site);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(site.cycle().weak_answers, 0);
   set_habits(site, {.gain = 0.3});
   for (int i = 0; i < 2; ++i) site.cycle();
