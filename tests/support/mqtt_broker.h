@@ -53,10 +53,7 @@ class Broker {
 
  private:
   [[nodiscard]] bool listens() const {
-    const sockaddr_in address{.sin_family = AF_INET,
-                              .sin_port = htons(port_),
-                              .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)},
-                              .sin_zero = {}};
+    const sockaddr_in address = loopback_address(port_);
     const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const bool is_open =
         connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;

@@ -8,15 +8,12 @@
 
 namespace bess {
 
-inline std::string program_under_test(const char* variable, const char* built) {
-  const char* other = std::getenv(variable);
-  return other != nullptr ? other : built;
-}
 inline std::string edge_program() {
   return BESS_EDGE_PROGRAM;  // which itself looks at BESS_EDGE_UNDER_TEST
 }
 inline std::string sim_program() {
-  return program_under_test("BESS_SIM_UNDER_TEST", BESS_SIM_PROGRAM);
+  const char* other = std::getenv("BESS_SIM_UNDER_TEST");
+  return other != nullptr ? other : BESS_SIM_PROGRAM;
 }
 
 }  // namespace bess

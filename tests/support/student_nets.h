@@ -5,8 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "shared/nn/student_net.h"
-#include "workstation/base/random.h"
+#include "tests/support/integer_nets.h"
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/policy/rl/price_map.h"
@@ -24,14 +23,7 @@ inline StudentNet seeded_net(std::uint64_t seed) {
   return quantise_student(initial_parameters(kStudentShape, seed), PriceMap(even_price_table()));
 }
 
-inline LatticeState random_state(Random& random) {
-  return {static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
-          static_cast<std::int16_t>(random.index(kQuarterHourCount)),
-          static_cast<std::int16_t>(1 + random.index(kContextClassCount)),
-          static_cast<std::int16_t>(random.index(kSocCount)),
-          static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +
-                                    static_cast<int>(random.index(kPriceCount)))};
-}
+inline LatticeState random_state(Random& random) { return random_lattice_state(random); }
 
 /// Depends on price and SoC alone:  h = relu(price_weight * price + soc_weight * SoC + offset) in
 /// input units, discharge when h >= discharge_from, charge when h < charge_below, idle between.
@@ -52,8 +44,7 @@ struct LinearNet {
   }
   [[nodiscard]] StudentNet net() const {
     StudentNet n{};
-    const auto table = even_price_table();
-    for (int p = 0; p < kPriceCount; ++p) n.price_map[p] = table[p];
+    set_even_price_map(n);
     n.layer1.weight[3][0] = static_cast<std::int16_t>(soc_weight);
     n.layer1.weight[4][0] = static_cast<std::int16_t>(price_weight);
     n.layer1.bias[0] = offset;
@@ -70,8 +61,7 @@ struct LinearNet {
 inline StudentNet adversarial_net(std::uint64_t seed) {
   Random random(seed);
   StudentNet n{};
-  const auto table = even_price_table();
-  for (int p = 0; p < kPriceCount; ++p) n.price_map[p] = table[p];
+  set_even_price_map(n);
   const auto alternating = [&random](auto& layer, int magnitude) {
     int sign = 1;
     for (auto& row : layer.weight) {

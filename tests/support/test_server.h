@@ -31,17 +31,6 @@ class TestConnection {
     }
     return true;
   }
-  /// The body of a request; false when the client has gone.
-  bool read_bytes(std::size_t count, std::string& bytes) {
-    bytes.clear();
-    char c = 0;
-    while (bytes.size() < count) {
-      const auto got = tls_ != nullptr ? SSL_read(tls_, &c, 1) : recv(fd_, &c, 1, 0);
-      if (got <= 0) return false;
-      bytes += c;
-    }
-    return true;
-  }
   bool send(const std::string& text) {
     const auto size = static_cast<int>(text.size());
     const auto sent = tls_ != nullptr ? SSL_write(tls_, text.data(), size)

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <thread>
@@ -17,7 +15,6 @@
 #include "edge/records/log/ring_log.h"
 #include "tests/support/fake_plant.h"
 #include "tests/support/market_series.h"
-#include "tests/support/temporary_folder.h"
 #include "tools/simulators/market_sim/market_server.h"
 #include "workstation/data/env/market_steps.h"
 

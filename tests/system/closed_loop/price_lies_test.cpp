@@ -1,8 +1,6 @@
 // A price source that lies, before the real control loop: what it can do to the battery is bounded.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <deque>
 #include <vector>
 
 #include "edge/app/program/take_over.h"
@@ -96,15 +94,6 @@ TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
   EXPECT_FALSE(record.price_frozen);
   EXPECT_EQ(record.standing_price.unchanged_s, 0);
 }
-
-struct Logged {
-  bool read_back(std::int64_t ago, CycleRecord& record) const {
-    if (ago >= std::ssize(newest_first)) return false;
-    record = newest_first[static_cast<std::size_t>(ago)];
-    return true;
-  }
-  std::deque<CycleRecord> newest_first;
-};
 
 /// 20 runs of ten minutes: each takes over what the one before logged.
 TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
