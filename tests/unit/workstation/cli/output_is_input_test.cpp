@@ -6,7 +6,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/cli/commands.h"
 
 namespace bess {
@@ -49,7 +49,7 @@ TEST(OutputIsInput, IsRefusedAndTheFileStays) {
     CommandLine command_line("bess-train", "", "");
     ProgramCommand root = command_line.root();
     add_commands(root);
-    EXPECT_THAT(refused_with([&] { command_line.parse(line); }), Names(c.names));
+    EXPECT_THAT(refusal_of([&] { command_line.parse(line); }), Names(c.names));
     EXPECT_EQ(read_file(in), "precious");
     EXPECT_TRUE(std::filesystem::is_symlink(link));
   }

@@ -11,7 +11,7 @@
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/correction/student/student_file.h"
 
 namespace bess {
@@ -124,7 +124,7 @@ TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   const std::string words =
       "distil --teacher " + teacher + " --rules " + rules + " --out " + student;
   EXPECT_THAT(
-      refused_with([&] { output(words + with_prices() + config); }),
+      refusal_of([&] { output(words + with_prices() + config); }),
       Names(folder_.file("student_unproved.json") + " \"sell\" 12:00-13:00 4 EUR/MWh \"buy\""));
   EXPECT_FALSE(std::filesystem::exists(student));
   const Certificate kept = load_student(folder_.file("student_unproved.json")).certificate;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/walk_forward_figure.h"
 
@@ -137,7 +137,7 @@ TEST(Curves, ReadBackIsWhatWasWritten) {
 
 TEST(Curves, DamagedFilesAreNamedWithTheLine) {
   const auto message_of = [](const std::string& text) {
-    return refused_with([&] { (void)parse_distil_curve_csv(text, "curve.csv"); });
+    return refusal_of([&] { (void)parse_distil_curve_csv(text, "curve.csv"); });
   };
   const std::string header = distil_curve_csv({});
   EXPECT_NE(message_of("step\n").find("curve.csv:1:"), std::string::npos);

@@ -8,7 +8,7 @@
 
 #include "tests/support/rule_sets.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/base/random.h"
 
 namespace bess {
@@ -21,8 +21,7 @@ std::string named(const std::string& name, const std::string& lines) {
 /// Empty where the rules can be obeyed together.
 std::string complaint(const std::string& text, ContextKind kind = ContextKind::kLevel,
                       const PriceThresholds& thresholds = {}) {
-  return refused_with(
-      [&] { require_consistent(parse_rules(text, "test.toml"), thresholds, kind); });
+  return refusal_of([&] { require_consistent(parse_rules(text, "test.toml"), thresholds, kind); });
 }
 
 TEST(Conflicts, TheExamplesCanBeObeyedTogether) {
@@ -225,7 +224,7 @@ TEST(Conflicts, ASetPassesIfAndOnlyIfSomePolicyObeysIt) {
     RuleSet with_thresholds = rules;
     with_thresholds.rules.push_back(one_rule("charge_at_or_below = -500").rules[0]);
     with_thresholds.rules.push_back(one_rule("discharge_at_or_above = 1500").rules[0]);
-    const std::string said = refused_with([&] {
+    const std::string said = refusal_of([&] {
       require_consistent(rules, {-500, 1500}, ContextKind::kLevel);
     });
     const bool is_taken = said.empty();

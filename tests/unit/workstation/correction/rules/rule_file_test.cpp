@@ -8,7 +8,7 @@
 #include "tests/support/rule_sets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -105,13 +105,13 @@ TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
   };
   for (const DemandCase& c : cases) {
     SCOPED_TRACE(c.lines);
-    EXPECT_THAT(refused_with([&] { one_rule(c.lines); }), Names(c.names));
+    EXPECT_THAT(refusal_of([&] { one_rule(c.lines); }), Names(c.names));
   }
 }
 
 TEST(RuleFile, NamesAreThereOnceAndFitEverywhere) {
   const auto complaint = [](const std::string& text) {
-    return refused_with([&] { parse_rules(text, "test.toml"); });
+    return refusal_of([&] { parse_rules(text, "test.toml"); });
   };
   EXPECT_THAT(complaint("[[rule]]\nis = \"idle\"\n"), Names("test.toml:1 name"));
   for (const char* name : {"", "a/* b", "é", "0123456789012345678901234567890123456789x"}) {

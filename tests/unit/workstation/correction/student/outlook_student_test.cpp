@@ -7,7 +7,7 @@
 #include "tests/support/outlook_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/correction/distillation/monotone_distil.h"
 #include "workstation/correction/rules/properties.h"
 #include "workstation/correction/rules/rule_file.h"
@@ -134,29 +134,28 @@ TEST(OutlookStudent, ADamagedPlanIsRefused) {
   ASSERT_NE(at, text.npos);
   const std::size_t digit = text.find_first_of("0123456789", at + 15);
   text[digit] = '1';
-  EXPECT_THAT(refused_with([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
+  EXPECT_THAT(refusal_of([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
 }
 
 TEST(OutlookStudent, WhatItCannotDoIsSaid) {
   const auto never = [] { return false; };
   MarketSteps blind = school().market;
   blind.day_ahead = nullptr;
-  EXPECT_THAT(refused_with([&] { train_teacher(blind, {}, School::options(), never); }),
+  EXPECT_THAT(refusal_of([&] { train_teacher(blind, {}, School::options(), never); }),
               HasSubstr("--day-ahead"));
-  EXPECT_THAT(refused_with([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
+  EXPECT_THAT(refusal_of([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
               HasSubstr("--day-ahead"));
   MlpTile tile;
   EXPECT_THAT(
-      refused_with([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
+      refusal_of([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
       testing::Ne(""));
   DistilOptions layer = School::lessons();
   layer.method = CorrectionMethod::kLayer;
-  EXPECT_THAT(
-      refused_with([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
-      Names("[distil] method \"construction\""));
+  EXPECT_THAT(refusal_of([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
+              Names("[distil] method \"construction\""));
   const RuleSet named =
       parse_rules("[[rule]]\nname = \"dear\"\ncontext_classes = [3]\nis = \"idle\"\n", "mine.toml");
-  EXPECT_THAT(refused_with([&] { with_outlook_rule(named); }), Names("mine.toml:1 \"dear\""));
+  EXPECT_THAT(refusal_of([&] { with_outlook_rule(named); }), Names("mine.toml:1 \"dear\""));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/correction/student/certificate.h"
 
 namespace bess {
@@ -160,7 +160,7 @@ TEST(StudentFile, DamageIsRefused) {
   const std::string good = seeded_text();
   ASSERT_NO_THROW(static_cast<void>(parse_student(good, "good.json")));
   const auto expect_refused = [](const std::string& text, const std::string& names) {
-    EXPECT_THAT(refused_with([&] { static_cast<void>(parse_student(text, "some/student.json")); }),
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(parse_student(text, "some/student.json")); }),
                 Names("some/student.json " + names));
   };
   for (const char* text : {"", "price,soc\n1,2\n", "[1,2,3]", "17"}) expect_refused(text, "JSON");

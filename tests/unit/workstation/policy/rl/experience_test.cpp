@@ -149,8 +149,7 @@ TEST(Successors, AreTheNextTrainingStepOrNone) {
 TEST(TrainingDays, NoTrainingDayIsAUserError) {
   const MarketSteps market = market_by_hand({{Split::kValidation, {0, 1}}, {Split::kTest, {2, 3}}});
   EXPECT_NE(
-      refused_with([&] { TrainingMarket(market, straight_price_map(), {}, Horizon::kDay, {}); }),
-      "");
+      refusal_of([&] { TrainingMarket(market, straight_price_map(), {}, Horizon::kDay, {}); }), "");
 }
 
 TEST(TrainingDays, OnASimulatedMarketStayInsideTheTrainingDays) {

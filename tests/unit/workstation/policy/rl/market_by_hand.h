@@ -11,7 +11,7 @@
 #include "shared/battery_model.h"
 #include "shared/crc32.h"
 #include "shared/local_time.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/data/env/policy.h"
 #include "workstation/data/market/model/simulated_market.h"

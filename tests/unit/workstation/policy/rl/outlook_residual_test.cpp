@@ -233,7 +233,7 @@ TEST(OutlookResidual, ItsFileIsReadBackAndOneOfAnOlderVersionIsNone) {
   EXPECT_EQ(read_file(path)[8], 3);
   bytes[8] = 3;
   write_file(path, resealed(bytes));
-  EXPECT_NE(refused_with([&] { (void)load_teacher(path); }), "");
+  EXPECT_NE(refusal_of([&] { (void)load_teacher(path); }), "");
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(PriceMap, DamagedTableIsRefusedWithThePrice) {
   for (const auto& damage : damages) {
     auto table = sound;
     table[damage.at] = damage.value;
-    EXPECT_THAT(refused_with([&] { (void)PriceMap(table); }),
+    EXPECT_THAT(refusal_of([&] { (void)PriceMap(table); }),
                 Names(std::string(damage.price) + " EUR/MWh"));
   }
 }

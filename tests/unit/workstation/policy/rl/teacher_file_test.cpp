@@ -26,9 +26,9 @@ class TeacherFile : public testing::Test {
     return read_file(path);
   }
   /// Loads `bytes` from the file and returns the UserError; empty when it loaded.
-  std::string refusal_of(std::string_view bytes) const {
+  std::string said_of(std::string_view bytes) const {
     write_file(path, bytes);
-    return refused_with([&] { (void)load_teacher(path); });
+    return refusal_of([&] { (void)load_teacher(path); });
   }
   /// `bytes` of a file with another value at a place, under a checksum that is right.
   static std::string changed(std::string bytes, std::size_t at, std::int32_t value) {
@@ -36,7 +36,7 @@ class TeacherFile : public testing::Test {
     return resealed(bytes);
   }
   void expect_refused(std::string_view bytes, const std::string& what) const {
-    EXPECT_THAT(refusal_of(bytes), Names(path)) << what;
+    EXPECT_THAT(said_of(bytes), Names(path)) << what;
   }
 };
 
@@ -90,7 +90,7 @@ TEST_F(TeacherFile, ProvenanceOfAnyLengthIsReadBackOrCut) {
     teacher.provenance = std::string(length, 'p');
     save_teacher(path, teacher);
     std::string provenance;
-    EXPECT_EQ(refused_with([&] { provenance = load_teacher(path).provenance; }), "") << length;
+    EXPECT_EQ(refusal_of([&] { provenance = load_teacher(path).provenance; }), "") << length;
     EXPECT_EQ(provenance, teacher.provenance.substr(0, 4096)) << length;
   }
 }
@@ -118,7 +118,7 @@ TEST_F(TeacherFile, CutFlippedAndOtherBytesAreRefused) {
   }
   EXPECT_FALSE((write_file(path, "BESSTCH"), is_teacher_file(path)));
   for (const std::string& other : {folder.file("."), folder.file("missing.bin")}) {
-    EXPECT_THAT(refused_with([&] { (void)load_teacher(other); }), Names(other));
+    EXPECT_THAT(refusal_of([&] { (void)load_teacher(other); }), Names(other));
   }
 }
 
@@ -129,7 +129,7 @@ TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
   const std::size_t count_at = bytes.find(teacher.provenance) + teacher.provenance.size();
   bytes.erase(count_at, sizeof(std::uint32_t));  // of the circumstances: none
   bytes[8] = 2;
-  EXPECT_EQ(refusal_of(resealed(bytes)), "");
+  EXPECT_EQ(said_of(resealed(bytes)), "");
   const Teacher read = load_teacher(path);
   EXPECT_TRUE(read.learnt_for.empty());
   EXPECT_EQ(std::memcmp(read.parameters.data(), teacher.parameters.data(),
@@ -140,7 +140,7 @@ TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
 TEST_F(TeacherFile, OtherVersionNamesBoth) {
   std::string bytes = saved(Method::kDqn);
   bytes[8] = 5;
-  EXPECT_THAT(refusal_of(bytes), Names(path + " 5 2 4"));
+  EXPECT_THAT(said_of(bytes), Names(path + " 5 2 4"));
 }
 
 /// Fields in the file: magic 8, version 4, then these.
@@ -178,9 +178,9 @@ TEST_F(TeacherFile, SoundChecksumOverImpossibleContentsIsRefused) {
 /// Until November 2026 a teacher could have inputs beside the student's: a bit each.
 TEST_F(TeacherFile, WithInputsOfItsOwnIsRefusedByThatName) {
   const std::string sound = saved(Method::kC51);
-  EXPECT_EQ(refusal_of(changed(sound, kMethodAt, 0)), "") << "none: as before";
+  EXPECT_EQ(said_of(changed(sound, kMethodAt, 0)), "") << "none: as before";
   for (int bit = 12; bit < 17; ++bit) {
-    EXPECT_THAT(refusal_of(changed(sound, kMethodAt, 1 << bit)),
+    EXPECT_THAT(said_of(changed(sound, kMethodAt, 1 << bit)),
                 Names(path + " [train] input_... bess-train train"));
   }
 }
@@ -189,7 +189,7 @@ TEST(Methods, NamesReadBack) {
   for (const Method method : {Method::kC51, Method::kDqn}) {
     EXPECT_EQ(parse_method(method_name(method)), method);
   }
-  EXPECT_THAT(refused_with([] { (void)parse_method("ppo"); }), Names("c51 dqn sdp"));
+  EXPECT_THAT(refusal_of([] { (void)parse_method("ppo"); }), Names("c51 dqn sdp"));
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST(Train, DaysThatLackAreNamedWithTheMend) {
   for (const auto& c : cases) {
     const MarketSteps market = simulated_market(c.first, c.days);
     const std::string message =
-        refused_with([&] { (void)train_teacher(market, {}, small_options(), interrupted); });
+        refusal_of([&] { (void)train_teacher(market, {}, small_options(), interrupted); });
     EXPECT_NE(message, "") << c.name;
     EXPECT_EQ(has_code(message, "21"), c.lacks_validation) << c.name << ": " << message;
   }
@@ -195,7 +195,7 @@ TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
   TrainOptions options = small_options();
   options.steps = 30;
   const auto refusal = [&](const std::string& identity) {
-    return refused_with([&] {
+    return refusal_of([&] {
       (void)train_teacher(small_market(), {}, options, interrupted, {path, true, identity});
     });
   };

@@ -5,7 +5,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/runs/chain/learning_class.h"
 
 namespace bess {
@@ -129,7 +129,7 @@ TEST(RunConfig, MistakesNamePlaceKeyAndWhatIsRefused) {
   };
   for (const auto& [text, names] : cases) {
     SCOPED_TRACE(text);
-    EXPECT_THAT(refused_with([&] { parse_run_config(text, "some/run.toml"); }), Names(names));
+    EXPECT_THAT(refusal_of([&] { parse_run_config(text, "some/run.toml"); }), Names(names));
   }
 }
 

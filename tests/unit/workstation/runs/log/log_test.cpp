@@ -8,7 +8,7 @@
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/runs/log/log_comparison.h"
 #include "workstation/runs/log/log_replay.h"
 #include "workstation/runs/log/statement_page.h"
@@ -51,7 +51,7 @@ class Log : public testing::Test {
   }
 
   [[nodiscard]] std::string complaint(const std::string& text) const {
-    return refused_with([&] { static_cast<void>(read(text)); });
+    return refusal_of([&] { static_cast<void>(read(text)); });
   }
 
   const TemporaryFolder folder_;

@@ -8,7 +8,7 @@
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/run/learnt_for.h"
 
@@ -40,7 +40,7 @@ class RunPlanning : public testing::Test {
     return request;
   }
   static std::string refusal(const RunRequest& request) {
-    return refused_with([&] { plan_run(request); });
+    return refusal_of([&] { plan_run(request); });
   }
 
   TemporaryFolder folder_;
@@ -188,7 +188,7 @@ TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
 TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
   const fs::path folder = request_.out;
   using Of = FolderLock::Of;
-  const auto is_busy = [](auto lock) { return !refused_with(lock).empty(); };
+  const auto is_busy = [](auto lock) { return !refusal_of(lock).empty(); };
   const auto whole = [&] { const FolderLock lock(folder); };
   const auto part = [&] { const FolderLock lock(folder, Of::kOneFile); };
   const auto file = [&] { const FileLock lock(folder / "teacher.bin"); };

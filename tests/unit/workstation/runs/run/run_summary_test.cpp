@@ -10,7 +10,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/data/env/charge_left.h"
 #include "workstation/report/evaluation_days.h"
@@ -153,7 +153,7 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
   for (const std::string& other :
        {days + "rbc,2023-01-29,1e9,0,0,0,false,0,0,0,\n", std::string()}) {
     write_file(run.file(run_file::kDays), other);
-    EXPECT_THAT(refused_with([&] { load_run_summary(run); }),
+    EXPECT_THAT(refusal_of([&] { load_run_summary(run); }),
                 Names("evaluation_days.csv bess-train report --run"));
   }
 }
@@ -161,7 +161,7 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
 TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
   const TemporaryFolder folder;
   const RunFolder run{folder.file("run")};
-  const auto refusal = [&] { return refused_with([&] { load_run_summary(run); }); };
+  const auto refusal = [&] { return refusal_of([&] { load_run_summary(run); }); };
   EXPECT_THAT(refusal(), Names(run.path.string()));
   RunRecord record;
   record.stages = {{"teacher", {}, {}, false}};

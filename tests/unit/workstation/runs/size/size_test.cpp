@@ -11,7 +11,7 @@
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/runs/size/size_cell.h"
 
@@ -173,7 +173,7 @@ TEST(Size, TheBestPaysBackSoonest) {
 TEST(Size, APlanThatIsWrongIsToldWhere) {
   const TemporaryFolder folder;
   const auto complaint = [&](const std::string& text) {
-    return refused_with([&] { (void)read_size_plan(folder.write("plan.toml", text), {}); });
+    return refusal_of([&] { (void)read_size_plan(folder.write("plan.toml", text), {}); });
   };
   const std::string good = "[size]\npower_kw = [5]\ncapacity_kwh = [10]\n";
   EXPECT_EQ(complaint(good), "");

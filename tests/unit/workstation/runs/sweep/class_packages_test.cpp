@@ -11,7 +11,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 
 namespace bess {
 namespace {
@@ -102,16 +102,16 @@ TEST_F(ClassPackages, SharesAreAHundredthATenthAndTheRest) {
 
 TEST_F(ClassPackages, WhatCannotBeIsRefusedInOneLine) {
   const auto refusal = [&](const std::vector<CollectedSite>& sites) {
-    return refused_with([&] { classes_to_package({}, sites, false); });
+    return refusal_of([&] { classes_to_package({}, sites, false); });
   };
   EXPECT_THAT(refusal({site("a", "11", "x"), site("b", "22", "")}), Names("\"b\" 1 22 --partial"));
   EXPECT_EQ(classes_to_package({}, {site("a", "11", "x"), site("b", "22", "")}, true).size(), 1);
   EXPECT_THAT(refusal({site("a b", "11", "x")}), Names("\"a b\""));
   const CollectedTask of_march{{1, {{"fold", "2023-03"}}}, TaskState::kProved, {}, 0};
-  EXPECT_THAT(refused_with([&] { classes_to_package({of_march}, {}, false); }), testing::Ne(""));
+  EXPECT_THAT(refusal_of([&] { classes_to_package({of_march}, {}, false); }), testing::Ne(""));
 
   auto classes = classes_to_package({}, {site("a", "11", "bad")}, false);
-  EXPECT_THAT(refused_with([&] { package_class(folder_, request_, classes[0]); }),
+  EXPECT_THAT(refusal_of([&] { package_class(folder_, request_, classes[0]); }),
               Names("11 tools/package: no compiler"));
   write_file(folder_.path / "11/student_weights.h", "good");
   EXPECT_TRUE(package_class(folder_, request_, classes[0])) << "what broke off is no package";

@@ -8,7 +8,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "tests/support/user_errors.h"
+#include "tests/support/user_error_of.h"
 #include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
@@ -32,7 +32,7 @@ class SweepPlans : public testing::Test {
     return plan_sweep(request_, folder_);
   }
   std::string refusal(const std::string& text) {
-    return refused_with([&] { plan(text); });
+    return refusal_of([&] { plan(text); });
   }
   std::vector<std::string> settings(const SweepPlan& of) {
     std::vector<std::string> all;
@@ -124,7 +124,7 @@ TEST_F(SweepPlans, AnotherProgramIsRefusedNamingBoth) {
   std::string record = read_file(folder_.record());
   record.replace(record.find("commit "), 11, "commit older");
   write_file(folder_.record(), record);
-  EXPECT_THAT(refused_with([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
+  EXPECT_THAT(refusal_of([&] { load_own_sweep(folder_); }), HasSubstr("commit older"));
 }
 
 TEST_F(SweepPlans, ATaskHasItsOwnConfigurationAndOneThread) {
