@@ -6,12 +6,14 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 struct cJSON;
 
@@ -88,6 +90,19 @@ class Json {
   }
   static Json null();
   static Json list();
+  template <typename... Values>
+  static Json list_of(Values&&... values) {
+    Json json = list();
+    (json.add(Json(std::forward<Values>(values))), ...);
+    return json;
+  }
+  /// What `make` makes of each item; items that are values themselves need none.
+  template <typename Items, typename Make = std::identity>
+  static Json list_from(const Items& items, Make make = {}) {
+    Json json = list();
+    for (const auto& item : items) json.add(std::invoke(make, item));
+    return json;
+  }
   static Json object(std::initializer_list<JsonMember> members = {});
 
   void set(const char* key, Json value);  ///< of an object; a new member is the last

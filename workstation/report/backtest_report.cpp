@@ -118,33 +118,25 @@ std::vector<std::string> crossing_lines(const BacktestResults& results) {
 }
 
 Json names_json(const std::vector<const PriceRegime*>& regimes) {
-  Json names = Json::list();
-  for (const PriceRegime* regime : regimes) names.add(regime->name);
-  return names;
+  return Json::list_from(regimes, &PriceRegime::name);
 }
 
 /// A line a policy over the traded days, EUR per MWh: what `values` makes of its cumulative profit.
 template <typename Values>
 Json lines_chart(const char* id, const BacktestResults& results, Values values) {
-  Json labels = Json::list(), series = Json::list();
+  Json series = Json::list();
   std::vector<std::string> dates;
   for (const DayResult& day : results.policies.front().total.days) dates.push_back(day.date);
-  for (const std::string& date : dates) labels.add(date);
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   for (std::size_t p = 0; p < shown.size(); ++p) {
-    Json line = Json::list(), sums = Json::list();
-    const std::vector<double> drawn = values(shown[p]->cumulative_eur_per_mwh());
-    for (const double sum : drawn) sums.add(sum);
-    line.add(shown[p]->name);
-    line.add(kLineColours[p % kLineColours.size()]->name);
-    line.add(std::move(sums));
-    series.add(std::move(line));
+    series.add(Json::list_of(shown[p]->name, kLineColours[p % kLineColours.size()]->name,
+                             Json::list_from(values(shown[p]->cumulative_eur_per_mwh()))));
   }
-  Json chart = Json::object({{"id", id}, {"kind", "lines"}});
-  chart.set("labels", std::move(labels));
-  chart.set("marks", regime_marks(dates));
-  chart.set("series", std::move(series));
-  return chart;
+  return Json::object({{"id", id},
+                       {"kind", "lines"},
+                       {"labels", Json::list_from(dates)},
+                       {"marks", regime_marks(dates)},
+                       {"series", std::move(series)}});
 }
 
 /// Profit by month, and the gain over the first; below it, on how many days it was fitted.
@@ -276,11 +268,9 @@ Json backtest_json(const BacktestResults& results) {
     months.add(std::move(month));
   }
   json.set("months", std::move(months));
-  Json skipped = Json::list();
-  for (const SkippedMonth& month : results.skipped) {
-    skipped.add(Json::object({{"month", month.month}, {"reason", month.reason}}));
-  }
-  json.set("not_traded", std::move(skipped));
+  json.set("not_traded", Json::list_from(results.skipped, [](const SkippedMonth& month) {
+             return Json::object({{"month", month.month}, {"reason", month.reason}});
+           }));
   return json;
 }
 

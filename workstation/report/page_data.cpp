@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <string_view>
 
 #include "shared/utc_text.h"
 #include "workstation/correction/student/exported_policy.h"
@@ -17,7 +16,6 @@
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
-#include "workstation/report/step_archive.h"
 
 namespace bess {
 
@@ -25,13 +23,6 @@ namespace {
 
 constexpr std::array<const char*, kRuleInputCount> kInputNames{"minute", "quarterHour",
                                                                "contextClass", "soc", "price"};
-
-Json pair(int first, int second) {
-  Json list = Json::list();
-  list.add(first);
-  list.add(second);
-  return list;
-}
 
 Json forbidden_actions(const Rule& rule) {
   Json list = Json::list();
@@ -53,12 +44,12 @@ Json rule_json(const Rule& rule, ContextKind kind) {
     return json;
   }
   const LatticeBox box = lattice_box_of(rule.box, kind);
-  json.set("hours", pair(rule.box.quarter_hour_first, rule.box.quarter_hour_count));
+  json.set("hours", Json::list_of(rule.box.quarter_hour_first, rule.box.quarter_hour_count));
   json.set("classes", box.classes);
-  json.set("soc", pair(box.soc_first, box.soc_last));
+  json.set("soc", Json::list_of(box.soc_first, box.soc_last));
   if (overlaps_lattice(rule.box)) {
-    json.set("price", pair(kLatticePriceMinEurPerMwh + box.price_first,
-                           kLatticePriceMinEurPerMwh + box.price_last));
+    json.set("price", Json::list_of(kLatticePriceMinEurPerMwh + box.price_first,
+                                    kLatticePriceMinEurPerMwh + box.price_last));
   }
   if (rule.restricts_actions() && !rule.is_threshold) {
     json.set("forbidden", forbidden_actions(rule));
@@ -69,9 +60,7 @@ Json rule_json(const Rule& rule, ContextKind kind) {
 }  // namespace
 
 Json rules_json(const RuleSet& rules, ContextKind kind) {
-  Json list = Json::list();
-  for (const Rule& rule : rules.rules) list.add(rule_json(rule, kind));
-  return list;
+  return Json::list_from(rules.rules, [kind](const Rule& rule) { return rule_json(rule, kind); });
 }
 
 namespace {
@@ -183,9 +172,7 @@ std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
 
 double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
   RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-  EvaluationOptions options;
-  options.battery = battery;
-  options.carry_soc = true;
+  const EvaluationOptions options{.battery = battery, .carry_soc = true};
   return evaluate(market, market.days_of(Split::kValidation), rule, options)
       .profit_eur_per_day_per_mwh();
 }
@@ -197,29 +184,18 @@ constexpr std::size_t kCounterexamplesShown = 200;
 constexpr int kNoonQuarterHour = 48;
 constexpr int kMiddleMinute = 7;
 
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::list();
-  for (const double value : values) list.add(value);
-  return list;
-}
-
-template <typename Field>
-Json of_days(const Evaluation& evaluation, Field field) {
-  Json list = Json::list();
-  for (const DayResult& day : evaluation.days) list.add(field(day));
-  return list;
-}
-
 Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   Json list = Json::list();
   for (const NamedEvaluation& named : evaluations) {
-    const Evaluation& days = named.carried_over;
-    if (days.days.empty() || is_under_rules(named.name)) continue;
+    const std::vector<DayResult>& days = named.carried_over.days;
+    if (days.empty() || is_under_rules(named.name)) continue;
     Json policy = Json::object({{"name", named.name}});
-    policy.set("profit_eur", of_days(days, [](const DayResult& d) { return d.profit_eur; }));
-    policy.set("throughput_mwh",
-               of_days(days, [](const DayResult& d) { return d.throughput_mwh; }));
-    policy.set("cycles", of_days(days, [](const DayResult& d) { return Decimals{d.cycles, 3}; }));
+    const auto of_days = [&](const char* key, auto field) {
+      policy.set(key, Json::list_from(days, field));
+    };
+    of_days("profit_eur", [](const DayResult& d) { return d.profit_eur; });
+    of_days("throughput_mwh", [](const DayResult& d) { return d.throughput_mwh; });
+    of_days("cycles", [](const DayResult& d) { return Decimals{d.cycles, 3}; });
     list.add(std::move(policy));
   }
   return list;
@@ -274,19 +250,14 @@ Json layer_json(const Affine<kInputs, kOutputs>& layer) {
   for (const auto& row : layer.weight) {
     for (const std::int16_t w : row) weight.add(w);
   }
-  Json json = Json::object();
-  json.set("weight", std::move(weight));
-  json.set("bias", std::span(layer.bias));
-  return json;
+  return Json::object({{"weight", std::move(weight)}, {"bias", std::span(layer.bias)}});
 }
 
 Json students_json(const ReportInputs& in) {
   Json students = Json::list();
   const auto add = [&](const char* name, const StudentFile* student) {
     if (student == nullptr) return;
-    Json json = Json::object({{"name", name}});
-    json.set("net", student_json(student->net));
-    students.add(std::move(json));
+    students.add(Json::object({{"name", name}, {"net", student_json(student->net)}}));
   };
   if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
   add(kPlainName, in.uncorrected);
@@ -301,11 +272,9 @@ Json state_json(const LatticeState& s) {
 
 /// The state of each broken demand, null where none is known: of the buttons of failure_html().
 Json broken_json(const ReportInputs& in) {
-  Json list = Json::list();
-  for (const BrokenDemand& demand : in.broken) {
-    list.add(demand.state ? state_json(*demand.state) : Json(NAN));
-  }
-  return list;
+  return Json::list_from(in.broken, [](const BrokenDemand& demand) {
+    return demand.state ? state_json(*demand.state) : Json(NAN);
+  });
 }
 
 Json counterexamples_json(const ReportInputs& in) {
@@ -314,9 +283,7 @@ Json counterexamples_json(const ReportInputs& in) {
   if (wrong == nullptr) return list;
   const auto& found = wrong->certificate.counterexamples;
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
-  for (std::size_t i = 0; i < found.size(); i += stride) {
-    list.add(state_json(found[i]));
-  }
+  for (std::size_t i = 0; i < found.size(); i += stride) list.add(state_json(found[i]));
   return list;
 }
 
@@ -336,40 +303,36 @@ Json learning_json(const ReportInputs& in) {
   Json training = Json::list();
   for (const CurvePoint& p : in.training_curve) {
     const bool is_kept = &p == &kept_point(in.training_curve);
-    training.add(numbers(
-        {static_cast<double>(p.step), p.validation_eur_per_day_per_mwh, is_kept ? 1.0 : 0.0}));
+    training.add(Json::list_of(static_cast<double>(p.step), p.validation_eur_per_day_per_mwh,
+                               is_kept ? 1.0 : 0.0));
   }
   Json distil = Json::list();
   bool by_construction = !in.distil_curve.empty();
   for (const DistilPoint& p : in.distil_curve) {
-    distil.add(
-        numbers({static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss, p.visited_loss}));
+    distil.add(Json::list_of(static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss,
+                             p.visited_loss));
     by_construction = by_construction && p.is_by_construction();
   }
   Json checkpoints = Json::list();
   for (const StudentCheckpoint& c : in.checkpoints) {
-    Json point = Json::list();
-    point.add(c.epoch);
-    point.add(c.validation_eur_per_day_per_mwh);
-    point.add(checkpoint_state_name(c.state));
-    checkpoints.add(std::move(point));
+    checkpoints.add(
+        Json::list_of(c.epoch, c.validation_eur_per_day_per_mwh, checkpoint_state_name(c.state)));
   }
-  Json json = Json::object({{"by_construction", by_construction}});
-  json.set("checkpoints", std::move(checkpoints));
-  json.set("training", std::move(training));
-  json.set("rule", rule_validation_profit(in.market, in.battery));
-  json.set("distil", std::move(distil));
-  return json;
+  return Json::object({{"by_construction", by_construction},
+                       {"checkpoints", std::move(checkpoints)},
+                       {"training", std::move(training)},
+                       {"rule", rule_validation_profit(in.market, in.battery)},
+                       {"distil", std::move(distil)}});
 }
 
 Json prices_json(const MarketSteps& market) {
   const PriceHistogram histogram = price_histogram(market);
-  Json json = Json::object({{"low", histogram.low}, {"bin", kPriceBinEurPerMwh}});
-  json.set("train", numbers(histogram.percent_by_bin(histogram.train)));
-  json.set("test", numbers(histogram.percent_by_bin(histogram.test)));
-  json.set("outside_train", histogram.percent_outside(histogram.train));
-  json.set("outside_test", histogram.percent_outside(histogram.test));
-  return json;
+  return Json::object({{"low", histogram.low},
+                       {"bin", kPriceBinEurPerMwh},
+                       {"train", Json::list_from(histogram.percent_by_bin(histogram.train))},
+                       {"test", Json::list_from(histogram.percent_by_bin(histogram.test))},
+                       {"outside_train", histogram.percent_outside(histogram.train)},
+                       {"outside_test", histogram.percent_outside(histogram.test)}});
 }
 
 Json battery_json(const BatteryParameters& battery) {
@@ -403,12 +366,10 @@ Json student_json(const StudentNet& net) {
   layer1.set("shift", net.relu1.shift);
   Json layer2 = layer_json(net.layer2);
   layer2.set("shift", net.relu2.shift);
-  Json json = Json::object();
-  json.set("price_map", std::span(net.price_map));
-  json.set("layer1", std::move(layer1));
-  json.set("layer2", std::move(layer2));
-  json.set("layer3", layer_json(net.layer3));
-  return json;
+  return Json::object({{"price_map", std::span(net.price_map)},
+                       {"layer1", std::move(layer1)},
+                       {"layer2", std::move(layer2)},
+                       {"layer3", layer_json(net.layer3)}});
 }
 
 Json lattice_json() {
@@ -442,29 +403,23 @@ PolicyContext first_map(const ReportInputs& in) {
 
 /// Name and colour of each baseline that is drawn beside the exported policy.
 Json rivals_json() {
-  Json list = Json::list();
-  for (const std::string& name : rival_names()) {
-    list.add(Json::object({{"name", name}, {"colour", find_baseline(name)->colour}}));
-  }
-  return list;
+  return Json::list_from(rival_names(), [](const std::string& name) {
+    return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});
+  });
 }
 
 Json page_data(const ReportInputs& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
   const ContextClasses classes = context_classes_of(in);
-  Json dates = Json::list();
-  std::vector<std::string> shown;
-  for (const MarketDay& day : days) {
-    shown.push_back(day.date());
-    dates.add(shown.back());
-  }
+  std::vector<std::string> dates;
+  for (const MarketDay& day : days) dates.push_back(day.date());
   const bool has_own = in.corrected != nullptr;
   Json data = Json::object(
       {{"exported", has_own ? own_student_name(in.corrected->certificate) : kCorrectedName},
        {"foresight", kForesightName}});
   data.set("battery", battery_json(in.battery));
-  data.set("dates", std::move(dates));
-  data.set("marks", regime_marks(shown));
+  data.set("dates", Json::list_from(dates));
+  data.set("marks", regime_marks(dates));
   data.set("policies", policies_json(in.evaluations));
   data.set("rivals", rivals_json());
   data.set("archive", archive_json(in, steps));

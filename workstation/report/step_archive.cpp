@@ -107,13 +107,9 @@ Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
     }
     index.add(Json::object({{"date", day.date()}, {"steps", day.step_count}}));
   }
-  Json names = Json::list();
-  for (const PolicySteps& policy : policies) names.add(policy.name);
-  Json archive = Json::object();
-  archive.set("policies", std::move(names));
-  archive.set("days", std::move(index));
-  archive.set("data", base64(deflated(bytes)));
-  return archive;
+  return Json::object({{"policies", Json::list_from(policies, &PolicySteps::name)},
+                       {"days", std::move(index)},
+                       {"data", base64(deflated(bytes))}});
 }
 
 }  // namespace bess

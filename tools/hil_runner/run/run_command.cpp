@@ -92,13 +92,6 @@ void print_line(const Outcome& outcome) {
 }
 
 Json json_of(const Outcome& outcome) {
-  Json findings = Json::list();
-  for (const Finding& f : outcome.findings) {
-    findings.add(Json::object({{"rule", f.rule},
-                               {"utc", utc_text(f.utc_s).view()},
-                               {"expected", f.expected},
-                               {"seen", f.seen}}));
-  }
   Json json = Json::object({{"scenario", outcome.scenario.name},
                             {"time", outcome.time()},
                             {"passed", outcome.passed()},
@@ -107,7 +100,12 @@ Json json_of(const Outcome& outcome) {
   if (!outcome.skipped.empty()) json.set("skipped", outcome.skipped);
   if (!outcome.error.empty()) json.set("error", outcome.error);
   if (outcome.signature != 0) json.set("signature", fmt::format("{:016x}", outcome.signature));
-  json.set("findings", std::move(findings));
+  json.set("findings", Json::list_from(outcome.findings, [](const Finding& f) {
+             return Json::object({{"rule", f.rule},
+                                  {"utc", utc_text(f.utc_s).view()},
+                                  {"expected", f.expected},
+                                  {"seen", f.seen}});
+           }));
   return json;
 }
 

@@ -98,10 +98,7 @@ Json regime_marks(const std::vector<std::string>& dates) {
   for (const PriceRegime& regime : price_regimes()) {
     const auto from = std::lower_bound(dates.begin(), dates.end(), regime.from_date);
     if (from == dates.begin() || from == dates.end()) continue;
-    Json mark = Json::list();
-    mark.add(static_cast<std::size_t>(from - dates.begin()));
-    mark.add(regime.change);
-    marks.add(std::move(mark));
+    marks.add(Json::list_of(static_cast<std::size_t>(from - dates.begin()), regime.change));
   }
   return marks;
 }

@@ -291,20 +291,17 @@ std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>&
 template <typename Value>
 Json lines_chart(const std::string& id, const ImpactPlan& plan,
                  const std::vector<std::string>& names, Value value) {
-  Json labels = Json::list(), series = Json::list();
-  for (const double mw : plan.fleet_mw) labels.add(fmt::format("{:g} MW", mw));
+  const auto label = [](double mw) { return fmt::format("{:g} MW", mw); };
+  Json series = Json::list();
   for (std::size_t n = 0; n < names.size(); ++n) {
-    Json line = Json::list(), values = Json::list();
-    for (const double mw : plan.fleet_mw) values.add(value(n, mw));
-    line.add(names[n]);
-    line.add(kLineColours[n % kLineColours.size()]->name);
-    line.add(std::move(values));
-    series.add(std::move(line));
+    const auto value_of = [&](double mw) { return value(n, mw); };
+    series.add(Json::list_of(names[n], kLineColours[n % kLineColours.size()]->name,
+                             Json::list_from(plan.fleet_mw, value_of)));
   }
-  Json chart = Json::object({{"id", id}, {"kind", "lines"}});
-  chart.set("labels", std::move(labels));
-  chart.set("series", std::move(series));
-  return chart;
+  return Json::object({{"id", id},
+                       {"kind", "lines"},
+                       {"labels", Json::list_from(plan.fleet_mw, label)},
+                       {"series", std::move(series)}});
 }
 
 std::string with_error(const ImpactRow& row) {
@@ -353,10 +350,8 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
 std::string impact_csv(const std::vector<ImpactRow>& rows) { return table_of(rows).csv(); }
 
 Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
-  Json policies = Json::list();
-  for (const std::string& policy : plan.policies) policies.add(policy);
   Json json = answer("impact");
-  json.set("policies", std::move(policies));
+  json.set("policies", Json::list_from(plan.policies));
   json.set("seeds", plan.seeds);
   json.set("train_days", plan.train_days);
   json.set("test_days", plan.test_days);

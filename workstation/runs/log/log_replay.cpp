@@ -94,21 +94,6 @@ std::string LogReplay::text() const {
 }
 
 Json LogReplay::json() const {
-  Json json_days = Json::list();
-  for (const ReplayedDay& day : days) {
-    json_days.add(Json::object({{"date", day.date},
-                                {"compared", day.compared},
-                                {"differing", day.differing},
-                                {"gained_eur", Decimals{day.gained_eur, 4}}}));
-  }
-  Json json_others = Json::list();
-  for (const ReplayedCycle& other : others) {
-    json_others.add(Json::object({{"utc", utc_text(other.utc_s).view()},
-                                  {"price_eur_per_mwh", Decimals{other.price_eur_per_mwh, 2}},
-                                  {"soc_percent", Decimals{100 * other.soc_frac, 2}},
-                                  {"before", action_name(other.before)},
-                                  {"now", action_name(other.now)}}));
-  }
   Json json = answer("log_replay");
   json.set("weights_hash", fmt::format("{:08x}", student_hash));
   json.set("compared", compared);
@@ -116,8 +101,19 @@ Json LogReplay::json() const {
   json.set("differing_percent", Decimals{differing_percent(), 4});
   json.set("without_context", without_context);
   json.set("gained_eur", Decimals{gained_eur, 4});
-  json.set("days", std::move(json_days));
-  json.set("others", std::move(json_others));
+  json.set("days", Json::list_from(days, [](const ReplayedDay& day) {
+             return Json::object({{"date", day.date},
+                                  {"compared", day.compared},
+                                  {"differing", day.differing},
+                                  {"gained_eur", Decimals{day.gained_eur, 4}}});
+           }));
+  json.set("others", Json::list_from(others, [](const ReplayedCycle& other) {
+             return Json::object({{"utc", utc_text(other.utc_s).view()},
+                                  {"price_eur_per_mwh", Decimals{other.price_eur_per_mwh, 2}},
+                                  {"soc_percent", Decimals{100 * other.soc_frac, 2}},
+                                  {"before", action_name(other.before)},
+                                  {"now", action_name(other.now)}});
+           }));
   return json;
 }
 

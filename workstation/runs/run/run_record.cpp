@@ -8,7 +8,6 @@
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"
-#include "shared/host/json.h"
 #include "shared/host/json_reader.h"
 #include "shared/host/made/build_info.h"
 #include "shared/host/text.h"
@@ -44,12 +43,8 @@ Entries entries_of(const JsonValue& object, const RunFolder& folder) {
 }
 
 StageRecord stage_of(const JsonValue& json, const RunFolder& folder) {
-  StageRecord stage;
-  stage.name = json.key();
-  stage.inputs = entries_of(json["inputs"], folder);
-  stage.outputs = entries_of(json["outputs"], folder);
-  stage.failed = json["failed"].boolean().value_or(false);
-  return stage;
+  return {std::string(json.key()), entries_of(json["inputs"], folder),
+          entries_of(json["outputs"], folder), json["failed"].boolean().value_or(false)};
 }
 
 Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder) {
@@ -61,13 +56,11 @@ Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder)
 }  // namespace
 
 Json demands_json(const std::vector<DemandFigures>& demands) {
-  Json list = Json::list();
-  for (const DemandFigures& d : demands) {
-    list.add(Json::object({{"demand", d.demand},
-                           {"violations_plain", d.violations_plain},
-                           {"violations_corrected", d.violations_corrected}}));
-  }
-  return list;
+  return Json::list_from(demands, [](const DemandFigures& d) {
+    return Json::object({{"demand", d.demand},
+                         {"violations_plain", d.violations_plain},
+                         {"violations_corrected", d.violations_corrected}});
+  });
 }
 
 std::string file_mark(const fs::path& path) {

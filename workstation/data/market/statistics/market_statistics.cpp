@@ -11,7 +11,6 @@
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
-#include "workstation/data/market/series/imbalance_price.h"
 
 namespace bess {
 
@@ -289,13 +288,11 @@ void add_price(Json& json, const PriceStatistics& price) {
 }
 
 Json regimes_json(const std::vector<RegimeStatistics>& regimes) {
-  Json list = Json::list();
-  for (const auto& [regime, price] : regimes) {
-    Json row = Json::object({{"regime", regime->name}});
-    add_price(row, price);
-    list.add(std::move(row));
-  }
-  return list;
+  return Json::list_from(regimes, [](const RegimeStatistics& of) {
+    Json row = Json::object({{"regime", of.regime->name}});
+    add_price(row, of.price);
+    return row;
+  });
 }
 
 Json convergence_json(const ConvergenceByMinute& convergence) {
@@ -318,21 +315,17 @@ void add_span(Json& json, std::int64_t from_utc_s, std::int64_t until_utc_s) {
 }
 
 Json gaps_json(const std::vector<Gap>& gaps) {
-  Json list = Json::list();
-  for (const Gap& gap : gaps) {
+  return Json::list_from(gaps, [](const Gap& gap) {
     Json span = Json::object();
     add_span(span, gap.from_utc_s, gap.until_utc_s);
-    list.add(std::move(span));
-  }
-  return list;
+    return span;
+  });
 }
 
 Json clock_changes_json(const std::vector<ClockChange>& changes) {
-  Json list = Json::list();
-  for (const ClockChange& change : changes) {
-    list.add(Json::object({{"day", day_of(change)}, {"quarter_hours", change.quarter_hours}}));
-  }
-  return list;
+  return Json::list_from(changes, [](const ClockChange& change) {
+    return Json::object({{"day", day_of(change)}, {"quarter_hours", change.quarter_hours}});
+  });
 }
 
 }  // namespace
