@@ -6,8 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "shared/host/text.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/units_and_limits.h"
-
 namespace bess {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "shared/host/exchanged_days.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "shared/exchange_cost.h"
 #include "shared/local_day.h"

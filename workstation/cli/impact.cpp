@@ -7,7 +7,6 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "shared/local_time.h"
 #include "workstation/cli/commands.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/runs/chain/common_options.h"

@@ -2,7 +2,6 @@
 // how often it breaks them on real days.
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "shared/host/json.h"
@@ -12,7 +11,6 @@
 #include "workstation/correction/rules/properties.h"
 #include "workstation/correction/rules/rule_conflicts.h"
 #include "workstation/correction/rules/ruled_policy.h"
-#include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/policy/rl/teacher.h"

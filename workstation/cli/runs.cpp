@@ -6,7 +6,6 @@
 
 #include "shared/host/file.h"
 #include "shared/host/text.h"
-#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/runs_page.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "workstation/base/answer.h"
-#include "workstation/report/figures/html.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {
@@ -169,9 +168,8 @@ std::string headline_accounting(const Headline& headline) {
   std::string text = "The charge is carried over from day to day";
   if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
     text += fmt::format(
-        ", and what is left of it at the end is valued at {:.1f} EUR/MWh, the mean settled price "
-        "of "
-        "these days, with losses and costs: {} of the figure",
+        ", and what is left of it at the end is valued at {:.1f} EUR/MWh, the mean "
+        "settled price of these days, with losses and costs: {} of the figure",
         headline.charge_left.price_eur_per_mwh,
         signed_text(headline.charge_left.value_eur_per_day_per_mwh));
   }

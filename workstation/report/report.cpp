@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -11,12 +10,10 @@
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "workstation/report/evaluation_days.h"
-#include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/report_page.h"
-#include "workstation/report/report_tables.h"
 
 namespace bess {
 namespace {

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <string_view>
 
 #include "shared/host/text.h"
-#include "workstation/correction/student/certificate.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
-#include "workstation/report/rule_prices.h"
 
 namespace bess {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "edge/core/control/quarter_hour_energy.h"
-#include "shared/features.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
 

@@ -13,7 +13,6 @@
 #include "edge/device/registers/map_file.h"
 #include "shared/host/bus_recording.h"
 #include "shared/host/user_error.h"
-#include "shared/scaled_clock.h"
 #include "tools/simulators/battery_sim/register_image.h"
 
 namespace bess {

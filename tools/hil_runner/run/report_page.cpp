@@ -76,8 +76,7 @@ std::string svg_of(const std::string& commands) {
   if (begin == std::string::npos) return "";
   const std::size_t attributes = begin + std::string_view("<svg").size();
   return "<svg role=\"img\" aria-label=\"Price, power, state of charge and mode of the edge over "
-         "the "
-         "run; faults as bands\"" +
+         "the run; faults as bands\"" +
          file.substr(attributes);
 }
 
@@ -125,8 +124,7 @@ class RunPicture {
     text += fmt::format(
         "set ylabel 'power, W'\nset yrange [{0}:{1}]\nset ytics {2}\nplot $minutes using 1:2 with "
         "fillsteps fc rgb '#f2b68c' fs solid noborder title 'measured', $orders using 1:2 with "
-        "steps "
-        "lw 1.5 lc rgb '#0072b2' title 'ordered, 0 W included'\n",
+        "steps lw 1.5 lc rgb '#0072b2' title 'ordered, 0 W included'\n",
         -1.15 * rated_w, 1.15 * rated_w, tic_step(2 * rated_w));
     text +=
         "set ylabel 'SoC, %'\nset yrange [0:100]\nset ytics 25\nplot $minutes using "
@@ -376,8 +374,7 @@ std::string report_page(const std::vector<Outcome>& outcomes) {
   std::string body =
       "<p>Power is positive when it charges; SoC and measured power are by the battery's own "
       "record, of a real one by what it shows. Bands: faults of the battery (orange) and of the "
-      "prices (grey); dashed: what happens to a "
-      "process, its clock or its disk.</p>\n";
+      "prices (grey); dashed: what happens to a process, its clock or its disk.</p>\n";
   body += contents(outcomes);
   for (const Outcome& outcome : outcomes) body += section(outcome);
   return std::string(

@@ -1,14 +1,11 @@
 #include "tools/hil_runner/scenario/edge_settings.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "edge/core/control/price_history.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "tools/simulators/site/controller_settings.h"
 
 namespace bess {
 namespace {

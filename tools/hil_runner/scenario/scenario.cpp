@@ -1,8 +1,6 @@
 #include "tools/hil_runner/scenario/scenario.h"
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "edge/core/control/price_history.h"
 #include "shared/host/user_error.h"

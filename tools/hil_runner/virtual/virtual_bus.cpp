@@ -1,8 +1,6 @@
 #include "tools/hil_runner/virtual/virtual_bus.h"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"

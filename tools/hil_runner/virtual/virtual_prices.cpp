@@ -4,7 +4,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "edge/prices/fetch/day_ahead_feed.h"
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 

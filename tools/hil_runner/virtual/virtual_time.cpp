@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <utility>
 
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/base/stop_request.h"

@@ -3,11 +3,9 @@
 #include <pthread.h>
 #include <signal.h>
 
-#include <iterator>
 #include <memory>
 #include <optional>
 
-#include "edge/app/program/controller.h"
 #include "edge/core/control/policy.h"
 #include "edge/prices/fetch/history_pages.h"
 #include "edge/records/log/record_codec.h"
@@ -16,7 +14,6 @@
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/virtual/virtual_bus.h"
-#include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
 #include "tools/hil_runner/witness/maker_table.h"
 

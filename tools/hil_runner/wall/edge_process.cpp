@@ -1,13 +1,11 @@
 #include "tools/hil_runner/wall/edge_process.h"
 
-#include <fmt/core.h>
 #include <signal.h>
 
 #include <filesystem>
 #include <string_view>
 
 #include "edge/records/log/log_reader.h"
-#include "shared/host/user_error.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/simulators/site/site_programs.h"
 

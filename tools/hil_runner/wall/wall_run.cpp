@@ -4,21 +4,15 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <optional>
 
 #include "edge/app/storage/commission_file.h"
 #include "edge/device/battery/commission.h"
 #include "shared/host/file.h"
 #include "shared/host/pty_bridge.h"
-#include "shared/host/user_error.h"
-#include "shared/scaled_clock.h"
-#include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
-#include "tools/hil_runner/wall/edge_process.h"
 #include "tools/simulators/battery_sim/battery_record.h"
 #include "tools/simulators/site/site_programs.h"
 

@@ -18,8 +18,6 @@
 #include "shared/utc_text.h"
 #include "tools/simulators/battery_sim/battery_faults.h"
 #include "tools/simulators/battery_sim/battery_record.h"
-#include "tools/simulators/battery_sim/battery_server.h"
-#include "tools/simulators/sim/clock_options.h"
 #include "tools/simulators/sim/commands.h"
 #include "tools/simulators/sim/stop_signal.h"
 
@@ -390,8 +388,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
   command
       .option("--meter-map", options.meter_map_path,
               "Act the meter of this map too (edge/device/meters); a battery map's own grid point "
-              "needs "
-              "none")
+              "needs none")
       .needs("--house");
   command.option("--meter-variant", options.meter_variant, "Of the map; default: its first")
       .needs("--meter-map");

@@ -1,7 +1,5 @@
 #include "tools/simulators/site/controller_settings.h"
 
-#include <fmt/core.h>
-
 namespace bess {
 
 std::string records_url(const std::string& market, const std::string& dataset) {

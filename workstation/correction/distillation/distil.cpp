@@ -5,7 +5,6 @@
 #include <iterator>
 #include <numbers>
 #include <span>
-#include <vector>
 
 #include "shared/host/user_error.h"
 #include "workstation/base/in_parallel.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "workstation/base/progress.h"
-#include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/distillation/rule_rows.h"
 #include "workstation/correction/rules/properties.h"
 

@@ -1,4 +1,3 @@
-#include <array>
 
 #include "workstation/correction/rules/demand.h"
 

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "shared/host/user_error.h"
 
 namespace bess {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <optional>
 
 #include "shared/host/user_error.h"
 #include "workstation/correction/rules/properties.h"

@@ -1,8 +1,6 @@
 #include "workstation/data/env/evaluate.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "shared/exchange_cost.h"

@@ -2,13 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/price_level.h"
-#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {

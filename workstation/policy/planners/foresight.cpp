@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/exchange_cost.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -12,7 +12,6 @@
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "workstation/base/in_parallel.h"
-#include "workstation/policy/planners/stochastic_program.h"
 
 namespace bess {
 namespace {

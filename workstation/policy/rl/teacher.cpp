@@ -7,7 +7,6 @@
 #include "workstation/base/binary_file.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/policy/planners/outlook_integers.h"
-#include "workstation/policy/rl/c51.h"
 #include "workstation/policy/rl/transition.h"
 
 namespace bess {

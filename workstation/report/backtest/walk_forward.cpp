@@ -8,7 +8,6 @@
 #include "shared/host/user_error.h"
 #include "workstation/data/env/charge_left.h"
 #include "workstation/data/env/drawdown.h"
-#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 namespace {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <vector>
 
 #include "shared/battery_keys.h"
 #include "shared/host/file.h"

@@ -6,7 +6,6 @@
 #include "shared/exchange_cost.h"
 #include "shared/local_time.h"
 #include "shared/price_level.h"
-#include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"

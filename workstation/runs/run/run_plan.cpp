@@ -5,7 +5,6 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/runs/chain/chain_steps.h"
-#include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/run_stages.h"
 

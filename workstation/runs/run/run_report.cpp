@@ -4,16 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iterator>
-#include <optional>
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"
-#include "shared/host/json.h"
 #include "shared/host/made/build_info.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
@@ -26,10 +23,8 @@
 #include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/charge_left.h"
-#include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
-#include "workstation/report/report_tables.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/run/run_backtest.h"

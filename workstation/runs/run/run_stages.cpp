@@ -17,7 +17,6 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/export.h"
-#include "workstation/correction/student/prove.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/folder_lock.h"

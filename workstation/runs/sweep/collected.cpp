@@ -24,7 +24,6 @@
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/run_stages.h"
-#include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {
 

@@ -185,8 +185,7 @@ std::string describe_day_ahead(const JoinedDayAhead& joined) {
                   utc_text(series.end_utc_s()).view(), counted(joined.repeated_hours, "hour"));
   if (joined.assumed > 0) {
     text += fmt::format(
-        "{} left out: merged rows, or missing ones; a source that has every row "
-        "fills them\n",
+        "{} left out: merged rows, or missing ones; a source that has every row fills them\n",
         counted(joined.assumed, "quarter-hour"));
   }
   if (joined.constant_days > 0) {

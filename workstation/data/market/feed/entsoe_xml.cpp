@@ -4,10 +4,8 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "shared/host/plain_text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/market/feed/entsoe_element.h"
 

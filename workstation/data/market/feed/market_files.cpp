@@ -6,9 +6,6 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
@@ -20,7 +17,6 @@
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "workstation/data/market/feed/entsoe_xml.h"
-#include "workstation/data/market/feed/market_join.h"
 
 namespace bess {
 

@@ -4,11 +4,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "shared/host/text.h"
-#include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 
 namespace bess {

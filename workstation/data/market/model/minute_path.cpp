@@ -1,7 +1,6 @@
 #include "workstation/data/market/model/minute_path.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "workstation/data/market/model/market_parameters.h"

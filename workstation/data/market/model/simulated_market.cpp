@@ -1,7 +1,6 @@
 #include "workstation/data/market/model/simulated_market.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -9,7 +8,6 @@
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "workstation/base/random.h"
-#include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/series/imbalance_price.h"
 
 namespace bess {

@@ -14,7 +14,6 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 

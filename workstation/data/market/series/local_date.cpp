@@ -5,7 +5,6 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
-#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {

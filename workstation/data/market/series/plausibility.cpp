@@ -511,8 +511,7 @@ std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
         {"shifted-day",
          true,
          fmt::format("the day-ahead prices follow the settled ones better a day {} (correlation "
-                     "{:.2f}, as filed {:.2f}): are they filed under the wrong day? mend the "
-                     "dates",
+                     "{:.2f}, as filed {:.2f}): are they filed under the wrong day? mend the dates",
                      days > 0 ? "later" : "earlier", shifted, as_filed.correlation),
          {}}};
   }
