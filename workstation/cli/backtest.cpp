@@ -260,9 +260,7 @@ void add_backtest_command(ProgramCommand& app) {
   command.flag("--day-reset", options->and_day_reset,
                "In the table also: each day from the same SoC, its end given away");
   command.flag("--json", options->json, "One JSON object");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "A month that was learnt is kept: the same command goes on after an interruption. Each fold "
       "learns on one thread, so that it repeats to the bit.\n"

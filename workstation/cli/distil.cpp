@@ -119,9 +119,7 @@ void add_distil_command(ProgramCommand& app) {
                "No correction: what the teacher alone would give; its violations are sampled");
   command.option("--curve-out", options->curve_out, "CSV of the losses");
   command.flag("--json", options->json, "One JSON object");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"

@@ -162,9 +162,7 @@ void add_omega_sweep_command(ProgramCommand& app) {
       .with_default();
   command.option("--epochs", options->epochs, "Of each distillation").positive();
   command.flag("--json", options->json, "One JSON object a line and omega");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "Examples:\n"
       "  bess-train omega-sweep --prices market.csv.gz --teacher teacher.bin --out sweep\n"

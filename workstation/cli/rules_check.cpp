@@ -143,9 +143,7 @@ void add_rules_check(ProgramCommand& rules) {
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
   command.flag("--json", options->json, "One JSON object a line and rule");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "Examples:\n"
       "  bess-train rules check --rules my_rules.toml\n"

@@ -88,9 +88,7 @@ void add_run_command(ProgramCommand& app) {
   command.option("--from-teacher", request.from_teacher,
                  "Start at the correction, with this teacher: its file or its run's folder");
   command.flag("--json", options->json, "One JSON object");
-  request.common.add_market(command);
-  request.common.add_config(command);
-  request.common.add_seed_and_threads(command);
+  request.common.add_all(command);
   command.footer(
       "Each stage is written when it is done: after Ctrl-C, a full disk or a failed proof nothing "
       "is lost.\n" +

@@ -107,9 +107,7 @@ void add_size_command(ProgramCommand& app) {
   command.option("--out", options->out, "Folder for table and page").required();
   options->day_ahead.add(command);
   command.flag("--json", options->json, "One JSON object");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "The least plan: [size], power_kw = [5, 10], capacity_kwh = [10, 20].\n"
       "Examples:\n"

@@ -138,9 +138,7 @@ void add_train_command(ProgramCommand& app) {
   command.option("--curve-out", options->curve_out, "CSV of the learning curve");
   command.flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights");
   command.flag("--json", options->json, "One JSON object");
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_all(command);
   command.footer(
       "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
       "Examples:\n"

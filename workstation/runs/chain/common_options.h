@@ -21,6 +21,11 @@ struct CommonOptions {
   void add_config(ProgramCommand& command);
   void add_seed_and_threads(ProgramCommand& command);
   void add_market(ProgramCommand& command);
+  void add_all(ProgramCommand& command) {
+    add_market(command);
+    add_config(command);
+    add_seed_and_threads(command);
+  }
 
   /// The configuration file with the command line's options on top.
   [[nodiscard]] RunConfig resolve(ContextKind unless_said = ContextKind::kLevel) const;
