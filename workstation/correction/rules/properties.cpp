@@ -23,29 +23,25 @@ RuleSet with_outlook_rule(const RuleSet& rules) {
           rule.place, rule.name);
     }
   }
-  Rule rule;
-  rule.name = kName;
-  rule.demand = direction_demand(direction);
-  all.rules.push_back(rule);
+  all.rules.push_back(
+      {.name = std::string(kName), .box = {}, .demand = direction_demand(direction)});
   return all;
 }
 
 namespace {
 
 Rule threshold(int property, Action action) {
-  Rule rule;
-  rule.name = fmt::format("property {}", property);
-  rule.property = property;
-  rule.demand = action_demand(action_bit(action));
-  return rule;
+  return {.name = fmt::format("property {}", property),
+          .box = {},
+          .demand = action_demand(action_bit(action)),
+          .property = property};
 }
 
 Rule never_rises_with(RuleInput input, const char* name) {
-  Rule rule;
-  rule.name = fmt::format("property 3, {}", name);
-  rule.property = 3;
-  rule.demand = direction_demand({input, -1});
-  return rule;
+  return {.name = fmt::format("property 3, {}", name),
+          .box = {},
+          .demand = direction_demand({input, -1}),
+          .property = 3};
 }
 
 }  // namespace
