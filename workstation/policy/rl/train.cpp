@@ -162,8 +162,7 @@ class Experience {
   const TrainingMarket& market_;
   const TrainOptions& options_;
   Replay replay_;
-  Random experience_random_;
-  Random minibatch_random_;
+  Random experience_random_, minibatch_random_;
   std::vector<Transition> drawn_;
   MiniBatch batch_;
 };
@@ -234,6 +233,31 @@ Support given_support(const TrainOptions& options) {
           static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms};
 }
 
+/// What a run learns from, and how it weighs it.
+struct TrainingSetup {
+  Teacher teacher;  ///< without a network yet
+  TrainingMarket market;
+  bool adds_to_program;
+  Support support;
+  double gamma, mean_weight;
+};
+
+TrainingSetup set_up(const MarketSteps& market, const BatteryParameters& battery,
+                     const TrainOptions& options) {
+  Teacher teacher = without_network(market, battery, options);
+  const Foundation program = options.residual ? teacher.foundation() : Foundation{};
+  TrainingMarket training(market, teacher.price_map, battery, options.horizon,
+                          {.program = program, .threads = options.threads}, teacher.context);
+  TrainingSetup setup{std::move(teacher),     std::move(training), false,
+                      given_support(options), options.gamma,       options.mean_weight};
+  if (!program) return setup;
+  setup.adds_to_program = true;
+  setup.support = residual_support(setup.market, options);
+  setup.gamma = options.residual_gamma;
+  setup.mean_weight /= double{setup.support.step() * setup.support.step()};
+  return setup;
+}
+
 double cosine_rate(const TrainOptions& options, long step) {
   const double progress = static_cast<double>(step) / static_cast<double>(options.steps);
   const double blend = 0.5 * (1 + std::cos(std::numbers::pi * progress));
@@ -284,27 +308,21 @@ class Training {
         battery_(battery),
         options_(options),
         validation_(market.days_of(Split::kValidation)),
-        current_(without_network(market, battery, options)),
-        program_(options.residual ? current_.foundation() : Foundation{}),
-        training_(market, current_.price_map, battery, options.horizon,
-                  {.program = program_, .threads = options.threads}, current_.context),
-        support_(program_ ? residual_support(training_, options) : given_support(options)),
-        learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
-                 derive_seed(options.seed, kSeedWeights), options.threads,
-                 program_ ? options.mean_weight / double{support_.step() * support_.step()}
-                          : options.mean_weight),
-        experience_(training_, options),
+        setup_(set_up(market, battery, options)),
+        current_(setup_.teacher),
+        learner_(options.method, setup_.support, setup_.gamma,
+                 derive_seed(options.seed, kSeedWeights), options.threads, setup_.mean_weight),
+        experience_(setup_.market, options),
         average_(learner_.online()),
-        result_{current_, {}, -1e300, 0, 0} {
+        result_{current_, {}, kFarBelow, 0, 0} {
+    for (Parameters* p : {&learner_.online(), &learner_.target(), &average_}) {
+      if (!setup_.adds_to_program) break;
+      begin_at_zero(options.method, setup_.support, learner_.shape(), *p);
+    }
     for (Teacher* teacher : {&current_, &result_.teacher}) {
-      teacher->support = support_;
+      teacher->support = setup_.support;
       teacher->shape = learner_.shape();
       teacher->parameters = learner_.online();
-    }
-    if (!program_) return;
-    for (Parameters* p : {&learner_.online(), &learner_.target(), &average_, &current_.parameters,
-                          &result_.teacher.parameters}) {
-      begin_at_zero(options.method, support_, learner_.shape(), *p);
     }
   }
 
@@ -351,7 +369,7 @@ class Training {
   [[nodiscard]] bool is_validation_due() const {
     const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
     // Of a residual step 0, the program, is a candidate too.
-    const long nothing_yet = program_ ? -1 : 0;
+    const long nothing_yet = setup_.adds_to_program ? -1 : 0;
     return is_its_step &&
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
@@ -362,9 +380,8 @@ class Training {
     current_.parameters = average_;
     TeacherPolicy teacher(current_);
     StoppablePolicy policy(teacher, interrupted);
-    EvaluationOptions evaluation;
-    evaluation.battery = battery_;
-    evaluation.carry_soc = true;  // the reset flatters one that ends its days empty
+    // The reset flatters one that ends its days empty.
+    const EvaluationOptions evaluation{.battery = battery_, .carry_soc = true};
     Evaluation earned;
     try {
       earned = evaluate(market_, validation_, policy, evaluation);
@@ -374,7 +391,7 @@ class Training {
     const double profit = earned.profit_eur_per_day_per_mwh();
     const auto n = static_cast<double>(std::max(summed_, 1L));
     result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n,
-                             program_ ? gain_at_least(earned) : 0});
+                             setup_.adds_to_program ? gain_at_least(earned) : 0});
     sums_ = {0, 0};
     summed_ = 0;
     if (&kept_point(result_.curve) != &result_.curve.back()) return true;
@@ -436,18 +453,15 @@ class Training {
   const BatteryParameters& battery_;
   const TrainOptions& options_;
   std::vector<MarketDay> validation_;
-  Teacher current_;     ///< whose weights act and are validated
-  Foundation program_;  ///< that a residual adds to
-  TrainingMarket training_;
-  Support support_;
+  TrainingSetup setup_;
+  Teacher& current_;  ///< whose weights act and are validated
   Learner learner_;
   Experience experience_;
   Parameters average_;  ///< of the online weights
   TrainResult result_;
   std::vector<double> program_eur_;  ///< that step 0 earned on each validation day
   Learner::StepResult sums_{0, 0};   ///< since the last validation
-  long summed_ = 0;
-  long step_ = 0;
+  long summed_ = 0, step_ = 0;
 };
 
 /// Nothing to iterate: the program is fitted and solved.
@@ -456,9 +470,7 @@ TrainResult train_program(const MarketSteps& market, const BatteryParameters& ba
   const auto start = std::chrono::steady_clock::now();
   Teacher teacher = without_network(market, battery, options);
   TeacherPolicy policy(teacher);
-  EvaluationOptions evaluation;
-  evaluation.battery = battery;
-  evaluation.carry_soc = true;
+  const EvaluationOptions evaluation{.battery = battery, .carry_soc = true};
   const double profit = evaluate(market, market.days_of(Split::kValidation), policy, evaluation)
                             .profit_eur_per_day_per_mwh();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
