@@ -12,7 +12,6 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/json_reader.h"
-#include "shared/host/made/build_info.h"
 #include "shared/host/text.h"
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
@@ -449,8 +448,6 @@ void number_tasks(SweepPlan& plan, std::vector<Entries> all, std::vector<SweepTa
   }
 }
 
-std::string program_line() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
-
 /// Unless the folder's sweep is of the same program, prices, kind and configuration.
 void require_same_sweep(const SweepPlan& plan) {
   const auto entries_of = [](const SweepRecord& record, const RunConfig& config) {
@@ -475,7 +472,7 @@ SweepPlan plan_sweep(const SweepRequest& request, const SweepFolder& folder) {
   const MinuteSeries series = request.price_input.read(request.prices);
   const MarketSteps market = market_of(series, plan.base.market, request.prices);
   require_test_days(market, request.prices);
-  plan.record = {program_line(), prices_hash(series), request.full ? "full" : kLean,
+  plan.record = {program_text(), prices_hash(series), request.full ? "full" : kLean,
                  series.start_utc_s};
   const bool is_there = fs::exists(folder.tasks());
   if (is_there) require_same_sweep(plan);
@@ -518,11 +515,11 @@ SweepRecord load_sweep_record(const SweepFolder& folder) {
 
 SweepRecord load_own_sweep(const SweepFolder& folder) {
   SweepRecord record = load_sweep_record(folder);
-  if (record.program == program_line()) return record;
+  if (record.program == program_text()) return record;
   fail(
       "{}: was planned by {}, and this is {}; what they make may differ: run it by the one that "
       "planned it, or plan again in another folder",
-      folder.path.string(), record.program, program_line());
+      folder.path.string(), record.program, program_text());
 }
 
 std::vector<SweepTask> load_tasks(const SweepFolder& folder) {
