@@ -77,6 +77,15 @@ Settlement parse_settlement(std::string_view name) {
 
 std::string MarketDay::date() const { return fmt::format("{:04}-{:02}-{:02}", year, month, day); }
 
+std::vector<double> MarketSteps::prices_of(const std::vector<MarketDay>& of_days,
+                                           double MarketStep::*price) const {
+  std::vector<double> prices;
+  for (const MarketDay& day : of_days) {
+    for (const MarketStep& step : of(day)) prices.push_back(step.*price);
+  }
+  return prices;
+}
+
 std::vector<MarketDay> MarketSteps::days_of(Split split) const {
   std::vector<MarketDay> selected;
   for (const MarketDay& day : days) {

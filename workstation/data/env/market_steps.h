@@ -100,6 +100,9 @@ struct MarketSteps {
     return {steps.data() + day.first_step, day.step_count};
   }
   [[nodiscard]] std::vector<MarketDay> days_of(Split split) const;
+  /// One of its prices of every step of these days.
+  [[nodiscard]] std::vector<double> prices_of(const std::vector<MarketDay>& of_days,
+                                              double MarketStep::*price) const;
   /// Training and validation days: something is learnt or chosen on them.
   [[nodiscard]] std::vector<MarketDay> fitted_days() const;
   /// From the first to the last of `days`, which are ascending and not empty.

@@ -46,10 +46,7 @@ int TabularPolicy::price_bin(double price_eur_per_mwh) const {
 }
 
 void TabularPolicy::count_market(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  std::vector<double> observed;
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) observed.push_back(step.observed_eur_per_mwh);
-  }
+  std::vector<double> observed = market.prices_of(days, &MarketStep::observed_eur_per_mwh);
   std::ranges::sort(observed);
   for (int b = 1; b < kBins; ++b) {
     bin_edges_.push_back(observed[observed.size() * static_cast<std::size_t>(b) / kBins]);
@@ -136,13 +133,10 @@ class TrainingProfit {
  public:
   TrainingProfit(const MarketSteps& market, const std::vector<MarketDay>& days,
                  const BatteryParameters& battery)
-      : market_(market), days_(days) {
-    options_.battery = battery;
-    options_.initial_soc_frac = 0.5 * (battery.soc_min_frac + battery.soc_max_frac);
-    options_.carry_soc = true;
-    for (const MarketDay& day : days) {
-      for (const MarketStep& step : market.of(day)) prices_.push_back(step.observed_eur_per_mwh);
-    }
+      : market_(market),
+        days_(days),
+        options_{battery, 0.5 * (battery.soc_min_frac + battery.soc_max_frac), true},
+        prices_(market.prices_of(days, &MarketStep::observed_eur_per_mwh)) {
     std::ranges::sort(prices_);
   }
 
@@ -218,10 +212,8 @@ Made paper_rule(const MarketSteps&, const BatteryParameters&) {
 
 /// Quartiles of the training days' settled prices: the paper's rule without its look-ahead.
 Made quartile_rule(const MarketSteps& market, const BatteryParameters&) {
-  std::vector<double> prices;
-  for (const MarketDay& day : market.days_of(Split::kTrain)) {
-    for (const MarketStep& step : market.of(day)) prices.push_back(step.paid_eur_per_mwh);
-  }
+  std::vector<double> prices =
+      market.prices_of(market.days_of(Split::kTrain), &MarketStep::paid_eur_per_mwh);
   require_training_days(prices.size());
   std::ranges::sort(prices);
   return rule(prices[prices.size() / 4], prices[prices.size() * 3 / 4]);

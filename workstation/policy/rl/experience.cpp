@@ -148,11 +148,7 @@ std::vector<float> TrainingMarket::residual_returns(double discount) const {
 }
 
 std::vector<double> observed_training_prices(const MarketSteps& market) {
-  std::vector<double> prices;
-  for (const MarketDay& day : market.days_of(Split::kTrain)) {
-    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
-  }
-  return prices;
+  return market.prices_of(market.days_of(Split::kTrain), &MarketStep::observed_eur_per_mwh);
 }
 
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,

@@ -16,10 +16,8 @@ namespace {
 constexpr double kShownTail = 0.005;  ///< left out on either side
 
 std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
-  std::vector<double> prices;
-  for (const MarketDay& day : market.days_of(split)) {
-    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
-  }
+  std::vector<double> prices =
+      market.prices_of(market.days_of(split), &MarketStep::observed_eur_per_mwh);
   std::ranges::sort(prices);
   return prices;
 }
