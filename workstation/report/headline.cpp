@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "workstation/base/answer.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {

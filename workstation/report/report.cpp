@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"

@@ -15,6 +15,7 @@
 #include "shared/host/file.h"
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tools/simulators/battery_sim/battery_faults.h"
 #include "tools/simulators/battery_sim/battery_record.h"

@@ -1,6 +1,8 @@
 
 #include "workstation/correction/rules/demand.h"
 
+#include <array>
+
 /// Every kind of demand, in the order in which a rule file's mistakes name their keys: NAME_kind()
 /// stands in NAME_demand.cpp.
 #define BESS_DEMAND_KINDS(ROW) \

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/host/user_error.h"
+
 namespace bess {
 namespace {
 

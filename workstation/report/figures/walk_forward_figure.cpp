@@ -4,6 +4,7 @@
 
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 
