@@ -1,6 +1,7 @@
 // bess-train battery fit: what a battery really does, from the log of its controller.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "shared/battery_keys.h"
@@ -11,6 +12,7 @@
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/data/env/battery_fit.h"
+#include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {
@@ -43,10 +45,13 @@ void take_steps(const std::string& path, BatteryParameters& battery) {
   if (!error.empty()) throw UserError(error);
 }
 
-std::string toml_of(const BatteryFit& fit, BatteryParameters battery) {
-  battery = fit.applied_to(battery);
+/// A complete configuration: [battery] with what was fitted, then every other key that `config`
+/// changes, so that costs, wear and limits are not lost.
+std::string toml_of(const BatteryFit& fit, const RunConfig& config) {
+  BatteryParameters battery = fit.applied_to(config.battery);
   const auto found = fit.found();
-  std::string text = "[battery]\n";
+  std::string section = "[battery]";
+  std::string text = section + "\n";
   for (const BatteryKey& key : kBatteryKeys) {
     text += fmt::format("{} = {:.6g}", key.name, key.of(battery));
     for (const auto& [name, value] : found) {
@@ -54,6 +59,19 @@ std::string toml_of(const BatteryFit& fit, BatteryParameters battery) {
       text += fmt::format("  # +- {:.2g}, from {}", value.standard_error, value.observations);
     }
     text += "\n";
+  }
+  for (const ChangedKey& changed : changed_keys(config)) {
+    const std::size_t end = changed.key.find(' ');
+    const std::string name = changed.key.substr(end + 1);
+    const bool in_battery = changed.key.starts_with("[battery] ");
+    const bool fitted =
+        std::ranges::find(kBatteryKeys, name, &BatteryKey::name) != kBatteryKeys.end();
+    if (in_battery && fitted) continue;
+    if (!changed.key.starts_with(section + " ")) {
+      section = changed.key.substr(0, end);
+      text += fmt::format("\n{}\n", section);
+    }
+    text += fmt::format("{} = {}\n", name, changed.value);
   }
   return text;
 }
@@ -99,7 +117,7 @@ void write_fit(const FitArguments& options) {
   const BatteryFit fit = fit_from_logs(options, config.battery);
   print_found(fit.found(), options.json);
   if (options.out.empty()) return;
-  write_file(options.out, toml_of(fit, config.battery));
+  write_file(options.out, toml_of(fit, config));
   if (!options.json) fmt::print("{}\n", options.out);
 }
 
@@ -113,8 +131,8 @@ void add_battery_fit(ProgramCommand& battery) {
   command.option("--config", options->config,
                  "Its [battery] has power_w, capacity_wh, soc_min and soc_max of the nameplate");
   command.option("--out", options->out,
-                 "[battery] as TOML: for --config here, and bess-sim battery "
-                 "--battery");
+                 "The configuration with the fitted [battery]: for --config here, and bess-sim "
+                 "battery --battery");
   command.flag("--json", options->json, "One JSON object a line, a key each");
   command.footer(
       "What a log does not show keeps the value of --config: a battery that never rested tells\n"

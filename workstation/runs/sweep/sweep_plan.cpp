@@ -422,7 +422,14 @@ void validate(const SweepPlan& plan) {
     }
     const std::string stem = alike.value(setting::kRules);
     const std::string rules = stem.empty() ? "" : plan.rules.at(stem);
-    require_consistent(with_settings(plan.base, alike, rules, name), name);
+    const RunConfig config = with_settings(plan.base, alike, rules, name);
+    require_consistent(config, name);
+    if (config.train.context == ContextKind::kOutlook) {
+      fail(
+          "{}: [train] context = \"outlook\" needs day-ahead prices, which a sweep does not take; "
+          "use context = \"level\", or bess-train run --day-ahead for this setting",
+          name);
+    }
   }
 }
 

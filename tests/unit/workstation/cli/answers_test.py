@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 import jsonschema  # Debian's python3-jsonschema: tools/setup --test
@@ -154,11 +155,16 @@ class Answers(unittest.TestCase):
                       "327680000,none,0,0,0", file=log)
         with open(self.file("steps.toml"), "w") as steps:
             print("[battery]\ndelay_s = 2.5\nramp_w_per_s = 0\ntime_constant_s = 3", file=steps)
+        with open(self.file("site.toml"), "w") as site:
+            print("[battery]\nwear_eur_per_mwh = 25\n[costs]\nimport_percent = 5", file=site)
         keys = self.answers("battery", "fit", "--log", "@log.csv", "--steps", "@steps.toml",
-                            "--out", "@battery.toml")
+                            "--config", "@site.toml", "--out", "@battery.toml")
         self.assertEqual([(k["key"], k["observations"]) for k in keys], [("standby_w", 38)])
-        with open(self.file("battery.toml")) as both:
-            self.assertIn("delay_s = 2.5\n", both.read())
+        with open(self.file("battery.toml"), "rb") as file:
+            fitted = tomllib.load(file)
+        self.assertEqual(fitted["battery"]["delay_s"], 2.5)
+        self.assertEqual(fitted["battery"]["wear_eur_per_mwh"], 25)
+        self.assertEqual(fitted["costs"], {"import_percent": 5})
         shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc",
                              "--config", "@battery.toml")
         self.assertEqual(len(shown), 1)

@@ -84,7 +84,9 @@ TEST_F(SweepPlans, WhatCannotBeIsRefusedWithItsPlace) {
       {"[grid]\n\"distil.fidelity\" = [1, 1.0]\n", "plan.toml:2 distil.fidelity"},
       {"[grid]\n\"distil.fidelity\" = 1\n[[list]]\n\"distil.fidelity\" = 2\n", "distil.fidelity"},
       // What keys are to each other is looked at before task 1 begins.
-      {"[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n", "2 initial_soc 0.5 soc_min 0.6"}};
+      {"[grid]\n\"battery.soc_min\" = [0.1, 0.6]\n", "2 initial_soc 0.5 soc_min 0.6"},
+      // A sweep takes no day-ahead prices.
+      {"[grid]\n\"train.context\" = [\"level\", \"outlook\"]\n", "2 [train] context"}};
   for (const auto& [text, names] : cases) EXPECT_THAT(refusal(text), Names(names)) << text;
   EXPECT_FALSE(fs::exists(folder_.path));
 }
