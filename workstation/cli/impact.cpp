@@ -56,7 +56,7 @@ void run_impact(const ImpactArguments& options) {
   plan.threads = config.train.threads;
   require_policies(plan.policies);
   for (const std::string& policy : plan.policies) {
-    if (policy == kForesightName || policy == "sdp-outlook") {
+    if (policy == kForesightName || policy == kOutlookProgramName) {
       fail("--policy {}: the simulated fleet has neither tomorrow's prices nor the day-ahead ones",
            policy);
     }

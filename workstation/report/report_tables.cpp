@@ -70,7 +70,8 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
 }
 
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* program = evaluation_named(evaluations, kProgramName);
+  const NamedEvaluation* program = evaluation_named(evaluations, kOutlookProgramName);
+  if (program == nullptr) program = evaluation_named(evaluations, kProgramName);
   const auto is_teacher = [](const NamedEvaluation& e) { return e.name.ends_with(kTeacherEnd); };
   const auto teacher = std::ranges::find_if(evaluations, is_teacher);
   if (program == nullptr || teacher == evaluations.end()) return {};
@@ -84,11 +85,11 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
     return fmt::format(
         "{} and {} decide the same at every step: nothing that was learnt is shown to "
         "earn more on validation days than the program that it began as",
-        kProgramName, teacher->name);
+        program->name, teacher->name);
   }
   return fmt::format(
       "{} and {} are the same program, fitted on the same days: they decide the same at every step",
-      kProgramName, kProgramAsTeacher);
+      program->name, kProgramAsTeacher);
 }
 
 namespace {

@@ -256,8 +256,8 @@ std::span<const Baseline> baselines() {
       {kProgramName, "stochastic program by hour and price level", "stochastic program", "line-4",
        kCompared, fit<StochasticProgramPolicy>},
       {"sdp-hour", "by hour alone", "", "", kFitted, program_by_hour},
-      {"sdp-outlook", "planned each day on --day-ahead", "", "", kFitted | kNeedsDayAhead,
-       fit<OutlookPolicy>},
+      {kOutlookProgramName, "planned each day on --day-ahead", "stochastic program by outlook",
+       "line-3", kFitted | kNeedsDayAhead, fit<OutlookPolicy>},
       {kForesightName, "", "knows every price: a bound, no rival", "muted", kInRuns, foresight},
   };
   return kRows;

@@ -55,8 +55,9 @@ struct RuleThresholds {
 RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>& days,
                          const BatteryParameters& battery);
 
-inline constexpr const char* kForesightName = "foresight";  ///< the bound, no policy
-inline constexpr const char* kProgramName = "sdp";          ///< what a teacher begins as
+inline constexpr const char* kForesightName = "foresight";         ///< the bound, no policy
+inline constexpr const char* kProgramName = "sdp";                 ///< what a teacher begins as
+inline constexpr const char* kOutlookProgramName = "sdp-outlook";  ///< and by outlook
 
 /// Where a baseline stands, besides `evaluate`, which takes them all.
 enum BaselineUse : unsigned {

@@ -429,6 +429,8 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
     const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
     run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
     run.teacher.book->prepare(run.market, days, run.config.train.threads);
+    OutlookPolicy program(run.teacher.outlook);
+    all.push_back(evaluate_both(kOutlookProgramName, program, run));
   }
   TeacherPolicy teacher(run.teacher);
   all.push_back(evaluate_both(teacher_name(run.teacher), teacher, run));
