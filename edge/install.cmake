@@ -11,7 +11,7 @@ function(install_with_paths file folder name)
     list(POP_FRONT pairs from to)
     string(FIND "${text}" "${from}" place)
     if(place EQUAL -1)
-      message(FATAL_ERROR "${file}: \"${from}\" is not in it any more; mend edge/install.cmake")
+      message(FATAL_ERROR "${file}: \"${from}\" is not in it any more; correct edge/install.cmake")
     endif()
     string(REPLACE "${from}" "${to}" text "${text}")
   endwhile()
@@ -23,14 +23,10 @@ endfunction()
 install(TARGETS bess-edge bess-prices DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
 install(DIRECTORY device/maps device/meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
         FILES_MATCHING PATTERN "*.toml")
-install(FILES README.md delivery/systemd/bess-edge-serial.conf
-        delivery/systemd/bess-notify-mailer.conf delivery/systemd/bess-notify-orders.conf
-        DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
-foreach(room app/recording app/storage companions/notify companions/page core/control core/memory
-        core/site core/supervision delivery/package delivery/systemd device/battery device/maps
-        prices/fetch prices/record records/log)
-  install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)
-endforeach()
+install(FILES delivery/systemd/bess-edge-serial.conf delivery/systemd/bess-notify-mailer.conf
+        delivery/systemd/bess-notify-orders.conf DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/shared/manual DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        COMPONENT edge PATTERN notebook EXCLUDE)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/delivery/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT edge)
 install(FILES delivery/systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf

@@ -103,7 +103,8 @@ void add_size_command(ProgramCommand& app) {
       .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
       .required();
   options->price_input.add(command);
-  command.option("--plan", options->plan, "TOML file (workstation/runs/size/README.md)").required();
+  command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)")
+      .required();
   command.option("--out", options->out, "Folder for table and page").required();
   options->day_ahead.add(command);
   command.flag("--json", options->json, "One JSON object");

@@ -3,7 +3,7 @@
 //   enumerator, code on disk, name in log and status, what it does to the battery, what it means,
 //   what to look at, what ends it, with {values} that edge/records/why/what_ends.cpp knows
 // A code is never used for another reason: what was logged a year ago must keep its meaning. A new
-// row takes the next. edge/README.md has the table for people, held by
+// row takes the next. shared/manual/guides/troubleshooting.md has the table for people, held by
 // tests/unit/edge/core/control/reasons_test.cpp.
 #pragma once
 

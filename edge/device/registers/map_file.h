@@ -1,4 +1,4 @@
-// Loads a register map from its TOML file (format: edge/device/maps/README.md) and proves that it
+// Loads a register map from its TOML file (format: shared/manual/guides/add_a_battery.md) and proves that it
 // is consistent: names known, blocks contiguous, watchdog fed, power limits expressible.
 #pragma once
 

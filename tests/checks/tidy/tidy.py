@@ -5,9 +5,9 @@
   READMEs, and what is one word (a URL); files that are longer yet stand in long_lines.txt with how
   many such lines they have: none may get more
 - a file of a kind that is not known, or at the top of the tree and not named in README.md
-- a README that is longer than it may be, begins with no heading, or names a file that is not there,
-  in full or by the end of its path
-- a README that repeats a figure of the tree, and it is another by now
+- a README or a page of the manual that has no heading, or names a file that is not there, in full
+  or by the end of its path; a README of more words than allowed, and all of them together
+- a document that repeats a figure of the tree that has changed
 """
 
 import fnmatch
@@ -17,7 +17,10 @@ import subprocess
 import sys
 
 COLUMNS = 100
-README_LINES = {"README.md": 150, "edge/README.md": 250}
+README_LINES = 90  # of the top one
+FOLDER_WORDS = 300  # of any other README
+MANUAL_WORDS = 22_000  # of all documents without the notebook
+NOTEBOOK = "shared/manual/notebook/"  # dated: its names and figures are those of its day
 DATA = ("edge/generated/", "tests/data/", "tests/data/golden/", "tests/checks/fuzz/seeds/",
         "tools/delivery/monitoring/grafana_dashboard.json")
 KINDS = set(
@@ -28,7 +31,7 @@ PLACES = ("edge", "shared", "tests", "toolchains", "tools", "workstation")
 SHORT = re.compile(r"`(\w[\w.-]*(?:/[\w.*-]+)*\.(?:h|cpp|py|\*))`"  # control/reasons.h
                    r"|`(\w[\w.-]*/[\w./*-]+\.(?:sh|cmake|toml|txt|js|json|md|css|csv))`")
 ELSEWHERE = tuple(place + "/" for place in PLACES) + (  # checked as places, or made by programs
-    "build", "runs/", "debs/", "sweeps/")
+    "build", "runs/", "debs/", "sweeps/", "sizes/")
 
 
 def tracked(tree):
@@ -50,7 +53,7 @@ def prose_only(lines):
     for line in lines:
         fence = line.startswith("```")
         fenced = fenced != fence
-        yield not fenced and not fence and not line.startswith(("|", "    "))
+        yield not fenced and not fence and not line.lstrip().startswith("|") and not line.startswith("    ")
 
 
 def long_lines(name, text):
@@ -81,26 +84,31 @@ def check_kinds(tree, names, complain):
             DATA)
         if not known and path.name not in KNOWN_NAMES:
             complain(f"{name}: a file of an unknown kind")
-    for top in sorted({name.split("/")[0] for name in names} - {"README.md"}):
-        if not re.search(r"[`\[(]" + re.escape(top) + r"[/`]", readme):
+    for top in sorted({name.split("/")[0] for name in names} - {"README.md", "CMakeLists.txt"}):
+        if not top.startswith(".") and not re.search(r"[`\[(]" + re.escape(top) + r"[/`]", readme):
             complain(f"{top}: at the top of the tree, and README.md does not name it")
 
 
-def check_readmes(tree, names, complain):
-    for name in (n for n in names if n.endswith("README.md")):
+def documents(names):
+    return [n for n in names if not n.startswith(NOTEBOOK) and
+            (n.endswith("README.md") or n.startswith("shared/manual/") and n.endswith(".md"))]
+
+
+def check_documents(tree, names, complain):
+    total = 0
+    for name in documents(names):
         text = (tree / name).read_text(encoding="utf-8")
         if not re.match(r"# \w", text):
             complain(f"{name}:1: begins with no heading")
-        lines = text.count("\n")
-        if lines > README_LINES.get(name, lines):
-            complain(f"{name}: {lines} lines, {README_LINES[name]} at most")
+        lines, words = text.count("\n"), len(text.split())
+        if name == "README.md" and lines > README_LINES:
+            complain(f"{name}: {lines} lines, {README_LINES} at most")
+        if name.endswith("README.md") and not name.startswith("shared/manual/"):
+            if name != "README.md" and words > FOLDER_WORDS:
+                complain(f"{name}: {words} words, {FOLDER_WORDS} at most")
+        total += words
         folder = (tree / name).parent
-        if name == "shared/README.md":
-            for header in (n for n in names if re.fullmatch(r"shared/(host/)?\w+\.h", n)):
-                stem = pathlib.PurePosixPath(header).stem
-                if not re.search(r"`" + stem + r"\.(h|\*)`", text):
-                    complain(f"{name}: does not name {header}")
-        for link in re.findall(r"\]\(([^)#:]+)\)", text):
+        for link in re.findall(r"\]\(([^)#: ]*[./][^)#: ]*)\)", text):
             if not (folder / link).exists():
                 complain(f"{name}: links to {link}, which is not there")
         for place in re.findall(r"`((?:%s)/[\w./-]+)`" % "|".join(PLACES), text):
@@ -108,10 +116,13 @@ def check_readmes(tree, names, complain):
             if not any(path.exists() for path in there) and "NAME" not in place:
                 complain(f"{name}: names {place}, which is not there")
         for short in map("".join, SHORT.findall(text)):
-            if not short.startswith(ELSEWHERE) and not any(folder.glob(short)):
+            there = short.startswith(ELSEWHERE) or "NAME" in short or any(folder.glob(short))
+            if not there:
                 ends = "*/" + short
                 if not any(fnmatch.fnmatchcase("/" + n, ends) for n in names):
                     complain(f"{name}: names {short}, which is not there")
+    if total > MANUAL_WORDS:
+        complain(f"{total} words in all documents, {MANUAL_WORDS} at most without the notebook")
 
 
 def figures(tree):
@@ -138,7 +149,7 @@ def figures(tree):
 
 def check_figures(tree, names, complain):
     held = list(figures(tree))
-    for name in (n for n in names if n.endswith("README.md")):
+    for name in documents(names):
         text = " ".join((tree / name).read_text(encoding="utf-8").split())
         for pattern, expected in held:
             for match in re.finditer(pattern, text):
@@ -162,7 +173,7 @@ def main():
                if line and not line.startswith("#")}
     check_columns(tree, names, allowed, complaints.append)
     check_kinds(tree, names, complaints.append)
-    check_readmes(tree, names, complaints.append)
+    check_documents(tree, names, complaints.append)
     check_figures(tree, names, complaints.append)
     print("\n".join(complaints) or "tidy")
     return 1 if complaints else 0

@@ -31,7 +31,7 @@ refused() {  # refused WHAT FILE TEXT: with TEXT as another line of FILE
 refused "2 lines of more than 100 columns, 1 are known" edge/long.cpp "$long"
 refused "a file of an unknown kind" edge/note.doc text
 refused "README.md does not name it" other.txt text
-refused "README.md: .* lines, 150 at most" README.md "$(seq 200)"
+refused "README.md: .* lines, 90 at most" README.md "$(seq 200)"
 refused "links to edge/none.md, which is not there" README.md "[none](edge/none.md)"
 refused "names edge/none.h, which is not there" README.md '`edge/none.h`'
 refused "README.md: says 0123456789abcdef, the tree" README.md "signature=0123456789abcdef"

@@ -1,5 +1,5 @@
 # Run by cpack when all is installed into its folder, before it is packed: what makes a version goes
-# to /usr/lib/bess-edge, which only delivers (edge/delivery/package/README.md); what people call
+# to /usr/lib/bess-edge, which only delivers; what people call
 # leads
 # to the version that runs.
 file(GLOB_RECURSE programs ${CPACK_TEMPORARY_DIRECTORY}/*/usr/bin/bess-edge)

@@ -11,6 +11,8 @@ if(TARGET bess-train)
   install(FILES ${CMAKE_SOURCE_DIR}/workstation/report/page/answers.schema.json
           DESTINATION share/bess-workstation
           COMPONENT workstation)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/shared/manual DESTINATION share/doc/bess-workstation
+          COMPONENT workstation PATTERN notebook EXCLUDE)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/package/workstation/ DESTINATION . COMPONENT workstation)
 endif()
 

@@ -367,7 +367,8 @@ void read_expectation(TomlTable table, Scenario& scenario) {
       {"reason", &expectation.reason}, {"no_reason", &expectation.no_reason}};
   for (const auto& [key, name] : reasons) {
     if (table.ok() && !name->empty() && !is_reason(*name)) {
-      table.fail(key, "is no reason of the guard (edge/README.md lists them)");
+      table.fail(key,
+                 "is no reason of the guard (shared/manual/guides/troubleshooting.md lists them)");
     }
   }
   check_expectation(table, scenario, expectation);

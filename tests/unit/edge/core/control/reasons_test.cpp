@@ -10,22 +10,22 @@
 namespace bess {
 namespace {
 
-TEST(Reasons, TheReadmeHasTheTable) {
-  std::string table = "| reason | what it means | what to look at |\n|---|---|---|\n";
-  bool stops = true;
-  for (const ReasonInfo& reason : kReasons) {
-    if (stops && reason.effect == ReasonEffect::kGoesOn) {
-      table += "| *up to here the battery is not driven: 0 W, then released* | | |\n";
-      stops = false;
-    }
-    table.append("| ").append(reason.name).append(" | ").append(reason.meaning);
-    table.append(" | ").append(reason.look_at).append(" |\n");
-  }
-  std::ifstream file(BESS_SOURCE_DIR "/edge/README.md");
+/// The manual's tables of reasons, in two parts, row by row those of the program.
+TEST(Reasons, TheManualHasTheTable) {
+  std::ifstream file(BESS_SOURCE_DIR "/shared/manual/guides/troubleshooting.md");
   std::ostringstream text;
   text << file.rdbuf();
-  const bool is_there = text.str().find("\n\n" + table + "\n") != std::string::npos;
-  EXPECT_TRUE(is_there) << "edge/README.md must have exactly this:\n" << table;
+  for (const ReasonEffect effect : {ReasonEffect::kRests, ReasonEffect::kGoesOn}) {
+    std::string table = "| code | meaning | remedy |\n|---|---|---|\n";
+    for (const ReasonInfo& reason : kReasons) {
+      const bool drives = reason.effect == ReasonEffect::kGoesOn;
+      if (drives != (effect == ReasonEffect::kGoesOn)) continue;
+      table.append("| `").append(reason.name).append("` | ").append(reason.meaning);
+      table.append(" | ").append(reason.look_at).append(" |\n");
+    }
+    const bool is_there = text.str().find("\n\n" + table + "\n") != std::string::npos;
+    EXPECT_TRUE(is_there) << "troubleshooting.md must have exactly this:\n" << table;
+  }
 }
 
 }  // namespace

@@ -154,45 +154,6 @@ TEST(Prometheus, FollowsTheFormatAndTheNamingRules) {
   EXPECT_EQ(families.at("bess_model_info").samples.begin()->second, 1);
 }
 
-/// "{rule}" of a family whose samples have that label.
-std::string labels_of(const Family& family) {
-  const std::string labels = family.samples.begin()->first;
-  const std::string names = std::regex_replace(labels, std::regex("=\"[^\"]*\""), "");
-  return names == "{battery}" ? "" : std::regex_replace(names, std::regex("battery,"), "");
-}
-
-/// Who builds a dashboard or an alarm reads the list in edge/records/log/README.md: it has every
-/// metric, and no other.
-TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
-  std::set<std::string> published;
-  for (const auto& [name, family] :
-       parse_prometheus(prometheus_text(totals_after({full_record(1)})))) {
-    published.insert(name + labels_of(family));
-  }
-  const std::string readme = text_of_file(BESS_SOURCE_DIR "/edge/records/log/README.md");
-  const std::size_t begin = readme.find("\n## Metrics\n");
-  ASSERT_NE(begin, readme.npos);
-  std::string section;  // its table: what status --prometheus adds is told below it
-  std::istringstream lines(readme.substr(begin, readme.find("\n## ", begin + 1) - begin));
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("|")) section += line + "\n";
-  }
-  static const std::regex entry("`(bess_[a-z_]+(\\{[a-z_,]+\\})?)`");
-  std::set<std::string> listed;
-  for (std::sregex_iterator m(section.begin(), section.end(), entry), end; m != end; ++m) {
-    EXPECT_TRUE(listed.insert((*m)[1]).second)
-        << "twice in edge/records/log/README.md: " << (*m)[1];
-  }
-  for (const std::string& name : published) {
-    EXPECT_TRUE(listed.contains(name))
-        << "missing in edge/records/log/README.md, Metrics: " << name;
-  }
-  for (const std::string& name : listed) {
-    EXPECT_TRUE(published.contains(name))
-        << "in edge/records/log/README.md, Metrics, but not published: " << name;
-  }
-}
-
 /// tools/delivery/monitoring asks for nothing else, but of an upgrade and of a fleet's inventory.
 TEST(Prometheus, RulesAndDashboardAskForWhatIsPublished) {
   std::set<std::string> known{"bess_update_trouble", "bess_expected_student_info"};

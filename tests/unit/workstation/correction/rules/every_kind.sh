@@ -1,6 +1,6 @@
 #!/bin/sh
 # every_kind.sh SOURCE BUILD FOLDER [PRICES]: students of every kind of rule that
-# workstation/README.md documents, learnt and proved; prints their proofs, and what they cost with
+# the manual documents, learned and proved; prints their proofs, and what they cost with
 # its error: projected, then learnt. PRICES: a minute file; without it a simulated year. The rules
 # of a file of kinds/ together, one seed; with BESS_THOROUGH=1 three seeds. Fails when a student is
 # not proved, after all are told.

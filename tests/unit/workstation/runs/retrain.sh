@@ -1,9 +1,7 @@
 #!/bin/sh
-# readme_retrain.sh SOURCE BUILD FOLDER: runs the flow "retrain and adopt the result" of
-# workstation/cli/README.md as it is printed, and then other thresholds from that run's teacher, in
-# FOLDER, which stands for the top of the clone. What is different: the yardstick stands for what
-# would be fetched from the network; and the run, which takes minutes, learns for a shorter time.
-# BESS_README_FULL=1 in the environment runs it with the default configuration.
+# retrain.sh SOURCE BUILD FOLDER: retrains on the benchmark prices and adopts the result, then
+# other thresholds from that run's teacher, in FOLDER, which acts as the top of a clone. Epochs are
+# few; BESS_README_FULL=1 in the environment takes the default configuration.
 source=$1 build=$2 folder=$3
 fail() { tail -n 20 "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"
@@ -18,12 +16,13 @@ ln -s "$build/bess-train" build
 cp "$source/tests/data/benchmark_minutes_2023.csv.gz" prices.csv.gz
 header_before=$(cksum edge/generated/student_weights.h)
 
-# The commands: what is indented between the two headings.
-sed -n '/^\*\*To retrain on your prices/,/^\*\*What trading costs you/s/^    //p' \
-  "$source/workstation/cli/README.md" |
-  grep -v 'prices fetch' >flow.sh
-[ "$(grep -c '^build/bess-train run ' flow.sh)" -eq 2 ] ||
-  fail "workstation/cli/README.md shows not two runs, but: $(cat flow.sh)"
+cat >flow.sh <<'END'
+build/bess-train run --prices prices.csv.gz --out runs/first
+build/bess-train export --student runs/first/student.json
+cmake --build build --target bess-edge
+build/bess-train run --prices prices.csv.gz --from-teacher runs/first --config my.toml --out runs/mine
+build/bess-train runs compare runs/first runs/mine
+END
 build/bess-train config >my.toml 2>said || fail "config fails"
 sed -i -e 's/^low_price_eur_per_mwh = .*/low_price_eur_per_mwh = -300/' \
   -e 's/^high_price_eur_per_mwh = .*/high_price_eur_per_mwh = 1200/' my.toml
