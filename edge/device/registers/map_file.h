@@ -1,5 +1,5 @@
-// Loads a register map from its TOML file (format: shared/manual/guides/add_a_battery.md) and proves that it
-// is consistent: names known, blocks contiguous, watchdog fed, power limits expressible.
+// Loader of register maps from TOML (format: shared/manual/guides/add_a_battery.md). It proves that
+// a map is consistent: names known, blocks contiguous, watchdog fed, power limits expressible.
 #pragma once
 
 #include <string>

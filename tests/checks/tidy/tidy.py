@@ -53,7 +53,8 @@ def prose_only(lines):
     for line in lines:
         fence = line.startswith("```")
         fenced = fenced != fence
-        yield not fenced and not fence and not line.lstrip().startswith("|") and not line.startswith("    ")
+        is_row = line.lstrip().startswith("|")
+        yield not (fenced or fence or is_row or line.startswith("    "))
 
 
 def long_lines(name, text):

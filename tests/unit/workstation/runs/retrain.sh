@@ -20,7 +20,8 @@ cat >flow.sh <<'END'
 build/bess-train run --prices prices.csv.gz --out runs/first
 build/bess-train export --student runs/first/student.json
 cmake --build build --target bess-edge
-build/bess-train run --prices prices.csv.gz --from-teacher runs/first --config my.toml --out runs/mine
+build/bess-train run --prices prices.csv.gz --from-teacher runs/first --config my.toml \
+  --out runs/mine
 build/bess-train runs compare runs/first runs/mine
 END
 build/bess-train config >my.toml 2>said || fail "config fails"
