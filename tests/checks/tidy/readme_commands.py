@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""readme_commands.py TREE BUILD: what READMEs tell to type works, and prints what they show.
+"""readme_commands.py TREE BUILD [DOCUMENT...]: what READMEs and the guides of the manual tell to
+type works, and prints what they show.
 
 Fails, naming file and line, on
 
 - a command line of a program or script of this tree, in a block or in the text, with a subcommand
   or an option that its --help (a script of tools/: its head; any other: its text) does not name
-- a ```console block with output that is another: its commands are run, in a folder of their own
-  with the programs of BUILD on the PATH. "..." stands for any part of a line; alone, for any lines.
-  A block without output is not run
+- a ```console block with output that is another: its commands are run, with the programs of BUILD
+  on the PATH and as build/NAME. The blocks of a document share a folder, which has prices.csv.gz,
+  those of the benchmark. "..." stands for any part of a line; alone, for any lines. A block without
+  output is not run, and no ```sh block
 """
 
 import functools
@@ -15,6 +17,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -27,6 +30,8 @@ OTHERS = set("apt apt-get cmake ctest install journalctl make man systemctl user
 OPTION = re.compile(r"--[a-z][\w-]*")
 FOREIGN = {"--array-properties", "--collector", "--wrap"}
 BEFORE = set("do exec parallel python3 runuser shell: sudo then time with".split())
+GUIDES = "shared/manual/guides/*.md"
+PRICES = "tests/data/benchmark_minutes_2023.csv.gz"
 PATH = os.environ.get("PATH", "")
 SHELL = ("", "sh", "bash", "console")
 
@@ -136,30 +141,40 @@ class Readmes:
             if len(self.complaints) == said:
                 return
 
-    def run_block(self, script, shown):
+    def furnish(self, folder):
+        """What the commands of a document find where they run."""
+        for place in ("edge", "tests", "workstation"):
+            os.symlink(self.tree / place, f"{folder}/{place}")
+        os.symlink(self.build, f"{folder}/build")
+        if (self.tree / PRICES).exists():
+            shutil.copyfile(self.tree / PRICES, f"{folder}/prices.csv.gz")
+
+    def run_block(self, script, shown, folder):
         shown = [" ".join(line.split()) for line in shown]
         pattern = "".join(r"(?:[^\n]*\n)*" if line == "..." else
                           re.escape(line).replace(re.escape("..."), r"[^\n]*") + "\n"
                           for line in shown)
-        with tempfile.TemporaryDirectory() as folder:
-            for place in ("edge", "tests", "workstation"):
-                os.symlink(self.tree / place, pathlib.Path(folder) / place)
-            with open(f"{folder}/.printed", "w+", encoding="utf-8") as out:
-                run = subprocess.Popen(["bash", "-c", script], cwd=folder, stdout=out, stderr=out,
-                                       stdin=subprocess.DEVNULL, start_new_session=True,
-                                       env=os.environ | {"PATH": f"{self.build}:{PATH}"})
-                try:
-                    run.wait(60)
-                except subprocess.TimeoutExpired:
-                    out.write("(not done within 60 s)\n")
-                out.seek(0)
-                printed = out.read()
-            end_group(run)
+        with open(f"{folder}/.printed", "w+", encoding="utf-8") as out:
+            run = subprocess.Popen(["bash", "-c", script], cwd=folder, stdout=out, stderr=out,
+                                   stdin=subprocess.DEVNULL, start_new_session=True,
+                                   env=os.environ | {"PATH": f"{self.build}:{PATH}"})
+            try:
+                run.wait(60)
+            except subprocess.TimeoutExpired:
+                out.write("(not done within 60 s)\n")
+            out.seek(0)
+            printed = out.read()
+        end_group(run)
         printed = "".join(" ".join(line.split()) + "\n" for line in printed.splitlines())
         if not re.fullmatch(pattern, printed):
             self.complain(f"shows\n{chr(10).join(shown)}\nand what is printed is\n{printed}")
 
     def check(self, name):
+        with tempfile.TemporaryDirectory() as folder:
+            self.furnish(folder)
+            self.check_in(name, folder)
+
+    def check_in(self, name, folder):
         text = (self.tree / name).read_text(encoding="utf-8")
         for number, kind, lines in parts_of(text.splitlines()):
             self.place = f"{name}:{number}"
@@ -172,7 +187,7 @@ class Readmes:
             for line in typed.splitlines():
                 self.check_line(line)
             if shown:
-                self.run_block(typed, shown)
+                self.run_block(typed, shown, folder)
 
 
 def is_script(path):
@@ -222,11 +237,11 @@ def commands_of(line):
 
 def parts_of(lines):
     """Number of the first line, kind and lines of each paragraph of text and each block."""
-    kind, part, first = "text", [], 1
+    kind, part, first, indent = "text", [], 1, 0
     for number, line in enumerate(lines + [""], 1):
         fence = re.match(r" *```(\w*)", line)
         if kind.startswith("in ") and not fence:
-            part.append(line)
+            part.append(line[indent:] if not line[:indent].strip() else line)
             continue
         if fence and kind.startswith("in "):
             if kind[3:] in SHELL:
@@ -242,25 +257,25 @@ def parts_of(lines):
             first = number if not part else first
             part.append(line)
         elif fence:
-            first = number
+            first, indent = number, line.index("`")
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) < 3:
         print(__doc__, file=sys.stderr)
         return 2
-    tree, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    tree, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
     missing = [program for program in PROGRAMS if not os.access(build / program, os.X_OK)]
     if missing or not (tree / ".git").exists():
         needed = ", ".join(missing) or "a clone, whose files git can list"
         print(f"needs {needed}")
         return 77
-    listed = subprocess.run(["git", "-C", tree, "ls-files", "*README.md"], capture_output=True,
-                            text=True, check=True).stdout
+    listed = subprocess.run(["git", "-C", tree, "ls-files", "*README.md", GUIDES],
+                            capture_output=True, text=True, check=True).stdout
     readmes = Readmes(tree, build)
-    for name in listed.splitlines():
+    for name in sys.argv[3:] or listed.splitlines():
         readmes.check(name)
-    print("\n".join(readmes.complaints) or "READMEs and programs agree")
+    print("\n".join(readmes.complaints) or "documents and programs agree")
     return 1 if readmes.complaints else 0
 
 
