@@ -1,7 +1,7 @@
-// How every answer of --json begins, and the names that more than one of them has. What each name
-// means, its unit and where it is null stands in report/page/answers.schema.json ('bess-train
-// schema'); a test holds every answer and every table against it. A figure is FIGURE_UNIT, its
-// error FIGURE_standard_error in the same unit. An answer has the same keys whatever the options.
+// Header and common member names of every --json answer. report/page/answers.schema.json
+// ('bess-train schema') defines each member, its unit and when it is null; a test checks every
+// answer and table against it. A figure is FIGURE_UNIT, its error FIGURE_standard_error in the same
+// unit. The options do not change the members of an answer.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace bess {
 
-// Names and values in order: what a run is made of, what a model was learnt for.
+// Ordered names and values, such as the contents of a run or the training scope of a model.
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
-/// Grows when a name goes or changes its meaning; a new name alone leaves it.
+/// Incremented when a member is removed or changes its meaning, not when one is added.
 inline constexpr int kSchemaVersion = 1;
 
 namespace key {
@@ -32,10 +32,10 @@ inline constexpr const char* kCarrySoc = "carry_soc";
 inline constexpr const char* kCarriedOver = "carried_over";
 }  // namespace key
 
-/// {"schema_version": 1, "answer": "KIND"}: the first of every answer.
+/// {"schema_version": 1, "answer": "KIND"}: the first members of every answer.
 Json answer(const char* kind);
 
-/// null where there is nothing to say.
+/// null for an empty text.
 Json text_or_null(const std::string& text);
 
 /// "true" or "false", as in JSON, for tables.

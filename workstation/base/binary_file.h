@@ -1,6 +1,6 @@
-// Fixed-width little-endian files of this project: magic, version, fields, CRC-32 of all before it.
-// Written beside and renamed; a file that is not whole is named before any of it is used. And the
-// FNV-1a hash of a text.
+// Binary files: fixed-width little-endian fields after magic and version, then the CRC-32 of all
+// preceding bytes. Files are replaced atomically and checked in full before use. Also the FNV-1a
+// hash of a text.
 #pragma once
 
 #include <bit>
@@ -16,8 +16,8 @@
 
 namespace bess {
 
-// FNV-1a, 64 bits, of a text: for a name or a draw that must stay the same on every machine. No
-// proof that two texts are the same.
+// FNV-1a hash (64 bits) of a text, for names and draws that must be equal on every machine. Not
+// collision-resistant.
 
 inline std::uint64_t fnv1a(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
@@ -45,7 +45,7 @@ class BinaryWriter {
     put(static_cast<std::uint32_t>(text.size()));
     bytes_.append(text);
   }
-  /// With its length, for element types without padding.
+  /// Preceded by the length; for element types without padding.
   template <typename T>
   void put_list(const std::vector<T>& list) {
     put(static_cast<std::uint64_t>(list.size()));
@@ -60,9 +60,9 @@ class BinaryWriter {
 
 class BinaryReader {
  public:
-  /// Reads the whole file and checks magic, version (`version`, or from `version_min` on if that is
-  /// given) and checksum. `kind` ("teacher file") and `mend`
-  /// ("train again") are used in messages.
+  /// Reads the whole file and checks magic, version (`version`, or `version_min` to `version` if
+  /// given) and checksum. Messages contain `kind` ("teacher file") and the remedy `mend` ("train
+  /// again").
   BinaryReader(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                std::string_view kind, std::string_view mend, std::uint32_t version_min = 0);
   [[nodiscard]] std::uint32_t version() const { return version_; }
@@ -99,7 +99,7 @@ class BinaryReader {
     if (!rest_.empty()) damaged("has trailing bytes");
   }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Throws "FILE: KIND WHAT; MEND".
+  /// Throws "FILE: KIND WHAT; REMEDY".
   [[noreturn]] void damaged(std::string_view what) const {
     fail("{}: {} {}; {}", name_, kind_, what, mend_);
   }

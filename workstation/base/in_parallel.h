@@ -1,5 +1,5 @@
-// The same job for each of many things, on a few threads. Which thread takes what is a matter of
-// timing: a job's result must follow from its thing alone.
+// Parallel loop over independent jobs on a few threads. The assignment of jobs to threads varies,
+// so a job's result must depend on its index only.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 
 namespace bess {
 
-/// Runs job(0) .. job(count - 1); returns when all are done. After one has thrown no other begins,
-/// and what it threw is thrown again when those at work are done.
+/// Runs job(0) .. job(count - 1) and waits for all. After an exception no further job starts; the
+/// first exception is rethrown when the running jobs have ended.
 template <typename Job>
 void in_parallel(std::size_t count, int threads, const Job& job) {
   std::atomic<std::size_t> next = 0;
@@ -37,7 +37,7 @@ void in_parallel(std::size_t count, int threads, const Job& job) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// The same, and tells of each that is done.
+/// The same, with progress after each job.
 template <typename Job>
 void in_parallel(std::size_t count, int threads, Progress& progress, const Job& job) {
   std::mutex mutex;

@@ -1,6 +1,6 @@
-// The colours of every figure. gnuplot draws the light ones; the page replaces each by the CSS
-// variable of its name, whose value changes in dark mode. Blue and orange stay apart for every kind
-// of colour vision (Okabe and Ito 2008).
+// Colours of every figure. gnuplot draws the light ones; the page replaces each by the CSS variable
+// of its name, which changes in dark mode. Blue and orange are distinct in all types of colour
+// vision (Okabe and Ito 2008).
 #pragma once
 
 #include <array>

@@ -14,10 +14,10 @@ namespace {
 constexpr std::chrono::milliseconds kQuietStart{2000};
 constexpr std::chrono::milliseconds kTerminalInterval{250};
 constexpr std::chrono::milliseconds kLogInterval{60'000};
-constexpr std::size_t kColumns = 80;  // where nobody says how many there are
-constexpr std::size_t kNoteMin = 8;   // less of a note says nothing
+constexpr std::size_t kColumns = 80;  // when the width is unknown
+constexpr std::size_t kNoteMin = 8;   // shorter notes are omitted
 
-/// One less than the terminal has: a full row would make some of them begin the next one.
+/// One less than the terminal's width: some terminals wrap after a full row.
 std::size_t terminal_columns() {
   winsize size{};
   const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;

@@ -1,6 +1,5 @@
-// One progress line on stderr for anything that takes more than two seconds: done, rate, ETA.
-// On a terminal it redraws in place, in one row; elsewhere it prints a line a minute, so logs stay
-// short.
+// Progress line on stderr for work that takes more than two seconds: done, rate, ETA. A terminal
+// redraws one row; other outputs get one line per minute, which keeps logs short.
 #pragma once
 
 #include <chrono>
@@ -9,7 +8,7 @@
 
 namespace bess {
 
-/// How far something is, at one instant.
+/// Progress at one instant.
 struct ProgressState {
   double done = 0, total = 0;
   double rate_per_s = 0;
@@ -17,20 +16,20 @@ struct ProgressState {
   bool is_over = false;
 };
 
-/// "TITLE: 12/40 UNIT (3.1/s, ETA 9 s)  NOTE" in at most `columns`: the note gives way first.
+/// "TITLE: 12/40 UNIT (3.1/s, ETA 9 s)  NOTE" in at most `columns`; the note is shortened first.
 std::string progress_line(std::string_view title, std::string_view unit, const ProgressState& state,
                           std::string_view note, std::size_t columns);
 
 class Progress {
  public:
   /// `unit` is the plural noun that the rate counts, e.g. "steps"; `done_before` were done by an
-  /// earlier run and do not count in it.
+  /// earlier run and do not count in the rate.
   Progress(std::string title, std::string unit, double total, double done_before = 0);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// Shows `done` of the total; cheap to call often. `note` is appended, as far as there is room.
+  /// Shows `done` of the total; cheap to call often. `note` is appended where it fits.
   void update(double done, std::string_view note = {});
 
  private:

@@ -1,5 +1,5 @@
-// Random numbers that repeat on every machine: std::mt19937_64 is fixed by the standard, the
-// distributions of <random> are not, so they are written here. Every use starts from a named seed.
+// Random numbers that are equal on every machine. The standard fixes std::mt19937_64 but not the
+// distributions of <random>, so they are implemented here. Every use starts from a named seed.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,7 @@ class Random {
   std::size_t index(std::size_t count) {
     return static_cast<std::size_t>(high_product(engine_(), count));
   }
-  /// Everything that the next numbers depend on, as text; and back. False when the text is not
-  /// that.
+  /// Full state as text, to save and restore; false if the text is not a state.
   [[nodiscard]] std::string state() const;
   [[nodiscard]] bool restore(const std::string& state);
 
@@ -33,7 +32,7 @@ class Random {
 #ifdef __SIZEOF_INT128__
     __extension__ using Wide = unsigned __int128;
     return static_cast<std::uint64_t>((static_cast<Wide>(a) * b) >> 64);
-#else  // 32-bit ARM, where tests draw from it
+#else  // 32-bit ARM (tests)
     constexpr std::uint64_t kLow = 0xffffffffU;
     const std::uint64_t low = (a & kLow) * (b & kLow);
     const std::uint64_t cross = (a >> 32) * (b & kLow) + (low >> 32);
@@ -47,7 +46,7 @@ class Random {
   bool has_spare_ = false;
 };
 
-/// A seed of its own for each named purpose of one run.
+/// Separate seed for each named purpose of a run.
 constexpr std::uint64_t derive_seed(std::uint64_t seed, std::uint64_t purpose) {
   return (seed + 1) * 0xD1342543DE82EF95ULL + purpose * 0x2545F4914F6CDD1DULL;
 }

@@ -1,5 +1,5 @@
-// Tables: rows under named columns, written as aligned text, CSV and JSON here, and as HTML by
-// report/figures/html.h and sort_table.h.
+// Tables: rows under named columns, written as aligned text, CSV and JSON; report/figures/html.h
+// and sort_table.h write HTML.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace bess {
 
-/// What a row has in a column: a number, NaN where it is not known, or a text.
+/// Value of a cell: a number (NaN: unknown) or a text.
 struct TableValue {
   template <typename T>
   TableValue(const T& value) {  // NOLINT: implicit on purpose
@@ -30,18 +30,18 @@ struct TableValue {
   bool is_text = false;
 };
 
-/// In CSV and JSON: as many decimals as a number has.
+/// In CSV and JSON: shortest exact form of a number.
 inline constexpr int kAllDecimals = -1;
 
 struct ColumnName {
-  std::string key{};   ///< in CSV and JSON; empty: only shown
-  std::string head{};  ///< in the terminal; empty: not there
-  std::string form{};  ///< of a shown number, as fmt's; one with "%" shows a share in percent
+  std::string key{};   ///< in CSV and JSON; empty: omitted
+  std::string head{};  ///< in the terminal; empty: omitted
+  std::string form{};  ///< fmt format of a shown number; with "%", a share in percent
   int decimals = kAllDecimals;  ///< of a number in CSV and JSON
-  std::string title{};          ///< on a page; empty: not there
+  std::string title{};          ///< on a page; empty: omitted
 };
 
-/// A column and what each row has in it.
+/// A column and its value for each row.
 template <typename Row>
 struct Column {
   ColumnName name;
@@ -56,24 +56,24 @@ class Table {
     for (const Column<Row>& column : columns) add(column, rows);
   }
 
-  /// A column to the right; each has as many rows as the first.
+  /// Appends a column; all columns have the same number of rows.
   template <typename Row>
   void add(const Column<Row>& column, const std::vector<Row>& rows) {
     columns_.push_back({column.name, {}});
     for (const Row& row : rows) columns_.back().values.push_back(column.value(row));
   }
   void add(const Table& right);
-  /// The columns of these keys, "policy,days", in that order.
+  /// The columns with these keys ("policy,days"), in this order.
   [[nodiscard]] Table only(std::string_view keys) const;
 
   [[nodiscard]] std::size_t size() const;
-  /// For people, in aligned columns: a line of heads and one a row; what is not known is "-".
+  /// Aligned columns: one line of heads, one line per row; unknown values are "-".
   [[nodiscard]] std::string text() const;
-  /// A line of keys and one a row; what is not known is empty.
+  /// One line of keys, one line per row; unknown values are empty.
   [[nodiscard]] std::string csv() const;
-  /// Sets the keys of one row; what is not known is null, and so is an empty text.
+  /// Sets the keys of one row; unknown values and empty texts are null.
   void add_row(std::size_t row, Json& json) const;
-  /// The rows as a list of objects.
+  /// List of objects, one per row.
   [[nodiscard]] Json json() const;
 
   struct Entry {
@@ -86,7 +86,7 @@ class Table {
   std::vector<Entry> columns_;
 };
 
-/// A value as it is shown; `unknown` where it is not known.
+/// Value as shown; `unknown` if not known.
 std::string shown_value(const TableValue& value, const ColumnName& name,
                         std::string_view unknown = "-");
 

@@ -10,7 +10,7 @@ namespace bess {
 
 namespace {
 
-constexpr std::size_t kBits = 64;  ///< of a word
+constexpr std::size_t kBits = 64;  ///< per word
 
 }  // namespace
 
@@ -120,12 +120,12 @@ void VariableGroups::move_column_back(Eigen::Index from, Eigen::Index to) {
 
 namespace {
 
-constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
-/// A row of J lies across its columns: reading one takes as long as reading eight columns.
+constexpr double kRounding = 4e-16;  ///< smaller entries of d (|d| <= 1) are 0
+/// J is stored by columns: reading a row takes as long as reading eight columns.
 constexpr std::size_t kColumnsARow = 8;
-constexpr int kTogether = 8;  ///< columns of R that drop() turns at a time
+constexpr int kTogether = 8;  ///< columns of R that drop() rotates at a time
 
-/// Calls `visit.operator()<Count>(row)` for rows of J in bundles that fit into registers.
+/// Calls `visit.operator()<Count>(row)` for blocks of rows of J that fit into registers.
 template <typename Visit>
 void for_bundles_of_rows(Eigen::Index size, Visit visit) {
   Eigen::Index row = 0;
@@ -185,8 +185,8 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
   finish(from, image);
 }
 
-/// d without the rounding of what is 0, and what follows from it. Without branches: which are 0
-/// follows no pattern.
+/// Sets rounding errors in d to 0 and derives the rest. Without branches: the zeros follow no
+/// pattern.
 void ActiveSetFactors::finish(Eigen::Index from, RowImage& image) const {
   auto d = image.d.tail(size() - from);
   d = (d.array().abs() < kRounding).select(0.0, d);
@@ -242,9 +242,9 @@ void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd
   x.noalias() += basis_.leftCols(active_) * y.head(active_);
 }
 
-/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0)
-/// by I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of J2 w = z -
-/// corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
+/// Swaps the column with the largest |d2| to the front of J2. I - 2 w w' / w'w with w = d2 - corner
+/// e1 then maps d2 to (corner, 0, ..., 0), and J2 changes by the outer product of J2 w = z - corner
+/// J2 e1 and 2 w / w'w. w is 0 where d2 is.
 void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   Eigen::VectorXd& d = image.d;
   int& most = *std::ranges::max_element(image.free, {}, [&d](int k) { return std::fabs(d[k]); });
@@ -269,10 +269,10 @@ void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   ++active_;
 }
 
-/// The columns of the group behind the row's own each have one entry more than they should when
-/// they take the place of the one before. It is turned away, in a column by the rotations of those
-/// before and one of its own, and in J by all of them. Other groups' columns do not feel it. What
-/// remains is the place of the last one, which is free now and goes behind the active ones.
+/// Each column of the group after the dropped one moves forward one place and then has one entry
+/// below the diagonal. Rotations remove it: a column gets those of the columns before it and one of
+/// its own, J gets all of them. Other groups are not affected. The last place becomes free and
+/// moves behind the active ones.
 std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
   const int group[] = {groups_.of_column(position)};
   groups_.list_columns(group, position, active_, places_);
@@ -287,7 +287,7 @@ std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
   return places_;
 }
 
-/// Count rows of J through all rotations of a drop: what one hands to the next stays in registers.
+/// Applies all rotations of a drop to Count rows of J; the carried values stay in registers.
 template <int Count>
 void ActiveSetFactors::turn_rows(Eigen::Index row) {
   using Rows = Eigen::Array<double, Count, 1>;
@@ -302,9 +302,8 @@ void ActiveSetFactors::turn_rows(Eigen::Index row) {
   basis_.col(places_.back()).segment<Count>(row) = carried;
 }
 
-/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. Each rotation
-/// of a column waits for the one before it, so the columns go through the rotations that all of
-/// them need side by side.
+/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. The rotations
+/// of one column depend on each other, so Count columns are rotated in parallel.
 template <int Count>
 void ActiveSetFactors::turn_columns(std::size_t k) {
   const int first = places_.front();
@@ -336,8 +335,7 @@ void ActiveSetFactors::turn_columns(std::size_t k) {
   }
 }
 
-/// Column `gap` of J, which no row of R belongs to any more, goes behind the active ones, which
-/// move up.
+/// Column `gap` of J, which belongs to no row of R, moves behind the active ones; those move up.
 void ActiveSetFactors::close_gap(Eigen::Index gap) {
   for (Eigen::Index column = gap; column + 1 < active_; ++column) {
     basis_.col(column).swap(basis_.col(column + 1));

@@ -1,21 +1,20 @@
-// Factors of the active set of a strictly convex quadratic program with Hessian G = L L', as
-// Goldfarb and Idnani (1983) hold them. With N the active constraints' normals as columns,
+// Factors of the active set of a strictly convex quadratic program with Hessian G = L L' [Goldfarb
+// and Idnani 1983]. With N the active constraints' normals as columns,
 //
 //   L^-1 N = Q [R; 0]      J = L^-T Q = [J1 J2]      J1: as many columns as N, J2: the rest
 //
-// so that for a normal n and d = J'n, split alike into d1 and d2,
+// and for a normal n with d = J'n, split alike into d1 and d2,
 //
 //   z = J2 d2      the direction in x along which n'x grows fastest and the active rows stay,
 //                  |d2|^2 a unit
 //   r = R^-1 d1    how the active multipliers fall along it
 //   J2 J2'         the inverse of G on the directions that the active rows leave free
 //
-// A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by
-// Givens rotations. It meets columns of the groups that its variables belong to
-// (VariableGroups), and of J2 often fewer: an order between neighbours, whatever is active,
-// meets two, because the reflection begins with a column it meets and so leaves all others as they
-// are. An image lists these columns, and all work is on them. All memory is taken in the
-// constructors.
+// Adding a row takes one Householder reflection of the columns of J2 with d2 != 0, dropping one
+// takes Givens rotations. d is 0 outside the groups of the row's variables (VariableGroups). In J2
+// it often has fewer entries: an order between neighbours always has two. The reflection begins
+// with such a column and therefore leaves all others unchanged. A RowImage lists the columns, and
+// all work is on them. Only the constructors allocate memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,26 +25,26 @@
 
 namespace bess {
 
-// Variables that the Hessian or active rows tie together, and the columns of J that lie among them.
+// Groups of variables that the Hessian or active rows couple, with their columns of J.
 //
-// Rows that share no variable, not even by way of other active rows, do not feel each other: sorted
-// by group, J and R are block diagonal. Of an order between neighbours the groups are the blocks of
-// equal values, and a row meets two of them, however many rows are active. A group has as many
-// columns as variables. Groups grow together and are not parted before reset(): one too large costs
-// time, not correctness. All memory is taken in the constructor.
+// Rows without a common variable, directly or through other active rows, are independent: sorted by
+// group, J and R are block diagonal. For orders between neighbours the groups are the blocks of
+// equal values, and a row touches two of them. A group has as many columns as variables. Groups
+// only merge until reset(); too large a group costs time, not correctness. Only the constructor
+// allocates memory.
 
 class VariableGroups {
  public:
-  /// `inverse_root` is L^-1 [n x n]: variables are tied where it is not 0.
+  /// `inverse_root` is L^-1 [n x n]; its nonzero entries couple variables.
   explicit VariableGroups(const Eigen::MatrixXd& inverse_root);
 
-  /// As they were constructed.
+  /// Restores the groups of the constructor.
   void reset();
 
-  /// The groups of these variables, each once; `groups` must hold n of them without growing.
+  /// The distinct groups of these variables; `groups` must have capacity n.
   void find(std::span<const int> variables, std::vector<int>& groups) const;
-  /// The variables of these groups, or their columns from `from` to before `end`; rising. `list`
-  /// must hold n without growing.
+  /// The variables of these groups, or their columns in [from, end), ascending; `list` must have
+  /// capacity n.
   void list_variables(std::span<const int> groups, std::vector<int>& list) const;
   void list_columns(std::span<const int> groups, Eigen::Index from, Eigen::Index end,
                     std::vector<int>& list) const;
@@ -53,15 +52,15 @@ class VariableGroups {
     return of_column_[static_cast<std::size_t>(column)];
   }
 
-  /// Makes one group of these, which are one or more.
+  /// Merges these groups (at least one).
   void tie(std::span<const int> groups);
-  /// Two columns change places.
+  /// Swaps two columns.
   void swap_columns(Eigen::Index one, Eigen::Index other);
-  /// Column `from` goes behind those up to `to`, which move up.
+  /// Moves column `from` to `to`; those between move up.
   void move_column_back(Eigen::Index from, Eigen::Index to);
 
  private:
-  using Words = std::vector<std::uint64_t>;  ///< a bit for each member, words_ words a group
+  using Words = std::vector<std::uint64_t>;  ///< one bit per member, words_ words per group
 
   void enumerate(std::span<const int> groups, const Words& members, std::size_t from,
                  std::size_t end, std::vector<int>& list) const;
@@ -69,21 +68,21 @@ class VariableGroups {
   std::size_t words_;
   std::vector<int> of_variable_, of_column_;  ///< group of each, named by one of its variables
   Words variables_, columns_;
-  int count_;  ///< of groups
+  int count_;  ///< number of groups
   std::vector<int> start_of_;
   Words start_;
   int start_count_;
 };
 
-/// What the factors make of a row's normal n, until they change.
+/// Image of a row's normal n under the factors; valid until they change.
 struct RowImage {
   explicit RowImage(Eigen::Index size);
 
   Eigen::VectorXd d;        ///< J'n [n], 0 outside of the row's groups
-  std::vector<int> groups;  ///< those of the row's variables
-  std::vector<int> held;    ///< their columns of J1, rising
-  std::vector<int> free;    ///< columns of J2 whose d is not 0, rising
-  double independence = 0;  ///< |d2|: how far n lies from the span of the active ones, by G^-1
+  std::vector<int> groups;  ///< groups of the row's variables
+  std::vector<int> held;    ///< their columns of J1, ascending
+  std::vector<int> free;    ///< columns of J2 whose d is not 0, ascending
+  double independence = 0;  ///< |d2|: distance of n from the span of N in the G^-1 norm
 };
 
 class ActiveSetFactors {
@@ -96,12 +95,11 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// The image of the normal with `factors` at `variables` and 0 elsewhere. Its length is 1, by
-  /// G^-1. Nothing of J1 is looked at, and no `held` listed, when `of_free` alone is asked for:
-  /// what the active rows lack.
+  /// Image of the normal with `factors` at `variables` and 0 elsewhere; its length is 1 in the G^-1
+  /// norm. With `of_free` only the J2 part is computed and `held` stays empty.
   void image_of(std::span<const int> variables, std::span<const double> factors, double sign,
                 RowImage& image, bool of_free = false);
-  /// The variables that the row can move, rising; `list` must hold n without growing.
+  /// Variables that the row can move, ascending; `list` must have capacity n.
   void list_variables(const RowImage& image, std::vector<int>& list) const {
     groups_.list_variables(image.groups, list);
   }
@@ -109,7 +107,7 @@ class ActiveSetFactors {
   void direction(const RowImage& image, Eigen::VectorXd& z) const;
   /// J2 J2' v into `free`; both [n], may not alias.
   void project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free);
-  /// head(active) of `r` = R^-1 d1: 0 but for the held columns of the image.
+  /// head(active) of `r` = R^-1 d1; nonzero only in the held columns of the image.
   void solve(const RowImage& image, Eigen::VectorXd& r) const;
   /// head(active) of `y` becomes R^-1 y, or R^-T y.
   void solve(Eigen::VectorXd& y) const;
@@ -117,12 +115,12 @@ class ActiveSetFactors {
   /// x += J1 y.
   void add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
 
-  /// z = direction(image), and its row becomes the last active one; its independence must be above
-  /// 0. Leaves the image changed.
+  /// z = direction(image); the row becomes the last active one. Requires independence > 0. Changes
+  /// the image.
   void add(RowImage& image, Eigen::VectorXd& z);
-  /// Active row `position` goes. Of the places returned, rising from `position` on, each row moves
-  /// into the place before its own: first the group's, then those behind the last of these. Valid
-  /// until the next call.
+  /// Drops the active row at `position`. Of the returned places, ascending from `position`, each
+  /// row moves to the place before its own: first those of the group, then those behind its last.
+  /// Valid until the next call.
   std::span<const int> drop(Eigen::Index position);
 
  private:
@@ -133,13 +131,13 @@ class ActiveSetFactors {
   void turn_rows(Eigen::Index row);
   void close_gap(Eigen::Index gap);
 
-  Eigen::MatrixXd start_;     ///< J of no active row, L^-T [n x n]
+  Eigen::MatrixXd start_;     ///< J without active rows, L^-T [n x n]
   Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
   Eigen::MatrixXd triangle_;  ///< R in its upper left corner [n x n]
   VariableGroups groups_;
   Eigen::VectorXd scratch_;          ///< [n]
   Eigen::VectorXd cosines_, sines_;  ///< rotations of one drop [n]
-  std::vector<int> places_;          ///< of one drop
+  std::vector<int> places_;          ///< places of one drop
   Eigen::Index active_ = 0;
 };
 

@@ -28,7 +28,7 @@ void check_row(const DifferenceRow& row, int states) {
   if (!is_finite) fail("rule \"{}\": a bound or factor is not a finite number", row.rule);
 }
 
-/// Sets of variables that grow together; each set is known by one of its members.
+/// Union-find sets of variables.
 class DisjointSets {
  public:
   explicit DisjointSets(int size) : parent_(static_cast<std::size_t>(size)) {
@@ -104,7 +104,7 @@ std::optional<RowClash> ConstraintLayer::project(Block& block) const {
   if (outcome == QuadraticOutcome::kSolved) return {};
   if (outcome == QuadraticOutcome::kStalled) {
     fail(
-        "rule \"{}\" and those tied to it: factors and bounds differ too much in size to solve for",
+        "rule \"{}\" and those coupled to it: factors and bounds are too badly scaled to solve",
         rows_[block.rows.front()].rule);
   }
   RowClash clash;
@@ -133,7 +133,7 @@ std::string ConstraintLayer::contradiction(const RowClash& clash) const {
   for (const std::string& rule : clash.rules) {
     rules += fmt::format("{}\"{}\"", rules.empty() ? "" : " and ", rule);
   }
-  return fmt::format("{} {} at state {} of the batch: leave one out or move its bound", rules,
+  return fmt::format("{} {} at state {} of the batch: remove one or change its bound", rules,
                      clash.rules.size() == 1 ? "contradicts itself" : "contradict each other",
                      rows_[clash.rows.front()].terms.front().state);
 }

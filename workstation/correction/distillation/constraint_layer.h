@@ -1,12 +1,11 @@
-// The differentiable optimisation layer [Paper, Eq. 11] for any linear constraints: maps the logits
-// of a batch of states to the nearest ones that satisfy a plain list of rows. It gives the answer
-// of the CorrectionLayer on the paper's three properties (lattice_rows.h), which stays the fast way
-// for those alone.
+// Differentiable optimisation layer [Paper, Eq. 11] for general linear constraints: maps the logits
+// of a batch of states to the nearest ones that satisfy a list of rows. On the paper's three
+// properties (lattice_rows.h) it equals the CorrectionLayer, which is faster for those alone.
 //
-// Metric as there: sum (u-u')^2 + (v-v')^2 over the batch, the mean of a state's logits passes
-// through. States that no row ties together are projected apart: a block is a set of differences
-// connected by rows, each one dense quadratic program (quadratic_program.h), whose time grows with
-// the cube of its size. A difference that is in no row stays as it is.
+// Metric: sum (u-u')^2 + (v-v')^2 over the batch; the mean of a state's logits is unchanged. A
+// block is a set of differences connected by rows. Each block is one dense quadratic program
+// (quadratic_program.h), whose time grows with the cube of its size. Differences without rows are
+// unchanged.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,10 +20,10 @@
 
 namespace bess {
 
-// One linear demand on the student's logit differences at the states of a batch: what a property or
-// an operator's rule becomes before the constraint layer (constraint_layer.h) projects onto it.
+// Linear demand on the logit differences at the states of a batch: the form of a property or an
+// operator's rule that the constraint layer projects onto.
 //
-//   u = z_charge - z_idle     v = z_idle - z_discharge     (both in logits, one of each per state)
+//   u = z_charge - z_idle     v = z_idle - z_discharge     (logits, one of each per state)
 //
 //   state 4 charges:             u_4 >= m             {"rule", {{4, kU, 1}}, m}
 //                                v_4 >= 0             {"rule", {{4, kV, 1}}, 0}
@@ -44,29 +43,29 @@ struct DifferenceTerm {
 
 /// sum of factor * difference >= bound, or = bound.
 struct DifferenceRow {
-  std::string rule;  ///< whose row it is: every report names it
+  std::string rule;  ///< name of the rule, for reports
   std::vector<DifferenceTerm> terms;
   double bound = 0;
   bool is_equality = false;
 };
 
-// Logits [3] of a state and what the layers project: u = z_charge - z_idle and v = z_idle -
-// z_discharge, while their mean passes through. z = mean + A (u, v):
+// Logits [3] of a state and their differences u = z_charge - z_idle and v = z_idle - z_discharge.
+// The layers project u and v and keep the mean. z = mean + A (u, v):
 //   z_dis = mean - (2v+u)/3     z_idle = mean + (v-u)/3     z_cha = mean + (v+2u)/3
 
-/// Of one state: a point, or a gradient with respect to it.
+/// Differences of one state, or a gradient with respect to them.
 struct LogitDifferences {
   double u, v;
 };
 
-/// Of the state in column `c` of logits [3 x states].
+/// Differences of the state in column `c` of logits [3 x states].
 inline LogitDifferences differences_of(const Eigen::MatrixXd& logits, Eigen::Index c) {
   const double idle = logits(static_cast<int>(Action::kIdle), c);
   return {logits(static_cast<int>(Action::kCharge), c) - idle,
           idle - logits(static_cast<int>(Action::kDischarge), c)};
 }
 
-/// Column `c` of `logits` becomes the logits of this mean and these differences.
+/// Sets column `c` of `logits` to the logits with this mean and these differences.
 inline void set_logits(double mean, const LogitDifferences& difference, Eigen::MatrixXd& logits,
                        Eigen::Index c) {
   const double discharge = mean - (2 * difference.v + difference.u) / 3;
@@ -84,8 +83,8 @@ inline LogitDifferences difference_gradient_of(const Eigen::MatrixXd& gradient, 
   return {(-discharge - idle + 2 * charge) / 3, (-2 * discharge + idle + charge) / 3};
 }
 
-/// Column `c` of dL/dlogits, from that of the corrected logits, whose mean passed through, and from
-/// dL/d(u, v) of the differences that went into the layer.
+/// Column `c` of dL/dlogits, from that of the corrected logits (the mean is unchanged) and from
+/// dL/d(u, v) of the differences that entered the layer.
 inline void set_logit_gradient(const Eigen::MatrixXd& gradient_corrected,
                                const LogitDifferences& difference, Eigen::MatrixXd& gradient,
                                Eigen::Index c) {
@@ -96,16 +95,16 @@ inline void set_logit_gradient(const Eigen::MatrixXd& gradient_corrected,
   gradient(static_cast<int>(Action::kCharge), c) = mean + difference.u;
 }
 
-/// Rows that no logits satisfy together: leave out any one of them and the others can be satisfied.
+/// Minimal infeasible set of rows: without any one of them the others can be satisfied.
 struct RowClash {
   std::vector<std::size_t> rows;   ///< indices into the layer's rows, ascending
-  std::vector<std::string> rules;  ///< whose rows they are, each once, in the order of the rows
+  std::vector<std::string> rules;  ///< their distinct rules, in the order of the rows
 };
 
 class ConstraintLayer {
  public:
-  /// For batches of `states` columns. Throws UserError, naming the rule, for a row with a state
-  /// outside the batch or a number that is not finite.
+  /// For batches of `states` columns. Throws UserError, naming the rule, for a state outside the
+  /// batch or a number that is not finite.
   ConstraintLayer(std::vector<DifferenceRow> rows, int states);
 
   /// Corrects logits [3 x states]. Throws UserError naming the rules when rows contradict each
@@ -114,8 +113,7 @@ class ConstraintLayer {
   /// dL/dlogits from dL/dcorrected at the last forward.
   void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
 
-  /// The rows that contradict each other, if any do; whether rows can be satisfied does not depend
-  /// on logits.
+  /// The rows that contradict each other, if any. Independent of logits.
   [[nodiscard]] std::optional<RowClash> clash();
 
   [[nodiscard]] const std::vector<DifferenceRow>& rows() const { return rows_; }
@@ -126,12 +124,12 @@ class ConstraintLayer {
   /// Differences connected by rows, and their projection.
   struct Block {
     std::vector<int> variables;     ///< 2 * state + (v ? 1 : 0)
-    std::vector<std::size_t> rows;  ///< equalities first, as the program wants them
+    std::vector<std::size_t> rows;  ///< equalities first, as the program requires
     std::unique_ptr<QuadraticProgram> program;
     Eigen::VectorXd point, gradient;
   };
   void add_block(const std::vector<std::size_t>& rows);
-  /// Into block.program->x(); or the rows that leave no point.
+  /// Projects into block.program->x(); returns the rows if they are infeasible.
   [[nodiscard]] std::optional<RowClash> project(Block& block) const;
   [[nodiscard]] std::string contradiction(const RowClash& clash) const;
 

@@ -1,13 +1,13 @@
-// The differentiable optimisation layer [Paper, Eq. 11]: maps the student's logits on one context
+// Differentiable optimisation layer [Paper, Eq. 11]: maps the student's logits on one context
 // lattice (all prices x SoCs for one T_qh, qh, mo) to the nearest logits that satisfy the
 // properties.
 //
-// Logit differences u = z_charge - z_idle and v = z_idle - z_discharge are projected separately,
-// the mean of the logits passes through [SPEC 5]:
+// Logit differences u = z_charge - z_idle and v = z_idle - z_discharge are projected separately;
+// the mean of the logits is unchanged [SPEC 5]:
 //   monotone (3):     u, v fall by at least a slope margin per step of price and of SoC
 //   price <= low (1): u >= m and v >= 0          price >= high (2): v <= -m and u <= 0
-// The slope margin is what survives rounding in the integer student. It is a change of variables:
-// x = u + ramp is plainly non-increasing when u falls at least as fast as the ramp rises.
+// The slope margin keeps the order in the integer student despite rounding. It is a change of
+// variables: x = u + ramp is non-increasing if u falls at least as fast as the ramp rises.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,8 +35,8 @@ struct LatticeAxes {
 };
 
 /// Bounds on x = difference + ramp for a difference that must be at least `lower` at prices <= low
-/// and at most `upper` at prices >= high. The ramp differs inside a row, so the row's strictest
-/// cell counts.
+/// and at most `upper` at prices >= high. The ramp varies within a row, so the strictest cell of
+/// the row sets the bound.
 RowBounds ramped_bounds(const CorrectionOptions& options, const LatticeAxes& axes, double lower,
                         double upper);
 

@@ -19,11 +19,11 @@ namespace {
 constexpr std::uint64_t kSeedOutlook = 14;
 constexpr int kPasses = 4;
 constexpr double kExploration = 0.1;
-constexpr double kElsewhereShare = 0.25;  ///< of lessons at another price and SoC
+constexpr double kElsewhereShare = 0.25;  ///< additional training states at another price and SoC
 constexpr double kElsewhereEurPerMwh = 200;
 constexpr int kRows = kNetworkInputs + kActionCount;
 
-/// A day traded once, from its own SoC, at prices that are moved as a whole.
+/// One simulated pass over a day from its own SoC, with all prices shifted.
 struct Pass {
   double soc_frac;
   double shift_eur_per_mwh;
@@ -34,7 +34,7 @@ class LessonBook {
   LessonBook(const Teacher& teacher, const BatteryParameters& battery)
       : teacher_(teacher), per_eur_(learned_per_eur(battery)), x_(kNetworkInputs, 1) {}
 
-  /// Adds a lesson; returns what the teacher would do.
+  /// Adds a training state; returns the teacher's action.
   Action add(const MarketStep& step, double soc_frac, double shift_eur_per_mwh,
              OutlookProgram::Plan& plan) {
     auto worth_eur = teacher_.outlook->action_values(step, soc_frac, plan);
@@ -73,7 +73,7 @@ MarketStep elsewhere(MarketStep step, Random& random) {
   return step;
 }
 
-/// Draws a day's lessons in the order of time; `add` adds one and returns what the teacher does.
+/// Draws a day's training states in order of time; `add` adds one and returns the teacher's action.
 template <typename Add>
 void trade_day(std::span<const MarketStep> steps, const BatteryParameters& battery,
                double level_shift_eur_per_mwh, Random& random, Add add) {
@@ -120,7 +120,7 @@ Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
   const auto trade = [&](std::size_t d, Random& random, auto add) {
     trade_day(market.of(days[d]), battery, options.level_shift_eur_per_mwh, random, add);
   };
-  // What is drawn hangs on nothing that is planned: where each day's draws begin is known before.
+  // The draws do not depend on the plans: the generator's state at each day is known in advance.
   Random random(derive_seed(options.seed, kSeedOutlook));
   std::vector<Random> draws;
   for (std::size_t d = 0; d < days.size(); ++d) {
@@ -166,11 +166,11 @@ enum Seed : std::uint64_t { kSeedStudent = 11, kSeedLattices = 12, kSeedVisited 
 /// Passes over the training days, each from its own initial SoC, with this share of random actions.
 constexpr int kVisitedPasses = 4;
 constexpr double kVisitedExploration = 0.1;
-/// How far the axes of a counterexample's lattice reach: rows in EUR/MWh and columns in SoC steps.
+/// Range around a counterexample: rows in EUR/MWh and columns in SoC steps.
 constexpr int kCounterexamplePriceReach = 40;
 constexpr int kCounterexampleSocReach = 10;
 
-/// With rules: half as many prices and SoCs, four times as many lattices, as many states.
+/// With rules: half the prices and SoCs, four times the lattices, the same number of states.
 DistilOptions with_room_for_rules(DistilOptions options) {
   if (options.rules.empty()) return options;
   options.lattice_prices = std::max(8, options.lattice_prices / 2);
@@ -181,7 +181,7 @@ DistilOptions with_room_for_rules(DistilOptions options) {
 
 int clamped(int value, int low, int high) { return std::clamp(value, low, high); }
 
-/// Fills `axis` with sorted distinct values until it has `count`, drawing more from `draw`.
+/// Fills `axis` with sorted distinct values up to `count`, drawing more from `draw`.
 template <typename Draw>
 void fill_distinct(std::vector<int>& axis, int count, Draw draw) {
   std::ranges::sort(axis);
@@ -204,7 +204,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
   for (const MarketDay& day : training) steps += day.step_count;
   Matrix visited(kNetworkInputs, static_cast<Eigen::Index>(steps * kVisitedPasses));
   Eigen::Index at = 0;
-  // All days of all passes side by side: one forward pass over many columns per step of the day.
+  // All days of all passes in parallel: one forward pass with many columns per step of the day.
   struct Episode {
     std::span<const MarketStep> steps;
     double soc_frac;
@@ -216,7 +216,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
     for (const MarketDay& day : training) {
       const double soc =
           battery.soc_min_frac + random.uniform() * (battery.soc_max_frac - battery.soc_min_frac);
-      // Another year lies elsewhere: its levels are visited too, where the teacher knows them.
+      // Covers the price levels of other years, where the teacher knows them.
       const bool moves = pass > 0 && teacher.program != nullptr;
       const double shift = moves ? options.level_shift_eur_per_mwh * random.normal() : 0;
       episodes.push_back({market.of(day), soc, shift});
@@ -347,7 +347,7 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
   }
 }
 
-/// log mu for what the teacher sees: softmax of the teacher's values over the temperature.
+/// log mu of the teacher's inputs: log softmax of its values over the temperature.
 Eigen::MatrixXd Distiller::teacher_log_policy(const Matrix& seen, Worker& worker) const {
   return log_softmax(teacher_logits(teacher_, options_, seen, worker.teacher_tile));
 }
@@ -359,7 +359,7 @@ void Distiller::backward_student(Worker& worker) const {
   backward_hidden(student, worker.x, worker.student_tile, gradient);
 }
 
-/// Nothing where no rule names a state of the lattice.
+/// Nothing if no rule names a state of the lattice.
 std::optional<ConstraintLayer> Distiller::layer_with_rules(
     const Lattice& lattice, const CorrectionOptions& correction) const {
   LatticeState context{};

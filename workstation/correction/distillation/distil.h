@@ -1,8 +1,7 @@
 // Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq.
-// 11, 12]: losses, lessons and loop. An epoch is 64 context lattices of 32 prices x 16 SoCs, on
-// which the layer corrects, and 32,768 states that the teacher visits, which only follow the
-// teacher; it is taken in small steps of Adam. The layer is dropped afterwards: the student alone
-// decides.
+// 11, 12]: losses, training states and loop. An epoch has 64 context lattices of 32 prices x 16
+// SoCs, which the layer corrects, and 32,768 states that the teacher visits, which are not
+// corrected. Adam takes several steps per epoch. The student decides without the layer.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,21 +22,21 @@
 
 namespace bess {
 
-/// How property 3 comes about.
+/// How the student satisfies property 3.
 enum class CorrectionMethod : std::uint8_t {
-  kConstruction,  ///< signs of weights: no student violates it (monotone_distil.h)
-  kLayer,  ///< the paper's: training through the optimisation layer, until a student does not
+  kConstruction,  ///< by signs of weights (monotone_distil.h)
+  kLayer,  ///< the paper's: training through the optimisation layer until the proof succeeds
 };
 
 struct DistilOptions {
   CorrectionMethod method = CorrectionMethod::kConstruction;
   bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
-  RuleSet rules = {};   ///< the operator's, consistent with the thresholds
-  double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
-  /// Construction: deviation of what is added to a visited day's prices.
+  RuleSet rules = {};   ///< operator's rules, consistent with the thresholds
+  double fidelity = 1;  ///< construction: weight of the cross-entropy; the regret's is 1
+  /// Construction: standard deviation of the shift of a visited day's prices.
   double level_shift_eur_per_mwh = 60;
-  double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
+  double omega = 1e-4;  ///< the paper's trade-off; larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
   int epochs = 600;
   int steps_per_epoch = 16;  ///< Adam steps that share one epoch's states
@@ -45,7 +44,7 @@ struct DistilOptions {
   int lattice_prices = 32;
   int lattice_socs = 16;
   int visited_per_epoch = 32'768;
-  double learning_rate = 5e-3;  ///< falling along a cosine
+  double learning_rate = 5e-3;  ///< initial value; cosine decay
   int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
   int repair_epochs = 40;
   std::uint64_t seed = 1;
@@ -55,18 +54,18 @@ struct DistilOptions {
 inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
                                         kActionCount};
 
-/// The teacher's inputs, the student's five first, of states that the teacher's policy meets on the
-/// training days, with some exploration. All but the first pass move the prices of each day when
-/// the teacher knows such days: a stochastic program does, a network knows what it was shown.
+/// Teacher inputs (the student's five first) of states that the teacher's policy visits on the
+/// training days, with some exploration. All passes but the first shift each day's prices if the
+/// teacher is a stochastic program; a network does not know shifted prices.
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
                       const BatteryParameters& battery, const DistilOptions& options);
 
-/// The teacher's action values over the temperature of its softmax, [3 x samples]: its logits.
+/// The teacher's logits: action values over the temperature of its softmax [3 x samples].
 Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& options,
                                const MatrixRef& x, MlpTile& tile);
 
-/// By construction there are no lattices: their losses are 0, and that of the visited states is the
-/// mean regret over the temperature.
+/// Method construction has no lattices: their losses are 0, and the visited loss is the mean regret
+/// over the temperature.
 struct DistilPoint {
   int epoch;
   double teacher_loss;     ///< mean KL(pi || mu) over lattices
@@ -80,13 +79,13 @@ struct DistilPoint {
 
 class Distiller {
  public:
-  /// Keeps references: `teacher` and `visited` must outlive it. With rules that name states the
-  /// general layer projects where they hold; its time grows with the cube of a lattice, so lattices
-  /// are smaller and more.
+  /// Keeps references: `teacher` and `visited` must outlive it. Rules that name states need the
+  /// general layer, whose time grows with the cube of a lattice: lattices are then smaller and more
+  /// numerous.
   Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
 
-  /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are
-  /// any, and slope margins are multiplied by `margin_scale`.
+  /// Trains for `epochs`. Half of the lattices are around `counterexamples`, if any, and slope
+  /// margins are multiplied by `margin_scale`.
   void run(int epochs, const std::vector<LatticeState>& counterexamples, double margin_scale,
            const std::atomic<bool>& interrupted);
 
@@ -106,9 +105,9 @@ class Distiller {
     Parameters gradient;
     Losses losses;
     MlpTile teacher_tile, student_tile;
-    Matrix seen;  ///< by the teacher, which may have inputs of its own
+    Matrix seen;  ///< teacher inputs, possibly more than the student's
     Matrix x, z, dz;
-    std::string complaint;  ///< of the constraint layer, for the user
+    std::string complaint;  ///< error of the constraint layer, for the user
   };
 
   Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
@@ -134,17 +133,18 @@ class Distiller {
   std::vector<DistilPoint> curve_;
 };
 
-// What a student by outlook learns from: steps of the training days with what the teacher, the
-// program that plans on day-ahead prices and what a network adds to it, would do there. Its values
-// are no function of the student's five inputs, so they stand below them.
+// Training states of a student with the outlook context: steps of the training days with the action
+// values of the teacher (program on day-ahead prices plus residual). The values are no function of
+// the student's five inputs, so they are stored below them.
 
-/// [5 inputs and 3 action values x states], as Teacher::action_values() reads them. Of states that
-/// the teacher's policy meets on the training days, and some at another price and SoC. All but the
-/// first pass move each day's prices and its break-even prices alike: what to do stays the same.
+/// [5 inputs and 3 action values x states], as Teacher::action_values() reads them: states that the
+/// teacher's policy visits on the training days, and some at another price and SoC. All passes but
+/// the first shift each day's prices and break-even prices equally, which leaves the decision
+/// unchanged.
 Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
                        const BatteryParameters& battery, const DistilOptions& options);
 
-// The loss of the distillation and its gradients, per state [Paper, Eq. 12]:
+// Loss of the distillation and its gradients, per state [Paper, Eq. 12]:
 //   L = omega KL(pi || mu) + KL(pi' || pi)
 // pi' student, pi corrected student, mu teacher = softmax(action values / temperature).
 

@@ -7,7 +7,7 @@
 namespace bess {
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A staircase must gain more than rounding noise of the sums to split a level set.
+/// Minimum gain, relative to the sums, for a staircase to split a level set (rounding noise).
 constexpr double kRelativeGain = 1e-13;
 }  // namespace
 
@@ -26,7 +26,7 @@ IsotonicProjection::Rows IsotonicProjection::rows_of(const Block& block) const {
   return {first, last};
 }
 
-/// Dynamic program over rows: row i takes its cells left of t_i, and t does not grow with i.
+/// Dynamic program over rows: row i takes its cells left of t_i, and t does not increase with i.
 /// Returns the largest sum of y - theta over such a staircase and its thresholds in `cut`.
 double IsotonicProjection::best_staircase(const Block& block, Rows rows, double theta,
                                           int forced_in_rows, int forced_out_rows,
@@ -129,7 +129,7 @@ void IsotonicProjection::project(std::span<const double> y, const RowBounds& bou
   clipped_.clear();
   std::vector<int> cut;
   Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kInfinity, kInfinity};
-  // Solves what lies above the bound and keeps what lies below it.
+  // Solves the part above the bound and keeps the rest.
   const auto split_off = [&](double bound, int forced_in_rows) {
     const Rows rows = rows_of(rest);
     if (rows.first == rows.last) return;

@@ -1,5 +1,5 @@
 // Exact projection onto matrices that do not increase along rows or columns, with bounds on the
-// first and last rows: the heart of property 3 with properties 1 and 2 [Paper, Eq. 11; SPEC 5].
+// first and last rows: property 3 with properties 1 and 2 [Paper, Eq. 11; SPEC 5].
 //
 //   x = argmin sum_ij (x_ij - y_ij)^2
 //   s.t. x_ij >= x_i+1,j   x_ij >= x_i,j+1          rows: price ascending, columns: SoC ascending
@@ -7,14 +7,14 @@
 //
 // Threshold decomposition of a separable convex problem: for any level theta the set {x > theta} is
 // a maximum-weight staircase for the weights y - theta, where bounded rows are forced in below
-// their lower bound and out above their upper bound, and the two sides can then be solved apart
-// [Hochbaum 2001; Stout 2013]. So: split at theta = lower and at theta = upper first, with rows
-// forced; inside each part the bound is the same for every cell, where clipping the unbounded
-// solution IS the projection; and the unbounded solution comes from splitting at the mean until no
-// staircase gains. Clipping without the forced splits is not the projection.
+// their lower bound and out above their upper bound. The two sides are then independent [Hochbaum
+// 2001; Stout 2013]. First split at theta = lower and theta = upper, with rows forced. Inside each
+// part the bound is equal for all cells, so clipping the unbounded solution is exact. The unbounded
+// solution splits at the mean until no staircase gains. Clipping without the forced splits is not
+// the projection.
 //
-// Adjoint: the solution is piecewise linear in y; on each level set the Jacobian averages, and it
-// is zero where the level set is clipped to a bound.
+// Adjoint: the solution is piecewise linear in y. The Jacobian averages over each level set and is
+// zero where the level set is clipped to a bound.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@
 
 namespace bess {
 
-/// Bounds on whole rows. Requires lower > upper when both are in force (they bound opposite ends).
+/// Bounds on whole rows. Requires lower > upper if both are in force (they bound opposite ends).
 struct RowBounds {
   int lower_rows = 0;  ///< rows 0 .. lower_rows-1 are at least `lower`
   double lower = 0;

@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-/// Adds the rows of one rule after another.
+/// Row builder, rule by rule.
 class RowMaker {
  public:
   RowMaker(const LatticeAxes& axes, const CorrectionOptions& options)
@@ -33,7 +33,7 @@ class RowMaker {
     }
   }
 
-  /// Where the action never rises. The slope is what survives rounding in the integer student.
+  /// Rows for "the action never rises". The slope margin keeps the order despite integer rounding.
   void add_falls(const Rule& rule, RuleInput along) {
     const bool by_price = along == RuleInput::kPrice;
     const std::vector<double>& axis = by_price ? axes_.mapped_price : axes_.soc;
@@ -51,7 +51,7 @@ class RowMaker {
     }
   }
 
-  /// In the order in which the layer has always met the properties: its last bits depend on it.
+  /// The layer's order of the properties: its last bits depend on it.
   void sort_by_state() {
     std::ranges::stable_sort(rows_, {}, [](const DifferenceRow& row) {
       return std::pair(row.terms.front().difference, row.terms.front().state);
@@ -63,7 +63,7 @@ class RowMaker {
  private:
   void add_state(const Rule& rule, int i, int j) {
     const int state = i * socs_ + j;
-    // Of a set without a gap: the scores as they are do not matter.
+    // For a set without a gap the scores do not matter.
     for (const ScoreRow& row : ScoreRows(rule.actions(), 0, 0, options_.logit_margin)) {
       const Difference which = row.on_u != 0 ? Difference::kU : Difference::kV;
       const double factor = row.on_u + row.on_v;
@@ -73,7 +73,7 @@ class RowMaker {
     }
   }
 
-  /// A property's bound leaves room for the slopes between it and every state behind it.
+  /// A property's bound leaves room for the slopes up to every state behind it.
   [[nodiscard]] double built_in_bound(Difference which, bool is_lower, int i, int j) const {
     const RowBounds& bounds = which == Difference::kU ? u_ : v_;
     const double ramp =
