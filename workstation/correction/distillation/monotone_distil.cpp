@@ -104,7 +104,7 @@ bool RuleLessons::holds(const Asked& asked, const LatticeState& context) const {
   return holds_in_context(asked.rule.box, kind_, context.quarter_hour, context.context_class);
 }
 
-/// "At least" is hardest at the highest price and SoC, "at most" at the lowest.
+/// The tightest state of "at least" is at the highest price and SoC, of "at most" at the lowest.
 HardState RuleLessons::corner(const Asked& asked, LatticeState context, bool at_least) {
   const LatticeBox& box = asked.box;
   context.soc_index = static_cast<std::int16_t>(at_least ? box.soc_last : box.soc_first);
@@ -113,8 +113,8 @@ HardState RuleLessons::corner(const Asked& asked, LatticeState context, bool at_
   return {context, asked.rule.actions(), asked.index};
 }
 
-/// An operator's rule draws its hour before the minute, a built-in one behind it: so the students
-/// were made that are in use, and a seed gives them again.
+/// An operator's rule draws its hour before the minute, a built-in one after it: students in use
+/// were made this way and must be reproducible from their seed.
 LatticeState RuleLessons::draw_context(const Asked& asked, Random& random) const {
   const RuleBox& box = asked.rule.box;
   const bool hour_first = asked.rule.property == 0;
@@ -178,20 +178,20 @@ namespace {
 
 enum Seed : std::uint64_t { kSeedStudent = 21, kSeedBatches = 22, kSeedLessons = 23 };
 
-constexpr float kLeak = 0.05F;  ///< of the gradient through a saturated unit: it must find back
-constexpr double kRandomShare = 0.25;  ///< lessons from anywhere, per visited one
+constexpr float kLeak = 0.05F;  ///< gradient factor of saturated units, so that they can recover
+constexpr double kRandomShare = 0.25;  ///< states from the whole lattice per visited one
 constexpr double kAverageDecay = 0.998;
 constexpr int kBatch = 2048;
 constexpr int kRuleStates = 64;        ///< per batch and rule
-constexpr float kForbiddenRegret = 4;  ///< at least, over the temperature, of what a rule forbids
+constexpr float kForbiddenRegret = 4;  ///< minimum for forbidden actions, over the temperature
 
-/// 1 inside the linear part, the leak outside.
+/// 1 in the linear part, kLeak outside.
 void mask_gradient(const Matrix& sum, Matrix& gradient) {
   gradient.array() *= (sum.array() > 0.0F && sum.array() < static_cast<float>(kSaturation))
                           .select(Eigen::ArrayXXf::Ones(sum.rows(), sum.cols()), kLeak);
 }
 
-/// What is left of the teacher's choice when some actions are not allowed.
+/// Restricts the teacher's choice to the allowed actions.
 void obey(ActionSet allowed, Eigen::Index column, LessonStates& lessons) {
   if (allowed == kAllActions) return;
   const Eigen::Vector3f regret = lessons.regret.col(column);
@@ -218,7 +218,8 @@ void saturate(const Matrix& sum, Matrix& activation) {
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options) {
   Random random(derive_seed(options.seed, kSeedLessons));
-  // By outlook they are among the visited ones: the five inputs do not tell what to do.
+  // With the outlook context they are among the visited ones: the five inputs do not determine the
+  // action.
   const double anywhere_share = teacher.outlook ? 0 : kRandomShare;
   const auto anywhere =
       static_cast<Eigen::Index>(anywhere_share * static_cast<double>(visited.cols()));
@@ -231,7 +232,7 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
         static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(visited.cols())));
     const int price = kLatticePriceMinEurPerMwh + static_cast<int>(random.index(kPriceCount));
     const float mapped = random.uniform() < 0.5 ? visited(4, from) : teacher.price_map(price);
-    // One after another: in one call the order of the draws would be the compiler's.
+    // Separate statements: within one call the compiler would choose the order of the draws.
     const int context_class = 1 + static_cast<int>(random.index(kContextClassCount));
     const auto quarter_hour = static_cast<int>(random.index(kQuarterHourCount));
     const auto minute = static_cast<int>(random.index(kMinuteOfQuarterHourCount));
@@ -280,8 +281,8 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates&
   average_ = student_;
 }
 
-/// Moves and scales each hidden unit so that over the lessons its sum has mean 1/2 and deviation
-/// 1/2: bent where the states are.
+/// Shifts and scales each hidden unit so that its sum over the training states has mean 1/2 and
+/// deviation 1/2: the kinks are then where the states are.
 void MonotoneDistiller::spread_activations() {
   Worker& worker = workers_.front();
   const Eigen::Index count = std::min<Eigen::Index>(4096, lessons_.inputs.cols());
@@ -351,7 +352,7 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
   }
 }
 
-/// Adds the gradient of this worker's part of the batch.
+/// Adds the gradient of this worker's share of the batch.
 void MonotoneDistiller::learn(Worker& w, double scale) const {
   forward(student_, w);
   w.dz.setZero(kActionCount, w.z.cols());
@@ -368,14 +369,14 @@ void MonotoneDistiller::learn(Worker& w, double scale) const {
     float expected = 0;
     for (int a = 0; a < kActionCount; ++a) expected += (p[a] /= sum) * w.regret(a, c);
     w.loss += scale * double{expected};
-    // Cross-entropy finds the teacher's action from anywhere; expected regret then spends what the
-    // net can do where it pays.
+    // Cross-entropy finds the teacher's action from any start; expected regret then spends the
+    // net's capacity where it pays.
     for (int a = 0; a < kActionCount; ++a) {
       w.dz(a, c) =
           share * (fidelity * (p[a] - w.target(a, c)) + p[a] * (w.regret(a, c) - expected));
     }
   }
-  // Hinges of the rules, the built-in ones too, on u = charge - idle and v = idle - discharge.
+  // Hinge losses of all rules on u = charge - idle and v = idle - discharge.
   for (Eigen::Index c = w.learnt; c < w.z.cols(); ++c) {
     const double u = w.z(2, c) - w.z(1, c);
     const double v = w.z(1, c) - w.z(0, c);

@@ -1,11 +1,12 @@
-// Distillation into a student that is monotone by construction: its weights keep sign bounds. No
-// part of property 3 is left to training, so training has one aim, what the student earns:
+// Distillation into a student that is monotone by construction: sign bounds on its weights give
+// property 3, so training has one objective, the student's profit:
 //
 //   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature   mu = softmax(values / temperature)
 //
-// over states that the teacher visits and some from anywhere, with hinges where a rule binds,
-// built-in (properties 1 and 2) or an operator's: by monotony a state or two for each context tell.
-// Hidden activations saturate at 0 and at 1, so that sums of them bend both ways.
+// over states that the teacher visits and some of the whole lattice, with hinge losses where rules
+// apply (properties 1 and 2, operator's rules): because of monotonicity one or two states for each
+// context suffice. Hidden activations saturate at 0 and 1, so that their sums can be convex and
+// concave.
 #pragma once
 
 #include <atomic>
@@ -22,34 +23,34 @@
 
 namespace bess {
 
-// A student that is monotone by construction [SPEC 5, property 3]: which weights may have which
-// sign, in the student's own 5-64-32-3. Monotone networks are Sill (1998) and Daniels and Velikova
-// (2010); units that fall and units that rise side by side, and free ones for the inputs without an
-// order, are what Runje and Shankaranarayana (2023) call a constrained monotone network.
+// Signs of the weights of a student that is monotone by construction [SPEC 5, property 3], in the
+// student's 5-64-32-3 layout. Monotone networks: Sill (1998), Daniels and Velikova (2010). Falling,
+// rising and free units in one layer: constrained monotone network [Runje and Shankaranarayana
+// 2023].
 //
-//   hidden 1   20 units fall with price and SoC (weights <= 0), 20 rise (>= 0), 24 do not see them;
+//   hidden 1   20 units fall with price and SoC (weights <= 0), 20 rise (>= 0), 24 ignore them;
 //              time and context enter all of them freely
 //   hidden 2   16 falling units: weights >= 0 from falling, <= 0 from rising, free from the others;
-//              16 rising units: the other way round
-//   logits     idle is the origin; charge takes falling units >= 0 and rising ones <= 0, discharge
-//              the other way round
+//              16 rising units: reversed signs
+//   logits     idle is 0; charge takes falling units >= 0 and rising ones <= 0, discharge
+//              with reversed signs
 //
-// So neither charge - idle nor idle - discharge can rise with price or SoC, whatever the weights
-// are inside these bounds. Rounding to integers keeps every sign, and the integer activations rise
-// with their sums: the exported student has the property too.
+// So neither charge - idle nor idle - discharge can rise with price or SoC within these bounds.
+// Rounding to integers keeps every sign, and the integer activations are monotone: the exported
+// student has the property too.
 
 /// Bounds of every parameter of a student, in the layout of mlp.h.
 class SignBounds {
  public:
-  /// No bound at all.
+  /// No bounds.
   static SignBounds none();
-  /// The bounds above, and the same for other inputs: where the action never falls with one,
-  /// falling units rise with it. Free units see no input that has a direction.
+  /// The bounds above, and bounds for further directions: if the action never falls with an input,
+  /// falling units rise with it. Free units ignore inputs with a direction.
   static SignBounds monotone(const std::vector<Direction>& directions = RuleSet{}.directions());
 
-  /// Turns the sign of what lies outside: a start inside with as many weights that matter.
+  /// Flips the sign of parameters outside the bounds: keeps the magnitudes of the initial weights.
   void reflect(Parameters& parameters) const;
-  /// To the nearest parameters inside.
+  /// Projects onto the bounds.
   void clamp(Parameters& parameters) const {
     parameters = parameters.cwiseMax(lower_).cwiseMin(upper_);
   }
@@ -62,20 +63,20 @@ class SignBounds {
   Parameters lower_, upper_;
 };
 
-// How a student learns rules while it is distilled, the teacher untouched: what the teacher would
-// do against an operator's rule is taken out of the lessons, and some states of every batch are
-// held to every rule, the built-in ones too, by hinges. Of a monotone student one or two corners of
-// a rule's box tell for all of it, in each context.
+// Rules in distillation. The teacher is unchanged. Actions that an operator's rule forbids are
+// removed from the training states, and some states of every batch get hinge losses for all rules,
+// built-in ones included. For a monotone student one or two corners of a rule's box suffice in each
+// context.
 
-/// A state that decides a rule in its context, and what is allowed there.
+/// State that decides a rule in its context, with the allowed actions.
 struct HardState {
   LatticeState state;
   ActionSet actions;
   std::size_t rule = 0;  ///< index in the set
 };
 
-/// Which states of a rule decide it, for the hinges and for a quick look before a proof. Rules that
-/// do not bind the student's states are left out; a direction is the signs' (monotone_distil.h).
+/// Deciding states of the rules, for the hinge losses and for a quick check before a proof. Rules
+/// that do not bind the student's states are omitted; directions are left to the sign bounds.
 class RuleLessons {
  public:
   RuleLessons(const RuleSet& rules, ContextKind kind);
@@ -83,15 +84,15 @@ class RuleLessons {
   [[nodiscard]] bool empty() const { return asked_.empty(); }
   [[nodiscard]] std::size_t count() const { return asked_.size(); }
 
-  /// A hard state of rule `index` < count(), in a context of its box: half of them in one of
-  /// `counterexamples`, where there are some.
+  /// A deciding state of rule `index` < count(), in a context of its box; half of them in a context
+  /// of `counterexamples`, if any.
   HardState draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
                  Random& random) const;
 
-  /// What a monotone student is held to in this context; rules without corners are left out.
+  /// Deciding states of a monotone student in this context; rules without corners are omitted.
   void corners(const LatticeState& context, std::vector<HardState>& states) const;
 
-  /// The actions that the operator's rules leave at a network input.
+  /// Actions that the operator's rules allow at a network input.
   [[nodiscard]] ActionSet actions_at(const float* x, const PriceMap& price_map) const;
 
  private:
@@ -99,7 +100,7 @@ class RuleLessons {
     std::size_t index;  ///< in the set
     Rule rule;
     LatticeBox box;
-    bool has_corners;  ///< else any state of the box may be the worst
+    bool has_corners;  ///< false: any state of the box may be the worst
   };
   [[nodiscard]] bool holds(const Asked& asked, const LatticeState& context) const;
   [[nodiscard]] LatticeState draw_context(const Asked& asked, Random& random) const;
@@ -110,30 +111,30 @@ class RuleLessons {
   ImpliedRanges implied_;
 };
 
-/// Where a hidden unit saturates; quantise_student() must know it.
+/// Saturation of a hidden unit; quantise_student() needs it.
 inline constexpr double kSaturation = 1;
 
-/// States to learn from, with what the teacher would do in each.
+/// Training states with the teacher's values.
 struct LessonStates {
   Matrix inputs;        ///< [5 x states]
   Matrix teacher_frac;  ///< [3 x states] softmax of the teacher's values
-  Matrix regret;  ///< [3 x states] what an action loses against the best, over the temperature
+  Matrix regret;        ///< [3 x states] loss against the best action, over the temperature
 };
 
-/// Visited states and, for what no day has shown, states from anywhere in the lattice. Where the
-/// teacher would break one of the options' rules, its next best takes its place.
+/// Visited states and random states of the lattice. Where the teacher would violate one of the
+/// options' rules, its best allowed action replaces its choice.
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options);
 
 class MonotoneDistiller {
  public:
   /// Keeps a reference: `lessons` must outlive it. `options.correct` false: the same student and
-  /// training without any bound, for comparison.
+  /// training without bounds, for comparison.
   MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
                     const DistilOptions& options);
 
-  /// Trains for `epochs`; `counterexamples` are states that the rules must be learnt in, besides
-  /// random ones. Calls `look` now and then, at the end for certain, with the share of epochs done.
+  /// Trains for `epochs`; the rules are also trained in the states `counterexamples`. Calls `look`
+  /// from time to time and at the end, with the share of epochs done.
   void run(int epochs, const std::vector<LatticeState>& counterexamples,
            const std::atomic<bool>& interrupted, const std::function<void(double done)>& look);
 
@@ -145,8 +146,8 @@ class MonotoneDistiller {
     Parameters gradient;
     double loss = 0;
     Matrix x, target, regret, a1, h1, a2, h2, z, dz, d1, d2;
-    Eigen::Index learnt;             ///< columns that follow the teacher; the others obey the rules
-    std::vector<ActionSet> allowed;  ///< of those others
+    Eigen::Index learnt;             ///< columns that follow the teacher, then those for rules
+    std::vector<ActionSet> allowed;  ///< of the columns for rules
   };
 
   void spread_activations();
@@ -161,7 +162,7 @@ class MonotoneDistiller {
   RuleLessons rules_;
   SignBounds bounds_;
   Parameters student_;
-  Parameters average_;  ///< of the student on its way, inside the bounds with it
+  Parameters average_;  ///< running mean of the student's parameters, inside the bounds
   Adam adam_;
   ThreadTeam team_;
   std::vector<Worker> workers_;

@@ -10,19 +10,19 @@ namespace bess {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Rows have unit length in the metric of G^-1, so slacks and multipliers are distances; all
-// tolerances on them are times the size of the terms that a slack is summed from.
-constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
-constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
-constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
-constexpr double kDrift = 1e-11;  ///< active rows this far from tight: the factors have drifted
-/// |d2| of a unit row that depends on the active ones: rounding leaves 1e-13 at 512 variables.
+// Rows have unit length in the G^-1 norm, so slacks and multipliers are distances. Tolerances on
+// them are relative to the size of the terms of a slack.
+constexpr double kViolation = 1e-12;     ///< minimum violation of a row
+constexpr double kContradiction = 1e-9;  ///< minimum contradiction of rows; below, they just meet
+constexpr double kWeakly = 1e-9;         ///< smaller slacks and multipliers are 0 in the derivative
+constexpr double kDrift = 1e-11;         ///< slack of active rows that requires new factors
+/// Largest |d2| of a unit row that depends on the active ones; rounding leaves 1e-13 at 512
+/// variables.
 constexpr double kDependent = 1e-9;
-/// Of the largest: smaller entries of r are rounding, and limit no step.
+/// Relative to the largest: smaller entries of r are rounding and limit no step.
 constexpr double kFallingMultiplier = 1e-10;
 constexpr int kRebuildsMax = 3;
-/// From this share of factors that are not 0 on, rows are taken for dense: products then run over
-/// all.
+/// Minimum share of nonzero factors for dense products.
 constexpr double kDenseShare = 0.2;
 constexpr int kStepsMaxPerRow = 50;
 
@@ -64,7 +64,7 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   scale_rows(inverse_root);
 }
 
-/// A row of zeros stays one: it is satisfied, or clashes by itself.
+/// A row of zeros is unchanged: it is satisfied or infeasible by itself.
 void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
   rows_.normals.makeCompressed();
   for (int i = 0; i < rows_.normals.rows(); ++i) {
@@ -127,9 +127,8 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   measure();
 }
 
-/// Rows that share no variable do not feel each other: at the start of a projection each is met by
-/// itself, the most violated first. The dearer steps, which look at all active rows, begin with
-/// these.
+/// Rows without common variables are independent: at the start of a projection each is added by
+/// itself, the most violated first. The more expensive steps over all active rows begin with these.
 void QuadraticProgram::take_in_disjoint_rows() {
   candidates_.clear();
   for (int row = 0; row < slacks_.size(); ++row) {
@@ -149,7 +148,7 @@ void QuadraticProgram::take_in_disjoint_rows() {
   }
 }
 
-/// False, and nothing is claimed, when another row has one of the row's variables already.
+/// False, without any claim, if another row already has one of the row's variables.
 bool QuadraticProgram::claim_variables(int row) {
   for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
     if (is_claimed_[static_cast<std::size_t>(term.col())] != 0) return false;
@@ -202,8 +201,8 @@ double QuadraticProgram::slack_of(int row) const {
   return sum;
 }
 
-/// x += step z, where z is the direction of the image; slacks follow where x moves. Their rounding
-/// is gone when they are measured at the end.
+/// x += step z, where z is the direction of the image; updates the affected slacks. The final
+/// measurement removes their rounding errors.
 void QuadraticProgram::move(double step) {
   if (dense_.size() > 0) {
     z_ *= step;
@@ -237,14 +236,14 @@ Eigen::Index QuadraticProgram::active_equalities() const {
   return std::ranges::partition_point(active_, is_equality) - active_.begin();
 }
 
-/// How far the multipliers can follow -r until that of an inequality is 0.
+/// Largest step along -r before the multiplier of an inequality reaches 0.
 QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   Limit limit{kInfinity, 0};
   if (image_.held.empty()) return limit;
   const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
   const Eigen::Index equalities = active_equalities();
   for (const int k : image_.held) {
-    // First what seldom holds: whether r falls is as likely as not.
+    // The rarer condition first: the sign of r is unpredictable.
     const bool is_nearer = active_multipliers_[k] < limit.step * r_[k];
     if (is_nearer && r_[k] > falling && k >= equalities) {
       limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
@@ -253,15 +252,15 @@ QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   return limit;
 }
 
-/// Multipliers of inequalities are not negative, whatever rounding says.
+/// Clips rounding errors: multipliers of inequalities are not negative.
 void QuadraticProgram::keep_signs() {
   const Eigen::Index equalities = active_equalities();
   auto signed_ones = active_multipliers_.segment(equalities, factors_.active() - equalities);
   signed_ones = signed_ones.cwiseMax(0);
 }
 
-/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way.
-/// False when the row contradicts the active ones.
+/// Step 2 of the paper: moves towards the row until it is tight and drops blocking active rows.
+/// False if the row contradicts the active ones.
 bool QuadraticProgram::take_in(int row, double sign) {
   double multiplier = 0;
   while (true) {
@@ -308,15 +307,15 @@ void QuadraticProgram::activate(int row, double sign, double multiplier) {
   mark(row, true);
 }
 
-/// Who is active is not looked for among the violated.
+/// Active rows are excluded from the search for violated ones.
 void QuadraticProgram::mark(int row, bool active) {
   is_active_[static_cast<std::size_t>(row)] = active ? 1 : 0;
   passed_over_[row] = active ? kInfinity : 0;
 }
 
-/// Takes the row into the factors, unless it depends on the active ones.
+/// Adds the row to the factors unless it depends on the active ones.
 bool QuadraticProgram::hold(int row, double sign) {
-  image_of(row, sign, true);  // most rows that come here depend on the others
+  image_of(row, sign, true);  // most of these rows depend on the others
   if (image_.independence <= kDependent) return false;
   image_of(row, sign);
   factors_.add(image_, z_);
@@ -334,8 +333,8 @@ void QuadraticProgram::let_go(std::size_t position) {
 }
 
 /// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0
-/// while its bounds sum to the violation. The active rows are independent, so there is no other
-/// such sum: without any one of these rows the others can be satisfied.
+/// while the bounds sum to the violation. The active rows are independent, so the sum is unique:
+/// without any one of these rows the others can be satisfied.
 void QuadraticProgram::keep_clash(int row, double sign) {
   const double least =
       kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());
@@ -350,7 +349,7 @@ void QuadraticProgram::keep_clash(int row, double sign) {
 
 /// x and multipliers of the active set, from the factors alone:
 ///   y = R^-T (b - N'G^-1 g)    x = G^-1 g + J1 y    multipliers = R^-1 y
-/// Returns how far the active rows are from tight.
+/// Returns the largest slack of the active rows.
 double QuadraticProgram::recompute() {
   x_ = free_minimum_;
   for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -367,7 +366,7 @@ double QuadraticProgram::recompute() {
   return distance;
 }
 
-/// The factors of the active set from the start.
+/// Recomputes the factors of the active set.
 void QuadraticProgram::rebuild() {
   factors_.reset();
   std::erase_if(active_, [this](const ActiveRow& row) {
@@ -387,13 +386,13 @@ void QuadraticProgram::publish_multipliers() {
 
 void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
   const double weak = kWeakly * scale_;
-  // Held: every tight row.
+  // Kept: every tight row.
   for (int row = rows_.equalities; row < slacks_.size(); ++row) {
     if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
     if (hold(row, 1)) activate(row, 1, 0);
   }
   factors_.project_free(gradient_x, gradient_g);
-  // Let go: those without a multiplier.
+  // Dropped: those without a multiplier.
   const std::size_t held = active_.size();
   const Eigen::Index equalities = active_equalities();
   for (Eigen::Index k = factors_.active(); k-- > equalities;) {

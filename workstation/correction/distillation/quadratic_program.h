@@ -1,24 +1,24 @@
-// A strictly convex quadratic program, dense in the variables and sparse in the rows, and its
+// Strictly convex quadratic program, dense in the variables and sparse in the rows, with its
 // derivative:
 //
 //   x = argmin 1/2 x'Gx - g'x   s.t.  a_i'x = b_i  for the first rows, a_i'x >= b_i for the others
 //
-// Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the free
-// minimum G^-1 g, and takes in the row violated most, letting go of active rows whose multipliers
-// would turn negative, until none is violated. Each step raises the dual value, so it ends.
-// Degenerate, dependent and repeated rows need no care: a row that depends on the active ones takes
-// a step in the multipliers alone. When it can take none, no x satisfies all rows, and the
-// multipliers say which of them clash (Farkas). At the end x and multipliers are computed anew from
-// the factors, so that steps leave no rounding behind.
+// Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the
+// unconstrained minimum G^-1 g and adds the most violated row, dropping active rows whose
+// multipliers would become negative, until none is violated. Each step raises the dual value, so it
+// terminates. A row that depends on the active ones takes a step in the multipliers only. If no
+// step is possible, no x satisfies all rows, and the multipliers name the contradicting rows
+// (Farkas). At the end x and multipliers are recomputed from the factors, which removes the
+// rounding of the steps.
 //
-// Derivative: near g the same rows S stay active, where x is an affine function of g [dQP, arXiv
-// 2410.06324]. The adjoint w solves one linear system on them,
+// Derivative: near g the same rows S are active, and x is an affine function of g [dQP, arXiv
+// 2410.06324]. The adjoint w solves one linear system,
 //   [G N; N' 0] [w; .] = [dL/dx; 0]        hence        dL/dg = w = J2 J2' dL/dx.
-// Where a row is tight with multiplier 0 the derivative has several sides. It is then the mean of
-// the one with all such rows held and the one with all let go: for one such row, what a central
-// difference sees.
+// Where a row is tight with multiplier 0 the derivative is one-sided. The result is the mean of the
+// derivatives with all such rows kept and with all dropped: for one such row, the central
+// difference.
 //
-// After the constructor nothing allocates.
+// Only the constructor allocates memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@
 
 namespace bess {
 
-/// Rows a_i'x >= b_i, [rows x variables]; the first `equalities` of them hold as a_i'x = b_i.
+/// Rows a_i'x >= b_i, [rows x variables]; the first `equalities` of them are a_i'x = b_i.
 struct LinearConstraints {
   Eigen::SparseMatrix<double, Eigen::RowMajor> normals;
   Eigen::VectorXd bounds;
@@ -40,10 +40,10 @@ struct LinearConstraints {
 enum class QuadraticOutcome {
   kSolved,
   kContradiction,  ///< no point satisfies all rows: see clash()
-  kStalled,        ///< rounding keeps it from ending: numbers of very different size
+  kStalled,        ///< no convergence because of rounding: badly scaled numbers
 };
 
-/// A row's part in a contradiction: weights times rows sum to 0 >= a positive number. Weights of
+/// A row's part in a contradiction: the weighted rows sum to 0 >= a positive number. Weights of
 /// inequalities are positive.
 struct ClashingRow {
   int row;
@@ -61,18 +61,18 @@ class QuadraticProgram {
   QuadraticOutcome solve(const Eigen::VectorXd& g);
 
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
-  /// [rows], of the rows as given: 0 for rows that are not active, >= 0 for inequalities.
+  /// [rows], of the rows as given: 0 for inactive rows, >= 0 for inequalities.
   [[nodiscard]] const Eigen::VectorXd& multipliers() const { return multipliers_; }
-  /// After kContradiction.
+  /// Valid after kContradiction.
   [[nodiscard]] const std::vector<ClashingRow>& clash() const { return clash_; }
-  /// Rows taken in and let go in the last solve.
+  /// Rows added and dropped in the last solve.
   [[nodiscard]] int steps() const { return steps_; }
 
-  /// dL/dg from dL/dx at the last solve, which was kSolved. Both [n], may not alias.
+  /// dL/dg from dL/dx at the last solve, which must be kSolved. Both [n], may not alias.
   void backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g);
 
  private:
-  /// A row in the active set; its sign is -1 where an equality was met from above.
+  /// A row in the active set; its sign is -1 where an equality was approached from above.
   struct ActiveRow {
     int row;
     double sign;
@@ -81,7 +81,7 @@ class QuadraticProgram {
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor>;
   struct Limit {
     double step;
-    std::size_t position;  ///< of the active row whose multiplier reaches 0 there
+    std::size_t position;  ///< active row whose multiplier reaches 0 there
   };
 
   QuadraticProgram(LinearConstraints&& constraints, const Eigen::MatrixXd& inverse_root);
@@ -108,12 +108,12 @@ class QuadraticProgram {
   void publish_multipliers();
 
   LinearConstraints rows_;     ///< scaled to |L^-1 a| = 1
-  Columns columns_;            ///< the same normals, by variable; empty when dense_ is not
-  Eigen::MatrixXd dense_;      ///< the same normals, where many of their factors are not 0
+  Columns columns_;            ///< the same normals, by variable; empty if dense_ is used
+  Eigen::MatrixXd dense_;      ///< the same normals, if many of their factors are not 0
   bool is_projection_;         ///< G is the identity
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
-  RowImage image_;                      ///< of the row that is looked at
+  RowImage image_;                      ///< of the current row
   std::vector<ActiveRow> active_;       ///< equalities first
   Eigen::VectorXd active_multipliers_;  ///< [n] of the active rows, in their order
   std::vector<char> is_active_;         ///< [rows]
@@ -127,7 +127,7 @@ class QuadraticProgram {
   Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
   Eigen::VectorXd multipliers_;   ///< [rows] of the rows as given
   Eigen::VectorXd slacks_;        ///< [rows] of the scaled rows at x
-  Eigen::VectorXd sizes_;         ///< [rows] and of their terms, together; empty when dense_ is
+  Eigen::VectorXd sizes_;         ///< [rows] sum of their terms' sizes; empty if dense_ is
   double scale_ = 1;              ///< the largest of these sizes
   int steps_ = 0;
 };

@@ -1,9 +1,9 @@
-// A set of allowed actions as linear constraints on the scores of one state [SPEC 5], u = z_charge
-// - z_idle and v = z_idle - z_discharge:
+// Allowed actions as linear constraints on the scores of one state [SPEC 5], u = z_charge - z_idle
+// and v = z_idle - z_discharge:
 //   at least charge  u >= m, v >= 0          at most discharge  -v >= m, -u >= 0
 //   at least idle    v >= m                  at most idle       -u >= m
-// Each is a little stronger than needed, and keeps u and v apart. "Not idle" is not convex: the
-// side on which the scores are already is asked for.
+// Each is slightly stronger than necessary and separates u from v. "Not idle" is not convex: the
+// constraint takes the side of the present scores.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct ScoreRow {
 
 class ScoreRows {
  public:
-  /// `u`, `v`: the scores as they are; they matter for "not idle" alone.
+  /// `u`, `v`: the present scores, used for "not idle" only.
   ScoreRows(ActionSet actions, double u, double v, double margin) {
     const bool discharges = allows(actions, Action::kDischarge);
     const bool idles = allows(actions, Action::kIdle);

@@ -1,5 +1,5 @@
-// is, is_not, at_least, at_most: which actions are left in the box. Broken by each state of it
-// whose action is another.
+// Demands is, is_not, at_least, at_most: the actions allowed in the box. Violated by each state of
+// the box with another action.
 #include <fmt/core.h>
 
 #include <array>
@@ -67,7 +67,7 @@ void read(TomlTable& table, std::string_view key, Rule& rule) {
     if (!is_left(key, other, static_cast<Action>(named))) continue;
     actions = static_cast<ActionSet>(actions | action_bit(other));
   }
-  if (actions == kAllActions) table.fail(key, "allows every action: it asks for nothing");
+  if (actions == kAllActions) table.fail(key, "allows every action: use another one");
   rule.demand = action_demand(actions);
 }
 

@@ -1,8 +1,8 @@
-// What a rule asks. A kind of demand is one file of this room (action_demand.cpp is the first to
-// read) and one row of demand_kinds.cpp: its keys in a rule file, how it is said and written, and
-// its predicate. Everything else follows from three facts that it may state: the actions that it
-// leaves in the rule's box (the layer's rows, the hinges, what rules imply for each other, the
-// guard), how the action moves with an input, and how much power the guard leaves.
+// Rule demand interface. A kind of demand is one file (action_demand.cpp is the first to read) and
+// one row of demand_kinds.cpp: its keys in a rule file, its text forms and its predicate. All other
+// code uses three properties of a demand: the actions that it allows in the rule's box (rows of the
+// layer, hinge losses, implied bounds, guard), how the action moves with an input, and the power
+// that the guard allows.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Rule;
 enum class RuleInput : std::uint8_t { kMinute, kQuarterHour, kContextClass, kSoc, kPrice };
 inline constexpr int kRuleInputCount = 5;
 
-/// How the action may move when an input rises; +1 never falls, -1 never rises, 0 as it likes.
+/// How the action may move when an input rises: +1 never falls, -1 never rises, 0 free.
 struct Direction {
   RuleInput input = RuleInput::kPrice;
   int sign = 0;
@@ -35,7 +35,7 @@ struct Direction {
 struct ActionRow {
   const std::int8_t* here;
   const std::int8_t* beside;
-  int begin, end;  ///< price indices that are held against the demand
+  int begin, end;  ///< price indices to check
 };
 
 class Demand {
@@ -44,41 +44,40 @@ class Demand {
 
   /// "17:00-20:00: the action is at least idle"; `where` is the rule's box.
   [[nodiscard]] virtual std::string text(const std::string& where) const = 0;
-  /// The line of a rule file that reads back to it.
+  /// Line of a rule file that parses to this demand.
   [[nodiscard]] virtual std::string line(const RuleBox& box) const = 0;
 
-  /// What may be decided in the box.
+  /// Actions allowed in the box.
   [[nodiscard]] virtual ActionSet actions() const { return kAllActions; }
   [[nodiscard]] virtual Direction direction() const { return {}; }
-  /// Of the rated power, both directions; the guard's alone.
+  /// Limit of the power in 1/1000 of the rated power, both directions; enforced by the guard only.
   [[nodiscard]] virtual std::int32_t power_permille_max() const { return kFullPowerPermille; }
 
-  /// Whether the proof counts it at all.
+  /// Whether the proof counts it.
   [[nodiscard]] virtual bool binds_student() const { return true; }
-  /// The input along which neighbours are compared; none where each state is held by itself.
+  /// Input along which neighbours are compared; none if each state is checked by itself.
   [[nodiscard]] virtual std::optional<RuleInput> pairs_along() const { return {}; }
-  /// The predicate, of one state or pair; `beside` is the neighbour's action, or its own.
+  /// Predicate of one state or pair; `beside` is the neighbour's action, or the state's own.
   [[nodiscard]] virtual bool is_broken(Action here, Action beside) const = 0;
-  /// The same of a row: adds the price indices at which it is broken.
+  /// The same for a row: adds the price indices that violate it.
   virtual void broken(const ActionRow& row, std::vector<int>& prices) const = 0;
 };
 
 using DemandPointer = std::shared_ptr<const Demand>;
 
-/// Of every state in the box one of these actions; of all actions: asks for nothing.
+/// Requires one of these actions in every state of the box.
 DemandPointer action_demand(ActionSet actions);
 DemandPointer direction_demand(const Direction& direction);
 
-/// A kind: the keys of a rule file that make it, and what reads one of them into a rule whose box
-/// and `enforce` are read already.
+/// Kind of demand: its keys in a rule file and the parser, called after the rule's box and
+/// `enforce` are read.
 struct DemandKind {
   std::span<const std::string_view> keys;
   void (*read)(TomlTable& table, std::string_view key, Rule& rule);
 };
 std::span<const DemandKind> demand_kinds();
 
-/// A demand of which the predicate is written once: `Kind::predicate()` gives a function of two
-/// actions as they stand in a row.
+/// Demand with a single predicate: `Kind::predicate()` returns a function of two actions.
 template <typename Kind>
 class PredicateDemand : public Demand {
  public:
@@ -87,7 +86,7 @@ class PredicateDemand : public Demand {
   }
   void broken(const ActionRow& row, std::vector<int>& prices) const final {
     const auto breaks = predicate();
-    std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
+    std::int8_t any = 0;  // as wide as an action, branch-free: vectorisable
     for (int p = row.begin; p < row.end; ++p) {
       any |= static_cast<std::int8_t>(breaks(row.here[p], row.beside[p]));
     }

@@ -3,8 +3,8 @@
 
 #include <array>
 
-/// Every kind of demand, in the order in which a rule file's mistakes name their keys: NAME_kind()
-/// stands in NAME_demand.cpp.
+/// Every kind of demand, in the order in which error messages list the keys. NAME_kind() is in
+/// NAME_demand.cpp.
 #define BESS_DEMAND_KINDS(ROW) \
   ROW(action)                  \
   ROW(direction)               \

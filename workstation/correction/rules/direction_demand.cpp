@@ -1,5 +1,5 @@
-// never_rises_with, never_falls_with: how the action moves when one input rises. Broken by each
-// pair of neighbours along it between which the action moves the other way.
+// Demands never_rises_with, never_falls_with: direction of the action along one input. Violated by
+// each pair of neighbours between which the action moves the other way.
 #include <fmt/core.h>
 
 #include <array>
@@ -34,7 +34,7 @@ class DirectionDemand final : public PredicateDemand<DirectionDemand> {
 
   [[nodiscard]] auto predicate() const {
     const auto flip =
-        static_cast<std::int8_t>(direction_.sign < 0 ? -1 : 0);  // negates; no product
+        static_cast<std::int8_t>(direction_.sign < 0 ? -1 : 0);  // negation without multiplication
     return [=](std::int8_t here, std::int8_t beside) {
       return static_cast<std::int8_t>(((beside - here) ^ flip) - flip) < 0;
     };
@@ -58,7 +58,7 @@ void read(TomlTable& table, std::string_view key, Rule& rule) {
   const Direction direction{static_cast<RuleInput>(input), key == "never_rises_with" ? -1 : 1};
   rule.demand = direction_demand(direction);
   if (rule.box != RuleBox{}) {
-    table.fail(key, "holds everywhere: leave hours, months, classes, SoC and price out");
+    table.fail(key, "applies everywhere: remove hours, months, classes, SoC and price");
   }
   if (input >= static_cast<int>(RuleInput::kSoc) && direction.sign > 0) {
     table.fail(key, "contradicts property 3: the action never rises with price or SoC");

@@ -1,5 +1,5 @@
-// power_max: how much of the rated power the guard leaves in the box. Of the student nothing is
-// asked, it decides directions alone.
+// Demand power_max: limit of the power in the box, enforced by the guard. It does not bind the
+// student, which decides directions only.
 #include <fmt/core.h>
 
 #include <array>
@@ -35,8 +35,8 @@ constexpr std::array<std::string_view, 1> kKeys{"power_max"};
 void read(TomlTable& table, std::string_view key, Rule& rule) {
   std::int32_t permille_max = kFullPowerPermille;
   table.scaled(key, permille_max, kFullPowerPermille, 0, 1);
-  if (permille_max == kFullPowerPermille) table.fail(key, "is all there is: use less than 1");
-  if (!rule.enforce) table.fail(key, "is for the guard alone: add enforce = true");
+  if (permille_max == kFullPowerPermille) table.fail(key, "is no limit: use less than 1");
+  if (!rule.enforce) table.fail(key, "applies to the guard only: add enforce = true");
   rule.demand = std::make_shared<PowerDemand>(permille_max);
 }
 

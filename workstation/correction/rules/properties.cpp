@@ -13,13 +13,13 @@ RuleSet with_outlook_rule(const RuleSet& rules) {
   for (const Rule& rule : rules.rules) {
     if (rule.demand->direction() == direction) return all;
     if (rule.name == kName) {
-      fail("{}: the name \"{}\" is that of a rule of every student by outlook; give it another",
+      fail("{}: the name \"{}\" is reserved with context = \"outlook\"; rename the rule",
            rule.place, kName);
     }
     if (rule.box.context_classes != RuleBox{}.context_classes) {
       fail(
-          "{}: rule \"{}\" names context classes: by outlook they are classes of the plan's "
-          "break-even price, which the guard does not know; name prices or hours",
+          "{}: rule \"{}\" has context_classes: with context = \"outlook\" they are classes "
+          "of the plan's break-even price, which the guard does not know; use prices or hours",
           rule.place, rule.name);
     }
   }

@@ -1,6 +1,6 @@
-// The three properties [SPEC 5] as built-in rules, in the form of an operator's rule: charge at or
-// below the low price, discharge at or above the high one, and two directions, since property 3
-// speaks of price and SoC.
+// The three properties [SPEC 5] as built-in rules in the form of operator's rules: charge at or
+// below the low price, discharge at or above the high price, and two directions (property 3: price
+// and SoC).
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace bess {
 
-// The one demand that a student by outlook answers to besides the properties: the action never
-// falls when the plan's break-even price rises. The plan holds that price from rising with SoC
-// (shared/outlook/outlook_plan.h), so with property 3 the decision as a whole never rises with SoC.
+// Additional rule of a student with the outlook context: the action never falls when the plan's
+// break-even price rises. In the plan that price never rises with SoC
+// (shared/outlook/outlook_plan.h), so with property 3 the decision never rises with SoC.
 
-/// `rules` with it, unless it is among them.
+/// `rules` with the additional rule, unless already present.
 RuleSet with_outlook_rule(const RuleSet& rules);
 
 inline constexpr int kPropertyCount = 3;
 inline constexpr std::size_t kBuiltInRuleCount = 4;
 
-/// The four, for these thresholds.
+/// The four built-in rules for these thresholds.
 RuleSet built_in_rules(const PriceThresholds& thresholds);
-/// They, and then the rules.
+/// The built-in rules, then the operator's.
 RuleSet with_built_in(const PriceThresholds& thresholds, const RuleSet& rules);
-/// The same with the thresholds that the rules leave of these.
+/// The same with the given thresholds, as far as the rules do not replace them.
 RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds);
 
-/// "charge at or below -500 EUR/MWh"; of property 1 to 3.
+/// "charge at or below -500 EUR/MWh"; `property` is 1 to 3.
 std::string property_text(int property, const PriceThresholds& thresholds);
 
 }  // namespace bess

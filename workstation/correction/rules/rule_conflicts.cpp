@@ -11,8 +11,7 @@
 namespace bess {
 namespace {
 
-/// Ends of a range to which a demand reaches along an input: "at least" to where actions are
-/// larger.
+/// Range over which a demand applies along an input; "at least" extends towards larger actions.
 template <typename Index>
 void reach(int sign, bool at_least, Index& first, Index& last, Index lowest, Index highest) {
   if (sign == 0) return;
@@ -30,7 +29,7 @@ std::string state_text(int quarter_hour, int context_class, int soc_index, int p
                      hour_text(quarter_hour), soc_index * 100.0 / (kSocCount - 1), price);
 }
 
-/// The thresholds of properties 1 and 2 as rules, unless the set has its own.
+/// Adds the thresholds of properties 1 and 2 as rules, unless the set has its own.
 RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds) {
   RuleSet all = rules;
   for (Rule rule : built_in_rules(thresholds).rules) {
@@ -49,8 +48,8 @@ RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds)
 }
 
 [[noreturn]] void clash(const Rule& a, const Rule& b, const std::string& state) {
-  fail("{}: \"{}\" contradicts \"{}\" ({}) at {}: narrow or drop one of them", a.place, a.name,
-       b.name, b.place, state);
+  fail("{}: \"{}\" contradicts \"{}\" ({}) at {}: narrow or remove one", a.place, a.name, b.name,
+       b.place, state);
 }
 
 std::optional<int> common_quarter_hour(const RuleBox& a, const RuleBox& b) {
@@ -60,7 +59,7 @@ std::optional<int> common_quarter_hour(const RuleBox& a, const RuleBox& b) {
   return {};
 }
 
-/// What the guard would have to obey at once.
+/// Contradictions between rules that the guard enforces at the same time.
 void check_boxes(const Rule& a, const Rule& b, ContextKind kind) {
   if ((a.actions() & b.actions()) != 0) return;
   const int price = std::max(a.box.price_min_eur_per_mwh, b.box.price_min_eur_per_mwh);
@@ -85,7 +84,7 @@ void check_directions(const RuleSet& rules) {
       const Direction up = a.demand->direction();
       const Direction down = b.demand->direction();
       if (up.input == down.input && up.sign > 0 && down.sign < 0) {
-        clash(a, b, "every state: only an action that never changes with that input obeys both");
+        clash(a, b, "every state: only an action that is constant in that input satisfies both");
       }
     }
   }
@@ -101,9 +100,9 @@ void check_each(const RuleSet& rules, ContextKind kind) {
     }
     const bool is_bound = binds_student(rule, kind) || rule.enforce || rule.is_threshold;
     if (is_bound) continue;
-    fail("{}: \"{}\" binds nobody: {}; add enforce = true for the guard", rule.place, rule.name,
-         rule.box.months != kAllTwelve ? "a student by price level does not see months"
-                                       : "no price of it lies on the lattice");
+    fail("{}: \"{}\" has no effect: {}; add enforce = true for the guard", rule.place, rule.name,
+         rule.box.months != kAllTwelve ? "the student's context is not the month"
+                                       : "none of its prices is on the lattice");
   }
 }
 
@@ -126,7 +125,7 @@ void ImpliedRanges::add_claim(const Rule& rule, std::size_t index, Side side, Ac
     claim.quarter_hours.push_back(rule.box.holds_at_hour(q));
   }
   for (const Direction& direction : directions) {
-    if (side == Side::kNotIdle) break;  // reaches no other state
+    if (side == Side::kNotIdle) break;  // implies nothing for other states
     const bool at_least = side == Side::kAtLeast;
     LatticeBox& box = claim.box;
     if (direction.input == RuleInput::kPrice) {
@@ -202,7 +201,7 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   if (!bound.are_ordered()) {
     fail(
         "the thresholds of the rules and of [correction] cross: charge at or below {} and "
-        "discharge at or above {} EUR/MWh; move one of them",
+        "discharge at or above {} EUR/MWh; change one of them",
         bound.low_eur_per_mwh, bound.high_eur_per_mwh);
   }
   for (const Rule& a : rules.rules) {
@@ -214,8 +213,8 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   const ImpliedRanges implied(all, kind);
   using Claim = ImpliedRanges::Claim;
   using Side = ImpliedRanges::Side;
-  // A corner of the states that claims have in common; every such set is a box, or hours and
-  // classes of boxes.
+  // Corner of the common states of the bounds; each such set is a box, or hours and classes of
+  // boxes.
   const auto meet = [kind](std::initializer_list<const Claim*> claims, std::string& state) {
     LatticeBox common{0, kPriceCount - 1, 0, kSocCount - 1, kAllTwelve};
     for (const Claim* claim : claims) {

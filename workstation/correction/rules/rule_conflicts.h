@@ -1,9 +1,9 @@
-// Whether rules can be obeyed together, found out before anything is trained.
+// Conflict check of rules before training.
 //
-// On the lattice a demand reaches further than its box: where the action never rises with price and
-// SoC, "at least A" holds at every lower price and SoC too, and "at most A" at every higher one. So
-// a rule claims the states that its box implies, which is a box again, and two rules clash where
-// one claims more than the other allows. What the guard enforces is held against the bare boxes.
+// On the lattice a demand applies beyond its box: where the action never rises with price and SoC,
+// "at least A" also applies at every lower price and SoC, "at most A" at every higher one. A rule
+// therefore implies bounds on a larger box, and two rules conflict where the bounds contradict.
+// Rules of the guard are compared within their own boxes.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,23 @@
 
 namespace bess {
 
-/// Throws UserError naming the rules and one state when they contradict each other or the
-/// thresholds of properties 1 and 2, or when a rule binds nobody: neither a student of this context
-/// nor the guard.
+/// Throws UserError naming the rules and one state if they contradict each other or the thresholds
+/// of properties 1 and 2, or if a rule binds neither a student with this context nor the guard.
 void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind);
 
-/// The demand nearest to a rule that asks the opposite in some hour and class of both, and how far
-/// off it is: of what lies between, a student must turn from one to the other.
+/// The nearest demand for the opposite of a rule in a common hour and class, with its distance:
+/// between the two a student must change its action.
 struct Opposite {
   std::string name;
-  int price_gap_eur_per_mwh = 0;  ///< 0: they meet in price, and lie apart in charge
-  int soc_gap = 0;                ///< in lattice steps; 0: they meet in charge
+  int price_gap_eur_per_mwh = 0;  ///< 0: they touch in price and differ in SoC
+  int soc_gap = 0;                ///< in lattice steps; 0: they touch in SoC
 };
 /// None for a rule without an opposite. `rule` is one of the set or a threshold.
 std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
                                          ContextKind kind, const Rule& rule);
 
-/// The actions that are left at a lattice state when all rules that bind a student are obeyed, and
-/// the action keeps its directions: `lowest` to `highest`, without idling where `has_gap`.
+/// Actions allowed at a lattice state by all rules that bind a student, directions included:
+/// `lowest` to `highest`, without idling if `has_gap`.
 struct ActionRange {
   Action lowest = Action::kDischarge;
   Action highest = Action::kCharge;
@@ -39,7 +38,7 @@ struct ActionRange {
   [[nodiscard]] ActionSet set() const;
 };
 
-/// Ranges at single states, for training and pricing. Keeps nothing of `rules`.
+/// Ranges at single states, for training and evaluation. Keeps no reference to `rules`.
 class ImpliedRanges {
  public:
   ImpliedRanges(const RuleSet& rules, ContextKind kind);
@@ -53,7 +52,7 @@ class ImpliedRanges {
                                                   ContextKind, const Rule&);
 
   enum class Side : std::uint8_t { kAtLeast, kAtMost, kNotIdle };
-  /// One side of a demand with all states that it reaches.
+  /// One side of a demand with all states for which it implies a bound.
   struct Claim {
     Side side;
     Action action;

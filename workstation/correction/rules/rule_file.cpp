@@ -24,7 +24,7 @@ bool parse_digits(std::string_view text, int& value) {
   return read.ec == std::errc() && read.ptr == text.data() + text.size();
 }
 
-/// "17:00" as a quarter-hour; "24:00" is the end of the day. False for anything else.
+/// "17:00" as a quarter-hour; "24:00" is the end of the day. False for other texts.
 bool parse_hour(std::string_view text, int& quarter_hour) {
   int hours = 0;
   int minutes = 0;
@@ -49,7 +49,7 @@ class RuleReader {
     read_hours();
     const bool has_months = table_.has("months");
     if (has_months && table_.has("context_classes")) {
-      table_.fail("context_classes", "cannot stand beside months: leave out one of them");
+      table_.fail("context_classes", "conflicts with months: remove one");
     }
     read_members("months", rule_.box.months);
     read_members("context_classes", rule_.box.context_classes);
@@ -85,7 +85,7 @@ class RuleReader {
       return table_.fail("hours", "must be two times in quarter-hours, like \"17:00-20:15\"");
     }
     const int count = (end - first + kQuarterHourCount) % kQuarterHourCount;
-    if (count == 0) return table_.fail("hours", "holds the whole day or nothing: leave it out");
+    if (count == 0) return table_.fail("hours", "covers the whole day or nothing: remove it");
     rule_.box.quarter_hour_first = first;
     rule_.box.quarter_hour_count = count;
   }
@@ -101,7 +101,7 @@ class RuleReader {
       }
       bits |= 1 << (*member - 1);
     }
-    if (bits == 0) table_.fail(key, "is empty: the rule would never hold; leave the key out");
+    if (bits == 0) table_.fail(key, "is empty: the rule would never apply; remove the key");
   }
 
   void read_soc(std::string_view key, std::int32_t& index) {
@@ -113,7 +113,7 @@ class RuleReader {
     }
     const double steps = *value * kSocStepsPerOne;
     if (std::fabs(steps - std::round(steps)) > 1e-6) {
-      return table_.fail(key, "must be a multiple of 0.005: the student sees no finer SoC");
+      return table_.fail(key, "must be a multiple of 0.005: the resolution of the student's SoC");
     }
     index = static_cast<std::int32_t>(std::lround(steps));
   }
@@ -122,7 +122,7 @@ class RuleReader {
     read_soc("soc_min", rule_.box.soc_index_min);
     read_soc("soc_max", rule_.box.soc_index_max);
     if (rule_.box.soc_index_min > rule_.box.soc_index_max) {
-      table_.fail("soc_max", "is below soc_min: the rule would never hold");
+      table_.fail("soc_max", "is below soc_min: the rule would never apply");
     }
   }
 
@@ -134,7 +134,7 @@ class RuleReader {
     read_price("price_min", rule_.box.price_min_eur_per_mwh);
     read_price("price_max", rule_.box.price_max_eur_per_mwh);
     if (rule_.box.price_min_eur_per_mwh > rule_.box.price_max_eur_per_mwh) {
-      table_.fail("price_max", "is below price_min: the rule would never hold");
+      table_.fail("price_max", "is below price_min: the rule would never apply");
     }
   }
 
@@ -148,25 +148,23 @@ class RuleReader {
         keys.push_back(key);
         if (table_.node(key) == nullptr) continue;
         if (kind != nullptr) {
-          return table_.fail(
-              key, fmt::format("is a second demand beside {}: make it a rule of its own", found));
+          return table_.fail(key, fmt::format("conflicts with {}: use a separate rule", found));
         }
         kind = &candidate;
         found = key;
       }
     }
     if (kind != nullptr) return kind->read(table_, found, rule_);
-    table_.finish();  // a demand that is misspelt is told by its name
-    table_.fail("", fmt::format("asks for nothing: add one of {}", fmt::join(keys, ", ")));
+    table_.finish();  // reports a misspelt demand by its key
+    table_.fail("", fmt::format("has no demand: add one of {}", fmt::join(keys, ", ")));
   }
 
-  /// It was documented once, and no student was ever proved with it.
+  /// Key of an earlier version.
   void refuse_switches() {
     table_.fail("switches_max",
-                "is no rule any more: an action that never rises with the price (property 3) "
-                "changes at most twice as it is; for once, without a rest between charging and "
-                "discharging, write is_not = \"idle\"; against to and fro keep a dead band, is = "
-                "\"idle\" with price_min and price_max");
+                "is no longer supported: by property 3 the action changes at most twice with the "
+                "price; for a single change without idling write is_not = \"idle\"; against "
+                "frequent changes use a dead band, is = \"idle\" with price_min and price_max");
   }
 
   TomlTable& table_;
@@ -178,7 +176,7 @@ void check_names(const RuleSet& set) {
   for (const Rule& rule : set.rules) {
     const auto [first, is_new] = seen.emplace(rule.name, &rule);
     if (!is_new) {
-      fail("{}: the name \"{}\" is that of {} already: rename one", rule.place, rule.name,
+      fail("{}: the name \"{}\" is already used at {}: rename one", rule.place, rule.name,
            first->second->place);
     }
   }
@@ -190,8 +188,8 @@ void check_thresholds(const RuleSet& set) {
     for (const Rule& rule : set.rules) {
       if (!rule.is_threshold || rule.lowest() != action) continue;
       if (first != nullptr) {
-        fail("{}: \"{}\" is a second threshold beside \"{}\" ({}): leave one out", rule.place,
-             rule.name, first->name, first->place);
+        fail("{}: \"{}\" sets the same threshold as \"{}\" ({}): remove one", rule.place, rule.name,
+             first->name, first->place);
       }
       first = &rule;
     }
@@ -237,12 +235,12 @@ void append_rules(std::string_view text, const std::string& name, RuleSet& set) 
   TomlTable top(&document, name, "", error);
   const TomlValue* const single = document.find("rule");
   if (single != nullptr && single->as<TomlMembers>() != nullptr) {
-    fail("{}:{}: [rule] is written [[rule]], as there may be many", name, single->line);
+    fail("{}:{}: write [[rule]] instead of [rule]; a file may have several", name, single->line);
   }
   const TomlArray* list = top.array("rule");
   top.finish();
   if (!error.empty()) throw UserError(error);
-  if (list == nullptr || list->empty()) fail("{}: holds no [[rule]]", name);
+  if (list == nullptr || list->empty()) fail("{}: has no [[rule]]", name);
   for (const TomlValue& value : *list) {
     if (value.as<TomlMembers>() == nullptr) fail("{}: rule must be written as [[rule]]", name);
     TomlTable table(&value, name, "[[rule]]", error);

@@ -1,8 +1,8 @@
-// A policy that obeys rules: what it would decide, moved to the nearest action that is left. On the
-// lattice that is the nearest of all policies that obey the rules and keep their directions, where
-// the policy has the directions itself, as every proved student has; what is the guard's alone is
-// cut as the guard cuts it. It tells what rules cost before anything is trained. A direction of
-// another input than price and SoC is no demand on single states: it is not projected.
+// Policy under rules: replaces a policy's decision by the nearest allowed action. If the policy has
+// the directions itself, as every proved student does, the result on the lattice is the nearest
+// policy that satisfies the rules and directions. Rules of the guard act as in the guard. It gives
+// the cost of rules before training. Directions of inputs other than price and SoC do not restrict
+// single states and are not projected.
 #pragma once
 
 #include <memory>
@@ -14,13 +14,13 @@
 
 namespace bess {
 
-// Counts, while a policy runs, how often it breaks each rule: in the states that it visits and, at
-// each of them, at some other SoCs drawn at random. For policies whose states cannot all be looked
-// at, float teachers first; and for how much of what really happens a violation touches.
+// Violation count: how often a running policy violates each rule, in visited states and at random
+// SoCs at the same steps. For policies whose states cannot all be checked, such as float teachers,
+// and for the share of real states that a violation affects.
 
-/// Of one rule: looked at and broken, in visited states and in those drawn beside them. A direction
-/// with price or SoC is looked at as a pair with the next price or SoC of the lattice; other
-/// demands than that and actions cannot be seen in single states, and stay 0.
+/// Checks and violations of one rule, in visited and in random states. A direction along price or
+/// SoC is checked with the next lattice point; demands other than that and actions cannot be
+/// checked in single states, and stay 0.
 struct WatchCount {
   std::int64_t visited = 0;
   std::int64_t visited_broken = 0;
@@ -43,7 +43,7 @@ class RuleWatch final : public Policy {
   [[nodiscard]] std::int64_t decisions() const { return decisions_; }
 
  private:
-  /// Whether the rule can be looked at here, and whether `action` breaks it.
+  /// Whether the rule can be checked here, and whether `action` violates it.
   struct Look {
     bool applies, breaks;
   };
@@ -59,14 +59,14 @@ class RuleWatch final : public Policy {
   mutable std::int64_t decisions_ = 0;
 };
 
-/// Whether the rule is projected by a RuledPolicy at all.
+/// Whether RuledPolicy projects the rule.
 bool can_be_projected(const Rule& rule);
-/// Those of them that can be.
+/// The rules that can be projected.
 RuleSet projected_rules(const RuleSet& rules);
 
 class RuledPolicy final : public Policy {
  public:
-  /// `classes`: what the context classes of the rules mean. The rules must be consistent.
+  /// `classes`: meaning of the rules' context classes. The rules must be consistent.
   RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules, const ContextClasses& classes);
 
   void begin(std::span<const MarketStep> ahead, double soc_frac) override {
@@ -76,7 +76,7 @@ class RuledPolicy final : public Policy {
                               double soc_frac) const override;
   [[nodiscard]] double power_share_max(const MarketStep& step, double soc_frac) const override;
 
-  /// Of all decisions so far, the share that the rules changed.
+  /// Share of all decisions so far that the rules changed.
   [[nodiscard]] double changed_share() const {
     return decisions_ == 0 ? 0 : static_cast<double>(changed_) / static_cast<double>(decisions_);
   }
@@ -90,7 +90,7 @@ class RuledPolicy final : public Policy {
   mutable std::int64_t changed_ = 0;
 };
 
-/// Where a step is looked up, as the edge would.
+/// Rule inputs of a step, as the edge determines them.
 RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes);
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// charge_at_or_below, discharge_at_or_above: a threshold of property 1 or 2 at another price. The
-// property stays what is proved; the rule says where it holds.
+// Demands charge_at_or_below, discharge_at_or_above: threshold of property 1 or 2 at another price.
+// The property itself is unchanged.
 #include <fmt/core.h>
 
 #include <array>
@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 2> kKeys{"charge_at_or_below", "discharge
 
 void read(TomlTable& table, std::string_view key, Rule& rule) {
   if (rule.box != RuleBox{}) {
-    table.fail(key, "holds at every hour and SoC: use is = with a box for less");
+    table.fail(key, "applies at every hour and SoC: to restrict it use is = with a box");
   }
   const bool charges = key == "charge_at_or_below";
   auto& price = charges ? rule.box.price_max_eur_per_mwh : rule.box.price_min_eur_per_mwh;

@@ -69,7 +69,7 @@ void Certificate::set_violations_of(int property, std::int64_t violations) {
   for (std::size_t i = 0; i < kBuiltInRuleCount; ++i) {
     if (built_in.rules[i].property != property) continue;
     counts[i].violations = violations;
-    violations = 0;  // the first tells for all
+    violations = 0;  // the first entry counts for all
   }
 }
 

@@ -18,7 +18,7 @@
 namespace bess {
 namespace {
 
-/// Each repair asks for slopes this much steeper than the last: rounding jitter is what is left.
+/// Factor of the slope margins from one repair round to the next: only rounding errors remain.
 constexpr double kMarginGrowth = 1.4;
 
 std::string provenance_of(const Teacher& teacher, const DistilOptions& options) {
@@ -35,13 +35,13 @@ std::string provenance_of(const Teacher& teacher, const DistilOptions& options) 
                      options.seed);
 }
 
-/// A plain student is there to be compared with: its violations are sampled, not proved away.
+/// A plain student serves as a comparison: its violations are sampled, not repaired.
 Verdict judge(StudentFile student, const DistilOptions& options) {
   if (options.correct) return prove(std::move(student), options.threads);
   return sample_violations(std::move(student), options.threads);
 }
 
-/// A student on the way, and what it earns on validation days.
+/// A student during training and its validation result.
 struct Candidate {
   StudentNet net;
   ValidationTrial trial;
@@ -49,14 +49,14 @@ struct Candidate {
   [[nodiscard]] double score() const { return trial.profit; }
 };
 
-/// Rounded as the file holds it, so that a header is the same whatever it is made from.
+/// Rounded as in the file, so that an exported header is reproducible.
 void note_cycles(const ValidationTrial& trial, StudentFile& student) {
-  if (!std::isfinite(trial.cycles_per_day)) return;  // of no day
+  if (!std::isfinite(trial.cycles_per_day)) return;  // no validation day
   student.cycles_per_day = std::round(trial.cycles_per_day * 100) / 100;
 }
 
-/// Appends the candidates of a round, which are ordered by score, in time; those before `chosen`
-/// disobey.
+/// Appends the candidates of a round (ordered by score) in order of time; those before `chosen`
+/// violate a demand.
 void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chosen, int round,
                       std::vector<StudentCheckpoint>& checkpoints) {
   const auto before = static_cast<std::ptrdiff_t>(checkpoints.size());
@@ -71,14 +71,14 @@ void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chos
       [](const StudentCheckpoint& a, const StudentCheckpoint& b) { return a.epoch < b.epoch; });
 }
 
-/// What a look at the states that decide a monotone student found.
+/// Check of the states that decide a monotone student.
 struct Look {
-  std::vector<LatticeState> states;  ///< in which it disobeys
-  ProofRound round;                  ///< how many of which demand
+  std::vector<LatticeState> states;  ///< with a violation
+  ProofRound round;                  ///< number by demand
 };
 
-/// Contexts in which a monotone student disobeys a rule: the corners of its box tell, of a
-/// threshold the one at its price. Quick, where a proof takes seconds.
+/// Contexts in which a monotone student violates a rule, checked at the corners of its box; for a
+/// threshold at its price. Fast, where a proof takes seconds.
 Look look_at_corners(const StudentNet& net, const DistilOptions& options,
                      const RuleLessons& rules) {
   Certificate found{.thresholds = options.correction.thresholds, .rules = options.rules};
@@ -100,7 +100,7 @@ Look look_at_corners(const StudentNet& net, const DistilOptions& options,
   return look;
 }
 
-/// Tells of each round how long the others may take.
+/// Reports each round with an estimate of the remaining time.
 class RoundTeller {
  public:
   RoundTeller(const DistilOptions& options, const RoundWatch& watch)
@@ -123,17 +123,17 @@ class RoundTeller {
  private:
   const RoundWatch& watch_;
   std::size_t most_;
-  double repair_share_;  ///< of the first round's time that a repair takes
+  double repair_share_;  ///< time of a repair over that of the first round
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Monotone by construction: the proof can only fail at the thresholds.
+/// Monotone by construction: the proof can fail only at the rules and thresholds.
 CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visited,
                                      const DistilOptions& options,
                                      const std::atomic<bool>& interrupted,
                                      const StudentScore& score, const RoundWatch& watch,
                                      StudentFile student) {
-  constexpr double kFirstLook = 0.5;  ///< share of the epochs after which students are worth a look
+  constexpr double kFirstLook = 0.5;  ///< share of the epochs before the first check
   constexpr int kLooks = 16;
   const LessonStates lessons = make_lessons(teacher, visited, options);
   MonotoneDistiller distiller(teacher, lessons, options);
@@ -204,7 +204,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
   DistilOptions options = given;
   if (teacher.outlook) {
     if (options.method != CorrectionMethod::kConstruction) {
-      fail("[distil] method = \"layer\" does not know the outlook: use \"construction\"");
+      fail("[distil] method = \"layer\" does not support the outlook: use \"construction\"");
     }
     options.rules = with_outlook_rule(given.rules);
   }
@@ -230,7 +230,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.net = quantise_student(distiller.parameters(), teacher.price_map);
     student.net.context = teacher.context;
     epochs_done += epochs;
-    const bool is_tried = score && options.correct;  // the last is taken, whatever it earns
+    const bool is_tried = score && options.correct;  // the last one is taken regardless of profit
     const ValidationTrial trial = is_tried ? score(student) : ValidationTrial{};
     if (is_tried) note_cycles(trial, student);
     result.verdict = judge(student, options);

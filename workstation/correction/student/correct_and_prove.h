@@ -1,6 +1,6 @@
-// The whole correction: distil, inside sign bounds or through the layer, quantise, prove over the
-// whole lattice; while the proof finds violations, train on them as counterexamples (through the
-// layer: with wider slope margins), and prove again.
+// Correction: distil (with sign bounds or through the layer), quantise, prove over the whole
+// lattice; while the proof finds violations, train on them as counterexamples (layer: with wider
+// slope margins) and repeat.
 #pragma once
 
 #include <atomic>
@@ -15,28 +15,28 @@
 namespace bess {
 
 struct CorrectionResult {
-  Verdict verdict;  ///< of the last round: a proved student, or the one with what is left
+  Verdict verdict;  ///< of the last round: proved, or with the remaining violations
   std::vector<DistilPoint> curve;
   std::vector<ProofRound> rounds;  ///< empty when interrupted before the first proof
-  std::vector<StudentCheckpoint> checkpoints = {};  ///< in time; empty where nothing was scored
+  std::vector<StudentCheckpoint> checkpoints = {};  ///< by time; empty without scores
 };
 
-/// What a student earns on validation days, EUR per day per MWh, and its full cycles a day.
+/// Validation result of a student: profit, EUR per day per MWh, and full cycles per day.
 struct ValidationTrial {
   double profit, cycles_per_day;
 };
 using StudentScore = std::function<ValidationTrial(const StudentFile&)>;
 
-/// Never throws for a failed proof: the verdict says it. With options.correct false there is one
-/// round, no repair and no proof: violations are counted in a sample of the contexts. By
-/// construction the best by `score` is taken of the students on the way that are proved; without
-/// it, and through the layer, the last one. `watch` is told of each round.
+/// A failed proof does not throw: see the verdict. With options.correct false there is one round
+/// without repair and proof: violations are counted in a sample of the contexts. Method
+/// construction takes the proved student with the best `score`; without a score, and with the
+/// layer, the last one. `watch` receives each round.
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted,
                                    const StudentScore& score = {}, const RoundWatch& watch = {});
 
-/// Profit on the validation days of `market`, SoC carried over: a day that begins anew flatters a
+/// Profit on the validation days of `market`, SoC carried over: a daily reset would favour a
 /// student that empties the battery every night.
 StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
                               double initial_soc_frac);

@@ -1,6 +1,5 @@
-// What the edge does with a student: its decisions, and behind them what its guard enforces of the
-// rules. A power that the guard alone limits is nowhere in the student, and is paid for all the
-// same.
+// Exported policy: student plus the rules that the guard enforces, as on the edge. Includes the
+// cost of power limits, which only the guard applies.
 #pragma once
 
 #include <memory>

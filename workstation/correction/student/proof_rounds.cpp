@@ -48,7 +48,7 @@ std::string round_line(const ProofRound& round, const RoundsState& state) {
                                                                  minutes_text(state.seconds_left))
                                                    : "";
   return fmt::format("{}: {} left{}{}", head, round.text(),
-                     round.is_whole ? "" : " at the states that decide", more);
+                     round.is_whole ? "" : " at the deciding states", more);
 }
 
 std::string proof_rounds_csv(const std::vector<ProofRound>& rounds) {

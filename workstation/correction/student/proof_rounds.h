@@ -1,5 +1,4 @@
-// What the rounds of a correction ended with, demand by demand: for whoever waits for them, and as
-// CSV for whoever asks later.
+// Correction rounds: remaining violations of each round by demand, as progress text and as CSV.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +18,24 @@ struct DemandLeft {
 };
 
 struct ProofRound {
-  /// The whole lattice, or a sample of it; else the states that decide a monotone student alone,
-  /// which spares it a proof that would fail.
+  /// True: the whole lattice, or a sample of it. False: only the deciding states of a monotone
+  /// student, which avoids a proof that would fail.
   bool is_whole = true;
-  std::vector<DemandLeft> left;  ///< of every demand that binds the student
+  std::vector<DemandLeft> left;  ///< for every demand that binds the student
 
   [[nodiscard]] std::int64_t violations() const;
-  /// "property 1: 3, rule \"quiet hours\": 23994"; empty when nothing is left.
+  /// "property 1: 3, rule \"quiet hours\": 23994"; empty without violations.
   [[nodiscard]] std::string text() const;
 };
 
-/// What a proof, or a sample, has counted.
+/// Counts of a proof or sample.
 ProofRound round_of(const Certificate& certificate);
 
-/// How far a correction is, after a round.
+/// Progress of a correction after a round.
 struct RoundsState {
   std::size_t done = 0;
   std::size_t most = 0;
-  double seconds_left = 0;  ///< if all rounds are needed, each as long as the last one
+  double seconds_left = 0;  ///< if all rounds are needed at the last one's duration
 };
 using RoundWatch = std::function<void(const ProofRound&, const RoundsState&)>;
 
@@ -44,10 +43,10 @@ using RoundWatch = std::function<void(const ProofRound&, const RoundsState&)>;
 /// RoundWatch.
 std::string round_line(const ProofRound& round, const RoundsState& state);
 
-/// Header `round,looked_at,demand,violations`, a row a round and demand; looked_at is "lattice" or
-/// "corners".
+/// Header `round,looked_at,demand,violations`, one row per round and demand; looked_at is "lattice"
+/// or "corners".
 std::string proof_rounds_csv(const std::vector<ProofRound>& rounds);
-/// Reads it back; throws UserError naming `name` and the line.
+/// Parses it; throws UserError naming `name` and the line.
 std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std::string& name);
 
 }  // namespace bess

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPercentPerSocIndex = 100.0 / (kSocCount - 1);
 constexpr const char* kMoreEffort = "raise [distil] epochs or repair_rounds";
-/// Further away than this, an opposite demand is not what makes a rule too steep to learn.
+/// Largest price distance at which an opposite demand explains why a rule is not learned.
 constexpr int kNearEurPerMwh = 200;
 
 bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
@@ -78,7 +78,7 @@ std::string room_text(const Opposite& opposite) {
     room = fmt::format("{} EUR/MWh", opposite.price_gap_eur_per_mwh);
   }
   if (opposite.soc_gap > 0) {
-    room += fmt::format("{}{:g} % of charge", room.empty() ? "" : " and ",
+    room += fmt::format("{}{:g} % SoC", room.empty() ? "" : " and ",
                         opposite.soc_gap * kPercentPerSocIndex);
   }
   return room;
@@ -95,7 +95,7 @@ std::string advice_of(const Certificate& certificate, ContextKind kind, const Ru
   }
   const auto opposite = nearest_opposite(certificate.rules, certificate.thresholds, kind, rule);
   if (!opposite || opposite->price_gap_eur_per_mwh > kNearEurPerMwh) return kMoreEffort;
-  return fmt::format("leave more than {} to \"{}\", which asks the opposite, or {}",
+  return fmt::format("keep more than {} from \"{}\", which requires the opposite, or {}",
                      room_text(*opposite), opposite->name, kMoreEffort);
 }
 
@@ -131,7 +131,7 @@ std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionM
 std::string describe_failed_proof(const StudentFile& student, const std::vector<ProofRound>& rounds,
                                   CorrectionMethod method, const std::string& where,
                                   const std::string& note) {
-  constexpr std::size_t kShown = 20;  // of rounds
+  constexpr std::size_t kShown = 20;  // rounds
   const std::size_t first = rounds.size() > kShown ? rounds.size() - kShown : 0;
   std::string by_round = first > 0 ? "..., " : "";
   bool any_is_a_look = false;
@@ -142,7 +142,7 @@ std::string describe_failed_proof(const StudentFile& student, const std::vector<
   std::string text = fmt::format(
       "{}{} violations are left after {} round{} (by round {}{}){}", where,
       student.certificate.violations(), rounds.size(), rounds.size() == 1 ? "" : "s", by_round,
-      any_is_a_look ? "; without a proof those at the states that decide alone" : "", note);
+      any_is_a_look ? "; rounds without a proof count deciding states only" : "", note);
   for (const BrokenDemand& demand : broken_demands(student, method)) {
     text +=
         fmt::format("\n  {} ({}): {} violations{}{}; {}", demand.count.label(), demand.count.text,

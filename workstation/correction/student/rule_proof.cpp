@@ -9,7 +9,7 @@ namespace bess {
 namespace {
 
 constexpr int kKeptPerContext = 4;
-constexpr int kKeptOfPropertiesPerContext = 16;  ///< of the four together
+constexpr int kKeptOfPropertiesPerContext = 16;  ///< all four together
 constexpr std::size_t kKeptPerRule = 4096;
 
 const std::int8_t* row_of(const ActionGrid& grid, int soc) {
@@ -71,8 +71,7 @@ void RuleChecker::check(const LatticeState& context, const ActionGrid& grid,
       holding_.push_back(i);
     }
   }
-  for (int s = 0; s < kSocCount;
-       ++s) {  // outside: a row is held against every rule while it is near
+  for (int s = 0; s < kSocCount; ++s) {  // outer loop: all rules check a row while it is cached
     for (const std::size_t rule : holding_) check_row(rule, s, grid, neighbours);
   }
 }
@@ -105,7 +104,7 @@ const std::int8_t* RuleChecker::next_row(RuleInput input, int soc, const ActionG
   return next.empty() ? nullptr : row_of(next, soc);
 }
 
-/// The first few of each context, those of the built-in rules as they come along.
+/// Keeps the first counterexamples of each context; those of the built-in rules share one limit.
 void RuleChecker::keep(std::size_t rule, int soc, int price) {
   const bool is_built_in = rules_.rules[rule].property != 0;
   const std::size_t with = is_built_in ? 0 : rule;

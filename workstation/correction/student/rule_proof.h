@@ -1,5 +1,5 @@
-// The proof of rules, the built-in ones and an operator's: each a predicate over the lattice,
-// counted by name on the action grids that verify.h fills.
+// Proof of rules, built-in and operator's: each is a predicate over the lattice, counted by name on
+// the action grids that verify.h fills.
 //   actions    states of the box whose action is not allowed
 //   direction  pairs of neighbours along the input between which the action moves the wrong way
 #pragma once
@@ -13,13 +13,12 @@
 
 namespace bess {
 
-/// What was found about one rule.
+/// Result for one rule.
 struct RuleCount {
-  bool binds_student = false;  ///< false: the guard's alone, nothing was counted
-  std::int64_t states = 0;     ///< lattice states, or pairs or rows, that it was held against
+  bool binds_student = false;  ///< false: guard only, not counted
+  std::int64_t states = 0;     ///< checked lattice states, pairs or rows
   std::int64_t violations = 0;
-  /// Some of them; those of the built-in rules all stand with the first of these. Not kept in
-  /// files.
+  /// Some of them; those of the built-in rules are all with the first of these. Not kept in files.
   std::vector<LatticeState> counterexamples = {};
 
   void add(const RuleCount& other);
@@ -28,17 +27,17 @@ struct RuleCount {
 /// Actions of one context, [SoC][price].
 using ActionGrid = std::vector<std::int8_t>;
 
-/// Counts one context after another. One checker a thread.
+/// Counts one context after another. One checker per thread.
 class RuleChecker {
  public:
   /// Keeps a reference: `rules` must outlive it.
   RuleChecker(const RuleSet& rules, ContextKind kind);
 
-  /// Contexts beside this one, by input, whose grids check() needs: the next minute, quarter-hour
-  /// or class.
+  /// Neighbouring contexts, by input, whose grids check() needs: the next minute, quarter-hour or
+  /// class.
   [[nodiscard]] const std::vector<RuleInput>& neighbours_needed() const { return neighbours_; }
 
-  /// `neighbour` of each input that is needed, in order; empty where there is none.
+  /// `neighbour`: grid of each needed input, in order; empty if there is none.
   void check(const LatticeState& context, const ActionGrid& grid,
              const std::vector<ActionGrid>& neighbours);
 
@@ -47,7 +46,7 @@ class RuleChecker {
  private:
   void check_row(std::size_t rule, int soc, const ActionGrid& grid,
                  const std::vector<ActionGrid>& neighbours);
-  /// The row that a direction compares with this one; null where there is none.
+  /// The row that a direction compares with this one; null if there is none.
   [[nodiscard]] const std::int8_t* next_row(RuleInput input, int soc, const ActionGrid& grid,
                                             const std::vector<ActionGrid>& neighbours) const;
   void keep(std::size_t rule, int soc, int price);
@@ -58,17 +57,17 @@ class RuleChecker {
   std::vector<RuleInput> neighbours_;
   std::vector<RuleCount> counts_;
   LatticeState context_{};
-  std::vector<std::size_t> holding_;  ///< rules that hold in this context
-  std::vector<int> broken_;           ///< prices of the row that is looked at
-  std::vector<int> kept_;             ///< counterexamples of this context, of each rule
+  std::vector<std::size_t> holding_;  ///< rules that apply in this context
+  std::vector<int> broken_;           ///< prices of the current row
+  std::vector<int> kept_;             ///< counterexamples of this context by rule
 };
 
 /// The context after this one along an input; none after its last value.
 std::optional<LatticeState> next_context(LatticeState context, RuleInput input);
 
-/// The violated state that the student is surest of, by the lead in logits of what it does over the
-/// best that is allowed: of the counterexamples and of the box's corners, where a monotone student
-/// is worst. None for other demands than actions.
+/// The violated state with the largest lead, in logits, of the student's action over the best
+/// allowed one, among the counterexamples and the corners of the box (the worst states of a
+/// monotone student). None for demands other than actions.
 struct WorstState {
   LatticeState state;
   Action action;

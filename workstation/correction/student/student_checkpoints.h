@@ -1,5 +1,4 @@
-// The students that a correction looked at on its way, what each earned on validation days, and
-// which was taken.
+// Checkpoints of a correction: the students checked, their validation results, and the chosen one.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@ namespace bess {
 
 enum class CheckpointState {
   kPassedOver,  ///< another one earned more
-  kDisobeys,    ///< earned more than the chosen one, and breaks a demand
+  kDisobeys,    ///< earned more than the chosen one but violates a demand
   kChosen,
 };
 std::string_view checkpoint_state_name(CheckpointState state);  ///< "passed over", ...
@@ -24,7 +23,7 @@ struct StudentCheckpoint {
 
 /// Header `round,epoch,validation_eur_per_day_per_mwh,state`.
 std::string student_checkpoints_csv(const std::vector<StudentCheckpoint>& checkpoints);
-/// Reads it back; throws UserError naming `name` and the line.
+/// Parses it; throws UserError naming `name` and the line.
 std::vector<StudentCheckpoint> parse_student_checkpoints_csv(std::string_view text,
                                                              const std::string& name);
 

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kInputBits = 14;  // inputs are Q14
 static_assert(kInputOne == 1 << kInputBits);
-/// Accumulators keep one bit of headroom, for the rounding constant and the bias.
+/// Accumulators keep one bit of headroom for the rounding constant and the bias.
 constexpr double kAccumulatorMax = 1 << 30;
 
 /// Bounds of a layer's activations over all inputs, by interval arithmetic in float.
@@ -45,7 +45,7 @@ Range relu_range(const Range& x, double saturation) {
 }
 
 /// Largest f with max|w| * 2^f inside int16 and every accumulator at scale 2^(f + input_bits)
-/// inside.
+/// inside int32 headroom.
 int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range& x,
                 int input_bits) {
   const double accumulator =
@@ -58,8 +58,8 @@ int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range&
   fail("the student's weights are too large for int16; distil again with a smaller learning rate");
 }
 
-/// Largest scale at which the activation's upper bound stays inside int16; where activations
-/// saturate, the one at which int16 ends there too.
+/// Largest scale at which the activation's upper bound stays inside int16; for saturating
+/// activations, the scale at which the saturation equals the int16 limit.
 int activation_bits(const Range& x, double saturation) {
   constexpr int kInt16Bits = 15;
   if (std::isfinite(saturation)) return kInt16Bits - static_cast<int>(std::log2(saturation));
@@ -157,12 +157,12 @@ namespace {
 
 constexpr const char* kFormat = "bess-student";
 constexpr int kFormatVersion = 5;
-constexpr int kVersionWithoutOutlook = 4;  ///< still written when the context is another
-constexpr int kVersionWithoutRules = 3;    ///< still written when there are none
-constexpr int kVersionWithoutCounts = 1;   ///< it had the thresholds beside the weights
-constexpr int kVersionWithoutContext = 2;  ///< it, too, was by month
+constexpr int kVersionWithoutOutlook = 4;  ///< still written for other contexts
+constexpr int kVersionWithoutRules = 3;    ///< still written without rules
+constexpr int kVersionWithoutCounts = 1;   ///< thresholds next to the weights
+constexpr int kVersionWithoutContext = 2;  ///< context: month
 
-/// One named array of the net. All arrays are listed once, for reading and for writing.
+/// Visits every named array of the net; the one list for reading and writing.
 template <typename Net, typename Visit>
 void visit_arrays(Net& net, Visit visit) {
   visit("price_map", std::span(net.price_map));
@@ -233,8 +233,8 @@ std::vector<std::int64_t> parse_counts(const JsonValue& file, const char* key, s
   return counts;
 }
 
-/// The rules themselves, as a rule file's text, and what was counted of each. A file of before has
-/// the sum alone: when that is 0 so is each count, and else nobody knows which is not.
+/// The rules as the text of a rule file, and their counts. Older files have only the sum: if it is
+/// 0, so is each count; otherwise the counts are unknown.
 void parse_rule_claims(const JsonValue& file, const JsonReader& in, const std::string& name,
                        ContextKind kind, Certificate& certificate) {
   certificate.rules = parse_rules(in.text("rules"), name + ": rules");
@@ -260,7 +260,7 @@ void add_rule_claims(const Certificate& certificate, Json& json) {
   }
   json.set("rules", format_rules(certificate.rules));
   json.set("violations_of_rules", std::accumulate(violations.begin(), violations.end(), 0LL));
-  if (violations.empty()) return;  // nobody has looked
+  if (violations.empty()) return;  // not checked
   json.set("rule_states", std::span<const std::int64_t>(states));
   json.set("rule_violations", std::span<const std::int64_t>(violations));
 }
@@ -280,8 +280,8 @@ std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std
   });
   if (in.number("hash") != model.hash() || !model.is_sound()) {
     fail(
-        "{}: damaged: \"outlook\" does not match its hash, or no market is like it; copy it again "
-        "or distil again",
+        "{}: damaged: \"outlook\" does not match its hash, or has impossible values; copy it "
+        "again or distil again",
         name);
   }
   return OutlookBook::of(model);
@@ -296,7 +296,7 @@ Json learnt_for_json(const Entries& learnt_for) {
 Entries parse_learnt_for(const JsonValue& object, const std::string& name) {
   Entries learnt_for;
   for (const JsonValue member : object) {
-    if (member.text() == nullptr) fail("{}: \"learnt_for\" holds something else than texts", name);
+    if (member.text() == nullptr) fail("{}: \"learnt_for\" must contain only texts", name);
     learnt_for.emplace_back(member.key(), member.text());
   }
   return learnt_for;
@@ -420,7 +420,7 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
 
 StudentFile compiled_student() {
   StudentFile student{};
-  student.net = kExportedStudent;  // assigned: as an initialiser, g++ 12 takes it apart for 17 s
+  student.net = kExportedStudent;  // as an initialiser, g++ 12 compiles it for 17 s
   student.certificate = {.thresholds = kExportedThresholds,
                          .states_checked = BESS_STUDENT_STATES_CHECKED,
                          .states_evaluated = BESS_STUDENT_STATES_EVALUATED};

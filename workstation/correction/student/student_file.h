@@ -1,6 +1,5 @@
-// The student on disk: a JSON text with every integer of the net, what it was made from, and its
-// certificate with the thresholds it is bound to; and quantisation of a trained net into these
-// integers.
+// Student file: JSON with every integer of the net, its provenance and its certificate with
+// thresholds; and quantisation of a trained net into these integers.
 #pragma once
 
 #include <filesystem>
@@ -19,49 +18,47 @@
 
 namespace bess {
 
-// From the float student to the integer one: the largest power-of-two scale for each layer at which
-// no weight leaves int16, no accumulator can leave int32 and no activation saturates for ANY
-// lattice input.
+// Quantisation of the float student: for each layer the largest power-of-two scale at which all
+// weights fit int16, no accumulator leaves int32 and no activation saturates for ANY lattice input.
 
-/// Throws UserError when the weights are so large that no scale fits.
-/// `saturation`: where the float student's hidden activations were cut off, a power of two;
-/// infinite for plain ReLU, whose integer activations never reach their end.
+/// Throws UserError if no scale fits. `saturation`: limit of the float student's hidden
+/// activations, a power of two; infinite for plain ReLU, whose integer activations never saturate.
 StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
                             double saturation = std::numeric_limits<double>::infinity());
 
-/// Largest magnitude that any int32 sum of the net can reach over all inputs, rounding included.
+/// Largest magnitude of any int32 sum of the net over all inputs, rounding included.
 std::int64_t accumulator_bound(const StudentNet& net);
 
 struct StudentFile {
   StudentNet net;
-  Certificate certificate;  ///< a claim: prove() finds out whether it holds
+  Certificate certificate;  ///< a claim; prove() verifies it
   std::string provenance;   ///< one line: prices, teacher, seed, options
-  Entries learnt_for{};     ///< as the teacher was; empty: the file does not say
-  /// By outlook: the plans that give the net its context.
+  Entries learnt_for{};     ///< training scope of the teacher; empty: unknown
+  /// With the outlook context: the plans that give the net its context class.
   std::shared_ptr<const OutlookBook> outlook = nullptr;
-  std::optional<double> cycles_per_day{};  ///< full ones, on validation days
+  std::optional<double> cycles_per_day{};  ///< full cycles on validation days
 };
 
-/// Of what a model was learnt for the span of its prices; none when it does not tell.
+/// Time span of the prices in a training scope; none if not stated.
 std::optional<UtcSpan> learnt_span(const Entries& learnt_for);
 
-/// Written beside and renamed.
+/// Replaces the file atomically.
 void save_student(const std::filesystem::path& path, const StudentFile& student);
 
 /// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out
-/// of range, a hash that differs, a net that check_net refuses. Reads the files of before too:
-/// version 1 has thresholds but no counts, 1 and 2 are by month.
+/// of range, a wrong hash, a net that check_net refuses. Also reads older file versions: version 1
+/// has thresholds but no counts, 1 and 2 have the month context.
 StudentFile load_student(const std::filesystem::path& path);
 StudentFile parse_student(const std::string& text, const std::string& name);
 
-/// The array that this program was compiled with (edge/generated/student_weights.h).
+/// The student that this program was compiled with (edge/generated/student_weights.h).
 StudentFile compiled_student();
 
-/// "violations_property_1" to 3, as files and answers have them.
+/// "violations_property_1" to 3, as in files and answers.
 void add_property_violations(const Certificate& certificate, Json& json);
 
-/// Throws UserError, with `name` in front, for a net that neither code nor bounds hold for: a price
-/// map that does not rise, a shift out of range, weights whose accumulators could overflow.
+/// Throws UserError, with `name` in front, for a net outside the limits of the code and the bounds:
+/// a price map that does not rise, a shift out of range, weights whose accumulators could overflow.
 void check_net(const StudentNet& net, const std::string& name);
 
 }  // namespace bess

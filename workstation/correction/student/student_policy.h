@@ -1,4 +1,4 @@
-// The integer student as a policy: exactly what the edge computes from price and SoC.
+// Integer student as a policy: exactly the edge's computation from price and SoC.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace bess {
 
 class StudentPolicy final : public Policy {
  public:
-  /// Keeps a reference to the net. `book`: the plans of a net by outlook.
+  /// Keeps a reference to the net. `book`: plans for the outlook context.
   explicit StudentPolicy(const StudentNet& net, std::shared_ptr<const OutlookBook> book = nullptr)
       : net_(net), book_(std::move(book)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {

@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-/// Boxes of at most this many states are evaluated one by one: a bound costs as much as a few
+/// Boxes with at most this many states are evaluated one by one: a bound costs as much as a few
 /// states.
 constexpr int kSmallBox = 6;
 
@@ -20,13 +20,13 @@ struct Box {
   [[nodiscard]] int size() const { return (soc_end - soc_begin) * (price_end - price_begin); }
 };
 
-/// What `kCount` values lie between, in both orders, so that a bound is one plain dot product.
+/// Interval of `kCount` values, stored in both orders so that a bound is one dot product.
 template <int kCount>
 struct Interval {
   std::int16_t low_high[2 * kCount];  ///< all lower ends, then all upper ones
   std::int16_t high_low[2 * kCount];
 
-  /// Activations behind sums that lie between `low` and `high`: a ReLU is monotone.
+  /// Activations for sums between `low` and `high`: a ReLU is monotone.
   void set(const ClippedRelu<kCount>& relu, const std::int32_t (&low)[kCount],
            const std::int32_t (&high)[kCount]) {
     for (int i = 0; i < kCount; ++i) {
@@ -36,8 +36,8 @@ struct Interval {
   }
 };
 
-/// Weights above zero, then those below: with the ends of an interval, low before high, their
-/// products add up to the least that the weighted sum can be, and in the other order to the most.
+/// Positive weights, then negative ones: the product with an interval's (low, high) ends is the
+/// smallest weighted sum, with (high, low) the largest.
 template <typename Weight, int kCount>
 void split_by_sign(int i, Weight weight, Weight (&split)[2 * kCount]) {
   split[i] = std::max<Weight>(weight, 0);
@@ -82,8 +82,8 @@ struct Layer1Bounds {
   }
 };
 
-/// Second layer and its ReLU. Many inputs: the loop over the inputs vectorises, two products at
-/// once.
+/// Second layer and its ReLU. Many inputs: the loop over the inputs vectorises, two products at a
+/// time.
 struct Layer2Bounds {
   std::int16_t weight[kStudentHidden2][2 * kStudentHidden1];  ///< split by sign
   const StudentNet& net;
@@ -106,7 +106,7 @@ struct Layer2Bounds {
   }
 };
 
-/// Decides boxes of one net. Holds nothing that changes, so threads share it.
+/// Decides boxes of one net. Immutable, so threads share it.
 class BoxBounds {
  public:
   explicit BoxBounds(const StudentNet& net) : net_(net), layer1_(net), layer2_(net) {
@@ -122,7 +122,7 @@ class BoxBounds {
     }
   }
 
-  /// True when every state of the box has the same action, which is then in `action`.
+  /// True if every state of the box has the same action, returned in `action`.
   bool single_action(const LatticeState& low_corner, const LatticeState& high_corner,
                      Action& action) const {
     std::int16_t x_low[kStudentInputs];
@@ -143,9 +143,8 @@ class BoxBounds {
   }
 
  private:
-  /// Whether `candidate` beats both others for all hidden activations inside the bounds: the
-  /// smallest possible difference of logits decides, ties going to the lower action as in
-  /// argmax_action.
+  /// Whether `candidate` beats both others for all hidden activations inside the bounds, by the
+  /// smallest possible difference of logits; ties go to the lower action as in argmax_action.
   [[nodiscard]] bool wins(Action candidate, const Interval<kStudentHidden2>& hidden) const {
     const int c = static_cast<int>(candidate);
     for (int other = 0; other < kActionCount; ++other) {
@@ -161,8 +160,7 @@ class BoxBounds {
   const StudentNet& net_;
   Layer1Bounds layer1_;
   Layer2Bounds layer2_;
-  /// What the logit of one action is above that of another: weights of the last layer, split by
-  /// sign.
+  /// Logit difference of two actions: weights of the last layer, split by sign.
   std::int32_t lead_weight_[kActionCount][kActionCount][2 * kStudentHidden2];
   std::int64_t lead_bias_[kActionCount][kActionCount];
 };
@@ -193,9 +191,8 @@ class GridFiller {
     state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
     return state;
   }
-  /// Flattened: the net is inlined here, with this file's optimisation. As a function of its own
-  /// the linker keeps one copy of it, which in a test program is one that was compiled for a quick
-  /// build.
+  /// Flattened: inlines the net with this file's optimisation. A separate function might be linked
+  /// from a test program's unoptimised copy.
   [[gnu::flatten]] void evaluate(const Box& box) {
     for (int s = box.soc_begin; s < box.soc_end; ++s) {
       for (int p = box.price_begin; p < box.price_end; ++p) {
