@@ -15,24 +15,24 @@ namespace bess {
 namespace {
 
 constexpr int kRestsMin = 10;
-constexpr int kTaperedMin = 10;    ///< readings within the width
-constexpr int kRunsMin = 6;        ///< of each direction
-constexpr int kRunCyclesMax = 15;  ///< half an hour: short against a day, long against a reading
-constexpr double kRestingFrac = 0.02;  ///< of the power: less of it is none
-constexpr double kTaperShown = 0.02;   ///< of the power, missing at the bound
-constexpr double kColdShown = 0.05;    ///< of the power, missing all the time
-constexpr double kColdRoomFrac = 0.2;  ///< of the SoC window: no taper reaches there
+constexpr int kTaperedMin = 10;        ///< readings within the width
+constexpr int kRunsMin = 6;            ///< of each direction
+constexpr int kRunCyclesMax = 15;      ///< half an hour
+constexpr double kRestingFrac = 0.02;  ///< of the power; less counts as 0 W
+constexpr double kTaperShown = 0.02;   ///< minimum share missing at the bound
+constexpr double kColdShown = 0.05;    ///< minimum share missing for the whole time
+constexpr double kColdRoomFrac = 0.2;  ///< of the SoC window, from each end: free of taper
 constexpr int kColdQuarterHoursMax = 72;
 constexpr double kSure = 3;  ///< standard errors
 
-/// From one tick to the next, with the order of both known.
+/// Interval between two ticks whose orders are known.
 struct Interval {
   const LoggedCycle& begin;
   const LoggedCycle& end;
-  double before_w;  ///< ordered until `begin`
+  double before_w;  ///< order before `begin`
 
   [[nodiscard]] bool goes_on() const { return before_w * begin.ordered_w > 0; }
-  /// Of one that goes on. Where the order changed, its power is that of the new one throughout.
+  /// After a change of order the power is that of the new order for the whole interval.
   [[nodiscard]] double first_w() const {
     return before_w == begin.ordered_w ? begin.power_w : end.power_w;
   }
@@ -50,7 +50,7 @@ std::vector<Interval> intervals_of(const std::vector<LoggedCycle>& cycles) {
   return intervals;
 }
 
-/// Mean of the middle half: what a stop or a late order left in a reading does not count.
+/// Mean of the middle half: excludes readings disturbed by a stop or a late order.
 std::optional<Fitted> middle_mean(std::vector<double> values, int least) {
   if (std::ssize(values) < least) return std::nullopt;
   std::ranges::sort(values);
@@ -62,7 +62,7 @@ std::optional<Fitted> middle_mean(std::vector<double> values, int least) {
   for (std::size_t i = quarter; i < values.size() - quarter; ++i) {
     squares += (values[i] - mean) * (values[i] - mean);
   }
-  const double rounding_w = 0.5;  // of readings that are all the same
+  const double rounding_w = 0.5;  // if all readings are equal
   return Fitted{mean, std::max(std::sqrt(squares / (count - 1)), rounding_w) / std::sqrt(count),
                 static_cast<int>(values.size())};
 }
@@ -77,8 +77,8 @@ std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
   return found;
 }
 
-/// Of full power that was ordered at mid charge, what was missing: what did not come, or what the
-/// order was cut by, as the battery said.
+/// Missing share of full power ordered at mid SoC: power that did not flow, or the cut of the order
+/// that the battery reported.
 struct Missing {
   int quarter_hour;
   double share;
@@ -102,10 +102,10 @@ std::vector<Missing> missing_of(const std::vector<Interval>& intervals,
   return missing;
 }
 
-/// One stretch of the day misses the same share and the rest nothing: the stretch that explains
-/// most squares is the best, and its ends are known as far as others explain as much.
+/// Fits one daily time range with a constant missing share: the range that explains most squares.
+/// Its uncertainty covers the ranges that explain equally much.
 void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
-  std::array<double, 2 * kQuarterHourCount + 1> sum{}, count{};  // before each, over two days
+  std::array<double, 2 * kQuarterHourCount + 1> sum{}, count{};  // cumulative, over two days
   double squares = 0;
   for (const Missing& m : missing) {
     squares += m.share * m.share;
@@ -151,7 +151,7 @@ void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
       Fitted{best.to % kQuarterHourCount / 4.0, std::max(to_error, quarter_hour), inside};
 }
 
-/// A reading of full power: how far from the bound, and which share came.
+/// Reading at full power: distance from the bound and share delivered.
 struct Reach {
   double room_frac;
   double share;
@@ -161,8 +161,8 @@ struct TaperFit {
   Fitted width, share;
 };
 
-/// Shares fall by `1 - room / width` times what is missing at the bound: linear in that for each
-/// width, and the best width is looked for.
+/// Shares fall by `1 - room / width` times the share missing at the bound. This is linear for each
+/// width; the best width is found by search.
 std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
   struct Trial {
     double width = 0, missing = 0, misfit = INFINITY, weight = 0;
@@ -192,7 +192,7 @@ std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
   if (best.inside < kTaperedMin || best.missing < kTaperShown) return std::nullopt;
   const auto count = static_cast<int>(reaches.size());
   const double variance = std::max(best.misfit, 1e-12) / std::max(count - 2, 1);
-  double low = best.width, high = best.width;  // as far as it fits within an error of the best
+  double low = best.width, high = best.width;  // widths within one standard error of the best
   for (const Trial& t : trials) {
     if (t.misfit > best.misfit + variance) continue;
     low = std::min(low, t.width);
@@ -212,16 +212,16 @@ std::optional<TaperFit> taper_of(const std::vector<Interval>& intervals,
     if (cold.hold(local_minute_of(i.end.utc_s).quarter_hour)) continue;
     const double room_frac = sign > 0 ? nameplate.soc_max_frac - i.end.soc_frac
                                       : i.end.soc_frac - nameplate.soc_min_frac;
-    if (room_frac <= 0.001) continue;  // at the bound it rests
+    if (room_frac <= 0.001) continue;  // idle at the bound
     reaches.push_back({room_frac, (i.end.power_w - standby_w) / full_w});
   }
   return reaches.empty() ? std::nullopt : fit_taper(reaches);
 }
 
-/// Some cycles in one direction: what came in by the grid, by its square, and into the cells.
+/// Consecutive cycles in one direction: grid-side energy, its square, and energy into the cells.
 struct Run {
   double energy_wh = 0;
-  double square_wh = 0;  ///< of power squared over the rated one
+  double square_wh = 0;  ///< power squared over rated power, integrated
   double stored_wh = 0;
   int cycles = 0;
 };
@@ -290,13 +290,13 @@ void fit_efficiency(const std::vector<Run>& charged, const std::vector<Run>& dis
   fit.discharge_efficiency = Fitted{1 / inverse, found.standard_error(1) / (inverse * inverse), n};
   if (found.value(0) > 1.01 || inverse < 0.99 || found.value(0) < 0.5 || inverse > 2) {
     fail(
-        "the cells keep {:.3f} of what is bought and give {:.3f} of what they lose: no battery "
-        "does, [battery] capacity_wh is not that of this one",
+        "the fitted efficiencies, {:.3f} (charging) and {:.3f} (discharging), are impossible: "
+        "[battery] capacity_wh is wrong",
         found.value(0), 1 / inverse);
   }
 }
 
-/// A log of kilowatts beside a nameplate of megawatts would show nothing, and say nothing.
+/// Refuses a nameplate in other units, such as kW and MW: the fit would find nothing.
 void require_same_battery(const std::vector<LoggedCycle>& cycles,
                           const BatteryParameters& nameplate) {
   double flowed_w = 0, ordered_w = 0;
@@ -307,8 +307,8 @@ void require_same_battery(const std::vector<LoggedCycle>& cycles,
   const bool is_smaller = ordered_w > 0 && ordered_w < 0.2 * nameplate.power_w_max;
   if (flowed_w <= 1.3 * nameplate.power_w_max && !is_smaller) return;
   fail(
-      "{:.0f} W were ordered and {:.0f} W flowed at most, [battery] power_w says {:g}: give the "
-      "nameplate by --config, with capacity_wh",
+      "orders up to {:.0f} W and power up to {:.0f} W do not fit [battery] power_w {:g}: pass the "
+      "nameplate with --config, including capacity_wh",
       ordered_w, flowed_w, nameplate.power_w_max);
 }
 

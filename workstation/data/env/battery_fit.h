@@ -1,8 +1,7 @@
-// What a battery really does, learnt from the log of its controller (`bess-edge log --csv`): own
-// consumption, taper towards full and empty, efficiency and how it falls with power, cold hours. A
-// tick's reading shows the order of the cycle before, long settled; what happens within a cycle,
-// delay, ramp and lag, such a log cannot show: `bess-edge map check --steps` reads those from a
-// recording.
+// Battery parameter fit from a controller log (`bess-edge log --csv`): standby consumption, taper
+// near full and empty, efficiency and its dependence on power, cold hours. A tick's reading shows
+// the settled power of the previous control cycle's order. Delay, ramp and lag within a cycle need
+// a recording: `bess-edge map check --steps`.
 #pragma once
 
 #include <optional>
@@ -21,7 +20,7 @@ struct Fitted {
   int observations = 0;
 };
 
-/// Nothing where the log does not show it: too few such cycles, or no more than the noise.
+/// Empty where the log shows nothing: too few such cycles, or no effect above the noise.
 struct BatteryFit {
   std::optional<Fitted> standby_w;
   std::optional<Fitted> charge_taper_width, charge_taper_share;
@@ -30,15 +29,15 @@ struct BatteryFit {
   std::optional<Fitted> full_power_loss;
   std::optional<Fitted> cold_power_share, cold_from_hour, cold_to_hour;
 
-  /// What was found, under the names of [battery].
+  /// The parameters found, under the names of [battery].
   [[nodiscard]] std::vector<std::pair<std::string, Fitted>> found() const;
-  /// `battery` with what was found.
+  /// `battery` with the parameters found.
   [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
 };
 
 /// All `cycles` have a reading. Power, capacity and SoC window are those of `nameplate`. Throws
-/// UserError where the log says that they cannot be: more power than it has, or cells that give
-/// back more than they were given.
+/// UserError if the log contradicts them: more than the rated power, or more energy out of the
+/// cells than into them.
 BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate);
 
 }  // namespace bess

@@ -20,7 +20,7 @@ double mean_settled_eur_per_mwh(const MarketSteps& market, const std::vector<Mar
 
 void value_charge_left(Evaluation& carried_over, const BatteryParameters& battery,
                        double price_eur_per_mwh) {
-  if (carried_over.values_charge_left()) throw std::logic_error("the charge is valued already");
+  if (carried_over.values_charge_left()) throw std::logic_error("final charge already valued");
   if (carried_over.days.empty()) return;
   double gained_frac = 0;
   for (const DayResult& day : carried_over.days)

@@ -1,15 +1,13 @@
-// The charge that the battery ends with, as money. With the SoC carried over from day to day a
-// policy starts with the initial SoC and ends with whatever it has: what is in the battery then,
-// beyond what it began with, is taken as sold at once, and what is missing as bought back, at the
-// mean settled price of the days that count, with losses, costs and wear. So nobody earns by ending
-// empty.
+// Final charge as money. With the SoC carried over, a policy starts with the initial SoC and ends
+// with any. The difference is sold or bought back at the mean settled price of the counted days,
+// with losses, costs and wear, so that ending empty gives no advantage.
 //
-// The bound knows days between those that count; it may enter them charged. Of it the changes over
-// all days that count are summed, which for every other policy is the last SoC less the initial
-// one.
+// Foresight also runs the days between the counted ones and may enter counted days charged. For it
+// the changes over all counted days are summed, which for every other policy equals the last SoC
+// minus the initial one.
 //
-// Not for days that start anew at the same SoC: their ends are given away, which is why that way of
-// counting is the friendlier one.
+// Not used with the day reset: there the final charge of each day is not valued, which favours the
+// policy.
 #pragma once
 
 #include <vector>
@@ -18,12 +16,12 @@
 
 namespace bess {
 
-/// Mean over the steps of `days`, which are not empty.
+/// Mean over the steps of `days`, which must not be empty.
 double mean_settled_eur_per_mwh(const MarketSteps& market, const std::vector<MarketDay>& days);
 
-/// Credits the last day of `carried_over` with the charge that is left, negative where it is
-/// missing: in its profit, its throughput and its charge_value_eur. Once only; without days nothing
-/// is done.
+/// Adds the value of the final charge (negative if below the initial SoC) to the last day of
+/// `carried_over`: profit, throughput and charge_value_eur. May be called once; no effect without
+/// days.
 void value_charge_left(Evaluation& carried_over, const BatteryParameters& battery,
                        double price_eur_per_mwh);
 

@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-/// Classes lie this many standard deviations of the training days' level around its mean.
+/// Half-range of the classes around the mean level of the training days, in standard deviations.
 constexpr double kReachDeviations = 3;
 constexpr int kEdges = kContextClassCount - 1;
 
@@ -27,7 +27,7 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) 
   ContextClasses classes{.kind = kind};
   if (kind == ContextKind::kMonth) return classes;
   if (kind == ContextKind::kOutlook) {
-    fail("classes of the outlook belong to a student: give its file with --policy");
+    fail("classes of the outlook belong to a student: pass its file with --policy");
   }
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
@@ -62,7 +62,7 @@ ContextClasses fit_outlook_classes(const MarketSteps& market, const OutlookBook&
   std::size_t drawn = 0;
   for (const MarketDay& day : training) {
     for (const MarketStep& step : market.of(day)) {
-      constexpr std::size_t kStride = 37;  // shares no factor: every SoC with every hour
+      constexpr std::size_t kStride = 37;  // coprime: every SoC with every hour
       const auto soc = static_cast<double>(drawn++ * kStride % kSocCount) / (kSocCount - 1);
       prices_centi.push_back(book.break_even_centi(step, low_frac + soc * width_frac));
     }

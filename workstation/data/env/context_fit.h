@@ -1,5 +1,5 @@
-// The context classes of a market [SPEC 4]: what the twelve values of the student's third input
-// mean, fitted on training days.
+// Context classes of a market [SPEC 4]: meaning of the twelve values of the student's third input,
+// fitted on training days.
 #pragma once
 
 #include <string>
@@ -14,19 +14,19 @@ namespace bess {
 /// "month", "level", "outlook"; throws UserError otherwise.
 ContextKind parse_context(std::string_view name);
 
-/// By level the classes are evenly wide and reach beyond the training days' levels on both sides:
-/// another year lies elsewhere. Throws UserError when there are no training days.
+/// Level: classes of equal width that extend beyond the training days' levels on both sides,
+/// because other years have other levels. Throws UserError without training days.
 ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind);
 
-/// By outlook each class holds as many of the break-even prices that the training days have, at
-/// SoCs of the whole window.
+/// Outlook: each class has the same number of the training days' break-even prices, at SoCs of the
+/// whole window.
 ContextClasses fit_outlook_classes(const MarketSteps& market, const OutlookBook& book);
 
-/// The level that stands for a class, EUR/MWh: its middle; of the open ones as far out as their
-/// neighbours'.
+/// Representative level of a class, EUR/MWh: its middle; for the open classes as far out as in
+/// their neighbours.
 double class_level_eur_per_mwh(const ContextClasses& classes, int context_class);
 
-/// For people, after a time of day: "in March", "at a price level from 84 to 96 EUR/MWh".
+/// Readable, after a time of day: "in March", "at a price level from 84 to 96 EUR/MWh".
 std::string context_text(const ContextClasses& classes, int context_class);
 
 }  // namespace bess

@@ -12,10 +12,10 @@
 namespace bess {
 namespace {
 
-/// As the guard's default: [price] price_age_s_max of the controller.
+/// Default of the guard: [price] price_age_s_max of the controller.
 constexpr int kUsablePriceAgeS = 240;
 
-/// One file, by the names of its columns.
+/// One file; columns are found by name.
 class Reader {
  public:
   explicit Reader(const CsvTable& table, const std::string& path) : table_(table), path_(path) {}
@@ -28,7 +28,7 @@ class Reader {
                   .reason = text(row, reason_)};
     const std::string& mode = text(row, mode_);
     c.is_cut = c.reason == "power_limit";
-    // A cycle whose reading failed has zeros in its place.
+    // A cycle whose reading failed has zeros instead.
     c.has_reading = text(row, status_) == "ok" || c.soc_frac != 0;
     c.is_cycle = mode != "stopping";
     c.is_driven = mode == "running";
@@ -64,7 +64,7 @@ class Reader {
       if (text(row, student_) == action_name(action)) c.student = action;
     }
     if (!c.student) {
-      fail("{}:{}: student_action \"{}\" is none", path_, table_.line(row),
+      fail("{}:{}: student_action \"{}\" is unknown", path_, table_.line(row),
            one_line(text(row, student_), 40));
     }
     c.level_centi =

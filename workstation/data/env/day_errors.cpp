@@ -13,7 +13,7 @@ namespace bess {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// From so many months on their error is known to better than a quarter.
+/// With this many months the error's own relative error is below a quarter.
 constexpr int kMonthsEnough = 10;
 
 /// "2023-01" of "2023-01-31".
@@ -32,7 +32,7 @@ DayErrors day_errors(const std::vector<DayValue>& days) {
   const auto n = static_cast<double>(days.size());
   const double mean = mean_of(days);
   double squares = 0;
-  std::map<std::string_view, double> sums;  // of the deviations, by month
+  std::map<std::string_view, double> sums;  // deviations by month
   for (const auto& [date, value] : days) {
     squares += (value - mean) * (value - mean);
     sums[month_of(date)] += value - mean;
@@ -58,10 +58,10 @@ std::string error_text(double error, int decimals, std::string_view unknown) {
 
 std::string by_month_meaning(int months) {
   std::string text =
-      "the standard error with the days of a month as one draw, since days side by side are alike";
-  if (months < 2) return text + "; these lie in one month, which tells none";
+      "the standard error with the days of a month as one draw, since adjacent days are similar";
+  if (months < 2) return text + "; unknown, as all days are in one month";
   if (months >= kMonthsEnough) return fmt::format("{}; {} months", text, months);
-  return fmt::format("{}; {} months tell it to within {:.0f} % only", text, months,
+  return fmt::format("{}; from {} months, accurate only to {:.0f} %", text, months,
                      100 / std::sqrt(2.0 * (months - 1)));
 }
 

@@ -1,6 +1,5 @@
-// How deep a policy's days fall: one definition, for every page and table. The drawdown is the
-// deepest fall of what all days before together brought, from the end of a day to that of a later
-// one, the beginning being 0; never within a day.
+// Drawdown of a policy's daily results: the largest fall of the cumulative profit from the end of
+// one day to that of a later one, starting at 0; not within a day.
 #pragma once
 
 #include <span>
@@ -15,9 +14,9 @@ std::vector<double> daily_profits(const Evaluation& evaluation);
 
 /// Running sum.
 std::vector<double> cumulative(std::span<const double> days);
-/// Each sum minus the highest until then, 0 at the beginning included: not positive.
+/// Each sum minus the highest so far, the initial 0 included: not positive.
 std::vector<double> below_peak(std::span<const double> cumulative);
-/// The deepest of these, not negative.
+/// Largest fall, not negative.
 double drawdown(std::span<const double> days);
 
 }  // namespace bess

@@ -33,7 +33,7 @@ class Runner {
 
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
 
-  /// Runs steps of one day; `index` is that of the first since the policy's begin().
+  /// Runs steps of one day; `index` counts from the policy's begin().
   DayResult run(const std::string& date, std::span<const MarketStep> steps, std::size_t index,
                 std::vector<StepRecord>* records) {
     const BatteryParameters& battery = battery_;
@@ -77,7 +77,7 @@ class Runner {
   [[nodiscard]] bool must_go_on() const {
     return last_action_ != Action::kIdle && run_steps_ * kMinutesPerStep < battery_.minimum_run_min;
   }
-  /// By the throughput over what is left of the capacity, as bess-train size ages one.
+  /// Capacity fade by throughput, as in bess-train size.
   void fade(double mwh) {
     const double cycles = std::fabs(mwh) * kWattsPerMegawatt / (2 * battery_.capacity_wh);
     battery_.capacity_wh *= 1 - battery_.fade_percent_per_1000_cycles / 100 / 1000 * cycles;
@@ -85,14 +85,14 @@ class Runner {
 
   Policy& policy_;
   const EvaluationOptions& options_;
-  BatteryParameters battery_;  ///< with what is left of its capacity
+  BatteryParameters battery_;  ///< with its faded capacity
   double soc_frac_;
-  PowerState power_;  ///< at the end of the step before
+  PowerState power_;  ///< at the end of the previous step
   Action last_action_ = Action::kIdle;
-  int run_steps_ = 0;  ///< of it, without a change
+  int run_steps_ = 0;  ///< steps in this direction without a change
 };
 
-/// The carried-over bound: one plan and one run over the whole series, of which `days` count.
+/// Carried-over foresight: one plan and one run over the whole series, of which `days` count.
 std::vector<DayResult> run_whole_series(const MarketSteps& market,
                                         const std::vector<MarketDay>& days, Policy& policy,
                                         const EvaluationOptions& options,

@@ -19,7 +19,7 @@ Split split_of_day(int day_of_month) {
   return day_of_month <= kValidationDayLast ? Split::kValidation : Split::kTest;
 }
 
-/// As the edge reads a row: one without price, or with a price beyond belief, is passed over.
+/// As on the edge: rows without a price or with an implausible price are skipped.
 bool is_usable(double eur_per_mwh) {
   return std::fabs(eur_per_mwh * kCentiPerEur) <= kPlausiblePriceMaxCentiEurPerMwh;
 }
@@ -35,15 +35,15 @@ std::vector<std::int64_t> newest_published(const MinuteSeries& series) {
   return newest;
 }
 
-/// Sums and squares of prices beyond this leave what numbers can hold, and an infinite mean becomes
-/// an index out of range. No currency has such a price for a MWh.
+/// Upper limit of plausible prices; larger ones overflow sums of squares, and an infinite mean
+/// would become an index out of range.
 constexpr double kPaidPriceMaxEurPerMwh = 1e6;
 
 void require_payable(const MinuteSeries& series) {
   for (std::size_t m = 0; m < series.size(); ++m) {
     if (std::fabs(series.settled[m]) <= kPaidPriceMaxEurPerMwh || std::isnan(series.settled[m]))
       continue;
-    fail("the settled price of {}, {:g} EUR/MWh, is none; mend it or leave it empty",
+    fail("the settled price of {} is out of range: {:g} EUR/MWh; correct it or leave it empty",
          utc_text(series.utc_s(m)).view(), series.settled[m]);
   }
 }
@@ -111,18 +111,17 @@ void require_training_days(std::size_t count) {
 
 namespace {
 
-/// Why there is not one day of decisions.
+/// Throws with the reason why there is no day with decisions.
 [[noreturn]] void fail_without_days(const MinuteSeries& series) {
   if (has_no_price(series.indicative)) {
     fail(
-        "the prices hold no indicative price, so there is nothing to decide on; 'bess-train prices "
+        "the prices have no indicative price to decide on; 'bess-train prices "
         "reconstruct' draws them from quarter-hours");
   }
   if (has_no_price(series.settled)) {
-    fail(
-        "the prices hold no settled price, so nothing can be paid; import quarter-hours with them");
+    fail("the prices have no settled price to pay; import settled quarter-hours");
   }
-  fail("the prices hold no complete local day (at least {} of 720 decisions); add more days",
+  fail("the prices have no complete local day (at least {} of 720 decisions); add more days",
        kCompleteDaySteps);
 }
 

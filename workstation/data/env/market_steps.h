@@ -1,7 +1,7 @@
-// The market as a controller meets it: one record per 2-minute decision, with what was published by
-// then and what the step will be paid at. Built once from a minute series; every policy, baseline
-// and learner reads the same records, so look-ahead is impossible below this line: `observed_*`
-// never depends on a row later than `decision minute - observation delay`.
+// Market steps: one record per 2-minute decision with the prices published by then and the price
+// that the step is paid. Built once from a minute series and shared by all policies and learners,
+// so look-ahead is impossible: `observed_*` never depends on a row later than `decision minute -
+// observation delay`.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 
 namespace bess {
 
-/// How a step's energy is paid when a quarter-hour ends inside it [SPEC 4].
+/// Payment of a step in which a quarter-hour ends [SPEC 4].
 enum class Settlement {
   kMinute,  ///< each minute at the price of its own quarter-hour (default)
   kStep,    ///< the whole step at the quarter-hour in which it starts (the paper's wording)
 };
 
-/// Held out are validation and test days together: they judge better than either.
+/// Held out: validation and test days together.
 enum class Split { kTrain, kValidation, kTest, kHeldOut, kAll };
 inline constexpr std::array<std::string_view, 5> kSplitNames{"train", "val", "test", "val+test",
                                                              "all"};
@@ -41,7 +41,7 @@ Settlement parse_settlement(std::string_view name);
 struct MarketOptions {
   int observation_delay_min = 1;  ///< 0..5; the newest visible row at minute t is t - delay
   Settlement settlement = Settlement::kMinute;
-  int day_ahead_published_min = kDayAheadPublishedMin;  ///< local, of the day before
+  int day_ahead_published_min = kDayAheadPublishedMin;  ///< local minute of the previous day
 };
 
 struct MarketStep {
@@ -54,10 +54,10 @@ struct MarketStep {
   std::int8_t quarter_hour;              ///< local, 0..95
   std::int8_t month;                     ///< local, 1..12
   std::int8_t half_hour_phase;           ///< (minute of the half-hour) / 2, 0..14
-  const DayAheadPublication* day_ahead = nullptr;  ///< MarketSteps::day_ahead; asked below alone
+  const DayAheadPublication* day_ahead = nullptr;  ///< MarketSteps::day_ahead
 
-  /// Day-ahead price of the quarter-hour that holds the instant, as it was known at this step; NaN
-  /// when it was not, or when there are no day-ahead prices.
+  /// Day-ahead price of the quarter-hour that contains the instant, as known at this step; NaN if
+  /// unknown or without day-ahead prices.
   [[nodiscard]] double day_ahead_eur_per_mwh(std::int64_t at_utc_s) const {
     return day_ahead == nullptr ? kNotPublished : day_ahead->known_eur_per_mwh(at_utc_s, utc_s);
   }
@@ -65,24 +65,24 @@ struct MarketStep {
     return static_cast<double>(level_centi_eur_per_mwh) / kCentiPerEur;
   }
   friend bool operator==(const MarketStep&, const MarketStep&) = default;
-  /// How many quarter-hours before this step's the newest row belongs: in its first minutes 1.
+  /// Quarter-hours from the newest row's to this step's: 1 in the first minutes.
   [[nodiscard]] int quarter_hours_ago() const {
     const int before_this_min = std::max(0, observed_age_min - minute_of_quarter_hour);
     return (before_this_min + kMinutesPerQuarterHour - 1) / kMinutesPerQuarterHour;
   }
-  /// 0..95, of that row.
+  /// 0..95, of the newest row.
   [[nodiscard]] int row_quarter_hour() const {
     return (quarter_hour - quarter_hours_ago() % kQuarterHourCount + kQuarterHourCount) %
            kQuarterHourCount;
   }
 };
 
-/// As the edge reads a usable price: to the nearest hundredth.
+/// To the nearest hundredth, as on the edge.
 inline std::int32_t price_centi_of(double eur_per_mwh) {
   return static_cast<std::int32_t>(std::lround(eur_per_mwh * kCentiPerEur));
 }
 
-/// Consecutive steps of one local calendar day that can be traded.
+/// Consecutive tradable steps of one local calendar day.
 struct MarketDay {
   int year, month, day;
   Split split;
@@ -100,26 +100,26 @@ struct MarketSteps {
     return {steps.data() + day.first_step, day.step_count};
   }
   [[nodiscard]] std::vector<MarketDay> days_of(Split split) const;
-  /// One of its prices of every step of these days.
+  /// One price of every step of these days.
   [[nodiscard]] std::vector<double> prices_of(const std::vector<MarketDay>& of_days,
                                               double MarketStep::*price) const;
-  /// Training and validation days: something is learnt or chosen on them.
+  /// Training and validation days, used for fitting or selection.
   [[nodiscard]] std::vector<MarketDay> fitted_days() const;
-  /// From the first to the last of `days`, which are ascending and not empty.
+  /// Span of `days`, which are ascending and not empty.
   [[nodiscard]] UtcSpan span_of(const std::vector<MarketDay>& days) const;
 };
 
-/// A day with fewer tradable steps than this is left out (a 23-hour day has exactly 690).
+/// Minimum number of tradable steps of a day (a 23-hour day has exactly 690).
 inline constexpr std::size_t kCompleteDaySteps = 690;
 
-/// Throws UserError when there is nothing to fit on: `count` training days, or prices on them.
+/// Throws UserError without data to fit on: `count` training days, or prices on them.
 void require_training_days(std::size_t count);
 
-/// Throws UserError when the options are out of range, a settled price is beyond all sense, or no
-/// complete day remains.
+/// Throws UserError if options are out of range, a settled price is implausible, or no complete day
+/// remains.
 MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options);
 
-/// Gives every step of `market` what was known of these prices by then.
+/// Gives every step of `market` the day-ahead prices known by then.
 void attach_day_ahead(MarketSteps& market, std::shared_ptr<const DayAheadPublication> day_ahead);
 
 }  // namespace bess

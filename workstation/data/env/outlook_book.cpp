@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-constexpr std::size_t kPagesMax = 2500;  ///< of 100 kB each
+constexpr std::size_t kPagesMax = 2500;  ///< 100 kB each
 
 }  // namespace
 
@@ -65,7 +65,7 @@ std::shared_ptr<const OutlookPlan> OutlookBook::plan_for(const MarketStep& step)
     until = std::min(
         until, step.day_ahead->next_known_utc_s(days.yesterday_utc_s, days.end_utc_s, step.utc_s));
   }
-  // Asked backwards: what was known later and no more was known then, too.
+  // Searched backwards: later pages know more.
   const auto known = std::ranges::find(pages, days, &Page::days);
   if (known != pages.end()) {
     known->from_utc_s = std::min(known->from_utc_s, step.utc_s);
@@ -76,7 +76,7 @@ std::shared_ptr<const OutlookPlan> OutlookBook::plan_for(const MarketStep& step)
   const auto plan = std::make_shared<OutlookPlan>();
   plan->make(model_, days, level);
   lock.lock();
-  if (publication_ != step.day_ahead) return plan;  // other threads are at other prices by now
+  if (publication_ != step.day_ahead) return plan;  // another thread has changed the prices
   pages_[key].push_back({step.utc_s, until, days, plan});
   ++page_count_;
   return plan;

@@ -1,5 +1,5 @@
-// The plans that a policy by outlook has asked for so far: one a local day, rounded level and state
-// of what is published. The plan itself is the edge's code (shared/outlook).
+// Cache of the plans of outlook policies, one for each local day, rounded level and publication
+// state. The edge's code makes the plans (shared/outlook).
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,26 @@
 
 namespace bess {
 
-/// The days around a step with what of their day-ahead prices was published by then.
+/// Days around a step with the day-ahead prices published by then.
 OutlookDays outlook_days_of(const MarketStep& step);
 
 class OutlookBook {
  public:
   explicit OutlookBook(const OutlookModel& model) : model_(model) {}
-  /// The book of this model: that of the last one asked for, if it is the same and in use. So
-  /// teacher and student of a run look up one another's plans.
+  /// Cache for this model; the latest one is reused if the model is equal, so that teacher and
+  /// student of a run share plans.
   static std::shared_ptr<const OutlookBook> of(const OutlookModel& model);
 
   [[nodiscard]] const OutlookModel& model() const { return model_; }
-  /// Break-even price at a step; threads may share the book.
+  /// Break-even price at a step; thread-safe.
   [[nodiscard]] std::int32_t break_even_centi(const MarketStep& step, double soc_frac) const;
-  /// The plan that it is of, for who asks at many SoCs.
+  /// Plan of a step, for queries at many SoCs.
   [[nodiscard]] std::shared_ptr<const OutlookPlan> plan_for(const MarketStep& step) const;
-  /// Makes the plans of these days beforehand, on so many threads.
+  /// Makes the plans of these days in advance.
   void prepare(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) const;
 
  private:
-  /// A plan and the decisions that know no more than it does.
+  /// A plan and the price state for which it is valid.
   struct Page {
     std::int64_t from_utc_s, until_utc_s;
     OutlookDays days;
@@ -46,7 +46,7 @@ class OutlookBook {
   mutable std::map<Key, std::vector<Page>> pages_;
   mutable std::size_t page_count_ = 0;
   mutable std::int64_t midnight_utc_s_ = 0, next_midnight_utc_s_ = 0;  ///< of the newest step
-  mutable const DayAheadPublication* publication_ = nullptr;           ///< that the pages are of
+  mutable const DayAheadPublication* publication_ = nullptr;           ///< publication of the pages
 };
 
 }  // namespace bess

@@ -1,5 +1,4 @@
-// What every controller is here, baseline or network: a function of what was published and of the
-// SoC.
+// Policy interface: published prices and SoC to an action.
 #pragma once
 
 #include <fmt/core.h>
@@ -22,21 +21,21 @@ class Policy {
   Policy& operator=(const Policy&) = delete;
   virtual ~Policy() = default;
 
-  /// Called before each run of consecutive steps that starts at `soc_frac`. Only perfect foresight
-  /// looks at `ahead`; it is a bound, not a policy.
+  /// Called before each run of consecutive steps that starts at `soc_frac`. Only foresight, which
+  /// is a bound and not a policy, uses `ahead`.
   virtual void begin(std::span<const MarketStep> ahead, double soc_frac) {
     (void)ahead;
     (void)soc_frac;
   }
-  /// True of the bound alone: when the SoC is carried over, evaluate() then plans and runs the
-  /// whole series (evaluate.h).
+  /// True for foresight only: with the SoC carried over, evaluate() plans and runs the whole series
+  /// (evaluate.h).
   [[nodiscard]] virtual bool sees_future() const { return false; }
-  /// What was chosen in fitting it, for people; empty when there is nothing to say in a line.
+  /// Fitted parameters as text; empty if they do not fit in a line.
   [[nodiscard]] virtual std::string description() const { return {}; }
   /// Decides one step. `index` counts from the last begin().
   [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
                                       double soc_frac) const = 0;
-  /// Share of the rated power that may be used for it, 0..1.
+  /// Usable share of the rated power, 0..1.
   [[nodiscard]] virtual double power_share_max(const MarketStep& step, double soc_frac) const {
     (void)step;
     (void)soc_frac;
@@ -44,7 +43,7 @@ class Policy {
   }
 };
 
-/// W, of an action at a step: all of the power that the policy's share and the hour leave.
+/// Power of an action at a step, W, within the limits of the policy and the hour.
 inline double ordered_power_w(const BatteryParameters& battery, const MarketStep& step,
                               Action action, double power_share_max) {
   const double share = std::min(power_share_max, battery.cold.share_at(step.quarter_hour));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kDaysOfARequest = 366;
 
-/// One answer, tried again where that can help; nothing when interrupted.
+/// One answer, with retries; nothing if interrupted.
 std::optional<std::string> get_day_ahead(const DayAheadRequest& request, const std::string& url,
                                          const std::atomic<bool>& interrupted) {
   using Kind = HttpOutcome::Kind;
@@ -37,7 +37,7 @@ std::optional<std::string> get_day_ahead(const DayAheadRequest& request, const s
     const double backoff_s = request.retry.first_wait_s * static_cast<double>(1 << (attempt - 1));
     const double wait_s = std::max(outcome.wait_s.value_or(0.0), backoff_s);
     if (wait_s > request.retry.wait_max_s) {
-      fail("{}; the server asks to wait {}: day-ahead prices from {}; try again then",
+      fail("{}; the server asks to wait {}: day-ahead prices from {}; then try again",
            outcome.reason, describe_wait(wait_s), host_of(request.base_url));
     }
     fmt::print(stderr, "day-ahead: {}; next attempt in {:.0f} s\n", outcome.reason, wait_s);
@@ -46,7 +46,7 @@ std::optional<std::string> get_day_ahead(const DayAheadRequest& request, const s
   return std::nullopt;
 }
 
-/// The last day whose prices must be out: tomorrow from an hour after the usual time on.
+/// Last day whose prices must be published: tomorrow from one hour after the usual time.
 LocalDate last_published_day(std::int64_t now_utc_s) {
   constexpr int kLate_min = 60;
   const bool is_out = local_minute_of(now_utc_s).minute_of_day >= kDayAheadPublishedMin + kLate_min;
@@ -59,7 +59,7 @@ void require_complete(const DayAheadRequest& request, const JoinedDayAhead& join
   const std::string host = host_of(request.base_url);
   if (local_date_of(series.start_utc_s) > request.span.from ||
       local_date_of(series.end_utc_s() - 1) < last) {
-    fail("{}: day-ahead prices from {} to {} alone; run again later, or with --allow-gaps", host,
+    fail("{}: day-ahead prices from {} to {} only; run again later, or with --allow-gaps", host,
          format_local_date(local_date_of(series.start_utc_s)),
          format_local_date(local_date_of(series.end_utc_s() - 1)));
   }
@@ -69,7 +69,7 @@ void require_complete(const DayAheadRequest& request, const JoinedDayAhead& join
        incomplete.front().prices, incomplete.front().quarter_hours, incomplete.front().date,
        incomplete.size() == 1
            ? ""
-           : fmt::format(", and {} that miss some", counted(incomplete.size() - 1, "day")));
+           : fmt::format(", and {} more with gaps", counted(incomplete.size() - 1, "day")));
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void require_complete(const DayAheadRequest& request, const JoinedDayAhead& join
 std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
                                               const std::atomic<bool>& interrupted) {
   if (request.span.to < request.span.from) {
-    fail("--to {} lies before --from {}", format_local_date(request.span.to),
+    fail("--to {} is before --from {}", format_local_date(request.span.to),
          format_local_date(request.span.from));
   }
   std::vector<DayAheadRow> rows;

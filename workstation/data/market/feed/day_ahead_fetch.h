@@ -1,6 +1,5 @@
-// Downloads day-ahead prices of local days from energy-charts (Fraunhofer ISE), which needs no key:
-// one request for each year or part of it. The answer is whole or the command fails; nothing is
-// kept between.
+// Day-ahead download from energy-charts (Fraunhofer ISE), which needs no key: one request per year
+// or part of a year. No partial results are kept.
 #pragma once
 
 #include <atomic>
@@ -26,9 +25,8 @@ struct DayAheadRequest {
   std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
 };
 
-/// Nothing when interrupted. Throws UserError when the server cannot be made to answer, its answer
-/// is none, or days of the span miss prices though they must be published by now and gaps are not
-/// allowed.
+/// Nothing if interrupted. Throws UserError if the server does not answer, the answer is invalid,
+/// or published days have gaps that are not allowed.
 std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
                                               const std::atomic<bool>& interrupted);
 

@@ -52,7 +52,7 @@ TidyColumns tidy_columns(std::string_view header, std::string_view name) {
   return columns;
 }
 
-/// "1,5" is a number where semicolons separate the fields.
+/// With semicolons as separators "1,5" is a number.
 bool parse_decimal(std::string_view field, char separator, double& value) {
   std::string text(field);
   if (separator == ';') std::ranges::replace(text, ',', '.');
@@ -65,12 +65,12 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
   CsvFields taken(line, columns.separator);
   for (std::string_view field; taken.take(field);) fields.push_back(field);
   if (fields.size() != columns.count) {
-    fail("{}: {} columns where the header has {}; the file may be cut short, get it again", place,
+    fail("{}: {} columns where the header has {}; file cut short? download it again", place,
          fields.size(), columns.count);
   }
   DayAheadRow row{};
   if (!parse_utc(fields[*columns.time], row.utc_s, kAlsoBlank)) {
-    fail("{}: \"{}\" is no time with Z or an offset, e.g. 2025-06-01T10:00:00Z", place,
+    fail("{}: \"{}\" is not a time with Z or an offset, e.g. 2025-06-01T10:00:00Z", place,
          one_line(fields[*columns.time], 40));
   }
   const std::string_view price = fields[*columns.price];
@@ -85,7 +85,7 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
   }
   if (columns.published && !fields[*columns.published].empty() &&
       !parse_utc(fields[*columns.published], row.published_utc_s, kAlsoBlank)) {
-    fail("{}: \"{}\" is no time of publication; leave it empty where nobody noted it", place,
+    fail("{}: \"{}\" is not a time of publication; leave it empty if unknown", place,
          one_line(fields[*columns.published], 40));
   }
   return row;
@@ -106,18 +106,18 @@ std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string
       rows.push_back(tidy_row(line, *columns, fmt::format("{}:{}", name, line_number)));
     }
   }
-  if (!columns) fail("{}: the file is empty; get it again", name);
+  if (!columns) fail("{}: the file is empty; download it again", name);
   return rows;
 }
 
 std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_view name) {
   DayAheadAnswer answer = parse_day_ahead_json(text);
   if (!answer.trouble.empty()) {
-    fail("{}: no day-ahead prices of energy-charts, or cut short: {}; get it again", name,
+    fail("{}: not an energy-charts answer, or cut short: {}; download it again", name,
          answer.trouble);
   }
   if (answer.passed_over > 0) {
-    fail("{}: unix_seconds has {} that are no times; get it again", name, answer.passed_over);
+    fail("{}: unix_seconds has {} invalid times; download it again", name, answer.passed_over);
   }
   return std::move(answer.rows);
 }
@@ -147,13 +147,13 @@ std::vector<DayAheadRow> rows_of_one_zone(const std::vector<std::string>& paths,
 
 JoinedDayAhead join_day_ahead(std::vector<DayAheadRow> rows, std::string_view name) {
   const DayAheadLayout layout = lay_out_day_ahead(std::move(rows));
-  if (!layout.trouble.empty()) fail("{}: {}; mend the times", name, layout.trouble);
+  if (!layout.trouble.empty()) fail("{}: {}; correct the times", name, layout.trouble);
   JoinedDayAhead joined;
   if (layout.contradiction_utc_s != 0) {
     joined.findings.push_back(
         {"overlap", true,
-         fmt::format("two day-ahead prices of one time, {} and {}: which is it? the later one "
-                     "counts when it is accepted",
+         fmt::format("two day-ahead prices for one time, {} and {}: remove one (if accepted, the "
+                     "later one counts)",
                      layout.contradicting_eur_per_mwh[0], layout.contradicting_eur_per_mwh[1]),
          layout.contradiction_utc_s});
   }
@@ -165,13 +165,13 @@ JoinedDayAhead join_day_ahead(std::vector<DayAheadRow> rows, std::string_view na
       if (q.is_assumed) continue;
       if (!append_day_ahead(joined.series,
                             {q.utc_s, q.eur_per_mwh, day.resolution_min, q.published_utc_s})) {
-        fail("{}: {} lies more than 40 years behind the first row; mend the date", name,
+        fail("{}: {} is more than 40 years after the first row; correct the date", name,
              utc_text(q.utc_s).view());
       }
     }
     if (day.resolution_min == 60) joined.repeated_hours += day.quarter_hours.size() / 4;
   }
-  if (joined.series.size() == 0) fail("{}: holds no day-ahead prices; choose other days", name);
+  if (joined.series.size() == 0) fail("{}: has no day-ahead prices; choose other days", name);
   return joined;
 }
 
@@ -185,17 +185,17 @@ std::string describe_day_ahead(const JoinedDayAhead& joined) {
                   utc_text(series.end_utc_s()).view(), counted(joined.repeated_hours, "hour"));
   if (joined.assumed > 0) {
     text += fmt::format(
-        "{} left out: merged rows, or missing ones; a source that has every row fills them\n",
+        "{} omitted: merged or missing rows; use a source with every row to fill them\n",
         counted(joined.assumed, "quarter-hour"));
   }
   if (joined.constant_days > 0) {
-    text += fmt::format("{} of one price all day left out: zeros until the auction?\n",
+    text += fmt::format("{} with a constant price omitted: zeros until the auction?\n",
                         counted(joined.constant_days, "day"));
   }
   const std::vector<IncompleteDay> incomplete = incomplete_days(series);
   if (incomplete.empty()) return text;
   const IncompleteDay& day = incomplete.front();
-  return text + fmt::format("{} not complete, first {}: {} of {} quarter-hours\n",
+  return text + fmt::format("{} incomplete, first {}: {} of {} quarter-hours\n",
                             counted(incomplete.size(), "day"), day.date, day.prices,
                             day.quarter_hours);
 }

@@ -30,7 +30,7 @@ constexpr DatasetPair kOld{"ods046", "ods047"};
 constexpr DatasetPair kNew{"ods133", "ods134"};
 constexpr DatasetPair kToday{"ods161", "ods162"};
 
-/// A dataset of the day may be refreshed a day late.
+/// Datasets of the running day may be refreshed a day late.
 constexpr int kFillingDays = 2;
 
 DatasetPair datasets_of(const LocalDate& day, const LocalDate& today) {
@@ -42,8 +42,8 @@ LocalDate next_month(const LocalDate& day) {
   return day.month == 12 ? LocalDate{day.year + 1, 1, 1} : LocalDate{day.year, day.month + 1, 1};
 }
 
-/// First day of the next window: month's end, change of datasets, the days that may still be
-/// filling, today, or the span's end.
+/// First day of the next window: end of month, change of datasets, incomplete days, today, or end
+/// of the span.
 LocalDate window_end(const LocalDate& from, const LocalDate& end, const LocalDate& today) {
   LocalDate until = std::min(end, next_month(from));
   for (const LocalDate& border : {kNewDatasets, add_days(today, -kFillingDays), today}) {
@@ -90,7 +90,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Cached windows of another server are never taken for this one's.
+/// The name includes the server, so that cached windows of different servers are distinct.
 fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
   Crc32 server;
   server.add_bytes(request.base_url.data(), request.base_url.size());
@@ -99,8 +99,8 @@ fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
                                                    server.value());
 }
 
-/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none, and so
-/// does one with a gap unless gaps are allowed: the server may have mended it.
+/// Rows of a window from an earlier run. Damaged or empty copies are ignored, and copies with gaps
+/// unless gaps are allowed: the server may have filled them.
 std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWindow& window) {
   const fs::path path = window_path(request, window);
   if (window.settles_later || !fs::exists(path)) return std::nullopt;
@@ -113,7 +113,7 @@ std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWind
   return std::nullopt;
 }
 
-/// Nothing when interrupted.
+/// Nothing if interrupted.
 std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchWindow& window,
                                        const std::atomic<bool>& interrupted) {
   std::optional<WindowDownload> download = download_window(request, window, interrupted);
@@ -126,8 +126,8 @@ std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchW
   return std::move(download->rows);
 }
 
-/// Rows of each window, or nothing when interrupted. Kept windows come first, so that the rate
-/// shown is that of the downloads.
+/// Rows of each window, or nothing if interrupted. Cached windows come first, so that the rate is
+/// that of the downloads.
 std::optional<std::vector<WindowRows>> fetch_windows(const FetchRequest& request,
                                                      const std::vector<FetchWindow>& windows,
                                                      const std::atomic<bool>& interrupted) {
@@ -157,23 +157,23 @@ std::optional<std::vector<WindowRows>> fetch_windows(const FetchRequest& request
 
 void remove_kept_windows(const FetchRequest& request) {
   std::error_code error;
-  fs::remove_all(fetch_cache_folder(request), error);  // a leftover is only wasted space
+  fs::remove_all(fetch_cache_folder(request), error);  // failure wastes only disk space
 }
 
 [[noreturn]] void fail_without_prices(const FetchRequest& request, const FetchWindow& first) {
   remove_kept_windows(request);
   if (!first.settles_later) {
-    fail("{}: holds no prices from {} to {}; choose other days", request.base_url,
+    fail("{}: has no prices from {} to {}; choose other days", request.base_url,
          format_local_date(request.span.from), format_local_date(request.span.to));
   }
   if (is_near_real_time(first.dataset)) {
-    fail("{}: no prices of today yet; run again in some minutes", request.base_url);
+    fail("{}: no prices of today yet; run again in a few minutes", request.base_url);
   }
   fail("{}: not published yet: {} is refreshed once a day; run again tomorrow", request.base_url,
        first.dataset);
 }
 
-/// Kept windows that cannot be used would only bring the same failure again.
+/// Deletes cached windows that cannot be joined: they would fail again.
 JoinedMarket join_or_forget(const FetchRequest& request, MarketRows rows) {
   try {
     return join_market(std::move(rows), request.base_url);
@@ -183,7 +183,7 @@ JoinedMarket join_or_forget(const FetchRequest& request, MarketRows rows) {
   }
 }
 
-/// What the datasets that are refreshed once a day do not hold yet.
+/// Part of the span that daily datasets do not contain yet.
 std::string describe_unpublished(const FetchWindow& window, const MarketRows& rows) {
   if (!window.settles_later || is_near_real_time(window.dataset)) return {};
   std::int64_t end_utc_s = window.from_utc_s;
@@ -212,13 +212,13 @@ std::string describe_windows(const std::vector<FetchWindow>& windows,
     unended += rows[i].unended;
   }
   if (unended > 0) {
-    text += fmt::format("{} dropped: of minutes or quarter-hours that had not ended\n",
+    text += fmt::format("{} dropped: minutes or quarter-hours that had not ended\n",
                         counted(unended, "row"));
   }
   return text;
 }
 
-/// Ends of the span where no window has a row are described with the windows.
+/// Missing ends of the span without a row in any window are described with the windows.
 std::string describe_coverage(const FetchRequest& request, const std::vector<FetchWindow>& windows,
                               const std::vector<WindowRows>& rows, const MinuteSeries& series) {
   std::string text;
@@ -242,7 +242,7 @@ std::string describe_coverage(const FetchRequest& request, const std::vector<Fet
   return text;
 }
 
-/// Gaps that are none of an end which is still being published: with each window that has any.
+/// Gaps by window, without an end that is still being published.
 struct WindowGaps {
   const FetchWindow* window;
   const WindowRows* rows;
@@ -298,7 +298,7 @@ std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
 void require_no_gaps(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
   if (gaps.empty() || request.allow_gaps) return;
   fail(
-      "{}{}: {}; run again later, or with --allow-gaps for a file that has them",
+      "{}{}: {}; run again later, or with --allow-gaps for a file with gaps",
       describe_missing(gaps.front(), request.now_utc_s),
       gaps.size() == 1 ? "" : fmt::format(", and {} with gaps", counted(gaps.size() - 1, "window")),
       host_of(request.base_url));

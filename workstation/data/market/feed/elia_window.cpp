@@ -17,7 +17,7 @@ namespace {
 
 using Kind = HttpOutcome::Kind;
 
-/// A month of minutes from a server that sends a hundred rows at a time needs 450.
+/// A month of minutes needs 450 pages if the server sends 100 rows at a time.
 constexpr int kPagesMax = 2'000;
 
 std::string where_of(const FetchWindow& window) {
@@ -41,7 +41,7 @@ std::string total_url(const std::string& base_url, const FetchWindow& window) {
                      window.dataset, where_of(window));
 }
 
-/// Drops the rows whose interval [from, until) `unwanted` names.
+/// Drops the rows whose interval [from, until) is `unwanted`.
 template <typename Unwanted>
 void drop_rows(MarketRows& rows, Unwanted unwanted) {
   const auto minute = [&](std::int64_t utc_s) { return unwanted(utc_s, utc_s + 60); };
@@ -59,13 +59,13 @@ std::int64_t step_of(const FetchWindow& window) {
   return holds_minutes(window.dataset) ? 60 : kSecondsPerQuarterHour;
 }
 
-/// First instant of the window that has not ended yet.
+/// First instant of the window that has not ended.
 std::int64_t end_of(const FetchWindow& window, std::int64_t now_utc_s) {
   const std::int64_t step_s = step_of(window);
   return std::max(window.from_utc_s, std::min(window.until_utc_s, now_utc_s - now_utc_s % step_s));
 }
 
-/// A quarter-hour without a price is a hole; of the minutes Elia publishes some without one.
+/// A quarter-hour without a price is a gap; Elia publishes some minutes without one.
 std::set<std::int64_t> settled_times_of(const MarketRows& rows) {
   std::set<std::int64_t> times;
   for (const QuarterHour& row : rows.quarter_hours) {
@@ -85,7 +85,7 @@ std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& row
   return times;
 }
 
-/// Stretches of the window that have ended and none of the times lies in.
+/// Ended parts of the window without any of these times.
 std::vector<Gap> gaps_between(const std::set<std::int64_t>& times, const FetchWindow& window,
                               std::int64_t now_utc_s) {
   const std::int64_t step_s = step_of(window);
@@ -104,21 +104,21 @@ std::vector<Gap> gaps_between(const std::set<std::int64_t>& times, const FetchWi
   return gaps;
 }
 
-/// "December 2022" would do for a month, but windows are days as well.
+/// Windows may be days, so the text names days.
 std::string describe_window(const FetchRequest& request, const FetchWindow& window) {
   return fmt::format(
       "{} of {} to {} from {}", window.dataset, format_local_date(local_date_of(window.from_utc_s)),
       format_local_date(local_date_of(window.until_utc_s - 1)), host_of(request.base_url));
 }
 
-/// Attempts at one answer so far.
+/// Attempts for one answer so far.
 struct Attempts {
   int all = 0;
-  int unreadable = 0;  ///< a whole answer, but no data
+  int unreadable = 0;  ///< complete answers without data
   int slow = 0;
 };
 
-/// Seconds until the next attempt; throws when there should be none.
+/// Seconds until the next attempt; throws if there is none.
 double next_wait_s(const FetchRequest& request, const FetchWindow& window, const Attempts& attempts,
                    const HttpOutcome& outcome) {
   const RetryPolicy& retry = request.retry;
@@ -144,8 +144,8 @@ double next_wait_s(const FetchRequest& request, const FetchWindow& window, const
   return wait_s;
 }
 
-/// An answer that cannot be read is tried once more, as a proxy or a repair may have sent it; one
-/// that is read and is another dataset will stay so.
+/// An unreadable answer is requested again, since a proxy may have changed it; a readable answer of
+/// another dataset is final.
 HttpOutcome get_rows(const FetchRequest& request, const FetchWindow& window,
                      const std::atomic<bool>& interrupted, WindowDownload& download,
                      Attempts& attempts) {
@@ -166,7 +166,7 @@ HttpOutcome get_rows(const FetchRequest& request, const FetchWindow& window,
   }
 }
 
-/// Nothing when interrupted.
+/// Nothing if interrupted.
 std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchWindow& window,
                                        const std::atomic<bool>& interrupted) {
   WindowDownload download;
@@ -182,8 +182,8 @@ std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchW
   return std::nullopt;
 }
 
-/// How many rows the server says it has; nothing when it does not say so, or says more than the
-/// calendar has: then it counted something else.
+/// Number of rows by the server; nothing if not stated or larger than the calendar allows (then it
+/// counted something else).
 std::optional<std::size_t> server_total(const FetchRequest& request, const FetchWindow& window,
                                         const std::atomic<bool>& interrupted) {
   constexpr double kDeadline_s = 30;
@@ -198,7 +198,7 @@ std::optional<std::size_t> server_total(const FetchRequest& request, const Fetch
   return static_cast<std::size_t>(*total);
 }
 
-/// Without its head: the rows of a further answer, to go on with `text`. Empty when it is no CSV of
+/// Rows of a further answer without its header, to append to `text`. Empty if it is not CSV with
 /// the same columns.
 std::string_view rows_behind_header(std::string_view page, std::string_view text) {
   const std::string_view header = csv_header(text);
@@ -208,7 +208,7 @@ std::string_view rows_behind_header(std::string_view page, std::string_view text
   return rows;
 }
 
-/// Asks for one stretch after another until the rows are complete, or no stretch brings any.
+/// Requests the missing parts until the rows are complete or no request adds any.
 class Pager {
  public:
   Pager(const FetchRequest& request, const FetchWindow& window,
@@ -221,11 +221,11 @@ class Pager {
     count();
   }
 
-  /// False when interrupted.
+  /// False if interrupted.
   bool complete() {
     add_around({window_.from_utc_s, window_.until_utc_s}, download_.rows.rows);
     if (!ask_all()) return false;
-    // The server has rows between those that came: it neither sorted nor sent them all.
+    // The server has rows between those received: it sent them unsorted or incomplete.
     if (lacks_rows_of_total()) {
       open_ = missing_in(window_, download_.rows.rows, request_.now_utc_s);
       return ask_all();
@@ -275,12 +275,12 @@ class Pager {
     add_around({part.from_utc_s, part.until_utc_s}, page.rows.rows);
   }
 
-  /// What is left of a stretch before the first and after the last row that came: a server that
-  /// cuts its answers leaves one of them.
+  /// Adds the parts before the first and after the last row received, where a server that truncates
+  /// its answers leaves one.
   void add_around(const Gap& stretch, const MarketRows& rows) {
     const std::set<std::int64_t> times = times_of(window_, rows);
     if (times.empty()) {
-      // A total says that there are rows after all.
+      // The total proves that there are rows.
       if (download_.rows.total && pages_ == 0) open_.push_back(stretch);
       return;
     }
@@ -347,15 +347,15 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
                                               const std::atomic<bool>& interrupted) {
   std::optional<WindowDownload> download = get_page(request, window, interrupted);
   if (!download) return std::nullopt;
-  if (download->rows.is_elsewhere) {  // another try would bring the same rows again
-    fail("the server ignored the time window: {} came, none inside it: {}",
+  if (download->rows.is_elsewhere) {  // a retry would return the same rows
+    fail("the server ignored the time window: {} received, none inside it: {}",
          counted(download->rows.received, "row"), describe_window(request, window));
   }
   if (missing_in(window, download->rows.rows, request.now_utc_s).empty()) return download;
   download->rows.total = server_total(request, window, interrupted);
   Pager pager(request, window, interrupted, *download);
   if (download->rows.total < download->rows.distinct)
-    download->rows.total.reset();  // no count of these
+    download->rows.total.reset();  // does not count these rows
   if (download->rows.total && !pager.lacks_rows_of_total()) return download;
   if (!pager.complete()) return std::nullopt;
   return download;

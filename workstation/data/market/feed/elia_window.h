@@ -1,7 +1,6 @@
-// One window of a download: asks for its rows, tries again where that can help, counts what came
-// against the calendar and against the server's own total, and asks for the rest until nothing is
-// missing or the server has no more. What is missing then is the caller's to accept or refuse.
-#pragma once
+// Download of one window: requests its rows with retries, compares them with the calendar and the
+// server's total, and requests the rest until nothing is missing or the server has no more. The
+// caller accepts or refuses the remaining gaps.
 
 #include <atomic>
 #include <cstdint>
@@ -18,45 +17,45 @@ namespace bess {
 
 struct WindowRows {
   MarketRows rows;
-  std::size_t received = 0;          ///< before any was dropped
-  bool is_elsewhere = false;         ///< rows came, and none of the window
-  std::size_t unended = 0;           ///< dropped: of intervals that had not ended
-  std::optional<std::size_t> total;  ///< the server's count, when it was asked and can be believed
-  std::size_t distinct = 0;          ///< times that have a row, where the total was asked for
+  std::size_t received = 0;          ///< rows before any was dropped
+  bool is_elsewhere = false;         ///< rows received, none of the window
+  std::size_t unended = 0;           ///< dropped: interval not ended
+  std::optional<std::size_t> total;  ///< the server's count, if requested and plausible
+  std::size_t distinct = 0;          ///< times with a row, if the total was requested
 
   [[nodiscard]] bool lacks_rows_of_total() const { return total && distinct + unended < *total; }
 };
 
-/// The rows of a text that lie in the window and have ended. An empty text holds none. Throws
-/// UserError when it cannot be read.
+/// Ended rows of a text inside the window; none for an empty text. Throws UserError if it cannot be
+/// read.
 WindowRows rows_in_window(std::string_view text, const std::string& name, const FetchWindow& window,
                           std::int64_t now_utc_s);
 
 /// Minutes or quarter-hours with a price.
 std::size_t count_of(const MarketRows& rows);
 
-/// Minutes or quarter-hours of the window that have ended, by the calendar of UTC: a local day of a
-/// clock change has 92 or 100 quarter-hours by itself.
+/// Ended minutes or quarter-hours of the window by the UTC calendar: a local day with a clock
+/// change has 92 or 100 quarter-hours.
 std::size_t expected_rows(const FetchWindow& window, std::int64_t now_utc_s);
 
-/// Stretches of the window that have ended and have no row of the window's kind.
+/// Ended parts of the window without a row of the window's kind.
 std::vector<Gap> missing_in(const FetchWindow& window, const MarketRows& rows,
                             std::int64_t now_utc_s);
-/// The same, and quarter-hours whose row has no price: nobody will be paid for them.
+/// The same, including quarter-hours without a price, which cannot be settled.
 std::vector<Gap> holes_in(const FetchWindow& window, const MarketRows& rows,
                           std::int64_t now_utc_s);
 
 struct WindowDownload {
-  std::string text;  ///< all answers as one; empty when they cannot be joined
+  std::string text;  ///< all answers joined; empty if not possible
   WindowRows rows;
 };
 
-/// Nothing when interrupted. Throws UserError when the server cannot be made to answer.
+/// Nothing if interrupted. Throws UserError if the server does not answer.
 std::optional<WindowDownload> download_window(const FetchRequest& request,
                                               const FetchWindow& window,
                                               const std::atomic<bool>& interrupted);
 
-/// "opendata.elia.be" of an address.
+/// "opendata.elia.be" of a URL.
 std::string host_of(const std::string& url);
 
 }  // namespace bess

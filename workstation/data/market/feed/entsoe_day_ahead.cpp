@@ -1,8 +1,8 @@
-// ENTSO-E A44 (Publication_MarketDocument): time series, of these periods, of these points with a
-// position and a price.amount. Under curveType A03 a point that is left out repeats the one before.
-// A zone with two auctions has a series of each, told apart by
-// classificationSequence_AttributeInstanceComponent.position: 1 is the coupled day-ahead auction's,
-// 2 a local one's (Germany, Austria).
+// ENTSO-E A44 reader (Publication_MarketDocument): time series contain periods, periods contain
+// points with a position and a price.amount. With curveType A03 a missing point repeats the
+// previous one. A zone with two auctions has a series for each, distinguished by
+// classificationSequence_AttributeInstanceComponent.position: 1 is the coupled day-ahead auction, 2
+// a local one (Germany, Austria).
 #include <algorithm>
 #include <limits>
 
@@ -43,7 +43,7 @@ void add_day_ahead_period(const EntsoeElement& element, bool repeats,
   }
 }
 
-/// Of a series: its zone, and which of two auctions it is of.
+/// Zone of a series.
 std::string zone_of(const EntsoeElement& series) {
   return std::string(series.child("out_Domain.mRID").text());
 }
@@ -74,7 +74,7 @@ DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name
       require_entsoe_unit(series.child("price_Measure_Unit.name"), "MWH");
       const std::string zone = zone_of(series);
       if (!file.zone.empty() && !zone.empty() && zone != file.zone) {
-        fail("{}: prices of the zone {} behind those of {}; import one zone at a time",
+        fail("{}: prices of the zone {} after those of {}; import one zone at a time",
              series.place(), one_line(zone, 20), one_line(file.zone, 20));
       }
       if (!zone.empty()) file.zone = zone;
@@ -96,9 +96,9 @@ DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name
     }
     file.rows.insert(file.rows.end(), s.rows.begin(), s.rows.end());
   }
-  if (file.rows.empty()) fail("{}: holds no day-ahead prices; choose other days", name);
+  if (file.rows.empty()) fail("{}: has no day-ahead prices; choose other days", name);
   if (unused > 0) {
-    file.unused = fmt::format("{} of another auction of the zone (sequence above {}) are not used",
+    file.unused = fmt::format("{} of another auction of the zone (sequence above {}) not used",
                               counted(unused, "price"), first);
   }
   return file;

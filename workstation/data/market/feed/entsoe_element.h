@@ -1,5 +1,5 @@
-// The elements that ENTSO-E's documents share, each able to say where it stands in its file. For
-// the readers of those documents alone: it brings pugixml with it.
+// Elements common to ENTSO-E's documents, with their place in the file. Include only in readers of
+// those documents: it includes pugixml.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace bess {
 
 inline constexpr std::int64_t kEntsoePeriodSecondsMax =
-    366LL * kSecondsPerDay;  ///< the platform answers a year at most
+    366LL * kSecondsPerDay;  ///< the platform returns at most one year
 
 struct EntsoeSource {
   std::string_view text;
@@ -34,13 +34,13 @@ struct EntsoeSource {
   }
 };
 
-/// Without the prefix of its namespace: documents come with and without one.
+/// Without a namespace prefix: documents exist with and without.
 inline std::string_view xml_local_name(const pugi::xml_node& node) {
   const std::string_view name = node.name();
   return name.substr(name.find(':') + 1);
 }
 
-/// An element that can say where it stands.
+/// Element with its place in the file.
 struct EntsoeElement {
   pugi::xml_node node;
   const EntsoeSource& source;
@@ -48,7 +48,7 @@ struct EntsoeElement {
   [[nodiscard]] std::string_view text() const { return node.child_value(); }
   [[nodiscard]] std::string place() const { return source.place(node.offset_debug()); }
 
-  /// The first one of that name, or one without a node.
+  /// The first child with this name, or an element without a node.
   [[nodiscard]] EntsoeElement child(std::string_view name) const {
     const auto named = [name](const pugi::xml_node& n) { return xml_local_name(n) == name; };
     return {node.find_child(named), source};
@@ -95,18 +95,18 @@ inline std::int64_t entsoe_resolution_s_of(const EntsoeElement& element) {
   if (text == "PT15M") return 900;
   if (text == "PT30M") return 1800;
   if (text == "PT60M" || text == "PT1H") return 3600;
-  fail("{}: resolution \"{}\" is not known; PT15M, PT30M and PT60M are", element.place(),
+  fail("{}: resolution \"{}\" is not supported; use PT15M, PT30M or PT60M", element.place(),
        one_line(text, 20));
 }
 
-/// Reads a document whose roots are of `kind`, which is `what` in words. Throws UserError when they
-/// are not, or when ENTSO-E sent only the reason why there are no prices.
+/// Reads a document whose roots are of `kind` (`what` in words). Throws UserError otherwise, also
+/// for ENTSO-E's answer without prices.
 inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSource& source,
                                  std::string_view kind, std::string_view what) {
-  // UTF-8 whatever the declaration says: a converted text would have other offsets.
+  // UTF-8 regardless of the declaration: a conversion would change the offsets.
   const pugi::xml_parse_result parsed = document.load_buffer(
       source.text.data(), source.text.size(), pugi::parse_default, pugi::encoding_utf8);
-  // What a broken document began as tells more than where it breaks.
+  // The root of a broken document is more informative than the place of the error.
   for (const pugi::xml_node& root : document) {
     const std::string_view found = xml_local_name(root);
     if (found == kind) continue;
@@ -115,7 +115,7 @@ inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSourc
       for (const pugi::xpath_node& text : root.select_nodes(".//*[local-name()='text']")) {
         reason += std::string(text.node().child_value()) + " ";
       }
-      fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", source.name, one_line(reason, 200));
+      fail("{}: ENTSO-E returned no prices; reason: \"{}\"", source.name, one_line(reason, 200));
     }
     fail("{}: not an ENTSO-E {} but \"{}\"{}", source.name, what, one_line(found, 60),
          found == "Publication_MarketDocument" ? "; import day-ahead prices with --day-ahead" : "");
@@ -126,7 +126,7 @@ inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSourc
   }
 }
 
-/// Everything here reckons in EUR/MWh.
+/// All prices are in EUR/MWh.
 inline void require_entsoe_unit(const EntsoeElement& unit, std::string_view wanted) {
   if (!unit.node || unit.text() == wanted) return;
   fail("{}: prices in or per \"{}\" where {} is needed; use an area that publishes EUR per MWH",

@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-/// Which party a point's price is for; documents of some areas name none.
+/// Party to which a price applies; some areas do not state it.
 enum Category { kBoth, kLong, kShort, kCategoryCount };
 
 struct Point {
@@ -25,7 +25,7 @@ struct Period {
   std::int64_t start_utc_s = 0;
   std::int64_t resolution_s = 0;
   std::int64_t positions = 0;
-  std::vector<Point> points{};  ///< in order of position
+  std::vector<Point> points{};  ///< by position
 };
 
 Point point_of(const EntsoeElement& element, std::int64_t positions) {
@@ -67,7 +67,7 @@ struct Prices {
     if (point.category != kShort) long_eur_per_mwh = point.eur_per_mwh;
     if (point.category != kLong) short_eur_per_mwh = point.eur_per_mwh;
   }
-  /// The one price; NaN when there are two different ones.
+  /// The common price; NaN if there are two different ones.
   [[nodiscard]] double single() const {
     if (!is_published(long_eur_per_mwh)) return short_eur_per_mwh;
     if (!is_published(short_eur_per_mwh)) return long_eur_per_mwh;
@@ -76,8 +76,8 @@ struct Prices {
 };
 using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
 
-/// A price of a longer interval is that of each of its quarter-hours; where points repeat, one
-/// holds until the next of its own category.
+/// A price of a longer interval applies to each of its quarter-hours; with repeated points it
+/// applies until the next of its own category.
 void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
   std::array<std::optional<Point>, kCategoryCount> current;
   auto next = period.points.begin();
@@ -115,7 +115,7 @@ QuarterHourPrices prices_of(const EntsoeSource& source) {
       add_series(series, prices);
     }
   }
-  if (prices.empty()) fail("{}: holds no imbalance prices; choose other days", source.name);
+  if (prices.empty()) fail("{}: has no imbalance prices; choose other days", source.name);
   return prices;
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t kHour_s = 3'600;
 
-/// "1/6/2025 9:15" by "dd/mm/yyyy" as "2025-06-01 09:15"; empty when it is otherwise.
+/// "1/6/2025 9:15" with "dd/mm/yyyy" as "2025-06-01 09:15"; empty if it does not match.
 std::string iso_text(std::string_view text, std::string_view format) {
   int year = 0, month = 0, day = 0;
   while (!format.empty()) {
@@ -55,7 +55,7 @@ bool shows(std::int64_t utc_s, std::int64_t wall_s) {
 
 struct Instant {
   std::int64_t utc_s;
-  bool comes_twice = false;  ///< the clock shows it again an hour later
+  bool comes_twice = false;  ///< repeated by the clock an hour later
 };
 
 [[noreturn]] void refuse(const TextLine& of, std::string_view name, std::string_view why) {
@@ -68,26 +68,26 @@ Instant instant_of(const TextLine& of, std::string_view name, const OwnTimes& fo
   if (parse_utc(text, instant.utc_s, kAlsoBlank)) return instant;
   if (!parse_utc(text + "Z", instant.utc_s, kAlsoBlank)) {
     refuse(of, name,
-           fmt::format("is not a time as {} hh:mm; 'prices import --date-format' names another "
-                       "order of day and month, dd/mm/yyyy or mm/dd/yyyy",
+           fmt::format("is not a time in the form {} hh:mm; select the order of day and month with "
+                       "'prices import --date-format', dd/mm/yyyy or mm/dd/yyyy",
                        form.date_format));
   }
   if (!form.clock) {
     refuse(of, name,
-           "is not a time with its UTC offset, e.g. 2023-01-31T00:15:00+01:00: say 'prices import "
+           "is not a time with its UTC offset, e.g. 2023-01-31T00:15:00+01:00: use 'prices import "
            "--time-zone utc', or --time-zone local for Belgian clocks");
   }
   if (*form.clock == WallClock::kUtc) return instant;
   const std::int64_t wall_s = instant.utc_s;
   instant.utc_s = utc_from_local(civil_from_utc(wall_s)) + wall_s % 60;
   if (!shows(instant.utc_s, wall_s)) {
-    refuse(of, name, "is left out by Belgian clocks, which go forward that night: are they UTC?");
+    refuse(of, name, "does not exist in Belgian time (clock change): are the times UTC?");
   }
   instant.comes_twice = shows(instant.utc_s + kHour_s, wall_s);
   return instant;
 }
 
-/// Of an hour that comes twice each time must stand twice, the one pass before the other.
+/// In a repeated hour each time must occur twice, in two passes.
 void part_hours(std::vector<Instant>& instants, const std::vector<TextLine>& texts,
                 std::string_view name) {
   std::map<std::int64_t, std::vector<std::size_t>> rows_of;
@@ -97,8 +97,8 @@ void part_hours(std::vector<Instant>& instants, const std::vector<TextLine>& tex
   if (rows_of.empty()) return;
   const bool newest_first = instants.front().utc_s > instants.back().utc_s;
   constexpr const char* kDoubt =
-      "is shown twice by Belgian clocks, which go back that night, and the rows do not tell which "
-      "is meant: write the times of this hour with their UTC offset";
+      "occurs twice in Belgian time (clock change), and the order of the rows is ambiguous: "
+      "write the times of this hour with their UTC offset";
   for (const auto& [utc_s, rows] : rows_of) {
     if (rows.size() != 2) refuse(texts[rows.back()], name, kDoubt);
     instants[rows[newest_first ? 0 : 1]].utc_s += kHour_s;
@@ -135,20 +135,20 @@ std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view nam
   if (step_s == 60 || step_s == kSecondsPerQuarterHour) return step_s;
   fail(
       "{}: a price every {:g} minutes; imbalance prices come every minute or every quarter-hour: "
-      "get those (hours are day-ahead prices: prices import --day-ahead)",
+      "download those (hours are day-ahead prices: prices import --day-ahead)",
       name, static_cast<double>(step_s) / 60);
 }
 
 namespace {
 
-/// Which of two members of one name is meant nobody knows.
+/// Refuses repeated members of one name, which are ambiguous.
 void require_each_once(JsonValue object, std::string_view place) {
   std::vector<std::string_view> keys;
   for (const JsonValue item : object) keys.emplace_back(item.key());
   std::ranges::sort(keys);
   const auto twice = std::ranges::adjacent_find(keys);
   if (twice == keys.end()) return;
-  fail("{}: \"{}\" stands twice in one object; download the file again", place,
+  fail("{}: \"{}\" occurs twice in one object; download the file again", place,
        one_line(*twice, 40));
 }
 
@@ -207,7 +207,7 @@ namespace {
 struct Columns {
   char separator;
   std::vector<std::optional<MarketField>> fields;
-  bool are_own = false;  ///< without a resolution code
+  bool are_own = false;  ///< no resolution code
   OwnTimes times{};
 };
 
@@ -216,7 +216,7 @@ bool is_price(std::optional<MarketField> field) {
          field == MarketField::kNegativePrice;
 }
 
-/// The one column that is named, or else may be meant; nothing when none may.
+/// The named column, or the only candidate; nothing without a candidate.
 std::optional<std::size_t> own_column(const std::vector<std::string_view>& labels,
                                       MarketField field, const std::string& wanted,
                                       std::string_view name) {
@@ -240,14 +240,14 @@ std::optional<std::size_t> own_column(const std::vector<std::string_view>& label
   return found;
 }
 
-/// Names the columns of time and price; other fields of that kind are none.
+/// Selects the columns of time and price; ignores others of these kinds.
 void name_own_columns(const std::vector<std::string_view>& labels, const OwnForm& own,
                       std::string_view name, Columns& columns) {
   auto& fields = columns.fields;
   if (const auto time = own_column(labels, MarketField::kTime, own.time_column, name)) {
     std::ranges::replace(fields, MarketField::kTime, std::nullopt);
     fields[*time] = MarketField::kTime;
-    // "datetime_utc" says it.
+    // "datetime_utc" states it.
     const bool is_utc = plain_name(labels[*time]).ends_with("utc");
     if (is_utc && !columns.times.clock) columns.times.clock = WallClock::kUtc;
   } else if (own.time_column.empty()) {
@@ -277,7 +277,7 @@ Columns parse_header(std::string_view line, std::string_view name, const OwnForm
   const bool has_time = has(MarketField::kTime);
   if (!has_time || std::ranges::none_of(columns.fields, is_price)) {
     throw NotMarketData(fmt::format(
-        "{}: no column for the {} in \"{}\"; needed is a header that names a time and a price in "
+        "{}: no column for the {} in \"{}\"; the header must name a time and a price in "
         "EUR/MWh, e.g. datetime_utc,price_eur_mwh above 2025-01-31T00:15:00Z,85.30; other names: "
         "'prices import --time-column, --price-column'",
         name, has_time ? "imbalance price" : "time", one_line(line, 80)));
@@ -290,7 +290,7 @@ std::string_view without_blanks(std::string_view text) {
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-/// Each field that is needed. `place` names the line in messages.
+/// Calls `take` for each needed field. `place` names the line in messages.
 template <typename Take>
 void take_fields(std::string_view line, const Columns& columns, std::string_view place, Take take) {
   CsvFields fields(line, columns.separator);
@@ -310,7 +310,7 @@ std::string place_of(std::string_view name, std::size_t line) {
   return std::string(name).append(":").append(std::to_string(line));
 }
 
-/// `own_step_s` is 0 where the row itself says its resolution, and `own_utc_s` its time then.
+/// `own_step_s` and `own_utc_s` are 0 if the row states its resolution.
 void add_row(const TextLine& line, const Columns& columns, std::string_view name, MarketRows& rows,
              std::int64_t own_utc_s = 0, std::int64_t own_step_s = 0) {
   const std::string place = place_of(name, line.number);
@@ -323,7 +323,7 @@ void add_row(const TextLine& line, const Columns& columns, std::string_view name
   builder.finish(rows);
 }
 
-/// All rows are of one kind. Two prices of one time that differ are an error.
+/// All rows are of one kind. Two different prices of one time are an error.
 void add_own_rows(const std::vector<TextLine>& lines, const Columns& columns, std::string_view name,
                   MarketRows& rows) {
   std::vector<TextLine> texts;
@@ -335,7 +335,7 @@ void add_own_rows(const std::vector<TextLine>& lines, const Columns& columns, st
   }
   const std::vector<std::int64_t> utc_s = read_times(texts, name, columns.times);
   const std::int64_t step_s = step_of_times(utc_s, name);
-  std::map<std::int64_t, std::pair<double, std::size_t>> prices;  ///< and their lines
+  std::map<std::int64_t, std::pair<double, std::size_t>> prices;  ///< with their lines
   for (std::size_t i = 0; i < lines.size(); ++i) {
     add_row(lines[i], columns, name, rows, utc_s[i], step_s);
     const double price = rows.minutes.empty() ? rows.quarter_hours.back().price_eur_per_mwh
@@ -385,8 +385,7 @@ MarketRows parse_market_text(std::string_view text, std::string_view name, const
 
 namespace {
 
-/// By what the comments at the head say; the words are those of attribution_of() and of the
-/// commands.
+/// Sources named in the comments at the head, in the words of attribution_of() and the commands.
 std::set<MarketSource> sources_of(std::string_view text) {
   std::set<MarketSource> sources;
   while (!text.empty()) {
@@ -417,7 +416,7 @@ void add_settled(const MinuteSeries& series, std::size_t minute, std::string_vie
     row.price_eur_per_mwh = price;
     quarter_hours.push_back(row);
   } else if (quarter_hours.back().price_eur_per_mwh != price) {
-    fail("{}: the quarter-hour of {} has two settled prices, {} and {}; mend the file", name,
+    fail("{}: the quarter-hour of {} has two settled prices, {} and {}; correct the file", name,
          utc_text(start_utc_s).view(), quarter_hours.back().price_eur_per_mwh, price);
   }
 }
@@ -460,7 +459,7 @@ MarketRows parse_minute_file_rows(std::string_view text, std::string_view name) 
 
 namespace {
 
-/// Not an overload: {kElia} would mean this one where files are compiled together.
+/// Not an overload: in jointly compiled files {kElia} would select this one.
 const char* words_for(MarketSource source) {
   switch (source) {
     case MarketSource::kElia:
@@ -500,14 +499,13 @@ MarketRows read_market_files(const std::vector<std::string>& paths, const OwnFor
 SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths) {
   MarketRows rows = read_market_files(paths);
   if (rows.quarter_hours.empty() && !rows.minutes.empty()) {
-    fail(
-        "{}: holds minute rows without settled prices; give settled quarter-hours (ods047, ods134)",
-        joined(paths, ", "));
+    fail("{}: has minute rows without settled prices; use settled quarter-hours (ods047, ods134)",
+         joined(paths, ", "));
   }
-  if (rows.quarter_hours.empty()) fail("{}: holds no rows", joined(paths, ", "));
+  if (rows.quarter_hours.empty()) fail("{}: has no rows", joined(paths, ", "));
   SettledQuarterHours settled;
   settled.sources = rows.sources;
-  settled.sources.erase(MarketSource::kDrawn);  // of the minutes, which are drawn anew
+  settled.sources.erase(MarketSource::kDrawn);  // the minutes will be redrawn
   settled.minutes_unused = rows.minutes.size();
   settled.report.findings = std::move(rows.findings);
   settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();

@@ -39,17 +39,16 @@ void Overlap::add(const std::string& name, const MarketRows& rows) {
 std::vector<Finding> Overlap::findings() const {
   if (disagreements_ == 0) return {};
   Finding finding = first_;
-  finding.what +=
-      fmt::format(" ({} in all); leave one of them out", counted(disagreements_, "difference"));
+  finding.what += fmt::format(" ({} in all); remove one", counted(disagreements_, "difference"));
   return {finding};
 }
 
 namespace {
 
-/// A series is dense, so a stray date must not ask for centuries of memory.
+/// A series is dense: a wrong date must not allocate centuries.
 constexpr std::int64_t kSpanSecondsMax = 40LL * 366 * kSecondsPerDay;
 
-/// Sorts by time, stable, so that of equal times the one read last comes last.
+/// Stable sort by time: among equal times the last one read stays last.
 template <typename Row, typename Price>
 std::vector<Row> without_duplicates(std::vector<Row> rows, Price price_of, JoinReport& report) {
   std::stable_sort(rows.begin(), rows.end(),
@@ -99,7 +98,7 @@ struct Span {
   std::int64_t from_utc_s, until_utc_s;
 };
 
-/// Whole quarter-hours at the head, so that each minute knows its own.
+/// Whole quarter-hours at the start, so that each minute has its quarter-hour.
 Span span_of(const std::vector<MinuteRow>& minutes, const std::vector<QuarterHour>& quarter_hours) {
   Span span{std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()};
   if (!minutes.empty()) {
@@ -117,7 +116,7 @@ Span span_of(const std::vector<MinuteRow>& minutes, const std::vector<QuarterHou
 
 void check_span(std::int64_t from_utc_s, std::int64_t until_utc_s, std::string_view name) {
   if (until_utc_s - from_utc_s <= kSpanSecondsMax) return;
-  fail("{}: the rows span {} to {}, more than 40 years; mend the stray date", name,
+  fail("{}: the rows span {} to {}, more than 40 years; correct the wrong date", name,
        utc_text(from_utc_s).view(), utc_text(until_utc_s).view());
 }
 
@@ -127,7 +126,7 @@ std::vector<QuarterHour> sorted_quarter_hours(std::vector<QuarterHour> rows, Joi
 }
 
 JoinedMarket join_market(MarketRows rows, std::string_view name) {
-  if (rows.minutes.empty() && rows.quarter_hours.empty()) fail("{}: holds no rows", name);
+  if (rows.minutes.empty() && rows.quarter_hours.empty()) fail("{}: has no rows", name);
   JoinedMarket market;
   const std::vector<MinuteRow> minutes = without_duplicates(
       std::move(rows.minutes), [](const MinuteRow& row) { return row.indicative_eur_per_mwh; },
@@ -153,7 +152,7 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
   market.report.settled_from_minutes = quarter_hours.empty();
   if (quarter_hours.empty()) settle_from_minute_14(series);
   if (has_no_price(series.indicative) && has_no_price(series.settled)) {
-    fail("{}: holds rows but no price in any of them; choose other days", name);
+    fail("{}: has rows without any price; choose other days", name);
   }
   return market;
 }
@@ -161,11 +160,11 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
 std::string describe_dual_priced(const JoinReport& report) {
   const auto line = [](std::size_t count, std::string_view noun, std::string_view price) {
     if (count == 0) return std::string();
-    return fmt::format("{} with different prices for long and short: left without {} price\n",
+    return fmt::format("{} with different prices for long and short: no {} price stored\n",
                        counted(count, noun), price);
   };
-  return line(report.dual_priced_quarter_hours, "quarter-hour", "a settled") +
-         line(report.dual_priced_minutes, "minute", "an indicative");
+  return line(report.dual_priced_quarter_hours, "quarter-hour", "settled") +
+         line(report.dual_priced_minutes, "minute", "indicative");
 }
 
 std::string describe_join(const JoinedMarket& market) {

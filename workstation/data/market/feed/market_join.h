@@ -1,5 +1,5 @@
-// From rows in any order to one minute series: sorts, drops duplicates, joins the minutes with
-// their settled quarter-hours, and says what it did.
+// Join of unordered rows into one minute series: sorts, drops duplicates, joins the minutes with
+// their settled quarter-hours, and reports the result.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 
 namespace bess {
 
-// Minute files that are joined must agree where they overlap: both claim to be the market.
-// Downloads are another matter, a later one corrects an earlier one.
+// Joined minute files must agree where they overlap, because both claim to be the market. Downloads
+// differ: a later one corrects an earlier one.
 
 class Overlap {
  public:
-  /// Compares the rows of a minute file with those of the files before it.
+  /// Compares the rows of a minute file with those of the previous files.
   void add(const std::string& name, const MarketRows& rows);
-  /// One error when any two disagree, otherwise none.
+  /// One error if any two disagree, otherwise none.
   [[nodiscard]] std::vector<Finding> findings() const;
 
  private:
@@ -41,10 +41,10 @@ class Overlap {
 struct JoinReport {
   std::size_t minutes = 0, quarter_hours = 0;  ///< after dropping duplicates
   std::size_t duplicates = 0;
-  std::size_t duplicates_changed = 0;  ///< with another price: the row read last is kept
-  std::size_t dual_priced_minutes = 0, dual_priced_quarter_hours = 0;  ///< two prices: left out
-  std::vector<Finding> findings{};    ///< of the rows: minute files that contradict each other
-  bool settled_from_minutes = false;  ///< no quarter-hours were given: minute 14 stands for them
+  std::size_t duplicates_changed = 0;  ///< with another price; the last row read is kept
+  std::size_t dual_priced_minutes = 0, dual_priced_quarter_hours = 0;  ///< two prices: omitted
+  std::vector<Finding> findings{};    ///< contradicting minute files
+  bool settled_from_minutes = false;  ///< no quarter-hours: minute 14 replaces them
 };
 
 struct JoinedMarket {
@@ -52,20 +52,20 @@ struct JoinedMarket {
   JoinReport report;
 };
 
-/// Throws UserError when there are no rows, or none with a price. `name` is used in messages.
+/// Throws UserError without rows, or without any price. `name` is used in messages.
 JoinedMarket join_market(MarketRows rows, std::string_view name);
 
-/// Ascending, one per time. Of duplicates the last one read wins, but never a row without a price
-/// over one with a price.
+/// Ascending, one per time. The last duplicate read is kept, but never a row without a price over
+/// one with a price.
 std::vector<QuarterHour> sorted_quarter_hours(std::vector<QuarterHour> rows, JoinReport& report);
 
-/// Throws UserError when rows are so far apart that a dense series of them cannot be meant.
+/// Throws UserError if the rows are too far apart for a dense series.
 void check_span(std::int64_t from_utc_s, std::int64_t until_utc_s, std::string_view name);
 
-/// A line for each kind of row that lost its price; empty when none did.
+/// One line for each kind of row without a price; empty if there is none.
 std::string describe_dual_priced(const JoinReport& report);
 
-/// Lines that tell a user what was joined and what is missing.
+/// Text for the user: joined and missing data.
 std::string describe_join(const JoinedMarket& market);
 
 }  // namespace bess

@@ -35,7 +35,7 @@ constexpr std::array<std::pair<std::string_view, MarketField>, 17> kFieldNames{{
     {"priceeurmwh", kPrice},
 }};
 
-/// As files of one's own call them.
+/// Names used in custom files.
 constexpr std::array<std::string_view, 8> kTimeNames{"datetime", "date",  "time",   "timestamp",
                                                      "",         "start", "minute", "starttime"};
 constexpr std::array<std::string_view, 7> kPriceNames{
@@ -53,7 +53,7 @@ bool is_absent(std::string_view text) {
 
 }  // namespace
 
-/// "Alpha'" must not become "alpha": the apostrophe is spelled out as the API does (alpha_prime).
+/// "Alpha'" must not become "alpha": the apostrophe is spelled as in the API (alpha_prime).
 std::string plain_name(std::string_view label) {
   std::string name;
   for (const char c : label) {
@@ -111,7 +111,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     const char* text_end = number.data() + number.size();
     const auto [end, error] = std::from_chars(number.data(), text_end, value);
     if (error != std::errc{} || end != text_end || !std::isfinite(value)) {
-      fail("{}: \"{}\" is not a number; mend the row or delete it", place_,
+      fail("{}: \"{}\" is not a number; correct the row or delete it", place_,
            one_line(text, kQuotedMax));
     }
     set_number(field, value);
@@ -119,7 +119,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
 }
 
 void MarketRowBuilder::set_number(MarketField field, double value) {
-  if (!std::isfinite(value)) fail("{}: a number is out of range; mend the row", place_);
+  if (!std::isfinite(value)) fail("{}: a number is out of range; correct the row", place_);
   if (field == kSystemImbalance) values_.system_imbalance_mw = value;
   if (field == kAlpha) values_.alpha_eur_per_mwh = value;
   if (field == kMarginalIncremental) values_.marginal_incremental_eur_per_mwh = value;
@@ -143,16 +143,16 @@ double MarketRowBuilder::single_price() const {
 bool MarketRowBuilder::is_minute() const {
   if (resolution_ == "PT1M") return true;
   if (resolution_ == "PT15M") return false;
-  if (resolution_.empty()) return has_quarter_hour_;  // tidy files carry no code
+  if (resolution_.empty()) return has_quarter_hour_;  // tidy files have no code
   fail("{}: resolution \"{}\" is neither PT1M nor PT15M; use the imbalance price datasets", place_,
        one_line(resolution_, 20));
 }
 
 void MarketRowBuilder::finish(MarketRows& rows) const {
-  if (!utc_s_) fail("{}: the row has no time; mend it or delete it", place_);
+  if (!utc_s_) fail("{}: the row has no time; correct or delete it", place_);
   const bool minute = is_minute();
   if (*utc_s_ % (minute ? 60 : kSecondsPerQuarterHour) != 0) {
-    fail("{}: {} does not start a {}; mend the time", place_, utc_text(*utc_s_).view(),
+    fail("{}: {} does not start a {}; correct the time", place_, utc_text(*utc_s_).view(),
          minute ? "minute" : "quarter-hour");
   }
   if (minute) {
@@ -165,7 +165,7 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
   if (is_dual_priced()) {
     (minute ? rows.dual_priced_minutes : rows.dual_priced_quarter_hours).insert(*utc_s_);
   }
-  // Every dataset of Elia's has the resolution code, no tidy file does.
+  // All Elia datasets have the resolution code, tidy files never.
   rows.sources.insert(resolution_.empty() ? MarketSource::kUnknown : MarketSource::kElia);
 }
 

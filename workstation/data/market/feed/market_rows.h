@@ -1,10 +1,8 @@
-// Rows of downloaded market files, whatever their form: Elia's CSV and JSON exports of ods046,
-// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, tidy CSV, and
-// the minute files that this program writes.
-// Names are compared without case, spaces and punctuation, so "Marginal incremental price" and
-// "marginalincrementalprice" are one.
-// No row is refused for its quality flag: Elia says itself that DataIssue is set on far too many
-// usable rows.
+// Rows of downloaded market files in any form: Elia's CSV and JSON exports of ods046, ods047,
+// ods133, ods134, ods161 and ods162 under API field names or portal labels, tidy CSV, and the
+// minute files of this program. Names are compared without case, spaces and punctuation, so
+// "Marginal incremental price" equals "marginalincrementalprice".
+// Quality flags are ignored: according to Elia DataIssue is set on far too many usable rows.
 #pragma once
 
 #include <cstdint>
@@ -29,25 +27,25 @@ struct MinuteRow {
 enum class MarketSource {
   kElia,
   kEntsoe,
-  kSimulated,  ///< of a minute file: by `prices simulate`
-  kDrawn,      ///< of a minute file: its minutes are by `prices reconstruct`
-  kUnknown,    ///< tidy files do not say where they come from
+  kSimulated,  ///< minute file of `prices simulate`
+  kDrawn,      ///< minute file with minutes of `prices reconstruct`
+  kUnknown,    ///< tidy files do not state their source
 };
 
-/// Read without trouble, and not what is looked for: another dataset.
+/// Readable data of another dataset.
 struct NotMarketData : UserError {
   using UserError::UserError;
 };
 
-/// In the order of the files; duplicates and disorder are the business of join_market().
+/// In the order of the files; join_market() handles duplicates and disorder.
 struct MarketRows {
   std::vector<MinuteRow> minutes;
   std::vector<QuarterHour> quarter_hours;
-  /// Times of the rows that lost their price because it was not one.
+  /// Times of the rows that lost their price because it was not unique.
   std::set<std::int64_t> dual_priced_minutes{}, dual_priced_quarter_hours{};
   std::set<MarketSource> sources{};
-  bool is_minute_file = false;      ///< one that this program wrote: its overlaps must agree
-  std::vector<Finding> findings{};  ///< about how the files agree
+  bool is_minute_file = false;      ///< written by this program: overlaps must agree
+  std::vector<Finding> findings{};  ///< contradictions between files
 };
 
 void append_rows(MarketRows& all, const MarketRows& rows);
@@ -55,29 +53,29 @@ void append_rows(MarketRows& all, const MarketRows& rows);
 enum class MarketField {
   kTime,
   kResolution,
-  kQuarterHour,  ///< only minute rows have one
+  kQuarterHour,  ///< minute rows only
   kSystemImbalance,
   kAlpha,
   kMarginalIncremental,
   kMarginalDecremental,
   kPrice,
-  kPositivePrice,  ///< of a long party; the datasets until May 2024 have the two instead of one
-  kNegativePrice,  ///< of a short party
+  kPositivePrice,  ///< long party; until May 2024 there are two prices
+  kNegativePrice,  ///< short party
 };
 
 /// A name without case, spaces and punctuation.
 std::string plain_name(std::string_view label);
 
-/// Field of a column label or JSON key; nothing for those that are not needed.
+/// Field of a column label or JSON key; nothing for unused ones.
 std::optional<MarketField> market_field_of(std::string_view label);
-/// True of a name by which somebody may call the time or the price, whatever the unit behind it.
+/// Whether custom files may use this name for the time or the price, with any unit.
 bool may_be_called(std::string_view label, MarketField field);
 
-/// Collects the fields of one row and files it as a minute or a quarter-hour. Throws UserError.
+/// Collects the fields of one row and adds it as a minute or a quarter-hour. Throws UserError.
 class MarketRowBuilder {
  public:
   /// `place` names the row in messages, e.g. "prices.csv:17"; it must outlive the builder.
-  /// `has_decimal_commas`: "-30,258" is a number, as where semicolons separate the fields.
+  /// `has_decimal_commas`: "-30,258" is a number, as with semicolons as separators.
   explicit MarketRowBuilder(std::string_view place, bool has_decimal_commas = false)
       : place_(place), has_decimal_commas_(has_decimal_commas) {}
 
