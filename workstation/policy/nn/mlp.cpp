@@ -14,8 +14,8 @@ void fill_uniform(float* begin, Eigen::Index count, int fan_in, Random& random) 
   }
 }
 
-/// First layer: each unit's kink passes through a random point of the unit cube that the inputs
-/// live in. PyTorch's default puts most kinks outside it, and learning starts almost linear in
+/// First layer: the kink of each unit passes through a random point of the inputs' unit cube.
+/// PyTorch's default puts most kinks outside, which makes the initial network almost linear in
 /// price and SoC.
 void spread_kinks(MutableMlp& mlp, Random& random) {
   for (Eigen::Index i = 0; i < mlp.w1.rows(); ++i) {

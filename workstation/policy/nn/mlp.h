@@ -1,6 +1,6 @@
-// Two hidden ReLU layers and a linear head, in float, forward and backward: the teacher
-// (5-256-128-out) and the float student (5-64-32-3) are both this. Plain Eigen; samples are
-// columns, so every matrix is [features x samples]. All parameters lie in one flat vector: save,
+// Multilayer perceptron in float with two hidden ReLU layers and a linear head, forward and
+// backward: the teacher (5-256-128-out) and the float student (5-64-32-3). Plain Eigen; samples are
+// columns, so every matrix is [features x samples]. All parameters are in one flat vector, so save,
 // load, Adam and averaging are single loops. Layout: W1 [h1 x in], b1, W2 [h2 x h1], b2, W3 [out x
 // h2], b3, each column-major.
 #pragma once
@@ -30,7 +30,7 @@ struct MlpShape {
   friend bool operator==(const MlpShape&, const MlpShape&) = default;
 };
 
-/// The layers seen inside a flat vector; Scalar is float or const float.
+/// The layers as views of a flat vector; Scalar is float or const float.
 template <typename Scalar>
 struct MlpView {
   using Plain = std::remove_const_t<Scalar>;
@@ -56,17 +56,17 @@ struct MlpView {
 using ConstMlp = MlpView<const float>;
 using MutableMlp = MlpView<float>;
 
-/// Activations of one tile of samples, and their gradients on the way back.
+/// Activations of one tile of samples, and their gradients.
 struct MlpTile {
   Matrix h1, h2;    ///< [hidden x samples] after ReLU
   Matrix dh1, dh2;  ///< gradients before ReLU
 };
 
-/// Uniform in +-1/sqrt(fan in) as PyTorch does, but for the first layer, whose weights are uniform
-/// in +-1 with the kinks spread over the inputs' unit cube. Drawn from the named seed.
+/// Uniform in +-1/sqrt(fan in) as in PyTorch, except for the first layer: weights uniform in +-1,
+/// kinks spread over the inputs' unit cube. Drawn from `seed`.
 Parameters initial_parameters(const MlpShape& shape, std::uint64_t seed);
 
-/// Parameters into and out of a file; the size is the reader's to know.
+/// Parameters to and from a file; the reader must know the size.
 inline void put_parameters(BinaryWriter& out, const Parameters& parameters) {
   out.put_bytes(parameters.data(), sizeof(float) * static_cast<std::size_t>(parameters.size()));
 }

@@ -1,6 +1,6 @@
-// The network as the gradient step uses it: weights packed for the tile kernels, the activations of
-// one tile, gradients in the kernels' layout. The head is cut into groups of outputs (one an
-// action): a sample goes forward and back through one group only.
+// Packed network of the gradient step: weights packed for the tile kernels, the activations of one
+// tile, gradients in the kernels' layout. The head is divided into groups of outputs (one per
+// action): a sample passes forward and backward through one group only.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace bess {
 
-/// Packed copy of a network's parameters, to be packed again after each change of them.
+/// Packed copy of a network's parameters; repack after each change of them.
 struct PackedMlp {
   struct Head {
     Panels w;              ///< [group outputs x h2]
@@ -26,7 +26,7 @@ struct PackedMlp {
   void pack(const ConstMlp& mlp, int groups, Use use);
 };
 
-/// dL/d parameters summed over tiles. Rows along lanes are padded; their padding stays zero.
+/// dL/d parameters summed over tiles. Rows along lanes are padded with zeros.
 struct PackedGradient {
   struct Head {
     Matrix w;           ///< [h2 x group outputs], transposed: h2 fills panels, 51 atoms do not
@@ -37,13 +37,13 @@ struct PackedGradient {
   std::vector<Head> heads;
 
   void set_zero(const MlpShape& shape, int groups);
-  /// Adds all of it to the gradient in the flat vector's layout.
+  /// Adds everything to the gradient in the flat vector's layout.
   void add_to(MutableMlp& gradient) const;
 };
 
-/// A matrix of samples as columns whose storage is kept from tile to tile. Columns lie one packet
-/// further apart than they are long: at a distance of exactly 1 KiB they would fight for the same
-/// sets of the first-level cache.
+/// Matrix of samples as columns that reuses its storage from tile to tile. The column stride is one
+/// packet longer than the column: a stride of exactly 1 KiB would cause conflicts in the
+/// first-level cache.
 class TileMatrix {
  public:
   /// Rows padded to whole panels.

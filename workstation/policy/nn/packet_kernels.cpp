@@ -1,16 +1,15 @@
-// The one file that knows about vector packets. Written with Eigen's portable packet operations, so
-// it follows the build's instruction set: AVX-512, AVX2, NEON, SSE.
+// Vector kernels, the only file with vector packets. Eigen's portable packet operations follow the
+// build's instruction set: AVX-512, AVX2, NEON, SSE.
 //
-// Every product here is the same block: kBlockRows samples (or weight rows) times one panel of two
+// Every product uses the same block: kBlockRows samples (or weight rows) times one panel of two
 // packets, accumulated in registers over the whole depth. A step of depth loads two packets and
-// kBlockRows single values and does 2 * kBlockRows multiply-adds, so the multiply-add units are the
-// limit, not the loads. What follows a product (bias, ReLU, mask, sums) happens while the block is
-// still in registers. Measured 2026-11, one AVX-512 core, a C51 step of 16,384 samples: 24.5 ms
-// against 44 ms of the plain twin; with drawing the minibatch 83 % of the core's measured
-// multiply-add peak.
+// kBlockRows single values for 2 * kBlockRows multiply-adds, so the multiply-add units are the
+// limit, not the loads. Bias, ReLU, mask and sums follow while the block is in registers. Measured
+// 2026-11, one AVX-512 core, a C51 step of 16,384 samples: 24.5 ms against 44 ms in plain Eigen;
+// including the minibatch draw 83 % of the core's measured multiply-add peak.
 //
-// [[gnu::flatten]] inlines everything into each kernel. Without it blocks are passed through memory
-// between the product and what follows: 33 ms.
+// [[gnu::flatten]] inlines everything into each kernel. Without it blocks pass through memory after
+// the product: 33 ms.
 #include <Eigen/Core>
 
 #include <limits>
@@ -43,8 +42,8 @@ constexpr int kPackets = kPanelLanes / kLanes;
 /// 16 of 32 accumulators hide the latency of two multiply-add units; with 16 registers 12 fit.
 constexpr int kBlockRows = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 6;
 
-/// A matrix as pointer and stride. Kept by value in the loops: a store of packets may overwrite
-/// anything the compiler knows, so what it must not read again has to be a local variable.
+/// Matrix as pointer and stride. Kept by value in the loops: a store of packets may alias any
+/// memory, so values that must not be reloaded have to be local variables.
 template <typename Scalar>
 struct Columns {
   Scalar* data;
@@ -62,12 +61,12 @@ struct Block {
   Packet at[Rows][kPackets];
 };
 
-/// Where the factor of row r at depth k stands: data[r * row_stride + k * depth_stride].
+/// Address of the factor of row r at depth k: data[r * row_stride + k * depth_stride].
 struct RowFactors {
   const float* data;
   Index row_stride, depth_stride;
 };
-/// Where the panel's lanes at depth k start: data + k * depth_stride.
+/// Address of the panel's lanes at depth k: data + k * depth_stride.
 struct LaneFactors {
   const float* data;
   Index depth_stride;
@@ -81,7 +80,7 @@ EIGEN_ALWAYS_INLINE void accumulate(const RowFactors& rows, const LaneFactors& l
     Packet lane[kPackets];
     for (int v = 0; v < kPackets; ++v) {
       lane[v] = ploadu<Packet>(lanes.data + k * lanes.depth_stride + v * kLanes);
-      EIGEN_OPTIMIZATION_BARRIER(lane[v]);  // or g++ loads it again for each row
+      EIGEN_OPTIMIZATION_BARRIER(lane[v]);  // else g++ reloads it for each row
     }
     for (int r = 0; r < Rows; ++r) {
       const Packet row = pset1<Packet>(rows.data[r * rows.row_stride + k * rows.depth_stride]);
@@ -91,7 +90,7 @@ EIGEN_ALWAYS_INLINE void accumulate(const RowFactors& rows, const LaneFactors& l
 }
 
 /// Calls body(std::integral_constant<int, rows of the block>, first row) for blocks that cover
-/// [begin, end): whole ones, then halves of them for the rest.
+/// [begin, end): full ones, then successive halves for the rest.
 template <int Rows = kBlockRows, typename Body>
 EIGEN_ALWAYS_INLINE void for_row_blocks(Index begin, Index end, const Body& body) {
   for (; begin + Rows <= end; begin += Rows) body(std::integral_constant<int, Rows>{}, begin);
@@ -154,7 +153,7 @@ EIGEN_ALWAYS_INLINE void store(const Block<Rows>& block, const Columns<float>& t
   });
 }
 
-/// Lets a block of dh through where h > 0 and adds it to db.
+/// Passes a block of dh where h > 0 and adds it to db.
 template <int Rows>
 EIGEN_ALWAYS_INLINE void mask_and_sum(const Columns<const float>& h, Index lane, Index first,
                                       Block<Rows>& block, float* db) {
@@ -201,7 +200,7 @@ constexpr auto kFromZero = [](Index) { return zero(); };
       });
 }
 
-/// Here the block's rows are columns of dw and the depth is the tile's samples.
+/// The block's rows are columns of dw, the depth is the tile's samples.
 [[gnu::flatten]] void add_outer_products(const MatrixRef& lanes, const MatrixRef& rows_of,
                                          MatrixOut dw) {
   const Columns<const float> left = columns_of(rows_of);
@@ -223,7 +222,7 @@ constexpr auto kFromZero = [](Index) { return zero(); };
   }
 }
 
-/// The last packet may reach past `count`: what it holds there is masked.
+/// The last packet may exceed `count`: its other lanes are masked.
 SoftmaxSums exponentials(const float* z, Index count, float* e) {
   const Index whole = count / kLanes * kLanes;
   const Packet in_tail =

@@ -1,5 +1,5 @@
-// A fixed team of threads that runs the same job on each of its members. The split of work by
-// member index is static, so results depend on the team's size and never on timing.
+// Thread team of fixed size that runs the same job on each member. Work is split by member index,
+// so results depend on the team's size and never on timing.
 #pragma once
 
 #include <barrier>
@@ -26,8 +26,8 @@ class ThreadTeam {
 
   [[nodiscard]] int size() const { return size_; }
 
-  /// Runs job(0) here and job(1) .. job(size-1) on the others; returns when all are done. `job`
-  /// must not throw.
+  /// Runs job(0) here and job(1) .. job(size-1) on the other threads; waits for all. `job` must not
+  /// throw.
   void run(const std::function<void(int)>& job) {
     job_ = &job;
     start_.arrive_and_wait();

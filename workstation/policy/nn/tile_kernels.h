@@ -1,6 +1,6 @@
-// The five loops that a gradient step spends its time in, over one tile of samples. Behind one
-// table: register-blocked with vector packets (packet_kernels.cpp); the tests have a twin in plain
-// Eigen that it is held against. Samples are columns, features are contiguous; a matrix whose
+// Tile kernels: the five loops that dominate a gradient step, over one tile of samples, behind one
+// table. The product version is register-blocked with vector packets (packet_kernels.cpp); tests
+// compare it with plain Eigen. Samples are columns, features are contiguous; a matrix whose
 // features run along vector lanes has its rows padded to whole panels.
 #pragma once
 
@@ -8,16 +8,16 @@
 
 namespace bess {
 
-/// Outputs computed side by side: two vector registers full.
+/// Outputs computed in parallel: two vector registers.
 inline constexpr int kPanelLanes = 2 * Eigen::internal::packet_traits<float>::size;
 
 inline Eigen::Index padded_to_panels(Eigen::Index lanes) {
   return (lanes + kPanelLanes - 1) / kPanelLanes * kPanelLanes;
 }
 
-/// A weight matrix [lanes x depth] in the order in which a product reads it:
-/// [panel][depth][kPanelLanes], the last panel filled up with zeros. The largest panel, 256 deep,
-/// is 32 KiB with AVX-512: it stays in the first-level cache while the tile's samples pass.
+/// Weight matrix [lanes x depth] in the order of a product: [panel][depth][kPanelLanes], the last
+/// panel padded with zeros. The largest panel, 256 deep, is 32 KiB with AVX-512 and stays in the
+/// first-level cache during a tile.
 class Panels {
  public:
   template <typename Derived>
@@ -48,7 +48,7 @@ class Panels {
 using MatrixOut = Eigen::Ref<Matrix>;
 enum class Activation { kLinear, kRelu };
 
-/// Largest of a row of logits, and the sum of their exponentials relative to it.
+/// Maximum of a row of logits, and the sum of their exponentials relative to it.
 struct SoftmaxSums {
   float largest;
   float sum;
@@ -62,14 +62,14 @@ struct TileKernels {
   void (*affine)(const MatrixRef& x, const Panels& w, const float* bias, Activation activation,
                  MatrixOut y);
 
-  /// Back through a layer and the ReLU before it: dh = (W' dy) where h > 0, else 0; db += sum of dh
-  /// over samples. dy [depth x samples], W' [lanes x depth], h and dh [padded lanes x samples], db
-  /// [padded lanes].
+  /// Backward through a layer and the preceding ReLU: dh = (W' dy) where h > 0, else 0; db += sum
+  /// of dh over samples. dy [depth x samples], W' [lanes x depth], h and dh [padded lanes x
+  /// samples], db [padded lanes].
   void (*backward)(const MatrixRef& dy, const Panels& w, const MatrixRef& h, MatrixOut dh,
                    float* db);
 
-  /// As `backward`, for the layer next to the inputs: dh is used up at once in dw += dh x^T and
-  /// never stored. x [inputs x samples], dw [padded lanes x inputs].
+  /// As `backward`, for the layer next to the inputs: dh is used directly in dw += dh x^T and not
+  /// stored. x [inputs x samples], dw [padded lanes x inputs].
   void (*backward_to_inputs)(const MatrixRef& dy, const Panels& w, const MatrixRef& h,
                              const MatrixRef& x, MatrixOut dw, float* db);
 
@@ -77,8 +77,8 @@ struct TileKernels {
   /// dw [padded lanes x n].
   void (*add_outer_products)(const MatrixRef& lanes, const MatrixRef& rows, MatrixOut dw);
 
-  /// e_i = exp(z_i - max z), i < count; zero from there to the next multiple of kPanelLanes. z is
-  /// readable that far, whatever stands there; e may be z. Neither need be aligned.
+  /// e_i = exp(z_i - max z), i < count; zero up to the next multiple of kPanelLanes. z must be
+  /// readable up to there; e may be z. No alignment required.
   SoftmaxSums (*exponentials)(const float* z, Eigen::Index count, float* e);
 };
 

@@ -24,8 +24,8 @@ constexpr int kBins = 48;
 constexpr int kSocPoints = 181;
 constexpr double kPseudoCount = 0.001;
 constexpr float kGamma = 0.999F;
-/// 0.999^(15 * 400) = 0.0025: the value is within 0.3 % of its limit and the greedy action has
-/// settled.
+/// 0.999^(15 * 400) = 0.0025: the value is within 0.3 % of its limit and the greedy action is
+/// stable.
 constexpr int kSweepsMax = 400;
 
 using Values = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -117,10 +117,10 @@ Action TabularPolicy::decide(const MarketStep& step, std::size_t, double soc_fra
   return greedy_[cell * kSocPoints + grid.nearest(soc_frac)];
 }
 
-// Profit as a function of two thresholds is a step function with many local peaks, so the search is
-// derivative-free and in ranks of the observed prices, where the steps are even:
+// Profit as a function of two thresholds is a step function with many local maxima. The search is
+// derivative-free, in ranks of the observed prices, where the steps are even:
 //   u in [0,1]^2:  low = quantile(u0),  high = quantile(u0 + (1 - u0) * u1)  >=  low
-// DIRECT-L covers the square, Subplex climbs from its best point; both are deterministic.
+// DIRECT-L covers the square, Subplex refines its best point; both are deterministic.
 // [Jones, Perttunen, Stuckman 1993; Gablonsky, Kelley 2001; Rowan 1990; NLopt]
 
 namespace {
@@ -165,7 +165,7 @@ class TrainingProfit {
   std::vector<double> prices_;  ///< observed on the training days, ascending
 };
 
-/// Moves `u` to the best point that `algorithm` finds.
+/// Sets `u` to the best point that `algorithm` finds.
 void maximise(nlopt::algorithm algorithm, int evaluations, TrainingProfit& profit,
               std::vector<double>& u) {
   nlopt::opt search(algorithm, 2);
@@ -178,7 +178,7 @@ void maximise(nlopt::algorithm algorithm, int evaluations, TrainingProfit& profi
   try {
     search.optimize(u, best);
   } catch (const nlopt::roundoff_limited&) {
-    return;  // u holds the best point so far, and no finer step can tell points apart
+    return;  // step below resolution: u is the best point so far
   }
 }
 
@@ -188,10 +188,10 @@ RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>
                          const BatteryParameters& battery) {
   require_training_days(days.size());
   TrainingProfit profit(market, days, battery);
-  std::vector<double> u = {0.25, 0.67};  // the quartiles, roughly
+  std::vector<double> u = {0.25, 0.67};  // about the quartiles
   maximise(nlopt::GN_DIRECT_L, kGlobalEvaluations, profit, u);
   maximise(nlopt::LN_SBPLX, kLocalEvaluations, profit, u);
-  // The corner "never trade" wins when wear costs more than any spread; the search only nears it.
+  // The corner "never trade" is best if wear exceeds any spread; the search only approaches it.
   for (const std::vector<double>& corner : {std::vector{0.0, 1.0}, std::vector{0.25, 2.0 / 3}}) {
     if (profit.at(corner) > profit.at(u)) u = corner;
   }
@@ -224,7 +224,7 @@ Made tuned_rule(const MarketSteps& market, const BatteryParameters& battery) {
   return rule(t.low_eur_per_mwh, t.high_eur_per_mwh);
 }
 
-/// Fits a planner on the training days, mindful of a limit on daily cycles.
+/// Fits a planner on the training days, within a limit on daily full cycles.
 template <typename Planner, typename... Options>
 Made fit(const MarketSteps& market, const BatteryParameters& battery, const Options&... options) {
   const std::vector<MarketDay> days = market.days_of(Split::kTrain);
@@ -248,17 +248,17 @@ std::span<const Baseline> baselines() {
   static const Baseline kRows[] = {
       {"rbc", "thresholds 11/179", "", "", kInRuns, paper_rule},
       {"rbc-quartile", "training days' quartiles", "", "", kFitted | kInRuns, quartile_rule},
-      {"rbc-tuned", "thresholds that earn most on the training days", "the best pair of thresholds",
-       "line-2", kCompared, tuned_rule},
+      {"rbc-tuned", "best thresholds of the training days", "best pair of thresholds", "line-2",
+       kCompared, tuned_rule},
       {"tabular", "", "", "", kCompared, fit<TabularPolicy>},
       {"mpc", "rolling horizon on a naive forecast", "rolling horizon", "line-3", kCompared,
        fit<RollingHorizonPolicy>},
       {kProgramName, "stochastic program by hour and price level", "stochastic program", "line-4",
        kCompared, fit<StochasticProgramPolicy>},
-      {"sdp-hour", "by hour alone", "", "", kFitted, program_by_hour},
-      {kOutlookProgramName, "planned each day on --day-ahead", "stochastic program by outlook",
-       "line-3", kFitted | kNeedsDayAhead, fit<OutlookPolicy>},
-      {kForesightName, "", "knows every price: a bound, no rival", "muted", kInRuns, foresight},
+      {"sdp-hour", "program by hour only", "", "", kFitted, program_by_hour},
+      {kOutlookProgramName, "program on --day-ahead prices, planned daily",
+       "stochastic program by outlook", "line-3", kFitted | kNeedsDayAhead, fit<OutlookPolicy>},
+      {kForesightName, "", "upper bound with all prices known", "muted", kInRuns, foresight},
   };
   return kRows;
 }

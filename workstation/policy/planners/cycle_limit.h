@@ -1,6 +1,6 @@
-// A planner that keeps a limit on daily cycles: fitted for a battery whose wear holds the limit's
-// shadow price (foresight.h), so that it keeps the limit on the mean of the days it was fitted
-// on. The evaluation enforces it each day.
+// Planner with a limit on daily full cycles: fitted with the limit's shadow price as additional
+// wear (foresight.h), so that the limit is met on average over the fitted days. The evaluation
+// enforces it each day.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace bess {
 
-/// The battery to plan with: `battery` itself when it has no limit.
+/// Battery to plan with: `battery` itself without a limit.
 template <typename Planner, typename... Options>
 BatteryParameters battery_with_shadow_price(const MarketSteps& market,
                                             const std::vector<MarketDay>& days,

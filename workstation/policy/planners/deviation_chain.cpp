@@ -32,7 +32,7 @@ DeviationChain::DeviationChain(BinaryReader& in) {
   transition_ = in.take_list<float>();
   if (bin_edges_.size() != kBins - 1 || bin_centres_.size() != kBins ||
       paid_.size() != kPhases * kBins || transition_.size() != kPhases * kBins * kBins) {
-    in.damaged("is of another size of the stochastic program");
+    in.damaged("has a stochastic program of another size");
   }
 }
 
@@ -67,7 +67,7 @@ void DeviationChain::count(const std::vector<Sample>& samples, double bin_smooth
   constexpr int kCells = kPhases * kBins;
   Eigen::MatrixXd next = Eigen::MatrixXd::Zero(kCells, kBins);
   Eigen::VectorXd paid = Eigen::VectorXd::Zero(kCells), visits = Eigen::VectorXd::Zero(kCells);
-  int cell = -1;  // of the sample before
+  int cell = -1;  // of the previous sample
   for (const Sample& sample : samples) {
     const int bin = bin_of(sample.deviation);
     if (cell >= 0 && sample.follows) next(cell, bin) += 1;
@@ -90,7 +90,7 @@ void DeviationChain::count(const std::vector<Sample>& samples, double bin_smooth
         weight += k * visits[to + d];
       }
       const double total = smoothed.sum();
-      if (total <= 0) smoothed[b] = 1;  // never seen: it stays
+      if (total <= 0) smoothed[b] = 1;  // never observed: stays in its bin
       paid_[to] = weight > 0 ? sum / weight : bin_centres_[b];
       for (int n = 0; n < kBins; ++n) {
         transition_[to * kBins + n] = static_cast<float>(smoothed[n] / std::max(total, 1.0));

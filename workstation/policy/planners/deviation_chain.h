@@ -1,6 +1,6 @@
-// How the newest price moves around what is usual: its deviation is a Markov chain over 48 quantile
-// bins, counted by phase of the half-hour and pooled over all hours, with the mean deviation that
-// is paid in each bin. What "usual" is, the program that asks decides.
+// Markov chain of the price deviation over 48 quantile bins: deviation of the newest price from the
+// usual price, counted by phase of the half-hour and pooled over all hours, with the mean paid
+// deviation of each bin. The calling program defines the usual price.
 #pragma once
 
 #include <array>
@@ -15,22 +15,22 @@ class DeviationChain {
   static constexpr int kPhases = 15;
   static constexpr int kBins = 48;
 
-  /// A step that was seen.
+  /// An observed step.
   struct Sample {
     int phase;              ///< of the half-hour, 0..14
-    double deviation;       ///< newest price minus what is usual, EUR/MWh
-    double paid_deviation;  ///< the same of what the step is paid at
-    bool follows;           ///< the sample before it in the list is the step before it in time
+    double deviation;       ///< newest minus usual price, EUR/MWh
+    double paid_deviation;  ///< paid minus usual price, EUR/MWh
+    bool follows;           ///< the previous sample is the previous step in time
   };
 
   DeviationChain() = default;
-  /// `bin_smoothing`: of the counts, bins. Not of no sample.
+  /// `bin_smoothing`: of the counts, in bins. `samples` must not be empty.
   DeviationChain(const std::vector<Sample>& samples, double bin_smoothing);
 
   void save(BinaryWriter& out) const;
   explicit DeviationChain(BinaryReader& in);
 
-  /// How far between two bins' mean deviations something lies.
+  /// Position between two bins' mean deviations.
   struct Between {
     int lower;
     double weight;  ///< of the upper neighbour
@@ -44,7 +44,7 @@ class DeviationChain {
     const double* at = &paid_[phase * kBins + bins.lower];
     return at[0] + bins.weight * (at[1] - at[0]);
   }
-  /// [bin][next bin]: the probability of each bin after a step of this phase.
+  /// [bin][next bin]: transition probabilities of a step of this phase.
   [[nodiscard]] const float* transition(int phase) const {
     return &transition_[phase * kBins * kBins];
   }
@@ -55,7 +55,7 @@ class DeviationChain {
   [[nodiscard]] int bin_of(double deviation) const;
 
   std::vector<double> bin_edges_;    ///< [47] ascending
-  std::vector<double> bin_centres_;  ///< [48] mean deviation of each
+  std::vector<double> bin_centres_;  ///< [48] mean deviations
   std::vector<double> paid_;         ///< [phase][bin] mean paid deviation
   std::vector<float> transition_;    ///< [phase][bin][next bin]
 };

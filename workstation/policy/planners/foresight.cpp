@@ -52,7 +52,7 @@ BellmanSweep::Direction BellmanSweep::make_direction(const BatteryParameters& ba
   const auto row = moves.begin() + static_cast<std::ptrdiff_t>(action) * grid_.count;
   d.moves.assign(row, row + grid_.count);
   if (!has_constant_power(battery)) return d;
-  // The bound's own neighbours go through the table: full power ends exactly on or beyond them.
+  // Neighbours of the bounds use the table: full power ends exactly on or beyond them.
   d.first_unbounded = std::clamp(-d.shift, 0, grid_.count);
   d.end_unbounded = std::clamp(grid_.count - 1 - d.shift, d.first_unbounded, grid_.count);
   return d;
@@ -104,10 +104,10 @@ Action best_action(const BatteryParameters& battery, const SocGrid& grid, const 
 
 namespace {
 constexpr std::size_t kSocPoints = 1801;
-constexpr std::size_t kBlockSteps = 750;     // the longest local day, so that a day is one block
+constexpr std::size_t kBlockSteps = 750;     // longest local day: one block per day
 constexpr int kClockChangeQuarterHours = 4;  // local time falls back by an hour once a year
 
-/// One past the last step of each local day: the quarter-hour of day falls at midnight only.
+/// One past the last step of each local day: the quarter-hour of day decreases at midnight only.
 std::vector<std::size_t> day_ends(std::span<const MarketStep> steps) {
   std::vector<std::size_t> ends;
   for (std::size_t i = 1; i < steps.size(); ++i) {
@@ -143,16 +143,16 @@ void ForesightPolicy::plan() {
   value_.resize((kBlockSteps + 1) * kSocPoints);
   for (std::size_t block = blocks; block-- > 0;) {
     solve_block(block);
-    // Only differences between SoCs decide; taken relative to the empty battery they stay small, so
-    // that a float tells them apart even a year ahead.
+    // Only differences between SoCs matter; relative to the empty battery they stay small enough
+    // for float a year ahead.
     for (std::size_t i = 0; i < kSocPoints; ++i) {
       border_[block * kSocPoints + i] = value_[i] - value_[0];
     }
   }
 }
 
-/// All days at once: plan with their trial prices, run the plan, tell each day whether it kept its
-/// limit.
+/// All days together: plan with their trial prices, run the plan, and report to each day whether it
+/// met its limit.
 void ForesightPolicy::find_shadow_prices(std::span<const MarketStep> ahead, double soc_frac) {
   std::vector<std::size_t> ends = day_ends(ahead);
   std::vector<ShadowPrice> prices(ends.size());

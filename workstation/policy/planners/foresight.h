@@ -1,13 +1,11 @@
-// Perfect foresight: the most that any controller with these three actions could have earned, by
-// dynamic programming over the settled prices. A bound to compare with, never a policy: it reads
-// the future. 1801 SoC points with linear interpolation: 181 are too coarse, 901 [SPEC 8] lose
-// another 0.1 EUR/day/MWh.
-// It plans all the steps it is given, their end free. Values of the SoC are kept at block borders
-// only and a block is solved again when it is entered: a year takes a few megabytes instead of two
-// gigabytes, for twice the time.
-// With a limit on daily cycles each local day has its own shadow price, found by
-// planning and running the steps again; what it then earns is a plan that keeps the limit, a little
-// under the true bound.
+// Perfect foresight: upper bound of the profit with these three actions, by dynamic programming
+// over the settled prices. Not a policy, as it uses future prices. 1801 SoC points with linear
+// interpolation: 181 are too few, 901 [SPEC 8] lose another 0.1 EUR/day/MWh. All given steps are
+// planned, with a free end. Values of the SoC are stored at block borders only, and a block is
+// solved again when it is entered: a year takes a few megabytes instead of two gigabytes, for twice
+// the time. With a limit on daily full cycles each local day has its own shadow price, found by
+// planning and running the steps repeatedly; the result meets the limit and is slightly below the
+// true bound.
 #pragma once
 
 #include <array>
@@ -20,20 +18,19 @@
 
 namespace bess {
 
-// One backward step of dynamic programming over the SoC at a known price, the inner loop of the
-// foresight bound and of rolling-horizon control:
+// Backward step of dynamic programming over the SoC at a known price, the inner loop of foresight
+// and rolling-horizon control:
 //   now[i] = max over actions a of  next(SoC after a from point i) - cost of the exchange.
-// On an even grid a full-power action moves every point by the same distance, so all but the points
-// next to a bound read `next` shifted: a straight loop that the compiler turns into vector code.
+// On an even grid full power moves every point by the same distance, so all points except those
+// near a bound read `next` shifted: a straight loop that the compiler vectorises.
 
 class BellmanSweep {
  public:
   BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
 
-  /// Of a step in a local quarter-hour of the day.
-  /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
-  /// `price_eur_per_mwh` is the market's: trading costs and wear come on top, and
-  /// `shadow_eur_per_mwh` is counted like wear.
+  /// For a step in a local quarter-hour of the day. `next` and `now` have one value (EUR) for each
+  /// grid point and must not overlap. `price_eur_per_mwh` is the market's; trading costs and wear
+  /// are added, and `shadow_eur_per_mwh` counts like wear.
   void run(const float* next, int quarter_hour, float price_eur_per_mwh, float* now,
            float shadow_eur_per_mwh = 0) const;
 
@@ -41,7 +38,7 @@ class BellmanSweep {
   /// Charging or discharging at full power.
   struct Direction {
     int shift;            ///< points from i to the lower neighbour of the SoC reached
-    float weight;         ///< of its upper neighbour
+    float weight;         ///< weight of the upper neighbour
     float energy_mwh;     ///< at full power, grid side, charge positive
     int first_unbounded;  ///< points [first, end) exchange full power
     int end_unbounded;
@@ -59,27 +56,27 @@ class BellmanSweep {
   std::array<std::array<Direction, 2>, 2> directions_;  ///< of usual and of cold hours
 };
 
-/// The action from any SoC when `next` values the grid's points after it.
+/// The best action at any SoC, given the values `next` of the grid points after it.
 Action best_action(const BatteryParameters& battery, const SocGrid& grid, const float* next,
                    int quarter_hour, double price_eur_per_mwh, double soc_frac);
 
-// A limit on equivalent full cycles by its shadow price: throughput beyond the limit is not worth
-// more than lambda EUR/MWh, so a planner that counts lambda as extra wear keeps the limit by itself
-// and saves its cycles for the hours that pay best, where one that knows nothing of it uses them up
-// in the morning. Cycles fall with lambda, so bisection finds the smallest that suffices
-// [Everett 1963, generalised Lagrange multipliers].
+// Limit on equivalent full cycles by its shadow price lambda, EUR/MWh: throughput that earns less
+// than lambda is not traded. A planner that counts lambda as additional wear meets the limit and
+// saves its cycles for the most profitable hours, whereas one without it uses them up in the
+// morning. Cycles decrease with lambda, so bisection finds the smallest sufficient value [Everett
+// 1963, generalised Lagrange multipliers].
 
 inline constexpr double kShadowPriceMaxEurPerMwh = 5'000;
 inline constexpr int kShadowPriceBisections = 16;  ///< to 0.1 EUR/MWh
 
-/// The bracket of one limit's shadow price, narrowed by what a trial price leads to.
+/// Bracket of one limit's shadow price, narrowed by the result of each trial price.
 class ShadowPrice {
  public:
-  /// To be tried next, EUR/MWh of throughput; 0 at first.
+  /// Next price to try, EUR/MWh of throughput; initially 0.
   [[nodiscard]] double trial() const { return tried_ ? 0.5 * (low_ + high_) : 0.0; }
-  /// Once every bisection is done: keeps the limit.
+  /// Result after all bisections: meets the limit.
   [[nodiscard]] double found() const { return high_; }
-  /// Tells whether the last trial kept the limit.
+  /// Records whether the last trial met the limit.
   void learn(bool kept) {
     if (!tried_) {
       if (kept) high_ = 0;
@@ -103,10 +100,9 @@ class ForesightPolicy final : public Policy {
   [[nodiscard]] bool sees_future() const override { return true; }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
-  /// What exchanging `wanted_power_w` (charge positive), or what the cold leaves of it, is worth at
-  /// this step and SoC when every later decision is the best one: EUR of the step and of what is
-  /// left to earn. Within a local day two of them can be compared; under a limit on cycles
-  /// throughput costs its shadow price.
+  /// Value of exchanging `wanted_power_w` (charge positive, limited by cold) at this step and SoC
+  /// with optimal later decisions: EUR of the step and of the future. Two values are comparable
+  /// within a local day; under a limit on full cycles throughput costs its shadow price.
   [[nodiscard]] double worth_eur(std::size_t index, double soc_frac, double wanted_power_w) const;
 
  private:
@@ -122,8 +118,8 @@ class ForesightPolicy final : public Policy {
   BellmanSweep sweep_;
   std::vector<float> paid_;                ///< [step] EUR/MWh
   std::vector<std::int8_t> quarter_hour_;  ///< [step] local
-  std::vector<float> shadow_;              ///< [step] EUR/MWh of throughput, one value a local day
-  std::vector<float> border_;  ///< [block + 1][SoC point] EUR still to earn, up to a constant
+  std::vector<float> shadow_;              ///< [step] EUR/MWh of throughput, by local day
+  std::vector<float> border_;              ///< [block + 1][SoC point] future EUR, up to a constant
   mutable std::size_t solved_block_ = 0;
   mutable std::vector<float> value_;  ///< [step of the block + 1][SoC point]
 };

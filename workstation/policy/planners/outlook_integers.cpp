@@ -19,7 +19,7 @@ std::int32_t centi(double eur) {
   return static_cast<std::int32_t>(std::lround(eur * kCentiPerEur));
 }
 
-/// Rounds shares so that they sum to one: what is missing goes to the largest.
+/// Rounds shares to a sum of one; the largest takes the difference.
 void set_shares(const double (&share)[kBins], std::int32_t (&row)[kBins]) {
   std::int32_t left = 1 << OutlookModel::kProbabilityBits;
   for (int n = 0; n < kBins; ++n) left -= row[n] = scaled(share[n], OutlookModel::kProbabilityBits);

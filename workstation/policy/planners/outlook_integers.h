@@ -1,5 +1,5 @@
-// The stochastic program with an outlook as the integers that workstation and edge plan in
-// (shared/outlook): half as many bins, each two neighbours of the chain's.
+// Integer form of the stochastic program with an outlook, used by workstation and edge
+// (shared/outlook): half as many bins, each two adjacent bins of the chain.
 #pragma once
 
 #include "shared/outlook/outlook_model.h"
@@ -7,7 +7,7 @@
 
 namespace bess {
 
-/// Throws UserError when the program has numbers that no market has.
+/// Throws UserError for values outside the integer ranges.
 OutlookModel outlook_integers(const OutlookProgram& program);
 
 }  // namespace bess

@@ -18,11 +18,11 @@ namespace {
 
 constexpr int kQuarterHours = 96;
 constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
-constexpr int kUsualDays = 4;              ///< of backward induction behind a plan
+constexpr int kUsualDays = 4;              ///< backward induction after the end of a plan
 constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
 constexpr std::size_t kRow = std::size_t{DeviationChain::kBins} * OutlookProgram::kSocPoints;
-constexpr int kTerms = 4;                             ///< of usual(): constant, D, h, L
-constexpr std::size_t kKeptMax = 180 * kStepsPerDay;  ///< steps that are seen, of 2 kB each
+constexpr int kTerms = 4;                             ///< terms of usual(): constant, D, h, L
+constexpr std::size_t kKeptMax = 180 * kStepsPerDay;  ///< cached steps, 2 kB each
 
 template <typename Visit>
 void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
@@ -31,7 +31,7 @@ void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days
   }
 }
 
-/// Local midnight, so many days after that of the instant's own day.
+/// Local midnight `days_later` days after that of the instant's day.
 std::int64_t midnight_utc_s(std::int64_t utc_s, int days_later) {
   const LocalMinute local = local_minute_of(utc_s);
   const std::int64_t day_s = utc_from_civil({local.year, local.month, local.day, 0, 0, 0});
@@ -44,12 +44,12 @@ std::int64_t quarter_hour_start(std::int64_t utc_s) {
   return utc_s - utc_s % kSecondsPerQuarterHour;
 }
 
-/// The row that a step sees was published for this instant.
+/// Instant for which the observed row was published.
 std::int64_t row_utc_s(const MarketStep& step) {
   return step.utc_s - 60 * std::int64_t{step.observed_age_min};
 }
 
-/// Sums by quarter-hour to a smoothed mean.
+/// Sums by quarter-hour, for a smoothed mean.
 struct MeanByQuarterHour {
   std::array<double, kQuarterHours> sum{}, count{};
 
@@ -80,7 +80,7 @@ struct MeanByQuarterHour {
   }
 };
 
-/// The quarter-hours at which the step's two minutes are paid: 2 does not divide 15.
+/// Quarter-hours whose prices pay the step's two minutes: 2 does not divide 15.
 std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
   return {step_utc_s, step_utc_s + 60};
 }
@@ -90,7 +90,7 @@ std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
 struct OutlookProgram::Kept {
   struct Seen {
     MarketStep step;
-    Sight sees;                         ///< but for what is ahead
+    Sight sees;                         ///< without `ahead`
     float ahead_eur[2][2][kSocPoints];  ///< by level and bin
   };
   std::mutex mutex;
@@ -151,7 +151,7 @@ OutlookProgram::OutlookProgram(BinaryReader& in)
       chain_(in),
       recursion_(battery_, grid_, options_.gamma),
       kept_(std::make_shared<Kept>()) {
-  if (levels_.size() < 2) in.damaged("is of another size of the program with an outlook");
+  if (levels_.size() < 2) in.damaged("has a program with an outlook of another size");
   solve_usual_days();
 }
 
@@ -177,14 +177,14 @@ void OutlookProgram::fit_means(const MarketSteps& market, const std::vector<Mark
     if (is_published(known)) day_ahead.add(step.quarter_hour, known);
   });
   if (day_ahead.weight() == 0) {
-    fail("no day-ahead price on the days to fit on; give a file that covers them (--day-ahead)");
+    fail("no day-ahead price on the days to fit on; pass a file that covers them (--day-ahead)");
   }
   row_age_min_ = std::ranges::max_element(ages, {}, &std::pair<const int, int>::second)->first;
   hour_ = paid.smoothed(options_.hour_smoothing);
   day_ahead_mean_ = day_ahead.smoothed(options_.hour_smoothing);
 }
 
-/// Slope of a day's mean height over d on that of the day before it.
+/// Regression slope of a day's mean height over d on that of the previous day.
 void OutlookProgram::fit_lasting(const MarketSteps& market, const std::vector<MarketDay>& days) {
   double products = 0, squares = 0, before = 0;
   std::int64_t before_utc_s = 0;
@@ -226,7 +226,7 @@ void OutlookProgram::fit_coefficients(const MarketSteps& market,
       right += terms * step.paid_eur_per_mwh;
     }
   }
-  // Prices that never move have no slopes: a trace of ridge leaves the constant alone.
+  // Constant prices have no slopes: a small ridge keeps only the constant.
   constexpr double kRidge = 1e-6;
   normal.diagonal().array() += kRidge;
   const Column fitted = normal.ldlt().solve(right);
@@ -286,8 +286,8 @@ void OutlookProgram::solve_usual_days() {
   }
 }
 
-/// How far what is known of yesterday, today and tomorrow lies above d, in the mean of the last day
-/// that is known; 0 when none is.
+/// Mean height of the known prices of yesterday, today and tomorrow over d on the last known day; 0
+/// if none is known.
 double OutlookProgram::height_before(const MarketStep& step) const {
   for (const int later : {1, 0, -1}) {
     const std::int64_t from = midnight_utc_s(step.utc_s, later);

@@ -1,21 +1,20 @@
-// The stochastic program with an outlook: what is usual today is not what was usual in the mean of
-// the days fitted on, for today's day-ahead prices have been published. It plans each day anew on
+// Stochastic program with an outlook: the usual price follows today's published day-ahead prices
+// instead of the mean of the fitted days. It replans each day on
 //
 //   usual(t, L) = c0 + c1 D(t) + c2 h(quarter-hour of t) + c3 L
 //
-//   D(t)  day-ahead price of the quarter-hour of t; where it is not published yet, d plus what the
-//         last day that is known lies above d, times how much of that lasts a day
-//   h, d  mean paid and mean day-ahead price by local quarter-hour of the days fitted on, smoothed
-//   L     trailing price level of the moment
-//   c     least squares on the days fitted on, L being that of the day's start: what it says of
-//         the hours that are planned, not of the one at hand
+//   D(t)  day-ahead price of the quarter-hour of t; if not published yet, d plus the height of the
+//         last known day over d, times the share of it that persists for a day
+//   h, d  mean paid and mean day-ahead price by local quarter-hour of the fitted days, smoothed
+//   L     present trailing price level
+//   c     least squares on the fitted days with the L of the day's start, because the planned hours
+//         are later than the present one
 //
-// The deviation of the newest price from it is the chain of deviation_chain.h. A plan reaches from
-// now to the end of tomorrow, by UTC instants, so that a day may have 92 or 100 quarter-hours;
-// behind it follow usual days for ever. It holds until midnight or until more is published. Values
-// are found for a few levels and interpolated, so that the level of the moment counts, and later
-// hours' levels are never seen: a plan made with those would be look-ahead.
-// Without day-ahead prices D is d and the program is the one by hour and level.
+// The deviation of the newest price from it follows deviation_chain.h. A plan covers now to the end
+// of tomorrow, by UTC instants, so that a day may have 92 or 100 quarter-hours; usual days follow
+// without end. It is valid until midnight or a further publication. Values are computed for a few
+// levels and interpolated, so that the present level is used; levels of later hours would be
+// look-ahead. Without day-ahead prices D is d, and the program equals the one by hour and level.
 #pragma once
 
 #include <array>
@@ -35,8 +34,8 @@
 namespace bess {
 
 struct OutlookOptions {
-  int levels = 5;              ///< price levels that values are found for
-  double gamma = 0.9995;       ///< discount a step
+  int levels = 5;              ///< number of price levels with values
+  double gamma = 0.9995;       ///< discount per step
   double hour_smoothing = 4;   ///< of h and d, quarter-hours
   double bin_smoothing = 0.5;  ///< of the chain's counts, bins
 };
@@ -46,17 +45,17 @@ class OutlookProgram {
   static constexpr int kSocPoints = 121;
   using ByQuarterHour = std::array<double, 96>;
 
-  /// What usual() is made of.
+  /// Coefficients of usual().
   struct Coefficients {
     double constant = 0, day_ahead = 0, hour = 0, level = 0;
-    double lasting = 0;  ///< share of a day-ahead day's height over d that the next day has
+    double lasting = 0;  ///< share of a day's height over d that persists for a day
   };
 
-  /// What was published when the plan was made, and the day that it is for.
+  /// Published prices at the time of planning, and the day of the plan.
   struct Plan {
-    std::int64_t from_utc_s = 0, until_utc_s = 0;      ///< decisions that it serves
+    std::int64_t from_utc_s = 0, until_utc_s = 0;      ///< validity for decisions
     std::int64_t end_utc_s = 0;                        ///< midnight after tomorrow
-    std::int64_t first_quarter_hour_utc_s = 0;         ///< of `day_ahead`
+    std::int64_t first_quarter_hour_utc_s = 0;         ///< start of `day_ahead`
     std::vector<double> day_ahead{};                   ///< D by quarter-hour
     std::map<int, std::vector<float>> continuation{};  ///< by level: [step][bin][SoC point], EUR
 
@@ -65,28 +64,27 @@ class OutlookProgram {
     }
   };
 
-  /// Fits on `days` of `market`; throws UserError when there are none, or when none of their steps
-  /// has a day-ahead price.
+  /// Fits on `days` of `market`; throws UserError without days, or if no step has a day-ahead
+  /// price.
   OutlookProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
                  const BatteryParameters& battery, const OutlookOptions& options = {});
 
-  /// What is known at this step, without any values yet.
+  /// Known prices at this step, without values.
   [[nodiscard]] Plan plan_of(const MarketStep& step) const;
-  /// What each action is worth, EUR until ever, up to a constant: [discharge, idle, charge]. Finds
-  /// the values of the plan that it needs and keeps them there. The plan must serve the step.
+  /// Value of each action, EUR over an infinite horizon, up to a constant: [discharge, idle,
+  /// charge]. Computes and stores the plan's values as needed. The plan must be valid for the step.
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const;
-  /// Writes what the rest is worth by SoC after this step, EUR, kSocPoints values; returns the
-  /// price that the step is expected to be paid: action_values() are made of the two. The plan must
-  /// serve the step.
+  /// Writes the continuation value by SoC after this step, EUR, kSocPoints values; returns the
+  /// expected price of the step. action_values() consists of the two. The plan must be valid for
+  /// the step.
   double continuation(const MarketStep& step, Plan& plan, float* value_eur) const;
-  /// action_values() that keeps what it sees at this step for whoever asks again, of some hundred
-  /// days: validations and policies compared trade the same ones. A step that is not kept is seen
-  /// in `plan`, which need not serve it. Threads may share the program.
+  /// action_values() with a cache of some hundred days: validations and compared policies trade the
+  /// same ones. A step that is not cached uses `plan`, which need not be valid for it. Thread-safe.
   [[nodiscard]] std::array<double, kActionCount> kept_action_values(const MarketStep& step,
                                                                     double soc_frac,
                                                                     Plan& plan) const;
-  /// Sees all steps of these days beforehand, on so many threads, and keeps them.
+  /// Fills the cache for all steps of these days.
   void prepare(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) const;
   [[nodiscard]] const Coefficients& coefficients() const { return coefficients_; }
   [[nodiscard]] const ByQuarterHour& hour() const { return hour_; }
@@ -94,17 +92,17 @@ class OutlookProgram {
   [[nodiscard]] const DeviationChain& chain() const { return chain_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
   [[nodiscard]] double gamma() const { return options_.gamma; }
-  /// Of the newest price at a decision, as it mostly was on the days fitted on.
+  /// Most frequent age of the newest price at a decision on the fitted days.
   [[nodiscard]] int row_age_min() const { return row_age_min_; }
 
-  /// What was fitted, without what follows from it: reading solves again, to the same bits.
+  /// Fitted values only: reading recomputes the rest, bit-identical.
   void save(BinaryWriter& out) const;
   explicit OutlookProgram(BinaryReader& in);
 
  private:
-  /// Where a step lies among the values that are known: two levels, of each two bins.
+  /// Position of a step among the computed values: two levels with two bins each.
   struct Sight {
-    std::array<const float*, 2> ahead;  ///< by level, at the lower bin; null: without weight
+    std::array<const float*, 2> ahead;  ///< by level, at the lower bin; null: zero weight
     DeviationChain::Between bins, levels;
     double price_eur_per_mwh;  ///< expected
     double full_power_w;       ///< of the step
@@ -113,7 +111,7 @@ class OutlookProgram {
   [[nodiscard]] Sight sight_of(const MarketStep& step, Plan& plan) const;
   [[nodiscard]] std::array<double, kActionCount> worth(const Sight& sees, double soc_frac) const;
   [[nodiscard]] double usual(double day_ahead, int quarter_hour, double level) const;
-  /// D at a step's own row or pay: what is published, or what stands for it.
+  /// D at a step's row or payment: published price, or its substitute.
   [[nodiscard]] double known_or_usual(const MarketStep& step, std::int64_t utc_s) const;
   [[nodiscard]] double usual_at(const Plan& plan, std::int64_t utc_s, double level) const;
   [[nodiscard]] double usual_paid(const Plan& plan, std::int64_t step_utc_s, double level) const;
@@ -133,7 +131,7 @@ class OutlookProgram {
   ByQuarterHour hour_{}, day_ahead_mean_{};  ///< h, d
   Coefficients coefficients_;
   int row_age_min_ = 1;
-  std::vector<double> levels_;  ///< that values are known for, ascending
+  std::vector<double> levels_;  ///< price levels with values, ascending
   DeviationChain chain_;
   StorageRecursion recursion_;
   std::vector<std::vector<float>> usual_days_;  ///< by level: [bin][SoC point] at midnight, EUR
@@ -148,15 +146,15 @@ class OutlookPolicy final : public Policy {
   explicit OutlookPolicy(std::shared_ptr<const OutlookProgram> program)
       : program_(std::move(program)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override;
-  /// The program's action values, of the newest plan or a new one.
+  /// The program's action values from the latest plan or a new one.
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
                                                                double soc_frac) const;
   [[nodiscard]] std::string description() const override;
 
  private:
   std::shared_ptr<const OutlookProgram> program_;
-  mutable std::mutex mutex_;           ///< of the plan
-  mutable OutlookProgram::Plan plan_;  ///< the newest; a function of the step alone
+  mutable std::mutex mutex_;           ///< protects plan_
+  mutable OutlookProgram::Plan plan_;  ///< latest plan; a function of the step only
 };
 
 }  // namespace bess

@@ -13,7 +13,7 @@ constexpr int kDeviations = 33;
 constexpr int kHorizonQuarterHours = 96;
 constexpr double kDeviationMaxEurPerMwh = 1500;
 constexpr double kPersistenceMax = 0.99;
-/// A step that starts at minute 14 is half the next quarter-hour's and tells of neither.
+/// A step that starts at minute 14 is half in the next quarter-hour and is skipped.
 constexpr int kStraddlingMinute = 14;
 
 /// Deviations are tabulated densely near 0, sparsely far out: d = max * x * |x|, x even in [-1, 1].
@@ -27,11 +27,11 @@ double deviation_position(double deviation) {
   return (x + 1) / 2 * (kDeviations - 1);
 }
 
-/// Steps that start in a quarter-hour: minutes 0 to 14 of the first of a half-hour, 1 to 13 of the
-/// second.
+/// Steps that start in a quarter-hour: at minutes 0 to 14 in the first of a half-hour, 1 to 13 in
+/// the second.
 int steps_of(int quarter_hour) { return quarter_hour % 2 == 0 ? 8 : 7; }
 
-/// Of this quarter-hour, this one included.
+/// Remaining steps of this quarter-hour, this one included.
 int steps_left(const MarketStep& step) {
   return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.minute_of_quarter_hour) / 2;
 }
@@ -80,8 +80,7 @@ void RollingHorizonPolicy::fit_persistence(const MarketSteps& market,
   for (const MarketDay& day : days) {
     const MarketStep* before = nullptr;
     for (const MarketStep& step : market.of(day)) {
-      if (step.minute_of_quarter_hour > 1)
-        continue;  // the first step that starts in each quarter-hour
+      if (step.minute_of_quarter_hour > 1) continue;  // only the first step of each quarter-hour
       if (before != nullptr) {
         const double was = before->paid_eur_per_mwh - usual_eur_per_mwh_[before->quarter_hour];
         product += was * (step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour]);

@@ -1,16 +1,15 @@
-// Rolling-horizon control on a naive forecast: the model-predictive peer. At every step it plans
-// the next 24 hours by dynamic programming at forecast prices, does the plan's first action, and
-// plans anew at the next step. It sees what any policy sees: the newest published price and its
-// age.
+// Rolling-horizon control (model-predictive) on a naive forecast. At every step it plans the next
+// 24 hours by dynamic programming at forecast prices and executes the first action. Like any policy
+// it knows the newest published price and its age.
 //
-// Forecast (persistence), with d = newest price - usual price of the quarter-hour it belongs to:
+// Forecast (persistence), with d = newest price - usual price of its quarter-hour:
 //   rest of this quarter-hour   usual + s d        s: by minute of the quarter-hour, least squares
 //   k quarter-hours later       usual + s d rho^k
 // usual = mean settled price of the training days by quarter-hour of day; rho = their lag-1
-// autocorrelation by quarter-hours. A row older than the ordinary delay decays on by rho.
+// autocorrelation by quarter-hours. The deviation of a row older than usual decays further by rho.
 //
-// The forecast of later quarter-hours depends on two numbers only, the quarter-hour of day and its
-// deviation, so their value by SoC is tabulated once and planning anew costs at most eight sweeps:
+// The forecast of later quarter-hours depends only on the quarter-hour of day and its deviation, so
+// the value by SoC is tabulated once and replanning takes at most eight sweeps:
 //   V_h(q, d) = sweep over the steps of q at usual(q) + d  of  V_{h-1}(q + 1, rho d),   V_0 = 0
 #pragma once
 
@@ -24,14 +23,14 @@ namespace bess {
 
 class RollingHorizonPolicy final : public Policy {
  public:
-  /// Fits the forecast on `days` of `market`; throws UserError when there are none.
+  /// Fits the forecast on `days` of `market`; throws UserError without days.
   RollingHorizonPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
                        const BatteryParameters& battery);
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
-  /// What the plan expects to earn in the next 24 hours from this step on, EUR, at `kSocPoints`
-  /// even points of the SoC window.
+  /// Expected profit of the plan in the next 24 hours from this step, EUR, at `kSocPoints` even
+  /// points of the SoC window.
   static constexpr int kSocPoints = 121;
   using Values = std::array<float, kSocPoints>;
   [[nodiscard]] Values values(const MarketStep& step) const;
@@ -40,7 +39,7 @@ class RollingHorizonPolicy final : public Policy {
   static constexpr int kQuarterHourMinutes = 15;
 
  private:
-  /// Deviation of the newest price and the quarter-hours since the one it belongs to.
+  /// Deviation of the newest price and its age in quarter-hours.
   struct Observation {
     double deviation_eur_per_mwh;
     int quarter_hours_ago;
@@ -51,9 +50,9 @@ class RollingHorizonPolicy final : public Policy {
   void fit_persistence(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_shrinkage(const MarketSteps& market, const std::vector<MarketDay>& days);
   void tabulate_values();
-  /// Value by SoC when `steps` more steps of this quarter-hour are to come.
+  /// Value by SoC with `steps` more steps of this quarter-hour.
   [[nodiscard]] Values plan_rest(const MarketStep& step, double deviation, int steps) const;
-  /// Value by SoC of the horizon that starts with quarter-hour `quarter_hour` at `deviation`.
+  /// Value by SoC of the horizon that starts with `quarter_hour` at `deviation`.
   void value_from(const std::vector<float>& table, int quarter_hour, double deviation,
                   float* value) const;
 
@@ -63,7 +62,7 @@ class RollingHorizonPolicy final : public Policy {
   std::array<double, kQuarterHours> usual_eur_per_mwh_{};
   std::array<double, kQuarterHourMinutes> shrinkage_{};  ///< s
   std::array<int, kQuarterHourMinutes>
-      ordinary_age_quarter_hours_{};  ///< quarter-hours, in training
+      ordinary_age_quarter_hours_{};  ///< in quarter-hours, of the training days
   double persistence_ = 0;            ///< rho
   std::vector<float> value_;          ///< [quarter-hour][deviation][SoC point] EUR
 };

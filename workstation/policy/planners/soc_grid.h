@@ -1,5 +1,5 @@
-// An even grid over the SoC window, with linear interpolation of a value known at its points, and
-// the tabulated outcome of each action from each point. Shared by the dynamic programs.
+// SoC grid: even points over the SoC window, linear interpolation of values, and tabulated results
+// of each action from each point. Shared by the dynamic programs.
 #pragma once
 
 #include <algorithm>
@@ -43,13 +43,13 @@ float interpolate(const T* value, SocGrid::Position p) {
          static_cast<float>(value[p.index + 1]) * p.weight;
 }
 
-/// What one action does from one grid point.
+/// Result of one action from one grid point.
 struct GridMove {
   SocGrid::Position next;
   float energy_mwh;  ///< grid side, charge positive
 };
 
-/// [action][point], of so much of the power
+/// [action][point], for a share of the power.
 inline std::vector<GridMove> tabulate_moves(const BatteryParameters& battery, const SocGrid& grid,
                                             double power_share = 1) {
   std::vector<GridMove> moves;

@@ -12,7 +12,7 @@ namespace {
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr int kBins = DeviationChain::kBins;
 
-/// value[i] = max(value[i], what is between lower[i] and upper[i], less cost)
+/// value[i] = max(value[i], value between lower[i] and upper[i] - cost)
 void improve_run(const float* __restrict lower, const float* __restrict upper,
                  const float* __restrict weight, const float* __restrict energy_mwh, float cost,
                  int count, float* __restrict value) {
@@ -90,7 +90,7 @@ void StorageRecursion::step_back(const DeviationChain& chain, int phase, int qua
 namespace {
 
 constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
-constexpr int kDays = 4;                   ///< of backward induction: greedy actions change no more
+constexpr int kDays = 4;                   ///< of backward induction: greedy actions have converged
 constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
 
 int step_of_day(const MarketStep& step) {
@@ -98,10 +98,10 @@ int step_of_day(const MarketStep& step) {
          kMinutesPerStep;
 }
 
-/// In which it begins.
+/// Quarter-hour in which the step begins.
 int quarter_hour_of(int step) { return step * kMinutesPerStep / kMinutesPerQuarterHour; }
 
-/// The quarter-hours at whose prices the step's two minutes are paid: 2 does not divide 15.
+/// Quarter-hours whose prices pay the step's two minutes: 2 does not divide 15.
 std::array<int, 2> paid_quarter_hours(int step) {
   const int minute = step * kMinutesPerStep;
   return {minute / kMinutesPerQuarterHour, (minute + 1) / kMinutesPerQuarterHour};
@@ -146,7 +146,7 @@ StochasticProgram::StochasticProgram(BinaryReader& in)
   row_age_ = in.take<decltype(row_age_)>();
   levels_ = in.take_list<double>();
   chain_ = DeviationChain(in);
-  if (levels_.empty()) in.damaged("is of another size of the stochastic program");
+  if (levels_.empty()) in.damaged("has a stochastic program of another size");
   solve();
 }
 

@@ -37,7 +37,7 @@ void CategoricalProjection::project(int row, float scale, float reward, float di
     result += moved * (1 - (offset - slope * index_).abs()).max(0.0F);
   }
   result *= scale;
-  // The end atoms also take what moved past them.
+  // The end atoms also receive the probability beyond them.
   const auto moves = static_cast<float>(shift) - slope * index_;
   const float low = (here * ((1 - index_) - moves).max(0.0F).min(1.0F)).sum();
   const float high =

@@ -10,11 +10,11 @@
 
 namespace bess {
 
-// What the tiles of one gradient step share, whichever the method.
+// Inputs common to the tiles of a gradient step, for all methods.
 
 struct GradientStep {
   const TileKernels& kernels;
-  const PackedMlp& online;  ///< head in one group an action
+  const PackedMlp& online;  ///< head in one group per action
   const PackedMlp& target;  ///< head in one group
   const MiniBatch& batch;
   float gamma;
@@ -28,8 +28,7 @@ struct TileRange {
   Eigen::Index count;
 };
 
-// The support of the value distributions: evenly spaced atoms [Paper, Eq. 10], in units of 1e4
-// EUR/h.
+// Support of the value distributions: evenly spaced atoms [Paper, Eq. 10], in units of 1e4 EUR/h.
 
 /// z_i = v_min + i * step, i = 0 .. count-1; at least two.
 struct Support {
@@ -43,32 +42,33 @@ struct Support {
   }
 };
 
-// Categorical projection: a distribution over the support's atoms, moved to reward + discount * z,
-// back onto the support [Bellemare 2017, Eq. 7]:
+// Categorical projection of a distribution moved to reward + discount * z onto the support
+// [Bellemare 2017, Eq. 7]:
 //   Tz_j = clip(r + gamma z_j, v_min, v_max)   b_j = (Tz_j - v_min) / step
 //   m_l += p_j (u - b_j),  m_u += p_j (b_j - l)   with l = floor(b_j), u = l + 1
-// Seen from the receiving atom, m_i = sum_j p_j max(0, 1 - |b_j - i|). Before clipping b_j = j + s
-// - (1 - gamma) j with the reward's shift s, so only atoms at a few distances d = i - j contribute:
-// two or three when gamma is near 1. Each distance is one pass over a shifted copy of p, without a
-// branch or a scattered store. Measured 2026-11 (AVX-512) against the formula atom by atom: 5 times
-// as fast at gamma 0.999, 2.3 to 2.7 times at 0.9; at 0.5, with half as many distances as atoms, no
+// For the receiving atom, m_i = sum_j p_j max(0, 1 - |b_j - i|). Before clipping b_j = j + s - (1 -
+// gamma) j with the reward's shift s, so only atoms at a few distances d = i - j contribute: two or
+// three if gamma is near 1. Each distance is one pass over a shifted copy of p, without a branch or
+// a scattered store. Measured 2026-11 (AVX-512) against the formula by atom: 5 times as fast at
+// gamma 0.999, 2.3 to 2.7 times at 0.9; at 0.5, with half as many distances as atoms, equal for 51
+// atoms and 1.6 times slower for 101.
 // faster for 51 atoms and 1.6 times slower for 101.
 
 class CategoricalProjection {
  public:
-  /// With room for `rows` distributions.
+  /// Capacity for `rows` distributions.
   CategoricalProjection(const Support& support, int rows);
 
-  /// Where distribution `row` is to be written: [padded atoms], those past the last atom zero.
+  /// Storage of distribution `row`: [padded atoms]; atoms after the last must be zero.
   [[nodiscard]] float* distribution(int row) { return rows_.col(row).data() + margin_; }
 
-  /// m = projection of scale * distribution(row); m is [padded atoms], zero past the last atom.
+  /// m = projection of scale * distribution(row); m is [padded atoms], zero after the last atom.
   void project(int row, float scale, float reward, float discount, float* m) const;
 
  private:
   Support support_;
-  Eigen::Index padded_;  ///< atoms up to a whole number of panels
-  Eigen::Index margin_;  ///< zeros left and right of a distribution, so that it can be read shifted
+  Eigen::Index padded_;   ///< atoms up to a whole number of panels
+  Eigen::Index margin_;   ///< zeros on both sides of a distribution for shifted reads
   Eigen::ArrayXf index_;  ///< 0, 1, 2, ... [padded atoms]
   Eigen::MatrixXf rows_;  ///< [margin + padded atoms + margin x rows]
 };
@@ -79,7 +79,7 @@ void softmax_columns(Matrix& z);
 /// Means of the value distributions, [actions x samples], from logits [actions*atoms x samples].
 Matrix mean_values(const Support& support, const MatrixRef& logits);
 
-/// Working space of one thread for tile after tile.
+/// Workspace of one thread.
 struct C51Tile {
   explicit C51Tile(const Support& s)
       : support(s), next(s, kActionCount), atoms(Eigen::VectorXf::Zero(padded_to_panels(s.count))) {
@@ -87,20 +87,20 @@ struct C51Tile {
   }
 
   Support support;
-  CategoricalProjection next;  ///< the next state's distributions, one row an action
+  CategoricalProjection next;  ///< the next state's distributions, one row per action
   Eigen::VectorXf atoms;       ///< z_i, padded with zeros
   MlpActivations net;          ///< of the target network first, then of the online network
   TileMatrix z_next;           ///< [actions*atoms x samples] logits of the target network
   TileMatrix m;                ///< [atoms x samples] projected target distribution
   TileMatrix z;                ///< [atoms x samples] logits of the action taken, then dL/dz
   Eigen::ArrayXf sums;         ///< [samples] of exponentials
-  double edge_mass = 0;        ///< target mass on the two end atoms, summed over samples
+  double edge_mass = 0;        ///< target probability on the two end atoms, summed over samples
 };
 
 /// Adds to `gradient` (of the mean over the minibatch) and returns the summed cross-entropy
 ///   -sum_i m_i log p_i(s, a)   [Paper, Eq. 8 up to the entropy of m]
-/// and, with w = step.mean_weight, w / 2 (E_p[z] - E_m[z])^2: decisions hang on differences of
-/// means of a percent of the support, which the cross-entropy alone learns late. Next actions are
+/// and, with w = step.mean_weight, w / 2 (E_p[z] - E_m[z])^2: decisions depend on differences of
+/// means of 1 % of the support, which the cross-entropy alone learns slowly. Next actions are
 /// greedy by mean under the target network, ties to the lowest action.
 double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Tile& tile,
                          PackedGradient& gradient);

@@ -6,7 +6,7 @@
 
 namespace bess {
 
-/// Working space of one thread for tile after tile.
+/// Workspace of one thread.
 struct DqnTile {
   MlpActivations net;  ///< of the target network first, then of the online network
   TileMatrix q_next;   ///< [actions x samples]

@@ -8,7 +8,7 @@
 namespace bess {
 namespace {
 
-/// Moves a normalised input by `shift` and keeps it in its range.
+/// Shifts a normalised input within its range.
 void move_input(float& x, double shift) {
   x = std::clamp(x + static_cast<float>(shift), 0.0F, 1.0F);
 }
@@ -29,9 +29,8 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
     const auto steps = market.of(training[d]);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const bool last = i + 1 == steps.size();
-      // At the end of a day the successor is the first step of the next training day, if that
-      // follows at once; a block's last step has no successor that may be looked at, so it is left
-      // out.
+      // The successor of a day's last step is the first step of the next training day, if adjacent.
+      // The last step of a block has no permitted successor and is omitted.
       const MarketStep* next = last ? nullptr : &steps[i + 1];
       if (last && d + 1 < training.size()) next = &market.of(training[d + 1])[0];
       const bool follows = next != nullptr && next->utc_s == steps[i].utc_s + kSecondsPerStep;
@@ -65,8 +64,7 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   write_input(seen(step.context, step.row, soc_frac), soc_frac, out.state);
   write_input(seen(step.next, step.next_row, moved.soc_frac), moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
-  // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in
-  // floats.
+  // support and learning rate serve every size [SPEC 3, 4]. Money as in exchange_cost.h, in float.
   const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
   const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
   const float price = power_frac > 0 ? step.import_eur_per_mwh : step.export_eur_per_mwh;
@@ -113,10 +111,10 @@ void TrainingMarket::trade_by_program(Visit visit) const {
   }
 }
 
-/// So that r' is zero on average where the program trades, and by itself where its values begin
-/// anew: over midnight, a day more. By outlook each plan knows what no earlier one did, and what an
-/// idle step in the middle of the window has of r' is taken off that step: the same for every
-/// action and SoC, so that no decision turns on it. Of the noise much goes too, 40 % of the loss.
+/// Centring: r' is zero on average where the program trades, with a separate mean where its values
+/// begin a new plan: at midnight, a day more. With the outlook each plan has new information, and
+/// the r' of an idle step in the middle of the window is subtracted from that step. It is equal for
+/// every action and SoC, so no decision changes, and it removes much noise, 40 % of the loss.
 void TrainingMarket::centre_residuals() {
   for (std::size_t i = 0; i < steps_.size() && program_->is_outlook(); ++i) {
     Transition idle{};

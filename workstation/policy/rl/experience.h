@@ -1,5 +1,6 @@
-// Where experience comes from. Two named sources [SPEC 4]:
-//   counterfactual  prices do not react to us, so one observed price transition is a valid one for
+// Experience sources [SPEC 4]:
+//   counterfactual  prices do not depend on the battery, so one observed price transition is valid
+// for
 //                   EVERY SoC and action: each sample draws a training step, a SoC and an action.
 //   replay          the paper's: epsilon-greedy days from a uniform SoC into a ring of the last 1e6
 //                   transitions (train.h).
@@ -17,34 +18,33 @@
 namespace bess {
 
 enum class Horizon {
-  kContinuing,  ///< midnight is a truncation: bootstrapping goes on into the next training day
+  kContinuing,  ///< truncation at midnight: bootstraps from the next training day
   kDay,         ///< terminal at local midnight (the paper's episodes)
 };
 
-/// With a program, rewards are r' of program_residual.h, centred; without one they are money.
+/// With a program, rewards are r' of program_residual.h, centred; otherwise they are money.
 struct RewardShaping {
   Foundation program{};
-  int threads = 1;  ///< that its plans are made on
+  int threads = 1;  ///< for its plans
 };
 
-/// Standard deviations of a random shift of the calendar inputs, the same for a state and its
-/// successor. Twenty days share a (month, quarter-hour): without it the network learns their prices
-/// by heart.
+/// Standard deviations of a random shift of the calendar inputs, equal for a state and its
+/// successor. Only twenty days share a (month, quarter-hour): without it the network memorises
+/// their prices.
 struct ContextJitter {
   double quarter_hours = 4;
   double classes = 0.5;
 };
 
-/// Training steps with their successor, ready to become transitions.
+/// Training steps with their successors, ready to become transitions.
 class TrainingMarket {
  public:
-  /// Throws UserError when `market` has no training days.
+  /// Throws UserError if `market` has no training days.
   TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                  const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping,
                  const ContextClasses& context = {});
 
-  /// The transition of taking `action` at `soc_frac` in step `index`; also returns the SoC after
-  /// it.
+  /// Transition of `action` at `soc_frac` in step `index`; returns the SoC after it.
   double make_transition(std::size_t index, double soc_frac, Action action, Transition& out) const;
   [[nodiscard]] double draw_soc(Random& random) const {
     return battery_.soc_min_frac +
@@ -55,9 +55,8 @@ class TrainingMarket {
   [[nodiscard]] const NetworkContext& context(std::size_t index) const {
     return steps_[index].context;
   }
-  /// Residual only: the discounted sums of r' that the program leaves on the training days when it
-  /// trades them from the middle of the SoC window, one a step, learned unit. Their spread is what
-  /// the support must hold.
+  /// Residual only: discounted sums of r' of the program on the training days from the middle of
+  /// the SoC window, one per step, in learned units. The support must cover them.
   [[nodiscard]] std::vector<float> residual_returns(double discount) const;
   /// First step and number of steps of each training day.
   struct Day {
@@ -73,12 +72,12 @@ class TrainingMarket {
     float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
     std::int8_t quarter_hour;             ///< local
-    std::uint32_t row = 0, next_row = 0;  ///< of program_
-    bool begins_anew = false;             ///< the program's values do, at the successor
-    float centre = 0;                     ///< of r', where it has one of its own
-    bool follows_last = false;            ///< the successor of the step before this one
+    std::uint32_t row = 0, next_row = 0;  ///< rows of program_
+    bool begins_anew = false;             ///< the successor starts a new plan of the program
+    float centre = 0;                     ///< of r', if specific to the step
+    bool follows_last = false;            ///< the step is the successor of the previous one
   };
-  /// What the network sees of a row, at this SoC.
+  /// Network context of a row at this SoC.
   [[nodiscard]] NetworkContext seen(NetworkContext context, std::uint32_t row,
                                     double soc_frac) const;
   void shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
@@ -102,8 +101,8 @@ class TrainingMarket {
 /// Observed prices of all training decisions, for fitting the price map.
 std::vector<double> observed_training_prices(const MarketSteps& market);
 
-/// Draws `count` counterfactual transitions. Each price transition and SoC serves all three actions
-/// in a row: they share its noise, so that what tells the actions apart is not drowned in it.
+/// Draws `count` counterfactual transitions. All three actions use each price transition and SoC in
+/// turn: they share its noise, which does not mask their differences.
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,
                          const ContextJitter& jitter, Random& random, std::vector<Transition>& out);
 

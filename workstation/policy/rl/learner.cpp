@@ -5,7 +5,7 @@
 namespace bess {
 namespace {
 
-/// Samples a tile at most: its activations stay in the second-level cache.
+/// Maximum samples per tile: the activations stay in the second-level cache.
 constexpr Eigen::Index kTileSamples = 256;
 
 /// Calls body(tile) for tiles of about equal size that cover the samples of one action within

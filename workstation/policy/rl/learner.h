@@ -1,7 +1,7 @@
-// One gradient step of the teacher: each thread takes an equal run of the minibatch's samples, cuts
-// it into tiles and sums their gradients into its own buffer; the buffers are added in order, Adam
-// moves the weights and the target follows. Static split: the same seed, threads and build give the
-// same weights to the bit.
+// Learner: one gradient step of the teacher. Each thread takes an equal part of the minibatch,
+// divides it into tiles and sums their gradients into its own buffer; the buffers are added in
+// order, Adam updates the weights and the target follows. Static split: the same seed, threads and
+// build give bit-identical weights.
 #pragma once
 
 #include <vector>
@@ -17,14 +17,13 @@ namespace bess {
 
 class Learner {
  public:
-  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or a twin of
-  /// theirs.
+  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or a test's version.
   Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
           double mean_weight = 0, const TileKernels& kernels = packet_kernels());
 
   struct StepResult {
     double loss;            ///< mean over the minibatch
-    double edge_mass_frac;  ///< C51: mean target mass on the two end atoms
+    double edge_mass_frac;  ///< C51: mean target probability on the two end atoms
   };
   /// Gradient of the mean loss over `batch` at the current weights, into `gradient()`.
   StepResult compute_gradient(const MiniBatch& batch);
@@ -37,7 +36,7 @@ class Learner {
   [[nodiscard]] const Parameters& gradient() const { return gradient_; }
   [[nodiscard]] ThreadTeam& team() { return team_; }
 
-  /// Weights, target and Adam's moments: what the next step depends on.
+  /// Weights, target and Adam's moments: the full state of the learner.
   void save(BinaryWriter& out) const;
   void restore(BinaryReader& in);
 

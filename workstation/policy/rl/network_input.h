@@ -1,6 +1,6 @@
 // Network input of a state [SPEC 4]: T_qh/14, qh/95, (mo-1)/11, SoC over its 0..1 range, mapped
 // price. The scales are those of the integer student (shared/nn/student_net.h), so that a float
-// student of the same weights sees the same numbers.
+// student has the same inputs.
 #pragma once
 
 #include "shared/nn/student_net.h"
@@ -11,7 +11,7 @@ namespace bess {
 
 inline constexpr int kNetworkInputs = kStudentInputs;
 
-/// What of a state does not depend on the battery, ready for the network.
+/// Battery-independent part of a network input.
 struct NetworkContext {
   float minute_of_quarter_hour, quarter_hour, context_class, price;
 };

@@ -9,8 +9,7 @@
 namespace bess {
 namespace {
 
-/// Quantiles are joined by straight lines: enough to follow the distribution, too few to follow
-/// noise.
+/// Number of quantiles, joined linearly: enough for the distribution, too few for noise.
 constexpr int kQuantileCount = 64;
 
 /// Piecewise-linear cumulative distribution through evenly spaced quantiles of sorted data.

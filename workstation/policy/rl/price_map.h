@@ -1,7 +1,7 @@
-// The monotone price map of the network input: half the training days' cumulative distribution,
-// half the straight line over the lattice range, so that resolution lies where prices are and no
-// step is flat. Piecewise linear over whole EUR/MWh; teacher and student use the same table, the
-// student in Q14.
+// Monotone price map of the network input: mean of the training days' cumulative distribution and
+// the straight line over the lattice range, for resolution where prices are frequent and a positive
+// slope everywhere. Piecewise linear over whole EUR/MWh; teacher and student use the same table,
+// the student in Q14.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@ namespace bess {
 
 class PriceMap {
  public:
-  /// Fits to observed prices of training decisions; needs at least one.
+  /// Fits to observed prices of training decisions (at least one).
   static PriceMap fit(const std::vector<double>& observed_eur_per_mwh);
-  /// Rebuilds the map from its table; throws UserError when the table does not increase strictly.
+  /// Rebuilds the map from its table; throws UserError unless it increases strictly.
   explicit PriceMap(const std::array<std::int16_t, kPriceCount>& table);
 
-  /// Network input 0..1; prices outside the lattice are clamped, between lattice points
+  /// Network input 0..1; prices outside the lattice are clamped, those between lattice points
   /// interpolated.
   [[nodiscard]] float operator()(double price_eur_per_mwh) const;
-  /// The price of a network input, EUR/MWh: the inverse.
+  /// Inverse: price of a network input, EUR/MWh.
   [[nodiscard]] double price_of(float input) const;
   /// Q14 value of each lattice price, strictly increasing.
   [[nodiscard]] const std::array<std::int16_t, kPriceCount>& table() const { return table_; }

@@ -14,17 +14,17 @@ namespace {
 
 constexpr std::string_view kMagic = "BESSTCHR";
 constexpr std::uint32_t kVersion = 4;
-constexpr std::uint32_t kVersionWithoutNetworkOnOutlook = 3;  ///< still written of all others
+constexpr std::uint32_t kVersionWithoutNetworkOnOutlook = 3;  ///< still written for all others
 constexpr std::uint32_t kVersionWithoutLearntFor = 2;
 constexpr std::uint32_t kLearntForMax = 1000;
 constexpr int kTeacherHidden1 = 256;
 constexpr int kTeacherHidden2 = 128;
 constexpr std::size_t kProvenanceMax = 4096;
 constexpr int kAtomsMax = 10'000;
-constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), in the support's reach
-/// In the file beside the method's number: a program follows the parameters.
+constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), relative to the support
+/// In the file with the method number: a program follows the parameters.
 constexpr std::uint32_t kResidualFlag = 0x100;
-/// Which inputs of its own a teacher had, until November 2026.
+/// Additional inputs of teachers until November 2026.
 constexpr std::uint32_t kOwnInputsMask = 0x1F000;
 
 bool is_possible(const Support& support) {
@@ -55,7 +55,7 @@ ContextClasses take_context(BinaryReader& in) {
 Entries take_learnt_for(BinaryReader& in) {
   if (in.version() == kVersionWithoutLearntFor) return {};
   const auto count = in.take<std::uint32_t>();
-  if (count > kLearntForMax) in.damaged("has impossible circumstances");
+  if (count > kLearntForMax) in.damaged("has an impossible training scope");
   Entries learnt_for(count);
   for (auto& [name, value] : learnt_for) {
     name = in.take_text();
@@ -64,13 +64,13 @@ Entries take_learnt_for(BinaryReader& in) {
   return learnt_for;
 }
 
-/// Whole number that an input was scaled from.
+/// Whole number before scaling to an input.
 int unscaled(float input, int scale) {
   return static_cast<int>(
       std::lround(input * static_cast<float>(kInputOne) / static_cast<float>(scale)));
 }
 
-/// What the program is asked in the state of five inputs.
+/// Program state for five inputs.
 StochasticProgram::Situation situation_at(const Teacher& teacher, const float* x) {
   const StochasticProgram& program = *teacher.program;
   const int minute = unscaled(x[0], kMinuteOfQuarterHourScale);
@@ -84,7 +84,7 @@ StochasticProgram::Situation situation_at(const Teacher& teacher, const float* x
                                    : program.mean_level_eur_per_mwh()};
 }
 
-/// The program's values in the teacher's unit: EUR over a step -> scaled EUR/h of the paper's 4 MW.
+/// The program's values in learned units: EUR over a step -> scaled EUR/h of the paper's 4 MW.
 Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
   const StochasticProgram& program = *teacher.program;
   const double scale = learned_per_eur(program.battery());
@@ -124,8 +124,8 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
   if (outlook) {
     if (x.rows() != kNetworkInputs + kActionCount) {
       fail(
-          "a teacher by outlook has values of moments, not of points of the lattice: it has no "
-          "map, and nothing but distil learns from it");
+          "a teacher with context = \"outlook\" has values by time, not by lattice point: it "
+          "has no map and serves distil only");
     }
     return x.bottomRows(kActionCount);
   }
@@ -171,7 +171,7 @@ Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_fra
     teacher_.write_inputs(step, soc_frac, x_.data());
     return argmax_action(teacher_.action_values(x_, tile_).data());
   }
-  // The program is asked for the step itself: it need not see through the network's inputs.
+  // The program gets the step itself, not the network's inputs.
   auto worth_eur =
       outlook_ ? outlook_->action_values(step, soc_frac)
                : teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
@@ -195,7 +195,7 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
     out.put_text(name);
     out.put_text(value);
   }
-  put_parameters(out, teacher.parameters);  // none of a program's
+  put_parameters(out, teacher.parameters);  // empty for a program
   if (teacher.program) teacher.program->save(out);
   if (teacher.outlook) teacher.outlook->save(out);
   out.save(path);
@@ -211,11 +211,11 @@ Teacher load_teacher(const std::filesystem::path& path) {
   const auto written_method = in.take<std::uint32_t>();
   const bool is_residual = (written_method & kResidualFlag) != 0;
   if ((written_method & kOwnInputsMask) != 0) {
-    in.damaged("has inputs beside the student's five ([train] input_...), which are no more");
+    in.damaged("has more inputs than the student's five ([train] input_...): no longer supported");
   }
   const std::uint32_t method_number = written_method & ~kResidualFlag;
   const auto support = in.take<Support>();
-  // The checksum is right, so this was written by another program; say so before using any of it.
+  // The checksum is correct, so another program wrote this: report it before use.
   if (method_number > static_cast<std::uint32_t>(Method::kSdp) ||
       (is_residual && method_number == static_cast<std::uint32_t>(Method::kSdp)) ||
       (method_number != static_cast<std::uint32_t>(Method::kSdp) && !is_possible(support))) {
@@ -223,7 +223,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   }
   const auto method = static_cast<Method>(method_number);
   const auto shape = in.take<MlpShape>();
-  if (!(shape == teacher_shape(method, support))) in.damaged("is of another network shape");
+  if (!(shape == teacher_shape(method, support))) in.damaged("has another network shape");
   const PriceMap price_map = take_price_map(in);
   const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
@@ -234,7 +234,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   std::shared_ptr<const OutlookProgram> outlook;
   if (context.is_outlook()) {
     const bool is_sound = is_residual ? in.version() >= kVersion : method == Method::kSdp;
-    if (!is_sound) in.damaged("has a network by the outlook that adds to no plan");
+    if (!is_sound) in.damaged("has an outlook network without a plan");
     outlook = std::make_shared<const OutlookProgram>(in);
   } else if (is_residual || method == Method::kSdp)
     program = std::make_shared<const StochasticProgram>(in);

@@ -1,6 +1,6 @@
-// The teacher: action values over the five inputs. A network that learnt them (DQN) or their
-// distributions (C51), or the stochastic program that knows them for its model of the market (SDP).
-// One file holds everything needed to use it again: method, support, price map, parameters.
+// Teacher: action values over the five inputs, from a network that learned them (DQN) or their
+// distributions (C51), or from the stochastic program (SDP). One file has everything needed to use
+// it: method, support, price map, parameters.
 #pragma once
 
 #include <filesystem>
@@ -32,30 +32,30 @@ struct Teacher {
   PriceMap price_map;
   Parameters parameters;
   std::string provenance;  ///< one line: prices, seed, steps
-  /// SDP: instead of a network, shape and parameters are empty. With a network: what it adds to
-  /// (program_residual.h).
+  /// SDP: replaces the network, shape and parameters are empty. With a network: program that its
+  /// residual adds to (program_residual.h).
   std::shared_ptr<const StochasticProgram> program = nullptr;
-  ContextClasses context{};  ///< by month unless said otherwise
-  Entries learnt_for{};      ///< market, battery, costs and prices; empty: the file does not say
-  /// By outlook: the program that plans on day-ahead prices, instead of `program`, and its plans in
-  /// integers, which give the student its context.
+  ContextClasses context{};  ///< default: month
+  Entries learnt_for{};      ///< market, battery, costs and prices; empty: unknown
+  /// With the outlook: the program on day-ahead prices, instead of `program`, and its integer
+  /// plans, which give the student its context.
   std::shared_ptr<const OutlookProgram> outlook = nullptr;
   std::shared_ptr<const OutlookBook> book = nullptr;
 
   [[nodiscard]] Foundation foundation() const { return {program, outlook, book}; }
   [[nodiscard]] bool is_residual() const { return foundation() && method != Method::kSdp; }
-  /// By outlook the values are no function of the inputs: three rows below them hold them.
-  /// Action values, means of their distributions, [3 x samples] in units of 1e4 EUR/h for inputs
-  /// [5 x samples].
+  /// Action values, means of their distributions, [3 x samples] in units of 1e4 EUR/h for inputs [5
+  /// x samples]. With the outlook they are no function of the inputs: three rows below the inputs
+  /// contain them.
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
-  /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
-  /// mass at zero then is zero exactly, however its exponentials are rounded.
+  /// The network's part. For a residual in whole millionths of the support's range: a point mass at
+  /// zero is then exactly zero despite rounding.
   [[nodiscard]] Matrix network_values(const MatrixRef& x, MlpTile& tile) const;
-  /// Of a residual: adds to the program's values of this step what the network does, EUR.
+  /// Residual: adds the network's part to the program's values of this step, EUR.
   void add_network(const MarketStep& step, double soc_frac, Matrix& x, MlpTile& tile,
                    std::array<double, kActionCount>& worth_eur) const;
-  /// Writes the five inputs of a step. By outlook the break-even price, mapped as prices are,
-  /// stands where the student sees its class.
+  /// Writes the five inputs of a step. With the outlook the mapped break-even price replaces the
+  /// student's class.
   void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
     NetworkContext seen = network_context(step, price_map, context);
     if (book) {
@@ -66,22 +66,22 @@ struct Teacher {
   }
 };
 
-/// Makes of a network's parameters those of a residual that adds nothing: C51's distributions are a
-/// point mass at the middle atom, but for kPriorMass that the first steps can grow from.
+/// Sets a network's parameters to a zero residual: C51's distributions are a point mass at the
+/// middle atom, except for kPriorMass that the first steps can grow from.
 void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
                    Parameters& parameters);
 inline constexpr double kPriorMass = 2.5e-3;
 
-/// Outputs of the network for a method.
+/// Shape of the network for a method.
 MlpShape teacher_shape(Method method, const Support& support);
 
-/// Versioned, checksummed, written beside and renamed. load throws UserError when the file is not a
-/// teacher, is damaged, or is of another version.
+/// Versioned, checksummed, replaced atomically. load throws UserError if the file is not a teacher,
+/// is damaged, or has another version.
 void save_teacher(const std::filesystem::path& path, const Teacher& teacher);
 Teacher load_teacher(const std::filesystem::path& path);
-/// Makes `teacher` one by outlook: the program, its integers and the book of their plans.
+/// Sets the outlook of a teacher: program, integers and plan cache.
 void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher);
-/// True when the file starts like a teacher's.
+/// Whether the file has a teacher's magic.
 bool is_teacher_file(const std::filesystem::path& path);
 
 /// Greedy by action value, ties to the lowest action.

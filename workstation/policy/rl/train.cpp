@@ -99,7 +99,7 @@ void Replay::restore(BinaryReader& in) {
   ring_ = in.take_list<Transition>();
   const bool full = ring_.size() == capacity_;
   if (ring_.size() > capacity_ || (full ? next_ >= capacity_ : next_ != 0)) {
-    in.damaged("holds a replay ring of another size");
+    in.damaged("has a replay ring of another size");
   }
 }
 
@@ -107,15 +107,15 @@ namespace {
 
 /// Named purposes of the run's random draws.
 enum Seed : std::uint64_t { kSeedWeights = 1, kSeedExperience = 2, kSeedMinibatch = 3 };
-/// Days that act in lock-step with the same weights; one gradient step follows for each of them.
+/// Days that act in parallel with the same weights; one gradient step follows for each.
 constexpr long kLockstepDays = 32;
-/// Of source "replay": transitions in the ring, and the share of random actions at the start and
-/// from half of the steps on [SPEC 4].
+/// Source "replay": transitions in the ring, and the share of random actions at the start and from
+/// half of the steps on [SPEC 4].
 constexpr std::size_t kReplayCapacity = 1'000'000;
 constexpr double kEpsilonStart = 1;
 constexpr double kEpsilonEnd = 0.05;
 
-/// Hands out minibatches from the configured source.
+/// Source of minibatches, as configured.
 class Experience {
  public:
   Experience(const TrainingMarket& market, const TrainOptions& options)
@@ -147,7 +147,7 @@ class Experience {
   }
   void restore(BinaryReader& in) {
     for (Random* random : {&experience_random_, &minibatch_random_}) {
-      if (!random->restore(in.take_text())) in.damaged("holds no state of the random numbers");
+      if (!random->restore(in.take_text())) in.damaged("has no state of the random numbers");
     }
     replay_.restore(in);
   }
@@ -167,7 +167,7 @@ class Experience {
   MiniBatch batch_;
 };
 
-/// The stochastic program of the training days, mindful of a limit on daily cycles.
+/// Stochastic program of the training days, within a limit on daily full cycles.
 std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
                                                      const BatteryParameters& battery,
                                                      ContextKind context) {
@@ -180,12 +180,12 @@ std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
       options);
 }
 
-/// The program with an outlook, and classes of its plans' break-even prices.
+/// Program with an outlook, and classes of its break-even prices.
 void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, int threads,
                  Teacher& teacher) {
   if (market.day_ahead == nullptr) {
     fail(
-        "[train] context = \"outlook\" learns from day-ahead prices: give their file with "
+        "[train] context = \"outlook\" needs day-ahead prices: pass their file with "
         "--day-ahead");
   }
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
@@ -200,7 +200,7 @@ void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, in
   teacher.context = fit_outlook_classes(market, *teacher.book);
 }
 
-/// All of a teacher that is no network: what one adds to, the price map and the context classes.
+/// Teacher without a network: programs, price map and context classes.
 Teacher without_network(const MarketSteps& market, const BatteryParameters& battery,
                         const TrainOptions& options) {
   Teacher teacher{options.method, {}, {}, PriceMap::fit(observed_training_prices(market)), {}, "",
@@ -215,8 +215,8 @@ Teacher without_network(const MarketSteps& market, const BatteryParameters& batt
   return teacher;
 }
 
-/// Half as far again, on both sides, as all but a thousandth of the returns that the program
-/// leaves: zero is the middle atom.
+/// 1.5 times the range of 99.9 % of the returns that the program leaves, symmetric: zero is the
+/// middle atom.
 Support residual_support(const TrainingMarket& market, const TrainOptions& options) {
   constexpr double kLeftOut = 1e-3;
   constexpr float kRoom = 1.5F;
@@ -233,7 +233,7 @@ Support given_support(const TrainOptions& options) {
           static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms};
 }
 
-/// What a run learns from, and how it weighs it.
+/// Training data of a run, and their weights.
 struct TrainingSetup {
   Teacher teacher;  ///< without a network yet
   TrainingMarket market;
@@ -266,7 +266,7 @@ double cosine_rate(const TrainOptions& options, long step) {
 
 struct ValidationStopped {};
 
-/// Decides as another policy; at the beginning of a day it may be stopped.
+/// Policy wrapper that may be aborted at the beginning of a day.
 class StoppablePolicy final : public Policy {
  public:
   StoppablePolicy(Policy& policy, const std::function<bool()>& stop)
@@ -288,19 +288,19 @@ class StoppablePolicy final : public Policy {
 constexpr std::string_view kCheckpointMagic = "BESSCKPT";
 constexpr std::uint32_t kCheckpointVersion = 2;
 
-/// "A there and B here", of the first line that two identities have not in common.
+/// "A there and B here": the first line in which two identities differ.
 std::string first_difference(std::string_view there, std::string_view here) {
   while (true) {
     const std::string_view a = take_line(there);
     const std::string_view b = take_line(here);
     if (a != b || (there.empty() && here.empty())) {
-      return fmt::format("{} there and {} here", a.empty() ? "no more" : a,
-                         b.empty() ? "no more" : b);
+      return fmt::format("{} there and {} here", a.empty() ? "nothing" : a,
+                         b.empty() ? "nothing" : b);
     }
   }
 }
 
-/// One run of training, from the first step or from a checkpoint.
+/// One training run, from the first step or from a checkpoint.
 class Training {
  public:
   Training(const MarketSteps& market, const BatteryParameters& battery, const TrainOptions& options)
@@ -336,13 +336,13 @@ class Training {
       stopped = !validate(interrupted);
       if (!stopped && !checkpoint.path.empty()) save(checkpoint);
     };
-    if (is_validation_due()) validate_and_keep();  // it was broken off
+    if (is_validation_due()) validate_and_keep();  // it was interrupted
     while (!stopped && step_ < options_.steps && !interrupted()) {
       const double loss = learn();
       progress.update(
           static_cast<double>(step_),
           fmt::format(
-              "loss {:.4f}, earns {:.1f}", loss,
+              "loss {:.4f}, profit {:.1f}", loss,
               result_.curve.empty() ? 0.0 : result_.curve.back().validation_eur_per_day_per_mwh));
       if (is_validation_due()) validate_and_keep();
     }
@@ -368,19 +368,19 @@ class Training {
 
   [[nodiscard]] bool is_validation_due() const {
     const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
-    // Of a residual step 0, the program, is a candidate too.
+    // For a residual, step 0 (the program) is also a candidate.
     const long nothing_yet = setup_.adds_to_program ? -1 : 0;
     return is_its_step &&
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
 
-  /// Adds a point to the curve and keeps the averaged weights when it is the one to be kept.
-  /// False when it was stopped: nothing has changed then.
+  /// Adds a point to the curve and keeps the averaged weights if it is the selected one. False,
+  /// without any change, if interrupted.
   bool validate(const std::function<bool()>& interrupted) {
     current_.parameters = average_;
     TeacherPolicy teacher(current_);
     StoppablePolicy policy(teacher, interrupted);
-    // The reset flatters one that ends its days empty.
+    // The reset would favour a policy that ends its days empty.
     const EvaluationOptions evaluation{.battery = battery_, .carry_soc = true};
     Evaluation earned;
     try {
@@ -401,7 +401,7 @@ class Training {
     return true;
   }
 
-  /// Over the program, whose days are those of step 0.
+  /// Gain over the program, whose daily profits are those of step 0.
   double gain_at_least(const Evaluation& earned) {
     if (step_ == 0) {
       for (const DayResult& day : earned.days) program_eur_.push_back(day.profit_eur);
@@ -430,7 +430,7 @@ class Training {
 
   void restore(const CheckpointOptions& checkpoint) {
     BinaryReader in(checkpoint.path, kCheckpointMagic, kCheckpointVersion, "checkpoint",
-                    "train anew, without --resume");
+                    "retrain without --resume");
     const std::string there = in.take_text();
     if (there != checkpoint.identity) {
       in.damaged("is of another run: " + first_difference(there, checkpoint.identity));
@@ -454,17 +454,17 @@ class Training {
   const TrainOptions& options_;
   std::vector<MarketDay> validation_;
   TrainingSetup setup_;
-  Teacher& current_;  ///< whose weights act and are validated
+  Teacher& current_;  ///< teacher with the present weights
   Learner learner_;
   Experience experience_;
   Parameters average_;  ///< of the online weights
   TrainResult result_;
-  std::vector<double> program_eur_;  ///< that step 0 earned on each validation day
+  std::vector<double> program_eur_;  ///< profit of step 0 on each validation day
   Learner::StepResult sums_{0, 0};   ///< since the last validation
   long summed_ = 0, step_ = 0;
 };
 
-/// Nothing to iterate: the program is fitted and solved.
+/// No iteration: the program is fitted and solved.
 TrainResult train_program(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options) {
   const auto start = std::chrono::steady_clock::now();

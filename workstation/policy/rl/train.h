@@ -1,8 +1,7 @@
-// Training of the teacher: one readable loop of draw, learn, blend the target, look at the
-// validation days. Differences from the paper: Adam; by default the network adds to the stochastic
-// program, from counterfactual experience and over a continuing horizon (the `paper` preset learns
-// alone, from a replay of daily episodes). Validation days, charge carried over, choose the weights
-// that are kept (KeptStep).
+// Training of the teacher: one loop of draw, learn, blend the target, validate. Differences from
+// the paper: Adam; by default the network adds to the stochastic program, from counterfactual
+// experience and over a continuing horizon (the `paper` preset trains a network only, from a replay
+// of daily episodes). Validation days, SoC carried over, select the kept weights (KeptStep).
 #pragma once
 
 #include <atomic>
@@ -20,37 +19,37 @@
 
 namespace bess {
 
-// Which step of a training becomes the teacher. A network alone: the one that earned most on the
-// validation days. A residual begins, at step 0, as the stochastic program, and the best of a dozen
-// looks at twenty days is mostly the luckiest: a later step is kept only where its gain over the
-// program is shown (workstation/README.md, "A seed never costs").
+// Selection of the step that becomes the teacher. Network only: the highest profit on the
+// validation days. A residual starts, at step 0, as the stochastic program, and the best of a dozen
+// checks on twenty days is mostly the luckiest: a later step is kept only if its gain over the
+// program is shown (shared/manual/notebook/2026-11-25_checkpoint_selection.md).
 //
-// Shown is a gain, the days in pairs, beyond its interval (../data/env/day_errors.h: the wider of
-// the plain one and the one by month, by Student's t). Each of n looks may be wrong by chance in
-// one case of 20 n, so that all together are in at most one of 20 [Bonferroni; Dunn 1961].
+// A gain is shown if, with paired days, it exceeds its interval (../data/env/day_errors.h). Each of
+// n checks may be wrong by chance in one case of 20 n, so that all together are in at most one of
+// 20 [Bonferroni; Dunn 1961].
 
-/// A look at the validation days.
+/// Result on the validation days.
 struct CurvePoint {
   long step;
   double loss;
   double validation_eur_per_day_per_mwh;
-  double edge_mass_frac;  ///< target mass on the two end atoms; above 1 % the support is too narrow
-  /// Of a residual: lower end of the interval of its gain over step 0. 0 at step 0 and of a network
-  /// alone.
+  double edge_mass_frac;  ///< target probability on the end atoms; above 1 %: widen the support
+  /// Residual: lower end of the interval of its gain over step 0. 0 at step 0 and without a
+  /// residual.
   double gain_at_least_eur_per_day_per_mwh = 0;
 };
 
 /// Lower end of the interval of the gain of `earned` over a program that earned `program_eur` on
-/// the same days, at one of `looks` looks. Of a single day that is far below any gain.
+/// the same days, at one of `looks` checks. For a single day it is far below any gain.
 double gain_at_least_eur_per_day_per_mwh(const Evaluation& earned,
                                          std::span<const double> program_eur, long looks);
 
-/// The point whose weights are the teacher; of equals the first. `curve` is not empty.
+/// The point whose weights are the teacher; the first of equals. `curve` must not be empty.
 const CurvePoint& kept_point(const std::vector<CurvePoint>& curve);
 
 // The paper's experience: epsilon-greedy days from a uniform initial SoC, into a ring of
-// transitions. Days are acted in lock-step, many at once with the weights of that moment, because
-// one forward pass over 32 columns costs little more than one over a single column.
+// transitions. Many days act in parallel with the present weights, because one forward pass over 32
+// columns costs little more than one over a single column.
 
 class Replay {
  public:
@@ -67,7 +66,7 @@ class Replay {
   [[nodiscard]] const std::vector<Transition>& transitions() const { return ring_; }
 
   void save(BinaryWriter& out) const;
-  /// Throws UserError when the ring in the file does not fit this one.
+  /// Throws UserError if the ring in the file has another size.
   void restore(BinaryReader& in);
 
  private:
@@ -87,51 +86,49 @@ struct TrainOptions {
   Source source = Source::kCounterfactual;
   Horizon horizon = Horizon::kContinuing;
   long steps = 1'500;           ///< gradient steps
-  double mean_weight = 30;      ///< C51: of the squared error of the mean beside the cross-entropy
-  long batch_size = 4'096;      ///< transitions a step
-  double learning_rate = 1e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
+  double mean_weight = 30;      ///< C51: of the mean's squared error, relative to the cross-entropy
+  long batch_size = 4'096;      ///< transitions per step
+  double learning_rate = 1e-3;  ///< of Adam; cosine decay to `learning_rate_end`
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
   bool residual = true;          ///< a network adds to the stochastic program (program_residual.h)
-  double residual_gamma = 0.98;  ///< discount a step of what it adds, in place of gamma
+  double residual_gamma = 0.98;  ///< its discount per step, instead of gamma
   double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
   ContextKind context = ContextKind::kLevel;
   ContextJitter jitter;  ///< counterfactual source only
   double value_min_eur_per_h = -1e5;
   double value_max_eur_per_h = 1e5;
-  double average_decay = 0.998;  ///< of the averaged weights that are validated and kept; 0 = none
+  double average_decay = 0.998;  ///< of the averaged, validated weights; 0 = no averaging
   long validate_every = 250;     ///< gradient steps
   std::uint64_t seed = 1;
   int threads = 2;
 };
 
 struct TrainResult {
-  Teacher teacher;  ///< the one that validation kept
+  Teacher teacher;  ///< selected by validation
   std::vector<CurvePoint> curve;
-  double best_validation_eur_per_day_per_mwh;  ///< of the step that was kept
+  double best_validation_eur_per_day_per_mwh;  ///< of the selected step
   long best_step;
   double seconds;
 };
 
-/// Where a run can be taken up again after an interruption. A checkpoint is written beside and
-/// renamed at every validation and at an interruption; continuing from one gives the same weights,
-/// to the bit, as never having stopped.
+/// Resumption of an interrupted run. The checkpoint file is replaced atomically at every validation
+/// and interruption; resuming gives bit-identical weights.
 struct CheckpointOptions {
-  std::filesystem::path path;  ///< empty: none is kept
-  bool resume = false;         ///< continue from `path`; an error when it is not there
-  std::string identity;        ///< configuration and prices: a checkpoint of others is refused
+  std::filesystem::path path;  ///< empty: no checkpoint
+  bool resume = false;         ///< continue from `path`, which must exist
+  std::string identity;        ///< configuration and prices; must equal the checkpoint's
 };
 
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` is
-/// asked before every gradient step and every day of a validation: true ends it early with what is
-/// best so far; a validation that was broken off is the first thing when it is resumed. Throws
-/// UserError for missing days; ranges of the options are checked where they are read
-/// (cli/run_config.cpp).
+/// called before every gradient step and every day of a validation: true ends training with the
+/// best result so far; resuming starts with an interrupted validation. Throws UserError for missing
+/// days; option ranges are checked where they are read (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::function<bool()>& interrupted,
                           const CheckpointOptions& checkpoint = {});
-/// The same, ended by a flag that a signal raises.
+/// The same, ended by a flag that a signal sets.
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::atomic<bool>& interrupted,
                           const CheckpointOptions& checkpoint = {});

@@ -5,7 +5,7 @@
 namespace bess {
 namespace {
 
-/// `transition_of(i)` is the transition i of `size`; each is asked for twice.
+/// `transition_of(i)` is transition i of `size`; each is requested twice.
 template <typename TransitionOf>
 void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBatch& batch) {
   const auto count = static_cast<Eigen::Index>(size);
@@ -15,7 +15,7 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
   batch.reward.resize(count);
   batch.terminal.resize(size);
   // Counting sort. The first pass also fetches the records: from a ring of a million each is a
-  // cache miss, and as the pass depends on nothing else, many are under way at once.
+  // cache miss, and many are fetched in parallel.
   Eigen::Index taken[kActionCount] = {};
   for (std::size_t i = 0; i < size; ++i) ++taken[transition_of(i).action];
   Eigen::Index next[kActionCount];

@@ -1,4 +1,4 @@
-// One experience, exactly one cache line, and the minibatch that the gradient step reads.
+// Transition of one cache line, and the minibatch of a gradient step.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@ namespace bess {
 
 /// Rewards and values are learned in units of 1e4 EUR/h [SPEC 4].
 inline constexpr float kRewardScale = 1e-4F;
-/// Rewards are those of the paper's 4 MW battery, whatever the real one's size.
+/// Rewards refer to the paper's 4 MW battery, for any battery size.
 inline constexpr float kPaperPowerMw = 4;
 
-/// EUR over a step -> the unit that rewards are learned in.
+/// EUR over a step -> learned units.
 inline double learned_per_eur(const BatteryParameters& battery) {
   return double{kPaperPowerMw} * kWattsPerMegawatt / battery.power_w_max / kHoursPerStep *
          double{kRewardScale};
 }
 
-/// Aligned, so that fetching a random one from a large ring is one cache miss and not two.
+/// Aligned, so that a random access to a large ring is one cache miss and not two.
 struct alignas(64) Transition {
   float state[kNetworkInputs];
   float next_state[kNetworkInputs];
   float reward;         ///< -p * price, scaled
   std::int32_t action;  ///< Action
   std::int32_t terminal;
-  /// A_program(s', a') of each next action where a residual is learned (program_residual.h), else
-  /// 0: what the network's own value there is added to.
+  /// A_program(s', a') of each next action for a residual (program_residual.h), else 0; the
+  /// network's own value is added to it.
   float next_advantage[kActionCount];
 };
 static_assert(sizeof(Transition) == 64);
 
-/// Samples as columns, grouped by action: only the taken action's outputs carry gradient, so each
+/// Samples as columns, grouped by action: only the taken action's outputs have gradients, so each
 /// group needs a third of the last layer. Exact, and a quarter faster.
 struct MiniBatch {
   Matrix state;           ///< [5 x samples]
@@ -53,7 +53,7 @@ struct MiniBatch {
 
 /// Groups the given transitions by action, stable within each group.
 void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch);
-/// The same of those in the given slots of a ring, one of which may come more than once.
+/// The same for the given slots of a ring; slots may repeat.
 void fill_minibatch(std::span<const Transition> ring, std::span<const std::uint32_t> slots,
                     MiniBatch& batch);
 

@@ -1,21 +1,20 @@
-// Every fitted figure of the simulated market, in one place.
+// Fitted parameters of the simulated market.
 //
 // Source: Elia open data (CC BY 4.0), settled quarter-hours of 1 January to 23 May 2023 (dataset
 // ods047, 13,650 rows), minute system imbalance of 1 January 2023 (ods045) and the minute prices of
 // 6 September 2024 and 8 April 2025 (ods161).
 //
-// Model. Three scores (SI, MIP, MDP), each about standard normal: daily profile in local time +
-// season + weekend + the imbalance's pull on the marginal prices + autoregressions. Within a
-// simulated year the rank of a score picks the rung of a ladder, which gives MW or EUR/MWh: so
-// every year has the sample's distribution, and the seed decides only when what happens. Fit: the
-// sample's normal scores (rank -> normal quantile) were regressed on hour means, month means and
-// the hinges max(0, -SI) and max(0, SI) of this and the preceding quarter-hour; the autoregressions
-// were matched to the residuals' autocorrelation (lags 1 to 288). The ladders are the sample's
+// Model. Three scores (SI, MIP, MDP), each approximately standard normal: daily profile in local
+// time + season + weekend + effect of the imbalance on the marginal prices + autoregressions.
+// Within a simulated year the rank of a score selects a quantile (ladder step) in MW or EUR/MWh:
+// every year has the sample's distribution, and the seed affects only the order. Fit: the sample's
+// normal scores (rank -> normal quantile) were regressed on hour means, month means and the hinges
+// max(0, -SI) and max(0, SI) of this and the preceding quarter-hour; the autoregressions were
+// matched to the residuals' autocorrelation (lags 1 to 288). The ladders are the sample's
 // quantiles.
 //
-// June to December are an extrapolation: the sample holds January to May of one year in which
-// prices were falling, so the season (a cosine) carries about two thirds of the slope seen in those
-// months.
+// June to December are an extrapolation: the sample has January to May of one year with falling
+// prices, so the season (a cosine) has about two thirds of the slope of those months.
 #pragma once
 
 #include <array>
@@ -24,7 +23,7 @@ namespace bess {
 
 using HourlyProfile = std::array<double, 24>;  ///< value at the middle of each local hour
 
-/// The stochastic part of a score: a sum of autoregressions on the quarter-hour grid.
+/// Stochastic part of a score: sum of autoregressions on the quarter-hour grid.
 struct Autoregression {
   double share;        ///< of the stochastic variance
   double correlation;  ///< at lag 1
@@ -35,7 +34,7 @@ struct ScoreParameters {
   double winter;     ///< amplitude of cos(2 pi (day of year - 15) / 365)
   double midday;     ///< extra at 11-15 h local in midsummer, none in midwinter (solar surplus)
   double weekend;    ///< added on Saturday and Sunday
-  double deviation;  ///< of the stochastic part
+  double deviation;  ///< standard deviation of the stochastic part
   std::array<Autoregression, 3> autoregressions;
 };
 
@@ -66,7 +65,7 @@ inline constexpr ScoreParameters kDecrementalScore{
     .deviation = 0.85,
     .autoregressions = {{{0.36, 0.25}, {0.20, 0.95}, {0.44, 0.995}}}};
 
-/// Pull of the imbalance on a marginal price's score, per 166 MW (its standard deviation).
+/// Effect of the imbalance on a marginal price's score, per 166 MW (its standard deviation).
 struct ImbalancePull {
   double shortage_now, shortage_before, surplus_now, surplus_before;
 };
@@ -75,12 +74,12 @@ inline constexpr ImbalancePull kIncrementalPull{0.142, 0.541, -0.142, 0.082};
 inline constexpr ImbalancePull kDecrementalPull{0.267, -0.138, -0.349, -0.254};
 inline constexpr double kImbalanceUnitMw = 166;
 
-/// A quantile of the sample: `value` is not exceeded with this probability.
+/// Quantile of the sample: `value` is not exceeded with this probability.
 struct LadderStep {
   double probability, value;
 };
 
-/// Shape of the way to the settled price, fitted to the median error by minute of the two ods161
+/// Shape of the path to the settled price, fitted to the median error by minute of the two ods161
 /// days.
 struct MinutePathParameters {
   double imbalance_deviation_mw;     ///< of the instantaneous SI around its quarter-hour mean path
@@ -89,8 +88,8 @@ struct MinutePathParameters {
   double reach_minutes;  ///< the last bid comes at minute reach * U^(1/4), U uniform: mostly late
   double step_probability;  ///< per minute, of a further bid on the way
 };
-/// Seen on 1 January 2023: step deviation 50 MW, lag-1 correlation .97 with the quarter-hour's own
-/// level included; on the ods161 days the mean of minute 0 is 82 to 95 MW off the final one.
+/// On 1 January 2023: step deviation 50 MW, lag-1 correlation 0.97 including the quarter-hour's own
+/// level; on the ods161 days the mean of minute 0 differs by 82 to 95 MW from the final one.
 inline constexpr MinutePathParameters kMinutePath{.imbalance_deviation_mw = 130,
                                                   .imbalance_correlation = 0.93,
                                                   .first_bid_gap_eur_per_mwh = 35,
@@ -120,7 +119,7 @@ inline constexpr std::array<LadderStep, 38> kIncrementalLadder{
      {0.995, 593.8},  {0.9965, 620.8},  {0.9975, 945.2}, {0.998, 1001.4}, {0.9985, 1450.0},
      {0.999, 1718.3}, {0.9995, 2000.0}, {1, 3455.7}}};
 
-/// MDP, EUR/MWh, of the 5,656 quarter-hours in which it was long.
+/// MDP, EUR/MWh, of the 5,656 quarter-hours with a surplus.
 inline constexpr std::array<LadderStep, 32> kDecrementalLadder{
     {{0, -543.3},    {0.0005, -498.2}, {0.001, -483.5}, {0.0025, -439.2}, {0.005, -407.8},
      {0.01, -365.3}, {0.02, -309.5},   {0.035, -258.6}, {0.05, -223.0},   {0.075, -168.0},

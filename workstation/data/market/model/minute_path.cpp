@@ -37,7 +37,7 @@ MinutePathGenerator::Path MinutePathGenerator::imbalance_path(double mean_mw) {
 }
 
 /// Monotone path to `final`: upwards for direction +1, downwards for -1. It starts at the previous
-/// quarter-hour's price where that lies on the way, else a random gap short of the end.
+/// quarter-hour's price if that is on the path, else at a random gap from the end.
 MinutePathGenerator::Path MinutePathGenerator::staircase(double previous, double final,
                                                          double direction) {
   const double gap_drawn = -kMinutePath.first_bid_gap_eur_per_mwh * std::log(1 - random_.uniform());
@@ -46,7 +46,7 @@ MinutePathGenerator::Path MinutePathGenerator::staircase(double previous, double
   const int reached = static_cast<int>(kMinutePath.reach_minutes * lateness);
   Path path{};
   path.fill(final);
-  double left = 1;  // share of the gap still ahead
+  double left = 1;  // remaining share of the gap
   for (int m = 0; m < reached; ++m) {
     path[m] = final - gap * left;
     if (random_.uniform() < kMinutePath.step_probability) left *= random_.uniform();
@@ -58,7 +58,7 @@ MinutePathGenerator::Sides MinutePathGenerator::final_sides(const QuarterHour& q
   Sides sides = previous_sides_;
   const double incremental = quarter_hour.marginal_incremental_eur_per_mwh;
   const double decremental = quarter_hour.marginal_decremental_eur_per_mwh;
-  // Where only the settled price is published it is the marginal price of the active side.
+  // A settled price without marginal prices is the marginal price of the active side.
   const bool shortage = is_short(quarter_hour.system_imbalance_mw);
   double& active = shortage ? sides.incremental : sides.decremental;
   active = quarter_hour.price_eur_per_mwh;
@@ -73,8 +73,8 @@ MinutePath MinutePathGenerator::draw(const QuarterHour& quarter_hour) {
   const Path imbalance = imbalance_path(quarter_hour.system_imbalance_mw);
   const Path incremental = staircase(previous_sides_.incremental, sides.incremental, +1);
   const Path decremental = staircase(previous_sides_.decremental, sides.decremental, -1);
-  // What the formula leaves unexplained at the end: dead band and alpha' since 2024. Less than a
-  // cent's rounding is none.
+  // Final difference to the formula: dead band and alpha' since 2024. Differences below a cent are
+  // rounding.
   const double by_formula = imbalance_price_eur_per_mwh(
       {imbalance.back(), previous_imbalance_mw_, incremental.back(), decremental.back()});
   const double unexplained = in_cents(by_formula) == settled ? 0 : settled - by_formula;

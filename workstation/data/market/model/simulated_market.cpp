@@ -64,7 +64,7 @@ namespace {
 constexpr double kTypicalImbalance_mw = 92;
 constexpr std::size_t kQuarterHoursBack = 96;
 
-/// Median price of up to a day that ends with quarter-hour `index`.
+/// Median price of up to one day ending with quarter-hour `index`.
 double recent_median(const std::vector<QuarterHour>& quarter_hours, std::size_t index) {
   std::vector<double> prices;
   const std::size_t first = index + 1 > kQuarterHoursBack ? index + 1 - kQuarterHoursBack : 0;
@@ -115,11 +115,11 @@ MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_ho
 
 namespace {
 
-/// What the auction foresees: the hours at hand and the day around them, on both sides.
+/// Windows of the auction's forecast: adjacent hours and the day around them, on both sides.
 constexpr std::size_t kNearHours = 3, kDayHours = 12;
 constexpr double kNearForeseen = 0.12, kDayForeseen = 0.26;  ///< a, b
 constexpr double kNoiseDeviation = 31;                       ///< EUR/MWh
-constexpr double kNoiseShareOfDays = 0.6;  ///< of the noise's variance that lasts for days
+constexpr double kNoiseShareOfDays = 0.6;  ///< share of the noise variance that persists for days
 constexpr double kDaysCorrelation = 0.992, kHoursCorrelation = 0.86;  ///< from hour to hour
 /// Mean of Belgium's day-ahead prices by local hour, May 2024 to June 2025, less their mean of 82.
 constexpr std::array<double, 24> kProfile{9,   4,   -2,  -7,  -9,  -9,  -3, 9,  18, 12, -3, -17,
@@ -183,7 +183,7 @@ double climb_ladder(std::span<const LadderStep> ladder, double probability) {
   return below.value + weight * (above->value - below.value);
 }
 
-/// Rank of a score among `references` as a probability, then the ladder.
+/// Rank of a score among `references` as a probability, then its ladder value.
 class RankedLadder {
  public:
   RankedLadder(std::span<const LadderStep> ladder, std::vector<double> references)
@@ -207,7 +207,7 @@ double pull_of(const ImbalancePull& pull, double now_mw, double before_mw) {
          pull.surplus_now * hinge(now_mw) + pull.surplus_before * hinge(before_mw);
 }
 
-/// Draws whole years, because ranks need one; the caller cuts.
+/// Simulates whole years, which ranks require; the caller selects the period.
 class YearSimulator {
  public:
   explicit YearSimulator(std::uint64_t seed) : random_(seed) {}
@@ -226,7 +226,7 @@ class YearSimulator {
   ScoreProcess imbalance_{kImbalanceScore};
   ScoreProcess incremental_{kIncrementalScore};
   ScoreProcess decremental_{kDecrementalScore};
-  double last_imbalance_mw_ = 0;  ///< of the year before
+  double last_imbalance_mw_ = 0;  ///< of the previous year
 };
 
 YearSimulator::Scores YearSimulator::draw_scores(std::int64_t start_utc_s) {
@@ -248,7 +248,7 @@ void YearSimulator::set_imbalances(std::vector<QuarterHour>& year,
   }
 }
 
-/// The ladders are those of the active side, so ranks are taken among the active quarter-hours.
+/// The ladders apply to the active side, so ranks are taken among its quarter-hours.
 void YearSimulator::set_marginal_prices(std::vector<QuarterHour>& year, Scores& scores) const {
   std::vector<double> active_incremental;
   std::vector<double> active_decremental;

@@ -73,7 +73,7 @@ namespace {
 
 constexpr std::string_view kHeader =
     "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc";
-/// What is missing is stored too, so a stray date must not ask for centuries of memory.
+/// Gaps are stored, so a wrong date must not allocate centuries.
 constexpr std::int64_t kQuarterHoursMax = 40LL * 366 * 96;
 
 template <typename Number>
@@ -146,12 +146,12 @@ DayAheadSeries parse_day_ahead_csv(std::string_view text, std::string_view name)
     }
     if (!append_day_ahead(series, parse_row(line, name, line_number))) {
       fail(
-          "{}:{}: row out of order, or 40 years behind the first; sort the file by time and drop "
+          "{}:{}: row out of order, or 40 years after the first; sort the file by time, remove "
           "duplicates: \"{}\"",
           name, line_number, one_line(line, 80));
     }
   }
-  if (series.size() == 0) fail("{}: holds no day-ahead prices", name);
+  if (series.size() == 0) fail("{}: has no day-ahead prices", name);
   return series;
 }
 

@@ -1,13 +1,13 @@
-// How Elia makes the imbalance price, as in force until 21 May 2024 (tariff of the balancing
-// services; the figures follow from datasets ods046 and ods047, which publish every term):
+// Elia's imbalance price formula until 21 May 2024 (tariff of the balancing services; datasets
+// ods046 and ods047 publish every term):
 //   price = MIP + alpha   if SI < 0        MIP, MDP  marginal incremental / decremental price
 //   price = MDP - alpha   if SI >= 0       SI        system imbalance, negative = Belgium is short
 //   alpha = 0             if |SI| <= 150 MW
 //   alpha = cp * 200 / (1 + exp((450 - x) / 65)) otherwise, with x = (|SI| + |SI_prev|) / 2; cp
 //           tempers alpha when MIP is already high (short) or MDP already low (long), see the
 //           source
-// Checked on the 13,650 quarter-hours of 1 January to 23 May 2023 of ods047: the price agrees
-// within 0.015 EUR/MWh in all, alpha within 0.02 in all but one of those that have a predecessor.
+// Verified on the 13,650 quarter-hours of 1 January to 23 May 2023 of ods047: the price agrees
+// within 0.015 EUR/MWh in all, alpha within 0.02 in all but one of those with a predecessor.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ constexpr bool is_short(double system_imbalance_mw) { return system_imbalance_mw
 
 /// The additional component alpha, never negative.
 double alpha_eur_per_mwh(const ImbalanceState& state);
-/// The price with this alpha in place of it.
+/// Price with the given alpha.
 inline double imbalance_price_eur_per_mwh(const ImbalanceState& state, double alpha_eur_per_mwh) {
   return is_short(state.system_imbalance_mw)
              ? state.marginal_incremental_eur_per_mwh + alpha_eur_per_mwh
@@ -39,23 +39,23 @@ inline double imbalance_price_eur_per_mwh(const ImbalanceState& state, double al
 }
 double imbalance_price_eur_per_mwh(const ImbalanceState& state);
 
-// Which of the price regimes (shared/training_period.h) prices lie in.
+// Price regimes (shared/training_period.h) of a period.
 
 /// The end is excluded.
 struct UtcSpan {
   std::int64_t from_s, until_s;
 };
 
-/// Ascending; every moment belongs to one.
+/// Ascending; every instant belongs to one.
 std::span<const PriceRegime> price_regimes();
 
-/// Those that the span meets, in order.
+/// Regimes that overlap the span, in order.
 std::vector<const PriceRegime*> regimes_met(const UtcSpan& span);
 
-/// Names of the regimes that `traded` meets and `learnt` does not, or empty.
+/// Names of the regimes of `traded` that are not in `learnt`, or empty.
 std::string regimes_not_learnt(const UtcSpan& learnt, const UtcSpan& traded);
 
-/// Names, a comma between.
+/// Names, separated by commas.
 std::string regime_names(const std::vector<const PriceRegime*>& regimes);
 
 }  // namespace bess

@@ -24,11 +24,11 @@ bool holds_time(std::string_view line, std::int64_t utc_s) {
   return false;
 }
 
-/// "prices.csv:17", or the name and the time when no row is found: JSON and XML have none.
+/// "prices.csv:17", or name and time if no row is found: JSON and XML have none.
 std::string place_of(const Finding& finding, const std::vector<PriceText>& texts) {
   if (!finding.utc_s) return texts.front().name;
   const std::int64_t quarter_hour_s =
-      *finding.utc_s - *finding.utc_s % kSecondsPerQuarterHour;  // of a download of settled prices
+      *finding.utc_s - *finding.utc_s % kSecondsPerQuarterHour;  // for downloads of settled prices
   for (const std::int64_t utc_s : {*finding.utc_s, quarter_hour_s}) {
     for (const PriceText& text : texts) {
       const std::size_t row = row_of_time(text.text, utc_s);
@@ -66,8 +66,7 @@ void judge(const std::vector<Finding>& findings, const AcceptedFindings& accepte
            const std::vector<PriceText>& texts) {
   for (const Finding& finding : findings) {
     if (!finding.is_error || accepted.accepts(finding.name)) continue;
-    fail("{}: {} (--accept {} if it is meant)", place_of(finding, texts), finding.what,
-         finding.name);
+    fail("{}: {} (--accept {} if intended)", place_of(finding, texts), finding.what, finding.name);
   }
   for (const Finding& finding : findings) {
     fmt::print(stderr, "bess-train: warning: {}: {} [{}]\n", place_of(finding, texts), finding.what,

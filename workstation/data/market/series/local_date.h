@@ -1,5 +1,4 @@
-// Local days of the market as users write them on the command line, and the quarter-hour of the
-// imbalance market.
+// Local days of the market in command-line form, and the quarter-hour of the imbalance market.
 #pragma once
 
 #include <cmath>
@@ -17,7 +16,7 @@ struct LocalDate {
   friend constexpr auto operator<=>(const LocalDate&, const LocalDate&) = default;
 };
 
-/// Reads YYYY-MM-DD; `what` names the option in the UserError of anything else.
+/// Parses YYYY-MM-DD; `what` names the option in the UserError.
 LocalDate parse_local_date(std::string_view text, std::string_view what);
 std::string format_local_date(const LocalDate& date);
 LocalDate add_days(const LocalDate& date, int days);
@@ -26,8 +25,8 @@ LocalDate local_date_of(std::int64_t utc_s);
 /// UTC instant at which the local day begins. Needs the market's time zone.
 std::int64_t local_midnight_utc_s(const LocalDate& date);
 
-// One settled quarter-hour of the imbalance market: what the TSO publishes after it ended, what the
-// simulator draws, and what the minute path is built on.
+// Settled quarter-hour of the imbalance market: published by the TSO after its end, or simulated;
+// input of the minute path.
 
 inline constexpr double kNotPublished = std::numeric_limits<double>::quiet_NaN();
 

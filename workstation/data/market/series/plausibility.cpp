@@ -20,25 +20,25 @@ namespace bess {
 
 namespace {
 
-/// As the edge refuses it.
+/// Limit of the edge.
 constexpr double kPriceMaxEurPerMwh = kPlausiblePriceMaxEurPerMwh;
-/// No day of a balancing market stays within it; every one does when counted in EUR/kWh.
+/// Every market exceeds it within a day; prices in EUR/kWh never do.
 constexpr double kUnitLowMax = 5;
-/// The median of no market; that of every market in cents.
+/// Range of the median of prices in cents; no market has such a median in EUR/MWh.
 constexpr double kUnitHighMin = 1'500, kUnitHighMax = 1.5e6;
 constexpr std::int64_t kGapWorthNaming_min = 60;
 constexpr double kGapShareMax = 0.05;
 constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
 constexpr std::int64_t kLatest_s = 4'102'444'800;  // 2100-01-01
-/// What databases and instruments write where there is no value, and what no market has settled at
-/// or limits its bids to.
+/// Placeholders of databases and instruments for missing values that no market has settled at or
+/// uses as a bid limit.
 constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
-/// What they write as well, and what is a price: seven quarter-hours of Belgium's 2025 were settled
-/// at -999, and bids end at +-99,999. Only many of them together are suspect.
+/// Placeholders that are also prices: seven quarter-hours of Belgium's 2025 were settled at -999,
+/// and bids end at +-99,999. Suspect only if frequent.
 constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
 constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
 
-/// Prices in evenly spaced rows, and what is usual of them.
+/// Prices in evenly spaced rows with their properties.
 struct Column {
   const char* name;
   std::span<const double> prices;
@@ -51,13 +51,13 @@ struct Column {
   [[nodiscard]] std::int64_t utc_s(std::size_t i) const {
     return start_utc_s + static_cast<std::int64_t>(i) * row_s;
   }
-  /// A day's worth of prices: judgements of a whole column need as many.
+  /// One day of prices: the minimum for checks of a whole column.
   [[nodiscard]] std::size_t judged_min() const {
     return static_cast<std::size_t>(kSecondsPerDay / row_s);
   }
 };
 
-/// Of the published prices of a column.
+/// Statistics of the published prices of a column.
 struct Summary {
   std::size_t count = 0;
   std::optional<std::size_t> first;
@@ -88,7 +88,7 @@ double median_size(const Column& column) {
   return *middle;
 }
 
-/// Rows whose price `wanted` names: how many, and the first.
+/// Rows whose price is `wanted`: number and first.
 template <typename Wanted>
 std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Wanted wanted) {
   std::size_t count = 0;
@@ -99,7 +99,7 @@ std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Want
   return {count, first};
 }
 
-/// What minutes and day-ahead prices have in common.
+/// Checks common to minute and day-ahead prices.
 class ColumnJudge {
  protected:
   void error(std::string_view name, const Column& column, std::size_t row, std::string what) {
@@ -113,7 +113,7 @@ class ColumnJudge {
     const std::size_t last = column.prices.size() - 1;
     const bool early = column.start_utc_s < kEarliest_s;
     if (!early && column.utc_s(last) < kLatest_s) return;
-    error("dates", column, early ? 0 : last, "the year cannot be meant; mend the times");
+    error("dates", column, early ? 0 : last, "the year is impossible; correct the times");
   }
 
   void check_constant(const Column& column) {
@@ -121,7 +121,7 @@ class ColumnJudge {
     if (summary.count < column.judged_min() || !summary.is_constant) return;
     const double price = column.prices[*summary.first];
     error("constant", column, *summary.first,
-          fmt::format("every {} price is {:g}, in {}; nothing can be learnt from it, get the "
+          fmt::format("every {} price is {:g}, in {}; useless for training, download the "
                       "prices again",
                       column.name, price, counted(summary.count, column.row)));
   }
@@ -159,13 +159,13 @@ class ColumnJudge {
     const auto [count, first] = matches(column.prices, is_beyond);
     if (count == 0) return;
     error("price-range", column, first,
-          fmt::format("{} price {} lies beyond {:.0f} EUR/MWh, more than any market allows ({}); "
-                      "mend it or leave it out",
+          fmt::format("{} price {} is beyond {:.0f} EUR/MWh, more than any market allows ({}); "
+                      "correct it or leave it empty",
                       column.name, column.prices[first], kPriceMaxEurPerMwh,
                       counted(count, column.row)));
   }
 
-  /// They are kept: the dearest minutes of a year are what a battery is for.
+  /// Kept: the most expensive minutes of a year are the most valuable ones.
   void check_unusual(const Column& column) {
     const auto is_unusual = [&column](double price) {
       const bool is_usual =
@@ -175,7 +175,7 @@ class ColumnJudge {
     const auto [count, first] = matches(column.prices, is_unusual);
     if (count == 0) return;
     warning("unusual-price", column.utc_s(first),
-            fmt::format("{} price {} lies beyond {:.0f} .. {:.0f} EUR/MWh ({}): taken as it is",
+            fmt::format("{} price {} is beyond {:.0f} .. {:.0f} EUR/MWh ({}): accepted",
                         column.name, column.prices[first], column.usual_min_eur_per_mwh,
                         column.usual_max_eur_per_mwh, counted(count, column.row)));
   }
@@ -225,7 +225,7 @@ class MinuteJudge : public ColumnJudge {
     (this->*check)(indicative_);
   }
 
-  /// Minutes between rows as they usually follow each other; 1 when there are too few to say.
+  /// Usual spacing of rows in minutes; 1 if there are too few.
   static std::size_t usual_step(std::span<const double> prices, std::size_t first,
                                 std::size_t stride) {
     constexpr std::size_t kStepsMin = 8;
@@ -250,8 +250,8 @@ class MinuteJudge : public ColumnJudge {
     const std::size_t step = usual_step(column.prices, 0, 1);
     if (step > 1) {
       error("row-step", column, first,
-            fmt::format("{} prices come every {} minutes, and a minute file has one a minute; "
-                        "'bess-train prices reconstruct --quarter-hours' builds minutes on "
+            fmt::format("{} prices come every {} minutes, but a minute file has one per minute; "
+                        "'bess-train prices reconstruct --quarter-hours' makes minutes from "
                         "quarter-hours",
                         column.name, step));
       return;
@@ -263,7 +263,7 @@ class MinuteJudge : public ColumnJudge {
     const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
     if (rows_apart > quarter_hour) {
       error("row-step", column, first,
-            fmt::format("{} prices come every {} minutes, and the market settles every 15: get "
+            fmt::format("{} prices come every {} minutes, but the market settles every 15; get "
                         "quarter-hours",
                         column.name, rows_apart));
     }
@@ -284,8 +284,8 @@ class MinuteJudge : public ColumnJudge {
     }
   }
 
-  /// The settled price belongs to the quarter-hour; when the other column keeps still instead, the
-  /// two are swapped.
+  /// The settled price is constant in its quarter-hour; if the other column is constant instead,
+  /// the two are swapped.
   void check_settled_changes() {
     std::size_t changing = 0;
     std::size_t first = 0;
@@ -306,11 +306,11 @@ class MinuteJudge : public ColumnJudge {
         fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
                     series_.settled[first - 1], series_.settled[first], counted(changing, "change"),
                     swapped ? "the indicative price does not: are the two columns swapped?"
-                            : "a quarter-hour has one settled price, mend the rows"));
+                            : "a quarter-hour has one settled price, correct the rows"));
   }
 
   void check_frozen(const Column& column) {
-    if (summary_of(column).is_constant) return;  // said already
+    if (summary_of(column).is_constant) return;  // already reported
     std::size_t longest = 0;
     std::size_t start_of_longest = 0;
     std::size_t start = 0;
@@ -323,7 +323,7 @@ class MinuteJudge : public ColumnJudge {
     }
     if (longest < column.judged_min()) return;
     warning("frozen", series_.utc_s(start_of_longest),
-            fmt::format("the {} price stays at {:g} for {} minutes; did the source hang?",
+            fmt::format("the {} price stays at {:g} for {} minutes; did the source stop?",
                         column.name, column.prices[start_of_longest], longest));
   }
 
@@ -336,11 +336,11 @@ class MinuteJudge : public ColumnJudge {
     }
     if (both < settled_.judged_min() || summary_of(settled_).is_constant) return;
     warning("copied-column", series_.start_utc_s,
-            "indicative and settled price are the same in every minute: a policy would see what it "
-            "will be paid, and its figures flatter");
+            "indicative and settled price are equal in every minute: a policy would see the price "
+            "that it is paid, and its results would be too high");
   }
 
-  /// Ends are no gaps: what came before the first price or will be settled later is not missing.
+  /// Time before the first and after the last price is not a gap.
   void check_gaps(const Column& column) {
     const Summary summary = summary_of(column);
     if (summary.count == 0) return;
@@ -383,7 +383,7 @@ std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& 
                            is_published(series.settled[last - 1]) &&
                            !(series.settled[last] == series.settled[last - 1]);
   return {{"cut-end", contradicts,
-           "the last row does not end with a line end: the file may be cut off; get it again, or "
+           "the last row does not end with a line end: file cut off? download it again, or "
            "delete the row",
            series.utc_s(last)}};
 }
@@ -392,8 +392,8 @@ namespace {
 
 constexpr std::size_t kDayOfPrices = 96;
 constexpr std::size_t kSharedMin = 80 * kDayOfPrices;  ///< fewer may mislead
-constexpr double kCorrelationMore = 0.02;              ///< that a shift must have
-/// Limits of the coupled auction, raised by steps when reached (harmonised clearing prices).
+constexpr double kCorrelationMore = 0.02;              ///< of a shift
+/// Limits of the coupled auction, raised in steps when reached (harmonised clearing prices).
 constexpr double kAuctionMinEurPerMwh = -500, kAuctionMaxEurPerMwh = 5'000;
 
 class DayAheadJudge : public ColumnJudge {
@@ -416,14 +416,13 @@ class DayAheadJudge : public ColumnJudge {
   }
 
  private:
-  /// Whether the day [from, from + 96) has the prices of the day before it, of which not all are
-  /// one.
+  /// Whether the day [from, from + 96) repeats the previous day's prices; constant days do not
+  /// count.
   [[nodiscard]] bool repeats_day_before(std::size_t from) const {
     bool moves = false;
     for (std::size_t q = from; q < from + kDayOfPrices; ++q) {
       const double price = series_.eur_per_mwh[q];
-      if (!(price == series_.eur_per_mwh[q - kDayOfPrices]))
-        return false;  // nor where one is missing
+      if (!(price == series_.eur_per_mwh[q - kDayOfPrices])) return false;  // a price is missing
       moves = moves || price != series_.eur_per_mwh[from];
     }
     return moves;
@@ -447,8 +446,8 @@ class DayAheadJudge : public ColumnJudge {
       const bool midnight = local_minute_of(series_.utc_s(q)).minute_of_day == 0;
       if (!midnight || !repeats_day_before(q)) continue;
       return error("repeated-day", column_, q,
-                   fmt::format("the day-ahead prices of {} are those of the day before: an old "
-                               "answer? get the day again",
+                   fmt::format("the day-ahead prices of {} are those of the previous day: an old "
+                               "answer? download the day again",
                                format_local_date(local_date_of(series_.utc_s(q)))));
     }
   }
@@ -511,7 +510,7 @@ std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
         {"shifted-day",
          true,
          fmt::format("the day-ahead prices follow the settled ones better a day {} (correlation "
-                     "{:.2f}, as filed {:.2f}): are they filed under the wrong day? mend the dates",
+                     "{:.2f}, as filed {:.2f}): filed under the wrong day? correct the dates",
                      days > 0 ? "later" : "earlier", shifted, as_filed.correlation),
          {}}};
   }

@@ -1,7 +1,6 @@
-// Whether prices can be what they claim to be: EUR/MWh of an imbalance market, one row a minute,
-// one settled price a quarter-hour. Each finding has a name, so that a user who means it can accept
-// it. What is wrong with the text of a file (no number, no time, disorder) its reader says; what is
-// wrong with numbers that can be read is said here, once, for every command.
+// Plausibility checks of price series: EUR/MWh of an imbalance market, one row per minute, one
+// settled price per quarter-hour. A user can accept a finding by its name. Readers report errors of
+// the text (no number, no time, disorder); these checks cover readable numbers, for all commands.
 #pragma once
 
 #include <array>
@@ -16,8 +15,7 @@
 
 namespace bess {
 
-/// Every name that a finding may have; errors first, then warnings, then what is of day-ahead
-/// prices alone.
+/// Every finding's name: errors, then warnings, then findings of day-ahead prices only.
 inline constexpr std::array<std::string_view, 16> kFindingNames{
     "dates",       "row-step",      "constant",         "sentinel",      "price-unit",
     "price-range", "cut-end",       "settled-changes",  "overlap",       "gaps",
@@ -25,37 +23,36 @@ inline constexpr std::array<std::string_view, 16> kFindingNames{
     "shifted-day"};
 
 struct Finding {
-  std::string_view name;                ///< of kFindingNames
+  std::string_view name;                ///< one of kFindingNames
   bool is_error;                        ///< unless accepted; a warning otherwise
-  std::string what;                     ///< what is wrong, and the mend
+  std::string what;                     ///< what is wrong, and the remedy
   std::optional<std::int64_t> utc_s{};  ///< the minute whose row shows it
 };
 
-/// All findings about a series, the most telling error first: a wrong unit is also a wrong range.
-/// Honest data has none. Judgements of a whole column (unit, constant) need a day's worth of
-/// prices.
+/// All findings of a series, the most specific error first: a wrong unit is also a wrong range.
+/// Correct data has none. Checks of a whole column (unit, constant) need one day of prices.
 std::vector<Finding> implausible(const MinuteSeries& series);
 
-/// A text that does not end with a line end may have lost a part of its last row: an error when
-/// that row contradicts its quarter-hour, otherwise a warning. `series` is what was read of it.
+/// A text without a final line end may have lost a part of its last row: an error if that row
+/// contradicts its quarter-hour, otherwise a warning. `series` is the parsed text.
 std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series);
 
-// Whether day-ahead prices can be what they claim to be, as plausibility.h judges minutes: the same
-// names for the same mistakes, and three of their own. A day that repeats the one before in every
-// quarter-hour is an old answer. Prices that follow the settled ones better a day later or earlier
-// are filed under the wrong day; a day too early is look-ahead, and would look like a gain. Of the
-// months of June 2024 to June 2025 eleven have the highest correlation as filed, April and May 2025
-// one of 0.02 and 0.00 more a day off; the eight and the six months together have 0.21 and 0.38 as
-// filed, 0.15 and 0.32 at most a day off.
+// Plausibility checks of day-ahead prices: the same names for the same errors, and two additional
+// ones. A day that repeats the previous one in every quarter-hour is an old answer. Prices that
+// follow the settled ones better a day later or earlier are filed under the wrong day; a day too
+// early is look-ahead and would show a false gain. Of the months June 2024 to June 2025 eleven have
+// the highest correlation as filed, April and May 2025 one that is 0.02 and 0.00 higher a day off;
+// the eight and the six months together have 0.21 and 0.38 as filed, at most 0.15 and 0.32 a day
+// off.
 
 std::vector<Finding> implausible_day_ahead(const DayAheadSeries& series);
 
-/// Correlation of day-ahead prices with what the same quarter-hours were settled at, were every one
-/// of them of so many days later; NaN of less than a day in common.
+/// Correlation of day-ahead prices, shifted by `days`, with the settled prices of the same
+/// quarter-hours; NaN for less than a day in common.
 double day_ahead_correlation(const DayAheadSeries& day_ahead, const MinuteSeries& settled,
                              int days_later);
 
-/// The finding `shifted-day`, of 80 days or more in common.
+/// The finding `shifted-day`, for at least 80 common days.
 std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
                                        const MinuteSeries& settled);
 

@@ -16,8 +16,8 @@ namespace bess {
 
 namespace {
 
-/// Pearson correlation of a series with itself `lag` places later; pairs with an unknown are left
-/// out.
+/// Pearson correlation of a series with itself `lag` places later, without pairs with unknown
+/// values.
 double autocorrelation_at(std::span<const double> values, std::size_t lag) {
   double count = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
   for (std::size_t i = 0; i + lag < values.size(); ++i) {
@@ -61,7 +61,7 @@ std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int
   return changes;
 }
 
-/// `settled` by quarter-hour of the UTC grid, from the one that holds `from_utc_s`.
+/// `settled` by quarter-hour of the UTC grid, from the one that contains `from_utc_s`.
 std::vector<RegimeStatistics> regime_statistics(std::span<const double> settled,
                                                 std::int64_t from_utc_s) {
   const std::int64_t first = from_utc_s / kSecondsPerQuarterHour;
@@ -81,7 +81,7 @@ std::vector<RegimeStatistics> regime_statistics(std::span<const double> settled,
   return rows;
 }
 
-/// How often two neighbours lie on different sides of zero.
+/// Number of neighbours on different sides of zero.
 struct FlipCount {
   std::size_t pairs = 0, flips = 0;
   void add(bool before, bool after) {
@@ -264,7 +264,7 @@ std::string format_convergence_text(const ConvergenceByMinute& convergence) {
 }
 
 void add_price(Json& json, const PriceStatistics& price) {
-  // Without a price none of its figures is known.
+  // Without a price all figures are unknown.
   const auto set = [&](const char* name, double figure) {
     json.set(name, price.count > 0 ? figure : NAN);
   };

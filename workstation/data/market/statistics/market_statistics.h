@@ -1,5 +1,5 @@
-// Figures of a market, by which the simulated market is compared with the real one and a user
-// judges a downloaded file; and their report.
+// Market statistics and their report, to compare the simulated market with the real one and to
+// check downloads.
 #pragma once
 
 #include <array>
@@ -26,23 +26,23 @@ struct PriceStatistics {
   double mean = 0, minimum = 0, quartile_1 = 0, median = 0, quartile_3 = 0, maximum = 0;
   double share_below_minus_200 = 0, share_below_0 = 0, share_above_1000 = 0;
   std::array<double, kAutocorrelationLags.size()> autocorrelation{};  ///< by kAutocorrelationLags
-  double sign_flip_rate = 0;  ///< share of neighbours between which the price changes its sign
+  double sign_flip_rate = 0;  ///< share of neighbours with different signs
 };
 
-/// How far the indicative price of one minute of the quarter-hour is from the settled one.
+/// Difference between the indicative price of one minute of the quarter-hour and the settled price.
 struct Convergence {
   std::size_t count = 0;
   double median_error = 0, mean_error = 0;  ///< absolute, EUR/MWh
 };
 using ConvergenceByMinute = std::array<Convergence, kMinutesPerQuarterHour>;
 
-/// A local day of 23 or 25 hours that the file covers from midnight to midnight.
+/// Local day of 23 or 25 hours that the file covers from midnight to midnight.
 struct ClockChange {
   int year, month, day;
   int quarter_hours;  ///< 92 or 100
 };
 
-/// The settled prices of one regime.
+/// Settled prices of one regime.
 struct RegimeStatistics {
   const PriceRegime* regime;
   PriceStatistics price;
@@ -56,15 +56,15 @@ struct MarketStatistics {
   std::vector<Gap> settled_gaps;                   ///< no settled price
   std::vector<Gap> indicative_gaps;                ///< no indicative price (minute files only)
   std::vector<ClockChange> clock_changes;
-  std::vector<RegimeStatistics> regimes;  ///< those that the file meets, in order
+  std::vector<RegimeStatistics> regimes;  ///< regimes of the file, in order
 };
 
-/// Settled price of each quarter-hour of the grid, NaN where unknown. `settled[q]`.
+/// Settled price of each quarter-hour of the grid, NaN if unknown. `settled[q]`.
 PriceStatistics price_statistics(std::span<const double> settled);
-/// Settled price per quarter-hour of the UTC grid that the series covers.
+/// Settled price per quarter-hour of the UTC grid of the series.
 std::vector<double> settled_by_quarter_hour(const MinuteSeries& series);
 ConvergenceByMinute convergence_by_minute(const MinuteSeries& series);
-/// Share of neighbouring quarter-hours between which the imbalance changes sides.
+/// Share of neighbouring quarter-hours with imbalances of different signs.
 double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours);
 
 MarketStatistics statistics_of_minutes(const MinuteSeries& series);
@@ -75,12 +75,12 @@ MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& qua
 /// empty.
 double quantile_of_sorted(std::span<const double> sorted, double probability);
 
-// Market statistics as text, JSON and a picture.
+// Market statistics as text and JSON.
 
-/// `what`: the price that is described.
+/// `what`: name of the price.
 std::string format_statistics_text(const MarketStatistics& statistics,
                                    std::string_view what = "settled price");
-/// One JSON object in one line.
+/// One JSON object on one line.
 std::string format_statistics_json(const MarketStatistics& statistics);
 
 }  // namespace bess
