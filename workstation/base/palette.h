@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "shared/action.h"  // its enumerators have names of colours: GCC wants them declared before
+#include "shared/action.h"  // GCC requires its enumerators, named like colours, first
 
 namespace bess {
 

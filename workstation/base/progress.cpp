@@ -40,8 +40,10 @@ std::string progress_line(std::string_view title, std::string_view unit, const P
   const std::string time = state.is_over          ? duration_text(state.elapsed_s)
                            : state.rate_per_s > 0 ? "ETA " + duration_text(left_s)
                                                   : "ETA unknown";
-  std::string line = fmt::format("{}: {:.0f}/{:.0f} {} ({:.3g}/s, {})", title, state.done,
-                                 state.total, unit, state.rate_per_s, time);
+  const std::string rate =
+      fmt::format(fmt::runtime(state.rate_per_s < 999.5 ? "{:.3g}" : "{:.0f}"), state.rate_per_s);
+  std::string line = fmt::format("{}: {:.0f}/{:.0f} {} ({}/s, {})", title, state.done, state.total,
+                                 unit, rate, time);
   if (!note.empty() && line.size() + 2 + std::min(note.size(), kNoteMin) <= columns) {
     line.append("  ").append(one_line(note, columns - line.size() - 2));
   }

@@ -5,16 +5,16 @@
 //
 // and for a normal n with d = J'n, split alike into d1 and d2,
 //
-//   z = J2 d2      the direction in x along which n'x grows fastest and the active rows stay,
-//                  |d2|^2 a unit
-//   r = R^-1 d1    how the active multipliers fall along it
-//   J2 J2'         the inverse of G on the directions that the active rows leave free
+//   z = J2 d2      the direction in x along which n'x grows fastest with the active rows
+//                  unchanged, by |d2|^2 per unit
+//   r = R^-1 d1    decrease of the active multipliers along it
+//   J2 J2'         the inverse of G on the free directions of the active rows
 //
 // Adding a row takes one Householder reflection of the columns of J2 with d2 != 0, dropping one
 // takes Givens rotations. d is 0 outside the groups of the row's variables (VariableGroups). In J2
-// it often has fewer entries: an order between neighbours always has two. The reflection begins
-// with such a column and therefore leaves all others unchanged. A RowImage lists the columns, and
-// all work is on them. Only the constructors allocate memory.
+// it often has fewer entries: an order between neighbours always has two, because the
+// reflection begins with such a column and leaves all others unchanged. A RowImage lists the
+// columns, and all work is on them. Only the constructors allocate memory.
 #pragma once
 
 #include <Eigen/Core>

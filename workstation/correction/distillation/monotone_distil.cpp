@@ -218,8 +218,7 @@ void saturate(const Matrix& sum, Matrix& activation) {
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options) {
   Random random(derive_seed(options.seed, kSeedLessons));
-  // With the outlook context they are among the visited ones: the five inputs do not determine the
-  // action.
+  // Outlook: part of the visited ones, since the five inputs do not determine the action.
   const double anywhere_share = teacher.outlook ? 0 : kRandomShare;
   const auto anywhere =
       static_cast<Eigen::Index>(anywhere_share * static_cast<double>(visited.cols()));

@@ -5,8 +5,7 @@
 //
 // over states that the teacher visits and some of the whole lattice, with hinge losses where rules
 // apply (properties 1 and 2, operator's rules): because of monotonicity one or two states for each
-// context suffice. Hidden activations saturate at 0 and 1, so that their sums can be convex and
-// concave.
+// context suffice. Hidden activations saturate at 0 and 1: sums can bend both ways.
 #pragma once
 
 #include <atomic>

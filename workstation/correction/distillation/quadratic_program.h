@@ -14,7 +14,7 @@
 // Derivative: near g the same rows S are active, and x is an affine function of g [dQP, arXiv
 // 2410.06324]. The adjoint w solves one linear system,
 //   [G N; N' 0] [w; .] = [dL/dx; 0]        hence        dL/dg = w = J2 J2' dL/dx.
-// Where a row is tight with multiplier 0 the derivative is one-sided. The result is the mean of the
+// If a row is tight with multiplier 0 the derivative is not unique. The result is the mean of the
 // derivatives with all such rows kept and with all dropped: for one such row, the central
 // difference.
 //

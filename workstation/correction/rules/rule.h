@@ -65,8 +65,7 @@ struct RuleSet {
   [[nodiscard]] std::vector<std::string> guard_rule_names() const;
 };
 
-/// Whether the proof of a student with this context counts the rule; otherwise only the guard
-/// applies it.
+/// Whether the proof of a student with this context counts the rule; else it is for the guard only.
 bool binds_student(const Rule& rule, ContextKind kind);
 
 /// Who applies the rule: "student", "guard", "student and guard", or "guard's own thresholds".

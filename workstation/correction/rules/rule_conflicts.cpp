@@ -94,7 +94,7 @@ void check_each(const RuleSet& rules, ContextKind kind) {
   for (const Rule& rule : rules.rules) {
     if (kind == ContextKind::kMonth && rule.box.context_classes != kAllTwelve) {
       fail(
-          "{}: \"{}\" has context_classes, but the student is by month: use months, or [train] "
+          "{}: \"{}\" has context_classes, but the context is the month: use months, or [train] "
           "context = \"level\"",
           rule.place, rule.name);
     }

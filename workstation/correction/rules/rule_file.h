@@ -1,5 +1,4 @@
-// Rule file: commented TOML, one [[rule]] for each rule (examples: workstation/config/rules/).
-// Keys:
+// Rule file: commented TOML, one [[rule]] each (examples: workstation/config/rules/). Keys:
 //
 //   name = "no dear charging"                  1 to 40 letters, digits, spaces or -_.,:()%+; unique
 //   hours = "22:00-06:00"                      local, whole quarter-hours, the end excluded; may

@@ -255,8 +255,7 @@ std::string training_macros(const StudentFile& student) {
   return text;
 }
 
-/// The plan's model as one array, each part after its name, and a check value of the exporter's
-/// plans.
+/// The plan's model as one array with named parts, and a check value of the exporter's plans.
 std::string outlook_section(const OutlookModel& model) {
   std::string numbers;
   int size = 0;

@@ -212,9 +212,8 @@ ContextClasses parse_context_classes(const JsonReader& in, const std::string& na
   classes.kind = *kind;
   in.wholes("level_edge_eur_per_mwh", std::span(classes.level_edge_eur_per_mwh));
   if (!classes.is_valid()) {
-    fail(
-        "{}: \"level_edge_eur_per_mwh\" must rise strictly by level and outlook, and be 0 by month",
-        name);
+    fail("{}: \"level_edge_eur_per_mwh\" must rise strictly (level, outlook) or be 0 (month)",
+         name);
   }
   return classes;
 }

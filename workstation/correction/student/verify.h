@@ -1,14 +1,12 @@
-// Verification: the integer student's action on EVERY lattice state [SPEC 6], 6,950,033,280 of
-// them.
+// Verification: the integer student's action on ALL 6,950,033,280 lattice states [SPEC 6].
 //
 // For each of the 17,280 contexts (T_qh, qh, mo) the action grid over SoC x price is filled, then
 // checked against every rule (rule_proof.h), four of them built in (rules/properties.h):
 //   property 1   states with price <= low whose action is not charge
 //   property 2   states with price >= high whose action is not discharge
 //   property 3   neighbour pairs (price + 1, or SoC + 1) where the action increases; the order of
-// any
-//                two comparable states follows from neighbours, so no violation of pairs is no
-//                violation at all
+//                comparable states follows from neighbours, so no pair violates it if and only
+//                if no states do
 // Filling is exhaustive or by sound bounds. Interval arithmetic through the net's integers, whose
 // operations are all monotone, shows that a box of states has one action; an undecided box is
 // halved, down to states that the edge's own code evaluates. Both methods give the same counts.

@@ -1,6 +1,5 @@
 // Experience sources [SPEC 4]:
-//   counterfactual  prices do not depend on the battery, so one observed price transition is valid
-// for
+//   counterfactual  prices ignore the battery, so an observed price transition is valid for
 //                   EVERY SoC and action: each sample draws a training step, a SoC and an action.
 //   replay          the paper's: epsilon-greedy days from a uniform SoC into a ring of the last 1e6
 //                   transitions (train.h).

@@ -19,11 +19,12 @@ TEST(ProgressLine, TellsDoneRateAndWhatIsLeft) {
               HasSubstr("ETA 4 h 26 min"));
   EXPECT_THAT(progress_line("train", "steps", {1, 2000, 1, 1}, "", 80), HasSubstr("ETA 33 min"));
   EXPECT_THAT(progress_line("train", "steps", {0, 8000, 0, 2}, "", 80), HasSubstr("ETA unknown"));
+  EXPECT_THAT(progress_line("train", "steps", {0, 8000, 5853.2, 2}, "", 80), HasSubstr("(5853/s"));
 }
 
 TEST(ProgressLine, FitsItsRowAndTheNoteGivesWayFirst) {
   const ProgressState state{.done = 1234, .total = 8000, .rate_per_s = 23.4};
-  const std::string note = "loss 1.2345, earns 480.1";
+  const std::string note = "loss 1.2345, profit 480.1";
   const std::string whole = progress_line("train c51", "steps", state, note, 80);
   EXPECT_THAT(whole, EndsWith(note));
   for (std::size_t columns = 1; columns < 100; ++columns) {

@@ -272,7 +272,7 @@ std::vector<WindowGaps> gaps_of(const FetchRequest& request,
   return all;
 }
 
-/// "ods046: 2780 of 2880 minutes missing, the first from ... to ...; the server holds no more".
+/// "ods046: 2780 of 2880 minutes missing, the first from ... to ...; the server has no more".
 std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
   const bool minutes = holds_minutes(of.window->dataset);
   const std::int64_t missing_min = minutes_in(of.gaps);

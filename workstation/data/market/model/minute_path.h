@@ -3,8 +3,7 @@
 //   S_m      running mean of the instantaneous imbalance, an AR(1) path shifted so that its mean
 //            over the fifteen minutes is the quarter-hour's SI
 //   MIP_m    running maximum of the activated upward bids: a staircase that reaches the settled MIP
-//            at a random minute (MDP_m falls likewise). Minute prices of the marginal regime are
-// not
+//            at a random minute (MDP_m falls likewise). No minute prices of the marginal regime are
 //            public: the staircase is an assumption, its speed fitted to two later days of ods161
 //   price_m  formula of imbalance_price.h on S_m, MIP_m, MDP_m. At minute 0 Elia does not know the
 //            previous quarter-hour yet and takes its SI as 0 (1,596 of 1,598 rows of ods161)
