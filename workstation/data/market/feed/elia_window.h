@@ -1,6 +1,7 @@
 // Download of one window: requests its rows with retries, compares them with the calendar and the
 // server's total, and requests the rest until nothing is missing or the server has no more. The
 // caller accepts or refuses the remaining gaps.
+#pragma once
 
 #include <atomic>
 #include <cstdint>
