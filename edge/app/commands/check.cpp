@@ -23,10 +23,10 @@
 namespace bess {
 
 PriceCheck check_prices(const std::string& config_path) {
-  constexpr std::int64_t kPatienceS = 180;  // two requests of a minute at most
+  constexpr std::int64_t kPatienceS = 180;  // two requests, at most 60 s each
   std::error_code ignored;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  // Of a build under another name, such as bess-edge-outlook, the one of that build.
+  // bess-edge-outlook uses bess-prices-outlook of the same build.
   constexpr std::string_view kEdge = "bess-edge";
   std::string name = self.filename().string();
   const bool is_usual = name.starts_with(kEdge);
@@ -41,7 +41,7 @@ PriceCheck check_prices(const std::string& config_path) {
 
 namespace {
 
-/// What a command would write, by the battery's own scale factors and limits if it was reached.
+/// Registers that a command would write, with the battery's scale factors and limits if read.
 void print_registers(const EdgeConfig& config, const ModbusBattery& battery, const char* name,
                      const PowerOrder& order, Command command) {
   std::printf("%-10s", name);
@@ -50,7 +50,7 @@ void print_registers(const EdgeConfig& config, const ModbusBattery& battery, con
     std::uint16_t address = 0;
     const Status status = battery.preview(write, order, address, block);
     if (status != Status::kOk) {
-      std::printf(" (%s)", status == Status::kNotConnected ? "known once the battery is read"
+      std::printf(" (%s)", status == Status::kNotConnected ? "unknown: battery not read"
                                                            : status_name(status).data());
       break;
     }
@@ -75,7 +75,7 @@ void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
   print_registers(config, battery, "release", order, Command::kRelease);
 }
 
-/// What it was trained on and is to be expected to do; neither keeps a controller from driving.
+/// Training days and expected full cycles: information only, never a failure.
 void print_training(const EdgeConfig& config) {
   const TrainingPeriod trained = student_training();
   std::printf("trained    %s\n", training_days_text(trained).c_str());
@@ -85,7 +85,8 @@ void print_training(const EdgeConfig& config) {
     report(JournalLevel::kWarning, "note: trained until %s: retrain on newer prices", age.c_str());
   }
   const int cycles_e2 = student_cycles_per_day_e2();
-  if (cycles_e2 < 0) return static_cast<void>(std::printf("cycles     a day: not known\n"));
+  if (cycles_e2 < 0)
+    return static_cast<void>(std::printf("cycles     full cycles a day unknown\n"));
   std::printf(
       "cycles     expect about %.1f full cycles a day; to limit them, set [battery] "
       "wear_eur_per_mwh or cycles_per_day_max of bess-train and retrain\n",
@@ -105,11 +106,11 @@ void print_transport(const EdgeConfig& config) {
   report(JournalLevel::kWarning, "note: %s", note.text.c_str());
 }
 
-/// Without the sign check a controller would refuse to start; one that only reads does not need it.
+/// A missing sign check prevents control, but not read-only operation.
 bool report_sign(const EdgeConfig& config) {
   std::string refusal;
   if (is_commissioned(config, refusal)) {
-    std::printf("sign       checked by bess-edge commission\n");
+    std::printf("sign       tested by bess-edge commission\n");
     std::fflush(stdout);
     for (const std::string& line : commission_file_losses(config)) {
       report(JournalLevel::kWarning, "note: %s", line.c_str());
@@ -118,22 +119,22 @@ bool report_sign(const EdgeConfig& config) {
   }
   const bool is_needed = config.control.control;
   report(is_needed ? JournalLevel::kError : JournalLevel::kWarning, "%s%s",
-         is_needed ? "" : "note, before control = true: ", refusal.c_str());
+         is_needed ? "" : "note: required for control = true: ", refusal.c_str());
   return !is_needed;
 }
 
-/// A clock that nobody sets is a stop reason in every cycle: it should show before the first.
+/// An unsynchronised clock stops control in every cycle.
 bool report_clock(const EdgeConfig& config, const EdgeClock& clock) {
   if (clock.is_synchronised()) {
     std::printf("clock      %s\n", !config.clock.is_real_time() ? "simulated" : "set by NTP");
     return true;
   }
   report(config.control.control ? JournalLevel::kError : JournalLevel::kWarning,
-         "the clock is not set by NTP: no order will be given before it is; see timedatectl");
+         "the clock is not set by NTP, which prevents control: check timedatectl");
   return !config.control.control;
 }
 
-/// As "127.0.0.1:502" or the serial device.
+/// "127.0.0.1:502" or the serial device.
 FixedText<159> place_of(const BatteryLinkSettings& link) {
   char place[160];
   if (link.rtu) {
@@ -160,8 +161,7 @@ bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid
   return status == Status::kOk || complain_of_meter(site, status_text(status).data());
 }
 
-/// One reading of the meter, and the house's load that follows from it; true when there is none, or
-/// it can be read.
+/// Reads the meter once and prints grid and house power. True without a meter, or when it is read.
 bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& meter) {
   const SiteConfig& site = config.site;
   if (site.settings.meter == MeterSource::kNone) return true;
@@ -171,7 +171,8 @@ bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& 
   if (site.settings.meter == MeterSource::kMap) {
     if (!read_own_map(site, meter, grid_power_w)) return false;
   } else if (!m.has_grid_power) {
-    report(JournalLevel::kError, "meter: the battery's grid point cannot be read");
+    report(JournalLevel::kError,
+           "meter: the battery's grid power point cannot be read: check [meter] and the map");
     return false;
   }
   std::printf("meter      grid %d W (import is positive)", grid_power_w);
@@ -181,13 +182,13 @@ bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& 
     return true;
   }
   report(JournalLevel::kError,
-         "meter: house %d W: a load below zero; the sign of meter or battery, the phase or the "
-         "place of the meter is wrong; where panels do that, set [meter] pv_w_max",
+         "meter: house %d W is negative: check the sign of meter and battery, the phase and the "
+         "position of the meter; with solar panels, set [meter] pv_w_max",
          grid_power_w - m.power_w);
   return false;
 }
 
-/// Optional points that this device does not have: no alarm can come from there.
+/// Optional points that this device lacks: they can report no alarm.
 void print_absent(const EdgeConfig& config, const ModbusBattery& battery) {
   std::string names;
   for (const std::int8_t point : config.battery.map.measure) {
@@ -197,7 +198,7 @@ void print_absent(const EdgeConfig& config, const ModbusBattery& battery) {
   if (!names.empty()) std::printf("absent     %s\n", names.c_str());
 }
 
-/// Settings, encoded orders, a battery reading and the newest price; true when all is well.
+/// Prints settings, encoded orders, battery reading and newest price; true without an error.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::string& path,
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
@@ -234,7 +235,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
   const int twin = holder_of(name_lock_path(config).c_str());
   if (twin > 0) {
     report(JournalLevel::kError,
-           "another controller (process %d) has [battery] name %s: change one", twin,
+           "another controller (process %d) uses [battery] name %s: change one of the names", twin,
            config.battery.name.c_str());
   }
   const bool sign_ok = report_sign(config);

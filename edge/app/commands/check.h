@@ -1,5 +1,4 @@
-// `bess-edge --check`: what would be done with these settings, by battery, meter and prices as they
-// answer now. Nothing is written to the battery.
+// Check of settings, battery, meter and prices: `bess-edge --check`. Writes nothing to the battery.
 #pragma once
 
 #include <string>
@@ -8,18 +7,17 @@
 
 namespace bess {
 
-// What bess-prices says of the price server, asked once: for --check and --self-test.
-
+/// Result of `bess-prices --check`, for --check and --self-test.
 struct PriceCheck {
   bool is_well = false;
-  std::string lines;  ///< what it printed, complaints last
+  std::string lines;  ///< its output, then its errors
 };
 
-/// Runs `bess-prices --check`, the one beside this program.
+/// Runs bess-prices from the folder of this program.
 PriceCheck check_prices(const std::string& config_path);
 
-/// `path`: of the settings. One line a finding on stdout, what is to be mended on stderr. Exit code
-/// 0, or 1 where a run would not do.
+/// `path`: settings file. Findings go to stdout, errors to stderr. Exit code 0, or 1 if the
+/// controller would not run.
 int run_check(const EdgeConfig& config, const std::string& path);
 
 }  // namespace bess

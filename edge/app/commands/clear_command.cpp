@@ -1,4 +1,4 @@
-// `bess-edge clear`: a person has looked at why the supervision gave the battery back.
+// Clearing of a trip by a person: `bess-edge clear`.
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
@@ -17,22 +17,22 @@ struct ClearGiven {
 };
 
 constexpr const char* kFooter =
-    R"(After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its
-own mode until this command is given, over restarts too. A running controller goes on at its next
-cycle.
+    R"(A trip (wrong_direction, uncontrolled_power, soc_mismatch, state_lost) leaves the battery in
+its own mode, also over restarts, until this command. A running controller continues at its next
+control cycle.
 Exit codes:
   0 cleared, or nothing to clear
-  1 log or state cannot be accessed
-  2 the command line is wrong, or --yes is missing
+  1 log or state folder not accessible
+  2 command line error, or --yes missing
 Examples:
   bess-edge log --last 10; bess-edge clear --yes)";
 
-/// False with one line where the word cannot be left.
+/// False with one line when the clearance cannot be written.
 bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
   return clear_trip_of(path, trip_utc_s) || fail_with_errno(path, "cannot be written", error);
 }
 
-/// In both places; one is enough for the controller to hear it.
+/// Written to both folders; one is enough for the controller.
 int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
   FileMessage state_error;
   FileMessage run_error;
@@ -42,15 +42,14 @@ int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
   if (!run_error.empty()) report(JournalLevel::kWarning, "%s", run_error.c_str());
   if (!in_state && !in_run) {
     report(JournalLevel::kError,
-           "not cleared: the battery stays released until the disk is mended");
+           "not cleared: the battery stays released; correct the disk error, then repeat");
     return 1;
   }
-  std::printf("cleared    the battery is driven again from the next %s on\n",
-              is_controller_running(config) ? "cycle" : "start");
+  std::printf("cleared    control continues from the next %s\n",
+              is_controller_running(config) ? "control cycle" : "start");
   if (!in_state) {
     std::printf(
-        "           kept in %s alone, which the next boot of this machine forgets: then clear it "
-        "again\n",
+        "           stored only in %s, lost at the next boot: then repeat bess-edge clear --yes\n",
         paths.run.c_str());
   }
   return 0;
@@ -61,22 +60,21 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
   LogReader log;
   FileMessage error;
   if (!log.open(config.log, error)) {
-    report(JournalLevel::kError, "%s: whether the supervision has tripped cannot be known",
-           error.c_str());
+    report(JournalLevel::kError, "%s: trip state unknown", error.c_str());
     return 1;
   }
   if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
   const BothPlaces paths = both_places(config, kClearedFileName);
   const std::optional<Trip> trip = standing_trip(log.ring(), log.run_ring(), paths);
   if (!trip) {
-    std::printf("nothing to clear: the supervision has not tripped\n");
+    std::printf("nothing to clear: no trip\n");
     return 0;
   }
   std::printf("tripped    %s at %s\n", reason_name(trip->reason).data(),
               utc_text(trip->utc_s).c_str());
   if (!given.yes) {
     report(JournalLevel::kError,
-           "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
+           "check the cause (bess-edge log --last 10), then repeat with --yes");
     return 2;
   }
   return clear(config, paths, *trip);
@@ -85,10 +83,9 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_clear(EdgeCommand root) {
-  EdgeCommand command =
-      root.subcommand("clear", "drive again after the supervision tripped and the cause is found");
+  EdgeCommand command = root.subcommand("clear", "clear a trip after its cause is found");
   const auto given = std::make_shared<ClearGiven>();
-  command.flag("--yes", given->yes, "clear the trip; otherwise it is only shown");
+  command.flag("--yes", given->yes, "clear the trip; default: only show it");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_clear(*given, settings); });
 }

@@ -1,5 +1,5 @@
-// A command of bess-edge while it is declared, and the list of all: each NAME_command.cpp declares
-// one, its options into a struct of its own.
+// Declaration of the commands of bess-edge. Each NAME_command.cpp declares one command, with its
+// options in one struct.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ namespace bess {
 
 inline constexpr const char* kDefaultConfigPath = "/etc/bess/edge.toml";
 
-/// The controller's settings, and where they were read.
+/// Settings of the controller and the file they come from.
 struct SettingsFile {
   std::string path;
   EdgeConfig config;
 };
 
-/// What the command line chose: it runs when the command line is gone. The exit code.
+/// Chosen command; it runs after parsing and returns the exit code.
 struct ChosenCommand {
   SettingsFile& settings;
   std::function<int()> run{};
@@ -39,28 +39,28 @@ class EdgeCommand : public ProgramCommand {
   /// 90s, 2h, 1h30m: from `shortest_s` to 7 days.
   ProgramOption duration(const std::string& name, std::int64_t& seconds, std::int64_t shortest_s,
                          const std::string& help);
-  /// A text that parse_moment() takes; what "14:32" means is known when the command runs.
+  /// Text that parse_moment() accepts; "14:32" is resolved when the command runs.
   ProgramOption moment(const std::string& name, std::string& text, const std::string& help);
 
   using Action = std::function<int(SettingsFile&)>;
   using Complaint = std::function<std::string()>;
   /// Takes --config, and loads the settings before `action`. `complaint`: as ProgramCommand::runs.
   void does(Action action, Complaint complaint = nullptr);
-  /// The settings are those by default, or what `action` loads.
+  /// Loads no settings; `action` may load them.
   void does_without_settings(Action action, Complaint complaint = nullptr);
 
  private:
   ChosenCommand* chosen_;
 };
 
-/// Of --config, or the installed ones. 0; otherwise the exit code, and one line said why: 2 where
-/// there are none, 1 where they are bad.
+/// Loads the file of --config, or the installed one. 0, or the exit code after one error line: 2
+/// without a file, 1 with a wrong one.
 int load_settings(SettingsFile& settings);
 
-/// One line on stderr, or in the journal; the exit code.
+/// Reports one line on stderr or in the journal. Returns exit code 1.
 int failed(const std::string& message);
 
-// The commands of bess-edge, in the order of its help. NAME_command.cpp declares each.
+// Commands in the order of the help.
 
 void add_commission(EdgeCommand root);
 void add_release(EdgeCommand root);
@@ -74,7 +74,7 @@ void add_limit(EdgeCommand root);
 void add_record(EdgeCommand root);
 void add_map_check(EdgeCommand root);
 void add_signature(EdgeCommand root);
-/// What bess-edge does without a command. Last: commands declared later would have its footer.
+/// bess-edge without a command. Last, because later commands would inherit its footer.
 void add_run(EdgeCommand root);
 
 }  // namespace bess

@@ -25,7 +25,7 @@ std::string version_text() {
 
 ProgramOption EdgeCommand::config() {
   return option("--config", chosen_->settings.path,
-                std::string("the controller's settings; default ") + kDefaultConfigPath)
+                std::string("settings of the controller; default: ") + kDefaultConfigPath)
       .value_name("FILE");
 }
 
@@ -45,7 +45,7 @@ ProgramOption EdgeCommand::moment(const std::string& name, std::string& text,
   const auto complaint = [](const std::string& given) -> std::string {
     std::int64_t ignored = 0;
     if (parse_moment(given, 0, ignored)) return "";
-    return "must be a moment such as 14:32, yesterday, \"yesterday 14:32\", 2h (ago), "
+    return "must be a time such as 14:32, yesterday, \"yesterday 14:32\", 2h (ago), "
            "\"2026-11-23 14:32\" or 2026-11-23T13:32:00Z, not " +
            given;
   };
@@ -79,7 +79,7 @@ int load_settings(SettingsFile& settings) {
   if (settings.path.empty()) {
     if (access(kDefaultConfigPath, F_OK) != 0) {
       std::fprintf(stderr,
-                   "bess-edge: --config FILE is required, there is no %s (see bess-edge --help)\n",
+                   "bess-edge: %s does not exist: give --config FILE (see bess-edge --help)\n",
                    kDefaultConfigPath);
       return 2;
     }
@@ -90,11 +90,11 @@ int load_settings(SettingsFile& settings) {
 }
 
 int run_command_line(int argc, const char* const* argv) {
-  static SettingsFile settings;  // large, and not on the stack
+  static SettingsFile settings;  // too large for the stack
   settings = {};
   ChosenCommand chosen{.settings = settings};
   {
-    CommandLine line("bess-edge", "drives a battery on the imbalance price, every two minutes",
+    CommandLine line("bess-edge", "Drive a battery by the imbalance price, every two minutes",
                      version_text());
     const EdgeCommand root(line.root(), chosen);
     for (const auto add :

@@ -1,4 +1,4 @@
-// bess-edge commission: runs the sign check on the real battery and stores its result.
+// Sign check on the real battery, with its result stored: `bess-edge commission`.
 #include <algorithm>
 #include <cstdio>
 
@@ -22,24 +22,24 @@ struct CommissionGiven {
 };
 
 constexpr const char* kFooter =
-    R"(The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
-[commissioning] may say otherwise). Its measured power must follow each way, no less and no more
-than [response] of its map allows, and so must the meter of [meter]. Then, where SoC, limits and
-connection leave room, it follows half the largest step that the controller may order, for some
-seconds each way: a lag takes as long for any step, a ramp does not. A battery whose largest step
-surely takes longer than settle_s is refused with the lines to set; what one step alone leaves open
-is a warning with its figures. A direction that its SoC leaves no room for is reported, not tested.
-At the end the battery is released. The result is kept in the [state] folder and holds for this map,
-variant and address; bess-edge refuses to control a battery without it.
+    R"(Orders 0 W for 10 s, then charges and discharges 500 W for 30 s each; [commissioning] of the
+map can set other values. In each direction the measured power must follow the set point within
+[response] of the map, and so must the meter of [meter]. Then, if SoC, limits and connection allow,
+the battery follows half the largest step of the controller for some seconds in each direction: a
+lag is independent of the step, a ramp is not. A battery whose largest step certainly takes longer
+than settle_s is refused, with the lines to set; an uncertain result is a warning with its values. A
+direction without room in the SoC is reported and not tested. At the end the battery is released.
+The result is stored in the [state] folder and is valid for this map, variant and address. bess-edge
+controls no battery without it.
 Exit codes:
   0 passed
-  1 refused: the line says why
-  2 the command line is wrong, or --yes is missing
+  1 refused, with the cause
+  2 command line error, or --yes missing
 Examples:
   bess-edge commission --config /etc/bess/edge.toml --yes
   bess-edge commission --record steps.jsonl --yes)";
 
-/// The meter of [meter], a device of its own or the battery's grid point.
+/// Meter of [meter]: a separate device or the battery's grid power point.
 class SiteMeter {
  public:
   SiteMeter(const SiteSettings& settings, ModbusMeter& meter)
@@ -58,8 +58,8 @@ class SiteMeter {
   ModbusMeter& meter_;
 };
 
-/// With a limit of somebody else's in force, or a connection whose house is not seen, nothing
-/// larger than the sign needs is ordered.
+/// False under an external limit, or if the connection is limited and the house unmetered: then no
+/// more than the power of the sign test is ordered.
 bool may_drive_further(const SiteConfig& site, std::int64_t utc_s) {
   const ConnectionSettings& connection = site.settings.connection;
   const bool is_seen = site.settings.meter != MeterSource::kNone && site.settings.witness.judges;
@@ -107,31 +107,30 @@ std::int32_t further_w(const CommissionSettings& settings) {
 int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
   report(
       JournalLevel::kError,
-      "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
-      "W for %d s each, then, where SoC and limits leave room, up to %d W for some seconds, then "
-      "releases it; add --yes to do that",
+      "commission orders the battery at %s to stay at 0 W for %d s, then to charge and discharge "
+      "%d W for %d s each, then, if SoC and limits allow, up to %d W for some seconds, then "
+      "releases it: repeat with --yes",
       battery_place(config.battery).c_str(), settings.rest_s, settings.power_w, settings.drive_s,
       further_w(settings));
   return 2;
 }
 
 void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
-  char timer[64] = "; it has no timer of its own: set it back by hand";
+  char timer[64] = "; it has no dead-man timer: reset it by hand";
   if (config.control.has_watchdog) {
-    std::snprintf(timer, sizeof timer, "; its own timer ends that after %d s",
+    std::snprintf(timer, sizeof timer, "; its dead-man timer ends it after %d s",
                   config.control.order_duration_s);
   }
   report(JournalLevel::kError,
-         "commission %s: the battery could not be released (%s) and may still follow an order of "
-         "%d W%s",
+         "commission %s: the battery was not released (%s) and may still follow %d W%s",
          battery_place(config.battery).c_str(), status_text(result.release_status).data(),
          result.ordered_power_w, timer);
 }
 
-/// Doubts are told with their figure: no reason to refuse.
+/// Doubts are reported with their values and cause no refusal.
 void print_speed(const DirectionResult& direction, const EdgeConfig& config) {
   const AnswerSpeed& speed = direction.speed;
-  if (speed.largest.most <= 0) return;  // refused before it was asked for
+  if (speed.largest.most <= 0) return;  // refused before this test
   const std::int32_t step_w = settings_of(config).step_w_max;
   const char* const indent = "           ";
   std::printf("%sfits a lag of %.1f s, a time constant of %.1f s and ", indent,
@@ -141,28 +140,28 @@ void print_speed(const DirectionResult& direction, const EdgeConfig& config) {
   std::printf(": a step of %d W takes %.1f s (%.1f to %.1f s)\n", step_w, speed.largest.best,
               speed.largest.least, speed.largest.most);
   if (direction.is_held_back) {
-    std::printf("%swarning: of %d W only %d W came: the battery's own limits?\n", indent,
-                direction.further_w, direction.further_measured_w);
+    std::printf("%swarning: %d W ordered, only %d W measured: check the battery's own limits\n",
+                indent, direction.further_w, direction.further_measured_w);
   }
   if (!speed.is_doubtful) return;
-  std::printf("%swarning: settle_s = %d may be too short for it%s\n", indent,
+  std::printf("%swarning: settle_s = %d may be too short%s\n", indent,
               config.battery.map.response.settle_s,
-              speed.has_two ? "" : "; a larger step, at a middle SoC, would tell: repeat it then");
+              speed.has_two ? "" : ": repeat at a medium SoC, which allows a larger step");
 }
 
 void print_direction(const char* name, const DirectionResult& direction, std::int32_t soc_e4,
                      const EdgeConfig& config) {
   if (!direction.is_tested) {
     std::printf(
-        "%-10s not tested: SoC %.1f %% or the battery's own limits leave no room; the other "
-        "direction is what is known\n",
+        "%-10s not tested: SoC %.1f %% or the battery's own limits leave no room; only the other "
+        "direction is known\n",
         name, soc_e4 / 100.0);
     return;
   }
   std::printf("%-10s ordered %d W, measured %d W", name, direction.ordered_power_w,
               direction.measured_power_w);
   if (direction.came_ms >= 0)
-    std::printf(", there within %.1f s", static_cast<double>(direction.came_ms) / 1e3);
+    std::printf(", reached within %.1f s", static_cast<double>(direction.came_ms) / 1e3);
   std::printf("\n");
   print_speed(direction, config);
 }
@@ -173,17 +172,17 @@ void print_measured(const EdgeConfig& config, const CommissionResult& result) {
     print_direction("discharge", result.discharge, result.soc_e4, config);
   }
   if (result.meter == MeterVerdict::kNotAsked) return;
-  std::printf("meter      shows %d %% of the battery's steps; house %d W at rest%s\n",
+  std::printf("meter      %d %% of the battery's steps; house %d W with the battery at 0 W%s\n",
               result.meter_percent, result.rest_house_w,
               is_plausible_house(result.rest_house_w, 0, config.site.settings.pv_w_max)
                   ? ""
-                  : ", which is below zero: is its sign right? Panels: [meter] pv_w_max");
+                  : ", which is negative: check its sign; with solar panels, set [meter] pv_w_max");
 }
 
-/// With which it would pass.
+/// Settings with which the check would pass.
 void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
   if (result.wanted_duration_s > 0) {
-    std::printf("[watchdog]   # of the map, %s\nduration_s = %d   # it says %d\nrefresh_s = %d\n",
+    std::printf("[watchdog]   # of the map, %s\nduration_s = %d   # now %d\nrefresh_s = %d\n",
                 config.battery.map_path.c_str(), result.wanted_duration_s,
                 config.battery.map.watchdog.duration_s, result.wanted_duration_s / 2);
   }
@@ -191,16 +190,16 @@ void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
     std::printf("[response]   # of the map, %s\n", config.battery.map_path.c_str());
   }
   if (result.wanted_settle_s > 0) {
-    std::printf("settle_s = %d   # it says %d\n", result.wanted_settle_s,
+    std::printf("settle_s = %d   # now %d\n", result.wanted_settle_s,
                 config.battery.map.response.settle_s);
   }
   if (result.wanted_tolerance_w > 0) {
-    std::printf("tolerance_w = %d   # it says %d\n", result.wanted_tolerance_w,
+    std::printf("tolerance_w = %d   # now %d\n", result.wanted_tolerance_w,
                 config.battery.map.response.tolerance_w);
   }
   if (result.wanted_ramp_w_max > 0) {
     std::printf(
-        "[guard]      # of the configuration: a larger step takes longer than that\n"
+        "[guard]      # of the configuration: a larger step exceeds settle_s\n"
         "ramp_w_max = %d\n",
         result.wanted_ramp_w_max);
   }
@@ -232,7 +231,7 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   if (!given.yes) return ask_for_yes(config, test);
   static ModbusBattery battery(config.battery.link, config.battery.map,
                                config.clock);  // outlives a failed check
-  static ExchangeRecorder recorder;            // as long as its listener may be told
+  static ExchangeRecorder recorder;            // outlives its listener
   FileMessage message;
   if (!given.record_path.empty()) {
     if (!recorder.start(given.record_path.c_str(),
@@ -247,7 +246,8 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   release_if_a_check_fails(battery);
   if (!reach_battery(config, battery, clock)) return 1;
   std::printf(
-      "commission %s: resting %d s, then %d W for %d s each way, then up to %d W for seconds ...\n",
+      "commission %s: 0 W for %d s, then %d W for %d s in each direction, then up to %d W for some "
+      "seconds ...\n",
       battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s,
       further_w(test));
   std::fflush(stdout);
@@ -278,13 +278,13 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
 
 void add_commission(EdgeCommand root) {
   EdgeCommand command =
-      root.subcommand("commission", "check once that a battery follows the sign of its orders");
+      root.subcommand("commission", "test once that the battery follows the sign of set points");
   const auto given = std::make_shared<CommissionGiven>();
   command
       .option("--record", given->record_path,
-              "Modbus exchanges to a file: map check --steps reads delay, ramp and lag from it")
+              "record Modbus exchanges to FILE, for map check --steps")
       .value_name("FILE");
-  command.flag("--yes", given->yes, "give the orders; otherwise they are only listed");
+  command.flag("--yes", given->yes, "send the orders; default: only list them");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_commission(*given, settings); });
 }

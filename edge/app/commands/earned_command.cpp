@@ -1,4 +1,4 @@
-// `bess-edge earned`: what the battery earned in some local days, from the decision log.
+// Earnings by local day, from the decision log: `bess-edge earned`.
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
@@ -17,16 +17,16 @@ struct EarnedGiven {
 };
 
 constexpr const char* kFooter =
-    R"(Earned is what flowed, by quarter-hours: at the settled price where bess-prices has fetched
-it ([settled]), else at the last of the minutes, an estimate. Fees, taxes and wear are not
-subtracted. Then what is stored more or less at the end than at the beginning, and where the student
-did not decide, by reasons. Read from the log in [state] folder: days that it no longer holds are
-missing. bess-train log makes a statement to compare with the bill from bess-edge log --csv, and
-what other policies would have earned.
+    R"(Earnings are the energy of each quarter-hour at its settled price, if bess-prices has fetched
+it ([settled]), else at its last indicative price, an estimate. Fees, taxes and wear are not
+subtracted. Also printed: the change in stored energy, and the control cycles that the student did
+not decide, by reason. Source: the log in [state] folder; days that it no longer has are missing.
+bess-train log makes a statement from bess-edge log --csv, to compare with the bill and with other
+policies.
 Exit codes:
   0 done
-  1 the log cannot be read, or has nothing of these days
-  2 the command line is wrong
+  1 log unreadable, or without these days
+  2 command line error
 Examples:
   bess-edge earned
   bess-edge earned week
@@ -44,11 +44,11 @@ std::string span_text(std::int32_t first_day, std::int32_t last_day) {
   return DayAccount(first_day).date() + " to " + DayAccount(last_day).date();
 }
 
-/// The days that one can ask for.
+/// First and last day of the log.
 std::string held_text(const LogReader& log) {
   CycleRecord oldest, newest;
   if (!log.read(log.oldest_number(), oldest) || !log.newest(newest)) return "";
-  return "; it has " + span_text(local_day_at(oldest.utc_s), local_day_at(newest.utc_s));
+  return "; it covers " + span_text(local_day_at(oldest.utc_s), local_day_at(newest.utc_s));
 }
 
 int run_earned(const EarnedGiven& given, SettingsFile& settings) {
@@ -68,8 +68,8 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
   const Earnings earnings(accounts_of_days(log, period.first_day, period.last_day, terms));
   if (earnings.days().empty()) {
-    return failed("the log holds no cycle of " + span_text(period.first_day, period.last_day) +
-                  held_text(log));
+    return failed("the log has no control cycle of " +
+                  span_text(period.first_day, period.last_day) + held_text(log));
   }
   const std::string text = given.csv    ? earnings.csv()
                            : given.json ? earnings.json().text()
@@ -82,16 +82,16 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_earned(EdgeCommand root) {
-  EdgeCommand command = root.subcommand("earned", "what the battery earned, by days");
+  EdgeCommand command = root.subcommand("earned", "earnings and energy by local day");
   const auto given = std::make_shared<EarnedGiven>();
   command
       .option("period", given->period,
-              "today (default), yesterday, week, month, last-month, 2026-10, 2026-11-23 or "
-              "2026-11-01..2026-11-23; local days")
+              "local days: today, yesterday, week, month, last-month, 2026-10, 2026-11-23 or "
+              "2026-11-01..2026-11-23; default: today")
       .value_name("PERIOD")
       .check(complaint);
-  command.flag("--csv", given->csv, "one line a day, with a header");
-  command.flag("--json", given->json, "one JSON object: each day, and their sum").excludes("--csv");
+  command.flag("--csv", given->csv, "CSV with a header, one line per day");
+  command.flag("--json", given->json, "one JSON object: days and their sum").excludes("--csv");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_earned(*given, settings); });
 }

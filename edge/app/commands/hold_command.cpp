@@ -1,4 +1,4 @@
-// bess-edge hold: an operator's order with an end, left for the running controller to find.
+// Operator's order with an end time, written to a file for the controller: `bess-edge hold`.
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,22 +29,22 @@ struct HoldGiven {
 };
 
 constexpr const char* kFooter =
-    R"(The running controller follows from its next cycle on, restarts included, and trades again
-when the end has passed. A hold stands for the student and the price thresholds, and needs no price.
-Everything else of the guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals,
-power and connection limits, ramp. A hold is not followed while the supervision has tripped: that is
-said, see bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it
-as the controller's user, or as root.
+    R"(The controller follows the hold from its next control cycle until the end time, also over
+restarts, and then trades again. A hold replaces student and price thresholds and needs no price.
+All other rules override it: stop reasons, SoC bounds, reserve, full cycles, reversals, power and
+connection limits, ramp. During a trip no hold is followed: see bess-edge clear. A new hold replaces
+the previous one. The hold is a file in the [state] folder: run this command as the controller's
+user or as root.
 Exit codes:
   0 done
-  1 refused: the line says why
-  2 the command line is wrong
+  1 refused, with the cause
+  2 command line error
 Examples:
   bess-edge hold 0 --for 30m
   bess-edge hold -2kW --for 2h
   bess-edge hold --release)";
 
-/// Whole watts, as 2000, 2000W or 2kW. What is wrong with them, or nothing.
+/// Parses whole watts: 2000, 2000W or 2kW. Returns the error, or an empty text.
 std::string take_power(std::string_view text, std::optional<std::int64_t>& power_w) {
   constexpr double kLargest = 1e9;
   std::string_view digits = text;
@@ -64,7 +64,7 @@ std::string take_power(std::string_view text, std::optional<std::int64_t>& power
   return "";
 }
 
-/// Nothing is ordered while the supervision has tripped, whoever wants it.
+/// No set point while tripped, regardless of the source.
 void print_trip(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
@@ -73,19 +73,17 @@ void print_trip(const EdgeConfig& config) {
       standing_trip(log.ring(), log.run_ring(), both_places(config, kClearedFileName));
   if (!trip) return;
   std::printf(
-      "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
-      "clear "
-      "--yes (first: bess-edge log --last 10)\n",
+      "           NOT FOLLOWED: tripped, %s at %s, until cleared with bess-edge clear --yes (check "
+      "the cause: bess-edge log --last 10)\n",
       reason_name(trip->reason).data(), utc_text(trip->utc_s).c_str());
 }
 
 void print_controller(const EdgeConfig& config) {
   if (!is_controller_running(config)) {
     std::printf(
-        "           no bess-edge runs with this configuration: one that starts before then "
-        "follows it\n");
+        "           no controller runs with this configuration: systemctl start bess-edge\n");
   } else if (!config.control.control) {
-    std::printf("           control = false: the controller logs what it would order\n");
+    std::printf("           control = false: the controller only logs this order\n");
   }
 }
 
@@ -93,13 +91,13 @@ void print_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc
   const LocalMinute local = local_minute_of(hold.until_utc_s);
   const char* const direction = hold.power_w > 0   ? " (charging)"
                                 : hold.power_w < 0 ? " (discharging)"
-                                                   : " (at rest)";
+                                                   : " (idle)";
   std::printf("hold       %d W%s until %s, %04d-%02d-%02d %02d:%02d local time\n", hold.power_w,
               direction, utc_text(hold.until_utc_s).c_str(), local.year, local.month, local.day,
               local.minute_of_day / 60, local.minute_of_day % 60);
   std::printf(
-      "           from the cycle of %s on, whatever the price; stop reasons, SoC bounds, "
-      "reserve, limits and ramp stay stronger\n",
+      "           from the control cycle at %s, at any price; stop reasons, SoC bounds, reserve, "
+      "limits and ramp override it\n",
       utc_text(next_tick_utc_s(now_utc_s)).c_str());
   print_controller(config);
   print_trip(config);
@@ -117,11 +115,11 @@ bool is_gone(const char* path) {
 
 void warn_of_next_boot(const BothPlaces& paths, const FileMessage& error) {
   report(JournalLevel::kWarning,
-         "%s; kept in %s alone, which the next boot of this machine forgets: repeat it then",
-         error.c_str(), paths.run.c_str());
+         "%s; stored only in %s, lost at the next boot: then repeat bess-edge hold", error.c_str(),
+         paths.run.c_str());
 }
 
-/// One place is enough for the controller: its word is the newer one.
+/// One copy is enough: the controller follows the newest.
 int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
   const BothPlaces paths = both_places(config, kHoldFileName);
   FileMessage error;
@@ -132,7 +130,7 @@ int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s
                       (is_kept(paths.run.c_str(), hold) ||
                        fail_with_errno(paths.run.c_str(), "cannot write the hold", run_error));
   if (!in_state && !in_run) {
-    report(JournalLevel::kError, "%s; nothing has changed", error.c_str());
+    report(JournalLevel::kError, "%s; the hold is unchanged", error.c_str());
     return 1;
   }
   if (!in_state) warn_of_next_boot(paths, error);
@@ -141,24 +139,24 @@ int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s
   return 0;
 }
 
-/// What cannot be taken away is outdone by a newer word in the other place: a hold that is over.
+/// If one copy cannot be deleted, an expired hold in the other folder overrides it.
 int release_hold(const EdgeConfig& config) {
   constexpr Hold kOver{.power_w = 0, .until_utc_s = 1};
   const BothPlaces paths = both_places(config, kHoldFileName);
   const bool has_run = !paths.run.empty();
   FileMessage error;
   const bool of_state = is_gone(paths.state.c_str()) ||
-                        fail_with_errno(paths.state.c_str(), "cannot take the hold away", error);
+                        fail_with_errno(paths.state.c_str(), "cannot delete the hold file", error);
   const bool of_run = !has_run || is_gone(paths.run.c_str()) ||
-                      fail_with_errno(paths.run.c_str(), "cannot take the hold away", error);
+                      fail_with_errno(paths.run.c_str(), "cannot delete the hold file", error);
   const bool is_outdone = (of_state || (has_run && is_kept(paths.run.c_str(), kOver))) &&
                           (of_run || is_kept(paths.state.c_str(), kOver));
   if (!is_outdone) {
-    report(JournalLevel::kError, "%s; it is still in force", error.c_str());
+    report(JournalLevel::kError, "%s; the hold is still in force", error.c_str());
     return 1;
   }
   if (!of_state) warn_of_next_boot(paths, error);
-  std::printf("hold       none: from the next cycle on the prices decide\n");
+  std::printf("hold       none: prices decide from the next control cycle\n");
   return 0;
 }
 
@@ -169,7 +167,7 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
   const std::int64_t power_w = *given.power_w;
   if (power_w > power_w_max || power_w < -power_w_max) {
     report(JournalLevel::kError,
-           "hold %lld W is beyond [battery] power_w of %s: choose between -%lld and %lld",
+           "hold %lld W exceeds [battery] power_w of %s: choose -%lld to %lld",
            static_cast<long long>(power_w), settings.path.c_str(),
            static_cast<long long>(power_w_max), static_cast<long long>(power_w_max));
     return 1;
@@ -179,7 +177,7 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
                   .until_utc_s = static_cast<std::uint32_t>(now_utc_s + given.for_s)};
   for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {
-    if (!folder->empty()) make_folder(folder->c_str());  // when it fails, the writing says why
+    if (!folder->empty()) make_folder(folder->c_str());  // a failure is reported when writing
   }
   return keep_hold(config, hold, now_utc_s);
 }
@@ -187,27 +185,25 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_hold(EdgeCommand root) {
-  EdgeCommand command = root.subcommand("hold", "hold a power until an end, whatever the price");
+  EdgeCommand command =
+      root.subcommand("hold", "order a constant power until an end time, at any price");
   const auto given = std::make_shared<HoldGiven>();
   command
       .parsed(
           "watts", [given](const std::string& text) { return take_power(text, given->power_w); },
-          "power to hold, as 2000, 2000W or 2kW: positive charges, negative discharges, 0 "
-          "rests; up to [battery] power_w")
+          "power, W or kW (2000, 2000W, 2kW): positive charges, negative discharges, 0 is idle; "
+          "at most [battery] power_w")
       .value_name("WATTS");
-  command.duration("--for", given->for_s, 120, "how long, 2m to 7d: 90m, 2h, 1d12h");
-  command.flag("--release", given->release, "end the hold before its time")
-      .excludes("--for")
-      .excludes("watts");
+  command.duration("--for", given->for_s, 120, "duration, 2m to 7d, such as 90m or 1d12h");
+  command.flag("--release", given->release, "end the hold now").excludes("--for").excludes("watts");
   command.footer(kFooter);
-  command.does(
-      [given](SettingsFile& settings) { return run_hold(*given, settings); },
-      [given] {
-        const bool is_order = given->power_w.has_value() && given->for_s > 0;
-        return std::string(given->release || is_order
-                               ? ""
-                               : "a power in W and --for DURATION, or --release, is missing");
-      });
+  command.does([given](SettingsFile& settings) { return run_hold(*given, settings); },
+               [given] {
+                 const bool is_order = given->power_w.has_value() && given->for_s > 0;
+                 return std::string(given->release || is_order
+                                        ? ""
+                                        : "WATTS and --for DURATION, or --release, is missing");
+               });
 }
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// `bess-edge limit`: caps the battery's power for a while, by the file that [limits] names. What a
-// site controller that speaks no such file calls, and a person.
+// Temporary limit of the battery's power, through the file of [limits]: `bess-edge limit`. For
+// people and for site controllers that cannot write that file.
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,14 +21,14 @@ struct LimitGiven {
 };
 
 constexpr const char* kFooter =
-    R"(Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the
-one before; any program may write it itself, beside and renamed. A running controller looks every
-few seconds and cuts an order that is too large at once. After its time the limit is gone, or with
-on_timeout = "idle" the battery is left at 0 W until a new one comes: then --clear does that too.
+    R"(Replaces the file of [limits] by one line, "charge_w discharge_w utc_until". Other programs
+can write it too: write a new file, then rename it. The controller reads it every few seconds and
+reduces a larger order immediately. After its end time, or --clear, the limit no longer applies;
+with on_timeout = "idle" the battery then stays at 0 W until a new limit.
 Exit codes:
   0 done
-  1 no [limits], or the file cannot be written
-  2 the command line is wrong
+  1 no [limits], or file not writable
+  2 command line error
 Examples:
   bess-edge limit --charge 0 --for 15m
   bess-edge limit --charge 2000 --discharge 1000 --for 2h
@@ -41,14 +41,14 @@ int refuse(const std::string& message) {
 
 int clear(const char* path) {
   if (unlink(path) != 0 && errno != ENOENT) {
-    return refuse(std::string(path) + ": cannot be taken away: " + std::strerror(errno) +
-                  "; it stays in force until its end");
+    return refuse(std::string(path) + ": cannot be deleted: " + std::strerror(errno) +
+                  "; the limit stays in force until its end time");
   }
   std::printf("limit      none\n");
   return 0;
 }
 
-/// "any" where the command line says nothing of this direction.
+/// "any" without a limit for this direction.
 std::string power_text(const std::string& power) {
   return power.empty() ? std::string(kAnyPowerText) : power;
 }
@@ -57,7 +57,7 @@ int run_limit(const LimitGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   const char* const path = config.site.limit_file.c_str();
   if (!config.site.settings.has_outside_limits) {
-    return refuse(settings.path + ": [limits] file is missing: add it, and restart bess-edge");
+    return refuse(settings.path + ": [limits] file is missing: add it, then restart bess-edge");
   }
   if (given.clear) return clear(path);
   const std::string charge = power_text(given.charge_w);
@@ -65,14 +65,14 @@ int run_limit(const LimitGiven& given, SettingsFile& settings) {
   std::int32_t power_w = 0;
   for (const std::string* const text : {&charge, &discharge}) {
     if (parse_limit_power(*text, power_w)) continue;
-    refuse("\"" + *text + "\" is no power: whole watts, 0 or more");
+    refuse("\"" + *text + "\" is not a power: use whole watts, 0 or more");
     return 2;
   }
   const std::int64_t until_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond + given.for_s;
   const std::string until = utc_text(until_utc_s).c_str();
   if (!replace_file(path, charge + " " + discharge + " " + until + "\n")) {
     return refuse(std::string(path) + ": cannot be written: " + std::strerror(errno) +
-                  "; nothing has changed. It is best in memory, below /run");
+                  "; the limit is unchanged; use a path below /run, in memory");
   }
   std::printf("limit      charge %s W, discharge %s W, until %s\n", charge.c_str(),
               discharge.c_str(), until.c_str());
@@ -82,15 +82,16 @@ int run_limit(const LimitGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_limit(EdgeCommand root) {
-  EdgeCommand command = root.subcommand("limit", "limit charging or discharging power for a while");
+  EdgeCommand command =
+      root.subcommand("limit", "limit charging or discharging power until an end time");
   const auto given = std::make_shared<LimitGiven>();
-  command.option("--charge", given->charge_w, "charging power, 0 or more; default: no limit")
+  command.option("--charge", given->charge_w, "charging power, W, 0 or more; default: no limit")
       .value_name("W");
   command
-      .option("--discharge", given->discharge_w, "discharging power, 0 or more; default: no limit")
+      .option("--discharge", given->discharge_w,
+              "discharging power, W, 0 or more; default: no limit")
       .value_name("W");
-  command.duration("--for", given->for_s, 1,
-                   "then the limit has lapsed: 90s, 15m, 1h30m, up to 7d");
+  command.duration("--for", given->for_s, 1, "duration, up to 7d, such as 90s or 1h30m");
   command.flag("--clear", given->clear, "remove the limit").excludes("--for");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_limit(*given, settings); },

@@ -1,4 +1,4 @@
-// `bess-edge log`: prints the decision log from the ring in the state folder, as text or CSV.
+// Decision log from the ring in the state folder, as text or CSV: `bess-edge log`.
 #include <algorithm>
 #include <cstdio>
 
@@ -24,21 +24,21 @@ struct LogGiven {
 };
 
 constexpr const char* kFooter =
-    R"(A moment is local time, 14:32 (the latest), yesterday, "yesterday 14:32" or "2026-11-23
-14:32"; an age, 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are estimates, as those of
-bess-edge earned: the power measured at the tick, for two minutes, at the price decided on. Read
-from the ring in [state] folder, oldest first, whether the controller runs or not.
+    R"(MOMENT is local time: 14:32 (the latest), yesterday, "yesterday 14:32" or "2026-11-23 14:32";
+an age: 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are estimates: the power measured at the
+start of the control cycle, for two minutes, at the price of the decision; bess-edge earned uses
+settled prices. Read from the ring in [state] folder, oldest first; the controller need not run.
 Exit codes:
   0 done
-  1 the log cannot be read
-  2 the command line is wrong
+  1 log unreadable
+  2 command line error
 Examples:
   bess-edge log --last 10
   bess-edge log --local --since 14:00 --until 15:00
   bess-edge log --explain --last 30
   bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv)";
 
-/// Which records, by number and by time.
+/// Records to print, by number and time.
 struct LogSpan {
   std::uint64_t first = 1;
   std::uint64_t last = 0;
@@ -46,7 +46,7 @@ struct LogSpan {
   std::int64_t until_utc_s = INT64_MAX;
 };
 
-/// Torn records count, and time may have been stepped: by number first.
+/// By number first, because torn records count and the clock may have been stepped.
 LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_utc_s) {
   LogSpan span{.first = log.oldest_number(), .last = log.newest_number()};
   std::int64_t at_utc_s = 0;
@@ -75,7 +75,7 @@ void print_csv(const CycleRecord& record, const LogGiven& given,
   if (given.explain && margins_of(record, thresholds, at)) {
     std::printf(",%.2f,%.2f", eur_of(at.charge_up_to_centi), eur_of(at.discharge_from_centi));
   } else if (given.explain) {
-    std::fputs(",,", stdout);  // nobody was asked
+    std::fputs(",,", stdout);  // no student decision
   }
   std::putchar('\n');
 }
@@ -128,19 +128,20 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_log(EdgeCommand root) {
-  EdgeCommand command = root.subcommand("log", "what was decided in each cycle, and why");
+  EdgeCommand command = root.subcommand("log", "decision log: one line per control cycle");
   const auto given = std::make_shared<LogGiven>();
   command.flag("--csv", given->csv,
-               "comma-separated with a header; otherwise one key=value line a cycle");
+               "CSV with a header; default: one key=value line per control cycle");
   command.flag("--local", given->local,
-               "also local time, energy in Wh (charging is positive) and money in EUR");
+               "also local time, energy (Wh, positive charges) and money (EUR)");
   command.flag("--explain", given->explain,
-               "also the price up to which the student would have charged, and that from which it "
-               "would have discharged (bess-edge why tells more of one cycle)");
-  command.option("--last", given->last, "only the newest N cycles").value_name("N").positive();
-  command.moment("--since", given->since, "only from then on");
-  command.moment("--until", given->until, "only up to then");
-  command.moment("--at", given->at, "only the cycle whose order was in force then")
+               "also the decision margins (EUR/MWh): highest price to charge, lowest to discharge");
+  command.option("--last", given->last, "only the newest N control cycles")
+      .value_name("N")
+      .positive();
+  command.moment("--since", given->since, "only from MOMENT");
+  command.moment("--until", given->until, "only up to MOMENT");
+  command.moment("--at", given->at, "only the control cycle in force at MOMENT")
       .excludes("--last")
       .excludes("--since")
       .excludes("--until");

@@ -1,4 +1,4 @@
-// bess-edge map check: a register map held against a recording of a device, without the device.
+// Comparison of a register map with a recording of a device: `bess-edge map check`.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -25,19 +25,18 @@ struct MapCheckGiven {
 };
 
 constexpr const char* kFooter =
-    R"(Names every point whose values cannot be true, with what would fit: never answered, outside
-its range, another scale, word order or type; a state of charge that stands still or does not follow
-the measured power; power that flows against the order. For the last three the battery must have
-moved energy while it was recorded.
+    R"(Lists each point with implausible values and a proposed correction: no answer, out of range,
+wrong scale, word order or type; a state of charge that does not change or does not follow the
+measured power; power against the order. The last three need a recording in which energy flowed.
 Exit codes:
-  0 all points are plausible
-  1 not all, or a file cannot be read
-  2 the command line is wrong
+  0 all points plausible
+  1 implausible points, or a file unreadable
+  2 command line error
 Examples:
   bess-edge map check --against inverter.jsonl --map edge/device/maps/sma.toml --variant setpoint
   bess-edge map check --against steps.jsonl --steps > steps.toml)";
 
-/// Unit ids are the recorded device's, not the map's: they are settings of an installation.
+/// Unit ids belong to an installation: those of the recording replace those of the map.
 void take_units(const RecordingHead& head, RegisterMap& map) {
   for (UnitGroup& group : map.unit_groups) {
     for (const auto& [name, unit] : head.units) {
@@ -95,7 +94,7 @@ void print_text(const RegisterMap& map, const Result& result) {
               result.points.size(), result.exchanges);
 }
 
-/// A map that is named needs no configuration. The exit code.
+/// A named map needs no configuration. Returns the exit code.
 int find_map(const MapCheckGiven& given, SettingsFile& settings) {
   if (given.map_path.empty()) return load_settings(settings);
   std::string error;
@@ -103,19 +102,19 @@ int find_map(const MapCheckGiven& given, SettingsFile& settings) {
   return load_register_map(given.map_path, given.variant, map, error) ? 0 : failed(error);
 }
 
-/// Readings are a second apart: what is shorter has no shape and delays, a lag by all of itself,
-/// the ramp of the largest step by half.
+/// Readings are 1 s apart. A shorter time is not resolved and counts as delay: a lag in full, the
+/// ramp of the largest step by half.
 constexpr double kRampS = 1;
 constexpr double kLagS = 0.5;
 constexpr double kSpare = 1.2;  ///< as commission proposes a settle_s
 
-/// As keys of [battery], and what the map's [response] may have to say.
+/// Prints keys of [battery], and a proposal for [response] of the map.
 int print_steps(const MapCheckGiven& given, const RegisterMap& map, const RecordedSteps& steps) {
   const std::vector<const AnswerCurve*> whole = steps.whole();
   if (whole.empty()) {
     return failed(given.against_path + ": of " + std::to_string(steps.orders()) +
-                  " changes of the order none was read until its power had come: record steps with "
-                  "bess-edge commission --record FILE --yes");
+                  " set point steps none was recorded until its power was reached: record steps "
+                  "with bess-edge commission --record FILE --yes");
   }
   const StepFit fit(whole);
   const auto [least, most] = std::ranges::minmax(whole, {}, &AnswerCurve::step_w);
@@ -128,10 +127,10 @@ int print_steps(const MapCheckGiven& given, const RegisterMap& map, const Record
   std::printf("delay_s = %.2f\n",
               fit.best().dead_time_s + (has_ramp ? 0 : ramp_s / 2) + (has_lag ? 0 : lag_s));
   std::printf("ramp_w_per_s = %.0f%s\n", has_ramp ? 1 / fit.best().ramp_s_per_w : 0,
-              has_ramp ? "" : "   # none is seen for certain");
+              has_ramp ? "" : "   # no certain ramp");
   std::printf("time_constant_s = %.2f\n", has_lag ? lag_s : 0);
   const double come_s = fit.seconds_until(most->step_w(), most->band_w()).most;
-  std::printf("# %s, [response]: settle_s = %d, for %d W; it says %d\n", map.name.c_str(),
+  std::printf("# %s, [response]: settle_s = %d, for %d W; now %d\n", map.name.c_str(),
               static_cast<int>(kSpare * come_s) + 1, most->step_w(), map.response.settle_s);
   return 0;
 }
@@ -179,9 +178,9 @@ void add_map_check(EdgeCommand root) {
   command.option("--against", given->against_path, "recording of bess-edge record or --record")
       .value_name("FILE")
       .required();
-  command.option("--map", given->map_path, "register map; default: that of the configuration")
+  command.option("--map", given->map_path, "register map; default: the map of the configuration")
       .value_name("FILE");
-  command.option("--variant", given->variant, "variant of the map; default: its first")
+  command.option("--variant", given->variant, "variant of the map; default: the first")
       .value_name("NAME")
       .needs("--map");
   command.config().excludes("--map");
@@ -190,8 +189,7 @@ void add_map_check(EdgeCommand root) {
   command.flag("--json", given->json, "one JSON object");
   command
       .flag("--steps", given->steps,
-            "delay, ramp and lag of the recorded orders instead, as [battery] in TOML for "
-            "bess-train and bess-sim")
+            "print the fitted step response as [battery] in TOML for bess-train and bess-sim")
       .excludes("--json");
   command.footer(kFooter);
   command.does_without_settings(

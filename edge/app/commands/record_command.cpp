@@ -1,6 +1,5 @@
-// bess-edge record: reads what the register map names, again and again, and writes every request
-// and reply to a file that can be given away. Writes nothing to the device. `bess-edge
-// --record` records a controller at work.
+// Recording of a battery's Modbus answers, without writing to it: `bess-edge record`. The file has
+// no private data. `bess-edge --record` records a running controller.
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,32 +18,32 @@ namespace bess {
 namespace {
 
 struct RecordGiven {
-  std::string out_path;      ///< empty = a name made of the time
+  std::string out_path;      ///< empty = name from the time
   std::int64_t for_s = 0;    ///< 0 = not given
   std::int64_t every_s = 0;  ///< 0 = not given
 };
 
 constexpr const char* kFooter =
-    R"(One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what
-the map marks as private, texts beyond what the map's identity check asks for, and every register
-that the map does not name: the file can be given away. It holds neither network addresses nor
-prices. Refused while another bess-edge has the battery: record that one with bess-edge --record
-FILE, which has the orders too. bess-sim battery --replay FILE and bess-edge map check read it.
+    R"(One JSON object per line: request, values or error, latency. The file can be shared:
+registers that the map does not name or marks as private are 0, texts that the identity check does
+not need are X; it has no network addresses and no prices. Refused while another bess-edge uses the
+battery: record that controller with bess-edge --record FILE, which includes the orders. Use the
+file with bess-sim battery --replay FILE or bess-edge map check.
 Exit codes:
   0 recorded
-  1 the file cannot be written, the battery did not answer, or it is in use
-  2 the command line is wrong
+  1 file not writable, no answer from the battery, or battery in use
+  2 command line error
 Examples:
   bess-edge record --for 1h
   bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml)";
 
 constexpr std::int64_t kEveryDefaultS = 10;
 constexpr std::int64_t kAllEveryS =
-    600;  ///< also what does not change: identity, scales, written registers
+    600;  ///< for all points, also constant ones: identity, scales, written registers
 
 using Bus = BatteryBus<ModbusLink, DeviceTime>;
 
-/// "bess-20261122T060000Z.jsonl" in the current folder, unless the command line names a file.
+/// Default: "bess-20261122T060000Z.jsonl" in the current folder.
 std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
   if (!given.out_path.empty()) return given.out_path;
   std::string name(utc_text(utc_s).view());
@@ -52,8 +51,8 @@ std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
   return "bess-" + name + ".jsonl";
 }
 
-/// Where the SunSpec models lie, and every point by itself, so that one that is refused takes no
-/// other with it. What a command would write is asked for as the holding register that it is.
+/// Locates the SunSpec models and reads each point separately, so that a refused point affects no
+/// other. Points that commands write are read as holding registers.
 void read_everything(const RegisterMap& map, const PointPlaces& places, Bus& bus,
                      EdgeClock& clock) {
   std::uint16_t missing_model = 0;
@@ -67,7 +66,7 @@ void read_everything(const RegisterMap& map, const PointPlaces& places, Bus& bus
   }
 }
 
-/// On a terminal: how far it is, how fast, and how long it still takes.
+/// Progress line on a terminal.
 class Progress {
  public:
   explicit Progress(std::int64_t for_s) : for_s_(for_s), is_shown_(isatty(STDERR_FILENO) == 1) {}
@@ -90,7 +89,7 @@ class Progress {
   bool is_shown_;
 };
 
-/// Until the time is over, or somebody stops it.
+/// Until the end time or a stop request.
 void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, EdgeClock& clock) {
   const std::int64_t every_s = given.every_s > 0 ? given.every_s : kEveryDefaultS;
   const std::int64_t begin_ns = clock.now_utc_ns();
@@ -107,7 +106,7 @@ void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, E
     static_cast<void>(bus.read_due());
     const std::int64_t now_ns = clock.now_utc_ns();
     progress.show((now_ns - begin_ns) / kNanosecondsPerSecond, bus.link().counters());
-    // A device that is slower than `every` is asked as often as it answers.
+    // A device slower than `every` is read as often as it answers.
     next_ns = std::max(next_ns + every_s * kNanosecondsPerSecond, now_ns);
     if (next_ns >= end_ns || !clock.sleep_until_utc_ns(next_ns)) break;
   }
@@ -144,9 +143,8 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
               battery_place(config.battery).c_str());
   if (counters.failed_requests < counters.requests) return 0;
   report(JournalLevel::kError,
-         "battery at %s: no request had a good answer (are host, port and unit right, does another "
-         "program "
-         "hold its one connection?)",
+         "battery at %s: no request succeeded: check host, port and unit, and whether another "
+         "program uses its only connection",
          battery_place(config.battery).c_str());
   return 1;
 }
@@ -154,15 +152,16 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_record(EdgeCommand root) {
-  EdgeCommand command =
-      root.subcommand("record", "record what a battery answers, without writing to it");
+  EdgeCommand command = root.subcommand("record", "record a battery's Modbus answers (read-only)");
   const auto given = std::make_shared<RecordGiven>();
-  command.duration("--for", given->for_s, 1, "how long, 1s to 7d; Ctrl-C ends it before")
+  command.duration("--for", given->for_s, 1, "duration, 1s to 7d; Ctrl-C ends it earlier")
       .required();
   command.duration("--every", given->every_s, 1,
-                   "between two readings of measured values; default 10s. All other registers of "
-                   "the map are read every 10 minutes");
-  command.option("--out", given->out_path, "default: bess-TIME.jsonl in the current folder")
+                   "interval between readings of measured values; default: 10s. Other registers of "
+                   "the map: every 10 minutes");
+  command
+      .option("--out", given->out_path,
+              "output file; default: bess-TIME.jsonl in the current folder")
       .value_name("FILE");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_record(*given, settings); });

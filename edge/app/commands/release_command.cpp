@@ -1,4 +1,4 @@
-// bess-edge release: ends an order that a controller which is gone has left in force.
+// Release of a battery from an order that a stopped controller left: `bess-edge release`.
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
@@ -15,12 +15,12 @@ struct ReleaseGiven {
 };
 
 constexpr const char* kFooter =
-    R"(For an order that a controller left behind. Needs no sign check. Refused while a bess-edge
-controls the battery: stop that instead.
+    R"(Ends an order that a stopped controller left in force. Needs no sign check. Refused while a
+bess-edge controls the battery: stop that controller instead.
 Exit codes:
   0 released
-  1 refused or failed: the line says why
-  2 the command line is wrong, or --yes is missing
+  1 refused or failed, with the cause
+  2 command line error, or --yes missing
 Examples:
   systemctl stop bess-edge; bess-edge release --yes)";
 
@@ -32,13 +32,12 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
   const auto place = battery_place(config.battery);
   if (!given.yes) {
     report(JournalLevel::kError,
-           "release gives the battery at %s back to its own mode; add --yes to do that",
-           place.c_str());
+           "release returns the battery at %s to its own mode: repeat with --yes", place.c_str());
     return 2;
   }
   if (given.force) battery.permit_release();
   if (!reach_battery(config, battery, session.clock()) && !given.force) {
-    report(JournalLevel::kError, "nothing was released; --force releases it all the same");
+    report(JournalLevel::kError, "not released; --force releases it anyway");
     return 1;
   }
   const Status status = battery.release();
@@ -55,9 +54,9 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
 void add_release(EdgeCommand root) {
   EdgeCommand command = root.subcommand("release", "return a battery to its own mode");
   const auto given = std::make_shared<ReleaseGiven>();
-  command.flag("--yes", given->yes, "write it to the battery");
+  command.flag("--yes", given->yes, "release the battery; default: only print what would happen");
   command.flag("--force", given->force,
-               "also to a device whose answers do not match its register map");
+               "release even if the device does not match its register map");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_release(*given, settings); });
 }

@@ -1,4 +1,4 @@
-// bess-edge without a command, or `run`: drives the battery. The composition root:
+// Controller run, the composition root: bess-edge without a command.
 //   bess-prices --> PriceReader ------------+-> ControlLoop -> student -> SafetyGuard
 //   battery ------> ModbusBattery ----------+         |                        |
 //   meter, limits -> SiteLimits ------------+         |                        +-> ModbusBattery
@@ -20,21 +20,20 @@ struct RunGiven {
   bool self_test = false;
   bool dry_run = false;
   std::int64_t cycles = -1;  ///< -1 = until stopped
-  std::string record_path;   ///< empty = nothing is recorded
+  std::string record_path;   ///< empty = no recording
 };
 
 constexpr const char* kFooter =
-    R"(A run writes nothing to the battery unless control = true and `bess-edge commission` has
-found its sign right. One controller to one battery: a second one is refused, also one that only
-reads (--check too), because many batteries serve one connection. SIGTERM or Ctrl-C: 0 W is ordered,
-the battery is released, exit 0. SIGHUP: exit 0 and leave the order in force for the next start,
-which takes over; the battery's own timer ends it if there is none.
+    R"(Writes to the battery only with control = true and after bess-edge commission has passed.
+Each battery has one controller: a second one is refused, also read-only or with --check, because
+many batteries serve only one connection. SIGTERM or Ctrl-C: order 0 W, release the battery, exit 0.
+SIGHUP (hand-over): exit 0 and leave the order in force for the next start; without a next start
+the battery's dead-man timer ends it.
 Exit codes:
   0 done
-  1 settings or battery are wrong, the sign is not checked, the battery is in use, or was not
-    released at the end; with --check also: no price, clock not set by NTP; with --self-test: a
-    part fails
-  2 the command line is wrong
+  1 settings or battery wrong, sign not checked, battery in use, or battery not released at the
+    end; --check also: no price, clock not set by NTP; --self-test: a part failed
+  2 command line error
 Examples:
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5)";
@@ -44,7 +43,7 @@ int fail(const FileMessage& error) {
   return 1;
 }
 
-/// Once in a process: what lives as long as it is static, and the end of a run leaves it sealed.
+/// Once per process: the objects are static, and the process stays sealed after the run.
 int run_controller(const RunGiven& given, const EdgeConfig& config) {
   static DeviceSession session;
   if (!session.begin(config)) return 1;
@@ -76,17 +75,17 @@ int run(const RunGiven& given, SettingsFile& settings) {
 void add_run(EdgeCommand root) {
   const auto given = std::make_shared<RunGiven>();
   root.flag("--check", given->check,
-            "check settings, map, student and sign check, print the registers that would be "
-            "written, read battery and newest price once, write nothing, exit");
+            "check settings, map, student and sign check, print the encoded orders, read battery "
+            "and newest price once, then exit; writes nothing to the battery");
   root.flag("--self-test", given->self_test,
-            "try student, signature, seal, clock, certificates, price server, storage and battery "
-            "once; a table, nothing is written to the battery");
-  root.flag("--dry-run", given->dry_run,
-            "run, but write nothing to the battery, as control = false does");
-  root.option("--cycles", given->cycles, "stop cleanly after N cycles").value_name("N").positive();
+            "test student, signature, heap seal, clock, certificates, price server, storage and "
+            "battery once, then exit; writes nothing to the battery");
+  root.flag("--dry-run", given->dry_run, "run read-only, as with control = false");
+  root.option("--cycles", given->cycles, "stop after N control cycles; default: no limit")
+      .value_name("N")
+      .positive();
   root.option("--record", given->record_path,
-              "also write every request to the battery and its reply to FILE (bess-edge record): "
-              "bess-sim battery --replay plays it again")
+              "record all Modbus traffic to FILE; replay with bess-sim battery --replay FILE")
       .value_name("FILE");
   root.footer(kFooter);
   root.does([given](SettingsFile& settings) { return run(*given, settings); });

@@ -25,7 +25,7 @@ namespace {
 
 enum class Verdict { kOk, kNote, kFail };
 
-/// Prints each finding as it is made, so that a part which hangs is seen.
+/// Prints each finding immediately, so that a hanging part is visible.
 class Table {
  public:
   void add(const char* part, Verdict verdict, const std::string& finding) {
@@ -51,10 +51,10 @@ std::string text(const char* format, Values... values) {
 }
 
 void test_student(Table& table) {
-  set_market_time_zone();  // a plan of local days is one of the checks
+  set_market_time_zone();  // one check plans local days
   const int wrong = count_student_self_check_failures();
   table.add("student", wrong == 0,
-            text("%d of %d self-check vectors as exported; %s", student_self_check_count() - wrong,
+            text("%d of %d self-check vectors match; %s", student_self_check_count() - wrong,
                  student_self_check_count(), student_provenance()));
 }
 
@@ -62,14 +62,14 @@ void test_signature(Table& table) {
   const std::string found = decision_signature_line();
   constexpr std::string_view kExpected = kExpectedSignature;
   if (kExpected.empty()) {
-    return table.add("signature", Verdict::kNote, found + "; nothing to compare with was built in");
+    return table.add("signature", Verdict::kNote, found + "; this build has no expected signature");
   }
   table.add("signature", found == kExpected,
             found == kExpected ? found : found + "; expected " + std::string(kExpected));
 }
 
 #ifndef BESS_SANITIZED
-/// In a child, because a seal is for good.
+/// In a child process, because a seal is permanent.
 enum class SealExit : int { kHeld, kNoSeccomp, kMemoryGiven, kProcessGiven };
 
 [[noreturn]] void try_seal_and_exit() {
@@ -85,26 +85,26 @@ enum class SealExit : int { kHeld, kNoSeccomp, kMemoryGiven, kProcessGiven };
 
 void test_seal(Table& table) {
 #ifdef BESS_SANITIZED
-  table.add("seal", Verdict::kNote, "a sanitizer build, nothing is sealed");
+  table.add("seal", Verdict::kNote, "sanitizer build, not sealed");
 #else
   const pid_t child = fork();
   if (child == 0) try_seal_and_exit();
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    return table.add("seal", false, "the trial did not end by itself");
+    return table.add("seal", false, "the seal test timed out");
   }
   switch (static_cast<SealExit>(WEXITSTATUS(status))) {
     case SealExit::kHeld:
-      return table.add("seal", true, "the kernel refuses memory and processes once sealed");
+      return table.add("seal", true, "the sealed process gets no memory and no child process");
     case SealExit::kNoSeccomp:
       return table.add("seal", Verdict::kNote,
-                       "this kernel has no seccomp: the loop runs without its filter");
+                       "this kernel has no seccomp: the controller runs without its filter");
     case SealExit::kMemoryGiven:
-      return table.add("seal", false, "sealed, and yet the kernel gave memory");
+      return table.add("seal", false, "heap seal failed: memory was still granted");
     case SealExit::kProcessGiven:
       break;
   }
-  table.add("seal", false, "sealed, and yet the kernel made a process");
+  table.add("seal", false, "heap seal failed: a process was still created");
 #endif
 }
 
@@ -112,7 +112,8 @@ void test_clock(const EdgeConfig& config, const EdgeClock& clock, Table& table) 
   const std::string now = utc_text(config.clock.now_utc_ns() / kNanosecondsPerSecond).c_str();
   if (!config.clock.is_real_time()) return table.add("clock", Verdict::kNote, now + ", simulated");
   const bool is_set = clock.is_synchronised();
-  table.add("clock", is_set, now + (is_set ? ", set by NTP" : ", not set by NTP; see timedatectl"));
+  table.add("clock", is_set,
+            now + (is_set ? ", set by NTP" : ", not set by NTP: check timedatectl"));
 }
 
 void test_network(const std::string& config_path, Table& table) {
@@ -124,7 +125,7 @@ void test_network(const std::string& config_path, Table& table) {
 void test_ca_file(const EdgeConfig& config, Table& table) {
   const std::string path = config.price.feed.http.ca_file.c_str();
   if (!config.price.feed.http.url.view().starts_with("https")) {
-    return table.add("ca_file", Verdict::kNote, "not needed: the prices come over plain http");
+    return table.add("ca_file", Verdict::kNote, "not needed: prices come over plain HTTP");
   }
   std::ifstream file(path);
   int certificates = 0;
@@ -134,26 +135,26 @@ void test_ca_file(const EdgeConfig& config, Table& table) {
   table.add("ca_file", certificates > 0,
             path + ": " +
                 (certificates > 0 ? std::to_string(certificates) + " certificates"
-                                  : "no certificate can be read here; install ca-certificates, "
-                                    "or mend [price] ca_file"));
+                                  : "no certificate: install ca-certificates, or correct "
+                                    "[price] ca_file"));
 }
 
 void test_storage(const EdgeConfig& config, Table& table) {
-  constexpr double kFreeMbMin = 20;  // the log of 35 days, and a package with the one before it
+  constexpr double kFreeMbMin = 20;  // log of 35 days, current and previous package
   const StorageHealth disk = look_at_storage(config.state.folder.c_str());
   const std::string folder = config.state.folder.c_str();
   if (!disk.is_writable) return table.add("storage", false, folder + ": " + disk.error);
   const int used_life_percent = disk.wear.used_life_percent;
   const std::string wear =
       used_life_percent > 0 ? "up to " + std::to_string(used_life_percent) + " % of its life used"
-                            : "it does not tell its wear";
+                            : "wear not reported";
   const bool is_worn = used_life_percent > kUsedLifePercentMax || disk.wear.spare_level >= 2;
   table.add("storage", disk.free_mb >= kFreeMbMin && !is_worn,
-            text("%s: %.0f MB free, 4 KiB on the disk after %.1f ms, %s", folder.c_str(),
-                 disk.free_mb, disk.synced_write_ms, wear.c_str()));
+            text("%s: %.0f MB free, 4 KiB written in %.1f ms, %s", folder.c_str(), disk.free_mb,
+                 disk.synced_write_ms, wear.c_str()));
 }
 
-/// Reads the identity and the measurements; writes nothing.
+/// Reads identity and measurements; writes nothing.
 void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
   const std::string place = battery_place(config.battery).c_str();
   RunLocks locks;
@@ -178,7 +179,7 @@ int run_self_test(const EdgeConfig& config, const std::string& config_path) {
   Table table;
   test_student(table);
   test_signature(table);
-  test_seal(table);  // before there is a thread
+  test_seal(table);  // forks, so before any thread
   prepare_process();
   EdgeClock clock(config.clock);
   test_clock(config, clock, table);

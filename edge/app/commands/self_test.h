@@ -1,5 +1,5 @@
-// `bess-edge --self-test`: can this machine run the controller at this site? Each part that it
-// stands on is tried once; nothing is written to the battery.
+// Self-test of machine and site for the controller: `bess-edge --self-test`. Writes nothing to the
+// battery.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace bess {
 
-/// A table on stdout, one line a part: ok, note or FAIL. Exit code 0, or 1 when a part fails.
+/// Prints one line per part: ok, note or FAIL. Exit code 0, or 1 if a part fails.
 int run_self_test(const EdgeConfig& config, const std::string& config_path);
 
 }  // namespace bess

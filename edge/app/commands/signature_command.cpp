@@ -7,18 +7,17 @@ namespace bess {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Student and guard replay two recorded days of prices in each month of a year, those of the
-clock changes among them, in integers. The signature covers every order: builds with the same
-student that print different ones do not decide the same. edge/generated/decision_signature.txt
-holds the expected line.
+    R"(Student and guard replay recorded prices in integers: two days of each month of a year, with
+the clock changes. The signature covers every order. Two builds with the same student and different
+signatures decide differently. Expected line: edge/generated/decision_signature.txt.
 Exit codes:
   0 done
-  2 the command line is wrong)";
+  2 command line error)";
 
 }  // namespace
 
 void add_signature(EdgeCommand root) {
-  EdgeCommand command = root.subcommand("signature", "one number for what this build decides");
+  EdgeCommand command = root.subcommand("signature", "checksum of all decisions of this build");
   command.footer(kFooter);
   command.does_without_settings([](SettingsFile&) {
     std::puts(decision_signature_line().c_str());

@@ -1,5 +1,5 @@
-// `bess-edge status`: another process that reads what the controller publishes (its stored status,
-// the decision ring, the lock) and says how it is, to a person or to a program.
+// State and health of the controller for people and programs, from its stored status, decision ring
+// and lock: `bess-edge status`. Runs as a separate process.
 #include <unistd.h>
 
 #include <cstdio>
@@ -35,15 +35,15 @@ struct StatusGiven {
 };
 
 constexpr const char* kFooter =
-    R"(Touches neither battery nor controller. While it runs also: the next decision if price and
-SoC stay, reserves and full charges of the plan, and settings that have no effect. Health is ok,
-degraded (with the reasons) or not running. A status older than two cycles is a WARN, older than
-four CRITICAL. Training days that are old or of another price regime are a WARN to retrain, and do
-not affect health.
+    R"(Reads files only; does not disturb battery or controller. While the controller runs, also
+prints the next decision at constant price and SoC, planned reserves and full charges, and settings
+without effect. Health is ok, degraded (with reasons) or not running. A status older than two
+control cycles is WARN, older than four CRITICAL. Old training days, or days of another price
+regime, give a WARN to retrain that does not affect health.
 Exit codes:
   0 ok
-  1 degraded, or the files cannot be read
-  2 the command line is wrong
+  1 degraded, or files unreadable
+  2 command line error
   3 not running
 Examples:
   bess-edge status
@@ -91,18 +91,18 @@ void print_level(const RunIdentity& identity, const CycleRecord& last) {
   if (identity.context.view() != "level") return;
   const std::int64_t centi_q16 = last.price_level.centi_q16;
   if (last.context_class == 0 && centi_q16 == 0) {  // exactly: no price has set it yet
-    std::printf("level      not known\n");
+    std::printf("level      unknown\n");
     return;
   }
   std::printf("level      %.2f EUR/MWh, ", static_cast<double>(centi_q16) / PriceLevel::kQ16PerEur);
   if (last.context_class == 0) {
-    std::printf("the student was not asked\n");
+    std::printf("no student decision\n");
   } else {
     std::printf("class %d of %d\n", last.context_class, kContextClassCount);
   }
 }
 
-/// What people asked for: a hold with its end, the reserve of this hour, full charges.
+/// Operator's orders: hold with its end, reserve of this hour, full charges.
 void print_operator_orders(const CycleRecord& last) {
   if (last.hold.held) {
     std::printf("hold       %d W until %s\n", last.hold.power_w,
@@ -114,7 +114,7 @@ void print_operator_orders(const CycleRecord& last) {
   std::printf("full       %d days since the last full charge\n", last.days_since_full);
 }
 
-/// Nothing where there is no meter.
+/// Prints nothing without a meter.
 void print_site(const CycleRecord& last) {
   if (!last.site.has_grid_power) return;
   std::printf(
@@ -132,7 +132,7 @@ void print_price(const CycleRecord& last) {
     std::printf("price      none, %s\n", answer);
   }
   if (price.step_held) {
-    std::printf("held       %.2f EUR/MWh, until the next row confirms it\n",
+    std::printf("pending    %.2f EUR/MWh, until the next row confirms it\n",
                 eur_of(price.held_centi_eur_per_mwh));
   }
 }
@@ -140,7 +140,7 @@ void print_price(const CycleRecord& last) {
 void print_last_cycle(const RunStatus& status, bool is_running) {
   const CycleRecord& last = status.totals.last;
   const char* const battery = status_name(last.battery_status).data();
-  std::printf("%-10s %s at %s, cycle %lld\n", is_running ? "state" : "was",
+  std::printf("%-10s %s at %s, control cycle %lld\n", is_running ? "state" : "was",
               mode_name(last.mode).data(), local_of(last.utc_s).c_str(), as_long(last.cycle));
   if (last.has_measurement) {
     std::printf("battery    SoC %.1f %%, %d W before this order (charging is positive), %s\n",
@@ -159,8 +159,8 @@ void print_last_cycle(const RunStatus& status, bool is_running) {
 
 void print_counters(const RunTotals& t) {
   std::printf(
-      "cycles     %lld, missed ticks %d, late orders %d, orders written %lld, log records "
-      "dropped %lld\n",
+      "cycles     %lld control cycles, missed ticks %d, late orders %d, orders written %lld, log "
+      "records dropped %lld\n",
       as_long(t.cycles), t.last.missed_ticks, t.last.deadline_misses, as_long(t.written_orders),
       as_long(t.records_dropped));
   std::printf("failures   battery %lld, prices %lld, disk %lld\n", as_long(t.battery_failures),
@@ -171,7 +171,7 @@ void print_counters(const RunTotals& t) {
               as_long(bus.register_writes));
 }
 
-/// Of the log: where the newest decision would have been another, as `why` has it, and orders.
+/// From the log: decision margins of the newest control cycle, as in `why`, and the last orders.
 void print_last_orders(const EdgeConfig& config) {
   constexpr std::uint64_t kOrders = 10;
   LogReader log;
@@ -181,7 +181,7 @@ void print_last_orders(const EdgeConfig& config) {
   CycleRecord r;
   Margins margins;
   if (log.read(newest, r) && margins_of(r, config.control.guard.thresholds, margins)) {
-    std::printf("margins    at %s it %s EUR/MWh\n", local_clock_text(r.utc_s).c_str(),
+    std::printf("margins    at %s: %s EUR/MWh\n", local_clock_text(r.utc_s).c_str(),
                 price_margins_text(margins).c_str());
   }
   std::printf("orders     local time        ordered W  price EUR/MWh   SoC %%  reason\n");
@@ -194,7 +194,7 @@ void print_last_orders(const EdgeConfig& config) {
   }
 }
 
-/// What comes next, from the newest record; false where the log has none.
+/// Next decision, from the newest record; false with an empty log.
 bool find_next(const EdgeConfig& config, NextDecision& next) {
   LogReader log;
   FileMessage ignored;
@@ -215,8 +215,7 @@ void print_next(const EdgeConfig& config) {
   }
 }
 
-/// The controller that decides; of one that has ended, what it was and when its last record was
-/// made.
+/// The running controller, or the last one and the time of its last record.
 void print_controller(const RunStatus& status, bool is_running) {
   const RunIdentity& id = status.identity;
   const CycleRecord& last = status.totals.last;
@@ -226,12 +225,12 @@ void print_controller(const RunStatus& status, bool is_running) {
                 local_of(id.start_utc_s).c_str());
   } else {
     const bool has_cycles = status.totals.cycles > 0;
-    const char* ended = "ended before a cycle had";
-    if (has_cycles) ended = "ended without a stop after the cycle of";
-    if (has_cycles && last.mode == Mode::kStopping) ended = "stopped at";
-    std::printf("controller none; the last one was %s, process %d from %s, %s %s", part, id.pid,
+    const char* ended = "ended before its first control cycle";
+    if (has_cycles) ended = "ended abnormally after the control cycle at ";
+    if (has_cycles && last.mode == Mode::kStopping) ended = "stopped at ";
+    std::printf("controller none; the last one was %s, process %d from %s, %s%s", part, id.pid,
                 local_of(id.start_utc_s).c_str(), ended,
-                has_cycles ? local_of(last.utc_s).c_str() : "ended");
+                has_cycles ? local_of(last.utc_s).c_str() : "");
   }
   std::printf(", version %s, student %08x\n", id.version.c_str(), id.student_hash);
 }
@@ -240,8 +239,7 @@ TrainingPeriod training_of(const RunIdentity& id) {
   return {id.trained_from.c_str(), id.trained_until.c_str()};
 }
 
-/// Why the student should be retrained, or empty: it does not affect health, for it decides as it
-/// did.
+/// Why the student should be retrained, or empty. Does not affect health.
 std::string retraining_note(const EdgeConfig& config, const RunIdentity& id) {
   const auto today = local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   const auto age = training_age_text(training_of(id), today.view());
@@ -274,7 +272,7 @@ void print_text(const EdgeConfig& config, const PublishedStatus& published, cons
   print_last_orders(config);
 }
 
-/// As status.json has it, without its checksum.
+/// status.json without its checksum.
 Json json_of(const RunStatus& status) {
   static char storage[kStatusBytes];
   TextBuffer text(storage);
@@ -284,7 +282,7 @@ Json json_of(const RunStatus& status) {
 
 void print_json(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
                 const std::string& update) {
-  // What is of another run would say the opposite of "unknown".
+  // The status of another run would contradict "unknown".
   const bool is_known = published.unknown.empty() && published.status.has_value();
   Json status = is_known ? json_of(*published.status) : Json::object();
   if (!published.unknown.empty()) status.set("unknown", published.unknown);
@@ -305,16 +303,16 @@ void print_json(const EdgeConfig& config, const PublishedStatus& published, cons
   std::fputs(status.text().c_str(), stdout);
 }
 
-/// Why the newest cycle was decided as it was, as labels.
+/// Decider and mode of the newest control cycle, as labels.
 std::string decision_info(const CycleRecord& last) {
   return formatted(
-      "# HELP bess_decision_info Who decided the last cycle, and in which mode.\n"
+      "# HELP bess_decision_info Reason and mode of the last control cycle.\n"
       "# TYPE bess_decision_info gauge\n"
       "bess_decision_info{reason=\"%s\",mode=\"%s\"} 1\n",
       reason_name(last.reason).data(), mode_name(last.mode).data());
 }
 
-/// Prints metrics, each with the battery's name: several controllers may be scraped at one place.
+/// Prints metrics with the battery's name as a label, to distinguish several controllers.
 void print_labelled(const EdgeConfig& config, const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -333,7 +331,7 @@ bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& sta
                    bool is_running) {
   if (!status) {
     failed(std::string(config.state.folder.view()) +
-           ": no status here; has bess-edge run with this configuration?");
+           ": no status: start bess-edge with this configuration first");
     return false;
   }
   static char storage[kMetricsBytes];
@@ -345,7 +343,7 @@ bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& sta
   if (is_running && find_next(config, next)) {
     print_labelled(config, next_decision_metrics(next));
   }
-  // Where this is a package: what bess-probation says, and what a fleet's inventory expects here.
+  // Installed as a package: metrics of bess-probation and of the fleet's inventory.
   for (const char* file : {"/update.prom", "/expected.prom"}) {
     std::string more;
     if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
@@ -355,7 +353,7 @@ bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& sta
   return true;
 }
 
-/// What bess-probation has to tell, one line; empty: nothing, or this is no package.
+/// One line of bess-probation; empty without one.
 std::string update_note() {
   std::string note;
   read_text((std::string(kUpdateFolder) + "/note").c_str(), note);
@@ -396,14 +394,13 @@ int run_status(const StatusGiven& given, SettingsFile& settings) {
 void add_status(EdgeCommand root) {
   EdgeCommand command = root.subcommand("status", "state and health of the running controller");
   const auto given = std::make_shared<StatusGiven>();
-  command.flag("--json", given->json, "one JSON object with \"health\"");
+  command.flag("--json", given->json, "one JSON object, with \"health\"");
   command
       .flag("--prometheus", given->prometheus,
-            "metrics in the format of the node exporter's textfile collector")
+            "metrics for the textfile collector of the Prometheus node exporter")
       .excludes("--json");
-  command.flag("--follow", given->follow, "again every two seconds, until Ctrl-C");
-  command.flag("--no-lock", given->no_lock,
-               "judge by the process number whether it runs: the lock is not even tried");
+  command.flag("--follow", given->follow, "repeat every two seconds until Ctrl-C");
+  command.flag("--no-lock", given->no_lock, "check the process id instead of the lock");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_status(*given, settings); });
 }

@@ -1,5 +1,4 @@
-// `bess-edge why`: who decided a cycle, since when, what ends it, and at which prices and states of
-// charge it would have been decided otherwise.
+// Explanation of a control cycle: `bess-edge why`.
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
@@ -11,29 +10,29 @@ namespace bess {
 namespace {
 
 struct WhyGiven {
-  std::string at;  ///< empty = the newest cycle
+  std::string at;  ///< empty = newest control cycle
   bool json = false;
 };
 
 constexpr const char* kFooter =
-    R"(What decided, since when, and what ends it; price and state of charge, each with the exact
-values up to which this cycle would have charged and from which it would have discharged. The
-student is proved to be monotone in both, so that no price or SoC between them decides otherwise.
-Limits, your own rules and stop reasons come first, and are named where they decided. Read from the
-log in [state] folder, whether the controller runs or not.
+    R"(Prints the decider of one control cycle, since when and until when, and the decision margins:
+the highest price and state of charge at which it would have charged, and the lowest at which it
+would have discharged. The student is proved monotone in both, so there are no other changes.
+Limits, your own rules and stop reasons override the student and are named. Read from the log in
+[state] folder; the controller need not run.
 Exit codes:
   0 done
-  1 the log cannot be read, or nothing was decided then
-  2 the command line is wrong
+  1 log unreadable, or no control cycle at that time
+  2 command line error
 Examples:
   bess-edge why
   bess-edge why --at 14:32
   bess-edge why --json | jq .margins)";
 
-/// Of the cycle that was asked for; otherwise `trouble` says why there is none.
+/// Record number of the requested control cycle; `trouble` names the cause if there is none.
 std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const LogReader& log,
                          std::string& trouble) {
-  if (log.newest_number() == 0) trouble = "nothing was decided yet: the log is empty";
+  if (log.newest_number() == 0) trouble = "the decision log is empty";
   if (given.at.empty() || !trouble.empty()) return log.newest_number();
   std::int64_t at_utc_s = 0;
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
@@ -41,8 +40,8 @@ std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const 
   const std::uint64_t number = number_at(log, at_utc_s);
   CycleRecord oldest;
   if (number == 0 && log.read(log.oldest_number(), oldest)) {
-    trouble = std::string("nothing was decided at ") + local_text(at_utc_s).c_str() +
-              " local; the log begins at " + local_text(oldest.utc_s).c_str();
+    trouble = std::string("no control cycle at ") + local_text(at_utc_s).c_str() +
+              " local time; the log begins at " + local_text(oldest.utc_s).c_str();
   }
   return number;
 }
@@ -58,7 +57,7 @@ int run_why(const WhyGiven& given, SettingsFile& settings) {
   if (!trouble.empty()) return failed(trouble);
   Explanation explanation;
   if (!explain(log, number, config.control.guard.thresholds, explanation)) {
-    return failed("the record of that cycle cannot be read");
+    return failed("the record of that control cycle cannot be read");
   }
   const std::string text = given.json ? explanation_json(explanation, config.control).text()
                                       : explanation_text(explanation, config.control);
@@ -70,13 +69,12 @@ int run_why(const WhyGiven& given, SettingsFile& settings) {
 }  // namespace
 
 void add_why(EdgeCommand root) {
-  EdgeCommand command =
-      root.subcommand("why", "why it decided that, and at which price it would not have");
+  EdgeCommand command = root.subcommand("why", "explain one decision and its margins");
   const auto given = std::make_shared<WhyGiven>();
   command.moment("--at", given->at,
-                 "the cycle whose order was in force then, by the local clock: 14:32 (the latest), "
-                 "\"2026-11-23 14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest cycle");
-  command.flag("--json", given->json, "one JSON object with the same numbers");
+                 "control cycle in force at MOMENT, local time: 14:32 (the latest), \"2026-11-23 "
+                 "14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest");
+  command.flag("--json", given->json, "one JSON object with the same values");
   command.footer(kFooter);
   command.does([given](SettingsFile& settings) { return run_why(*given, settings); });
 }

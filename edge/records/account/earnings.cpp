@@ -8,7 +8,7 @@
 namespace bess {
 namespace {
 
-/// In CSV and JSON, of a day and of all together.
+/// Column in CSV and JSON, of a day and of the sum.
 struct Column {
   const char* name;
   int decimals;
@@ -54,18 +54,17 @@ std::string money_text(const DayAccount& all) {
                                money.quarter_hours, money.published);
   if (money.published > 0) add_formatted(text, " (%d validated)", money.validated);
   if (money.published + money.unpriced < money.quarter_hours) {
-    add_formatted(text, ", the others at the last of their minutes: %+.2f EUR is an estimate",
+    add_formatted(text, ", the others at their last indicative price: %+.2f EUR is an estimate",
                   money.estimated_eur);
   }
-  if (money.unpriced > 0) add_formatted(text, ", %d without any", money.unpriced);
+  if (money.unpriced > 0) add_formatted(text, ", %d without a price", money.unpriced);
   if (all.unseen_kwh() > 0) {
-    add_formatted(text, "\n%.2f kWh flowed while nobody looked, by the state of charge",
-                  all.unseen_kwh());
+    add_formatted(text, "\n%.2f kWh unmetered energy (estimated from the SoC)", all.unseen_kwh());
   }
   return text + "\n";
 }
 
-/// What kept the student from deciding.
+/// Reasons that replaced the student's decision.
 Json stops_json(const DayAccount& all) {
   Json reasons = Json::list();
   for (std::size_t i = 0; i < all.cycles_by_reason().size(); ++i) {
@@ -100,20 +99,20 @@ std::string Earnings::text() const {
   std::string text =
       "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  EUR/MWh\n";
   for (const DayAccount& day : days_) text += table_line(day.date(), day);
-  if (days_.size() > 1) text += table_line("together", together_);
+  if (days_.size() > 1) text += table_line("total", together_);
   text += money_text(together_);
   add_formatted(
       text,
-      "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
-      "%+.2f EUR with the same charge at both ends\n",
+      "stored energy: %.1f kWh %s at the end, worth %.2f EUR at the mean price: %+.2f EUR at equal "
+      "SoC\n",
       std::fabs(together_.stored_kwh()), together_.stored_kwh() < 0 ? "less" : "more",
       std::fabs(together_.stored_eur()), together_.earned_eur() + together_.stored_eur());
-  add_formatted(text, "driven %.1f %% of the time", 100 * together_.driven_share());
+  add_formatted(text, "in control %.1f %% of the time", 100 * together_.driven_share());
   if (together_.missing_cycles() > 0) {
-    add_formatted(text, "; %d cycles have no record", together_.missing_cycles());
+    add_formatted(text, "; %d control cycles without a record", together_.missing_cycles());
   }
   const std::string others = together_.interventions_text();
-  if (!others.empty()) text += "\ncycles that the student did not decide: " + others;
+  if (!others.empty()) text += "\ncontrol cycles without a student decision: " + others;
   return text + "\n";
 }
 

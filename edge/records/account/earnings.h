@@ -1,8 +1,6 @@
-// What a battery earned in some days, as a table for people, as CSV and as JSON.
-//
-// Money is counted by quarter-hours: at the settled price where it is published, else, an estimate,
-// at the last indicative one. And what the battery holds more or less at the end than at the
-// beginning, at the mean price: a day that ends empty has sold what another one bought.
+// Earnings over days, as text, CSV and JSON. Each quarter-hour counts at its settled price, or, as
+// an estimate, at its last indicative price. The change in stored energy is valued at the mean
+// price, because a day that ends empty has sold energy that another day bought.
 #pragma once
 
 #include <string>
@@ -15,7 +13,7 @@ namespace bess {
 
 class Earnings {
  public:
-  /// Oldest first; may be empty.
+  /// `days`: oldest first; may be empty.
   explicit Earnings(std::vector<DayAccount> days);
 
   [[nodiscard]] const std::vector<DayAccount>& days() const { return days_; }

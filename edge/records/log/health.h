@@ -1,5 +1,4 @@
-// Health of the controller, a pure function of its published status: two signals (the process is
-// alive; the last cycle was good) become one word and the reasons for it.
+// Health of the controller, a pure function of its published status: one word and its reasons.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +12,14 @@ namespace bess {
 
 struct HealthInputs {
   bool is_running = false;            ///< a process holds the lock
-  const RunStatus* status = nullptr;  ///< null: none is known
-  bool is_of_this_run = false;        ///< it was written by that process
+  const RunStatus* status = nullptr;  ///< null: unknown
+  bool is_of_this_run = false;        ///< written by that process
   std::int64_t age_ms = 0;            ///< of the status
-  std::int64_t cycles_behind = 0;     ///< that the stored status is behind the log
-  CardWear wear{};                    ///< of the state folder's device, now
+  std::int64_t cycles_behind = 0;     ///< control cycles from the stored status to the log
+  CardWear wear{};                    ///< of the state folder's device
   bool disk_is_full = false;          ///< of the state folder, or it is read-only
-  std::string_view unknown{};  ///< not empty: a process runs, and nothing says how it is; why
-  std::string_view update_trouble{};  ///< what the last upgrade ended badly with; empty = none
+  std::string_view unknown{};         ///< why the state of the running process is unknown, or empty
+  std::string_view update_trouble{};  ///< error of the last upgrade, or empty
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

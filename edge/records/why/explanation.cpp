@@ -6,7 +6,7 @@
 namespace bess {
 namespace {
 
-/// The same reason, cycle after cycle; a hole of one cycle is none.
+/// The same reason without interruption; one missing control cycle is allowed.
 bool continues(const CycleRecord& before, const CycleRecord& after) {
   return before.reason == after.reason && before.utc_s < after.utc_s &&
          after.utc_s - before.utc_s <= 2 * kSecondsPerStep;
@@ -25,7 +25,7 @@ void find_beginning(const LogReader& log, std::uint64_t number, Explanation& exp
   }
 }
 
-/// What the student was given.
+/// Input of the student.
 LatticeState state_of(const CycleRecord& record) {
   return make_lattice_state(local_minute_of(record.utc_s), record.context_class,
                             record.measurement.soc_e4, decided_price_centi(record));

@@ -1,6 +1,5 @@
-// Why a cycle ordered what it did, with everything that a person asks next: who decided, since when
-// and until when, on which inputs, and at which prices and states of charge it would have been
-// another order. Made from the decision log and the settings, beside the controller.
+// Explanation of a control cycle: decider, start, end, inputs, margins. Made from decision log and
+// settings, outside the controller.
 #pragma once
 
 #include <charconv>
@@ -17,10 +16,7 @@
 
 namespace bess {
 
-// How long something holds, as a person writes it: 90s, 15m, 2h, 1d12h.
-
-/// Seconds of whole numbers, each with s, m, h or d behind it; false when it is none, 0, or more
-/// than a week.
+/// Parses a duration such as 90s, 15m, 2h or 1d12h. False if malformed, 0, or more than a week.
 inline bool parse_duration(std::string_view text, std::int64_t& seconds) {
   constexpr std::int64_t kWeekS = 7 * kSecondsPerDay;
   constexpr std::string_view kUnits = "smhd";
@@ -41,35 +37,33 @@ inline bool parse_duration(std::string_view text, std::int64_t& seconds) {
 
 struct Explanation {
   CycleRecord record{};
-  std::int64_t since_utc_s = 0;  ///< tick from which on this reason has held, in one run of it
-  int cycles = 1;                ///< that it has held for, this one included
-  /// Price, measurement and student were there. Without them nothing below is said.
+  std::int64_t since_utc_s = 0;  ///< first tick of the uninterrupted reason
+  int cycles = 1;                ///< control cycles since then, this one included
+  /// Price, measurement and student action are known; else there are no margins.
   bool has_margins = false;
   Margins margins{};
-  /// This program's student decides otherwise than the log says: another version wrote it.
+  /// The student of this program decides differently: another version wrote the log.
   bool is_other_student = false;
 };
 
-/// Of record `number` of the log; false when it cannot be read any more.
+/// Explains record `number` of the log; false if it is no longer readable.
 bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& thresholds,
              Explanation& explanation);
 
-/// Of the student on what a cycle saw; false where it was not asked.
+/// Margins of the student for the inputs of a control cycle; false without a student decision.
 bool margins_of(const CycleRecord& record, const PriceThresholds& thresholds, Margins& margins);
 
-/// The record whose order was in force at that instant, the newest where the clock was stepped; 0 =
-/// none.
+/// Record whose order was in force at that time, the newest if the clock was stepped; 0 = none.
 std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
 
-/// What ends the reason, and when: "until the SoC is above 10.5 %". Empty for the student's own
-/// decision.
+/// End condition of the reason: "until the SoC is above 10.5 %". Empty for the student.
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings);
 
-/// "charges up to 83.49, rests from 83.50 to 211.49, discharges from 211.50"
+/// "charges up to 83.49, idle from 83.50 to 211.49, discharges from 211.50"
 std::string price_margins_text(const Margins& at);
 Json margins_json(const Margins& at);
 
-/// Some lines, each ended, in local time.
+/// Lines with line ends, in local time.
 std::string explanation_text(const Explanation& explanation, const ControlSettings& settings);
 Json explanation_json(const Explanation& explanation, const ControlSettings& settings);
 

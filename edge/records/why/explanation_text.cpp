@@ -1,4 +1,4 @@
-// An explanation in words and as JSON. Every number stands in both.
+// Explanation of a control cycle, as text and JSON with the same values.
 #include <cstdio>
 
 #include "edge/core/control/policy.h"
@@ -14,16 +14,16 @@ namespace {
 double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
 
 const char* doing(std::int32_t power_w) {
-  return power_w > 0 ? "charging" : power_w < 0 ? "discharging" : "resting at";
+  return power_w > 0 ? "charging" : power_w < 0 ? "discharging" : "idle at";
 }
 
 bool is_students(const CycleRecord& record) { return record.reason == Reason::kStudent; }
 
 void add_head(const CycleRecord& record, std::string& text) {
-  add_formatted(text, "%s local, cycle %lld: ", local_text(record.utc_s).c_str(),
+  add_formatted(text, "%s local time, control cycle %lld: ", local_text(record.utc_s).c_str(),
                 static_cast<long long>(record.cycle));
   if (is_stop_reason(record.reason)) {
-    add_formatted(text, "not driven, %s\n", mode_name(record.mode).data());
+    add_formatted(text, "no control, mode %s\n", mode_name(record.mode).data());
   } else {
     add_formatted(text, "%s %d W\n", doing(record.ordered_power_w),
                   std::abs(record.ordered_power_w));
@@ -33,16 +33,17 @@ void add_head(const CycleRecord& record, std::string& text) {
 void add_decider(const Explanation& explanation, const std::string& end, std::string& text) {
   const CycleRecord& record = explanation.record;
   if (is_students(record)) {
-    text += "decided    by the student";
+    text += "decided by student";
   } else {
-    add_formatted(text, "decided    by the guard: %s", reason_name(record.reason).data());
+    add_formatted(text, "decided by guard: %s", reason_name(record.reason).data());
   }
-  add_formatted(text, ", since %s (%d cycle%s)", local_text(explanation.since_utc_s).c_str(),
-                explanation.cycles, explanation.cycles == 1 ? "" : "s");
+  add_formatted(text, ", since %s (%d control cycle%s)",
+                local_text(explanation.since_utc_s).c_str(), explanation.cycles,
+                explanation.cycles == 1 ? "" : "s");
   if (!end.empty()) text.append("; ").append(end);
   text += '\n';
   if (!is_students(record) && record.has_student_action) {
-    add_formatted(text, "student    would %s\n", action_name(record.student_action).data());
+    add_formatted(text, "student    would choose: %s\n", action_name(record.student_action).data());
   }
 }
 
@@ -55,10 +56,10 @@ void add_price(const Explanation& explanation, std::string& text) {
   add_formatted(text, "price      %.2f EUR/MWh, %d s old",
                 eur_of(record.price.price_centi_eur_per_mwh), record.price_age_s);
   if (record.price_stands_in) {
-    add_formatted(text, ", decided on as %.2f", eur_of(record.stand_in_centi_eur_per_mwh));
+    add_formatted(text, ", replaced by %.2f", eur_of(record.stand_in_centi_eur_per_mwh));
   }
   if (explanation.has_margins) {
-    text.append("; it ").append(price_margins_text(explanation.margins));
+    text.append("; ").append(price_margins_text(explanation.margins));
   }
   text += '\n';
 }
@@ -72,16 +73,16 @@ void add_soc(const Explanation& explanation, std::string& text) {
   add_formatted(text, "SoC        %.1f %%", percent(record.measurement.soc_e4));
   if (explanation.has_margins) {
     const Margins& at = explanation.margins;
-    // The class falls with SoC, and the log has the one of this SoC.
-    text += record.outlook.source == OutlookSource::kNone ? "; at this price it "
-                                                          : "; at this price and class it ";
+    // The class falls with SoC; the log has only the class of this SoC.
+    text += record.outlook.source == OutlookSource::kNone ? "; at this price "
+                                                          : "; at this price and class ";
     if (at.charges_at_some_soc)
       add_formatted(text, "charges up to %.2f %%", percent(at.charge_up_to_soc_e4));
     if (at.charges_at_some_soc && at.discharges_at_some_soc) text += " and ";
     if (at.discharges_at_some_soc) {
       add_formatted(text, "discharges from %.2f %%", percent(at.discharge_from_soc_e4));
     }
-    if (!at.charges_at_some_soc && !at.discharges_at_some_soc) text += "rests at any SoC";
+    if (!at.charges_at_some_soc && !at.discharges_at_some_soc) text += "idle at any SoC";
   }
   text += '\n';
 }
@@ -104,20 +105,20 @@ std::string moment_text(const PricedQuarterHour& moment, std::int64_t now_utc_s)
 void add_outlook(const CycleRecord& record, std::string& text) {
   const OutlookReport& outlook = record.outlook;
   if (outlook.source == OutlookSource::kNone) return;
-  add_formatted(text, "outlook    %s: a plan would charge below %.2f EUR/MWh",
+  add_formatted(text, "outlook    %s: the plan charges below %.2f EUR/MWh",
                 outlook_source_name(outlook.source).data(), eur_of(outlook.break_even_centi));
   if (outlook.known_quarter_hours > 0) {
-    text += " because " + moment_text(outlook.dearest, record.utc_s) + " is dear and " +
-            moment_text(outlook.cheapest, record.utc_s) + " cheap";
+    text += " because " + moment_text(outlook.dearest, record.utc_s) + " is expensive and " +
+            moment_text(outlook.cheapest, record.utc_s) + " is cheap";
   } else {
-    text += " as is usual at this hour and level: no day-ahead price is published";
+    text += " with typical prices of this hour and level: no day-ahead price is published";
   }
   add_formatted(text, "; class %d of %d\n", record.context_class, kContextClassCount);
 }
 
 void add_limits(const CycleRecord& record, const ControlSettings& settings, std::string& text) {
   const GuardSettings& guard = settings.guard;
-  add_formatted(text, "always     charging at or below %d, discharging at or above %d EUR/MWh\n",
+  add_formatted(text, "always     charges at or below %d, discharges at or above %d EUR/MWh\n",
                 guard.thresholds.low_eur_per_mwh, guard.thresholds.high_eur_per_mwh);
   add_formatted(text, "limits     full at %.1f %%, empty at %.1f %%", percent(guard.soc_max_e4),
                 percent(guard.soc_min_e4));
@@ -129,8 +130,8 @@ void add_limits(const CycleRecord& record, const ControlSettings& settings, std:
   }
   text += " full cycles today";
   if (settings.reversals_per_hour_max > 0) {
-    add_formatted(text, ", %d of %d changes of direction in the last hour",
-                  record.reversals.in_hour, settings.reversals_per_hour_max);
+    add_formatted(text, ", %d of %d reversals in the last hour", record.reversals.in_hour,
+                  settings.reversals_per_hour_max);
   }
   text += '\n';
 }
@@ -154,7 +155,7 @@ Json outlook_json(const OutlookReport& outlook) {
 std::string price_margins_text(const Margins& at) {
   std::string text = formatted("charges up to %.2f", eur_of(at.charge_up_to_centi));
   if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
-    add_formatted(text, ", rests from %.2f to %.2f", eur_of(at.charge_up_to_centi + 1),
+    add_formatted(text, ", idle from %.2f to %.2f", eur_of(at.charge_up_to_centi + 1),
                   eur_of(at.discharge_from_centi - 1));
   }
   add_formatted(text, ", discharges from %.2f", eur_of(at.discharge_from_centi));
@@ -185,9 +186,8 @@ std::string explanation_text(const Explanation& explanation, const ControlSettin
   add_limits(record, settings, text);
   if (explanation.is_other_student) {
     text +=
-        "note       another version decided then: this program's student would do otherwise, and "
-        "the prices and "
-        "states of charge above are its own\n";
+        "note       another version decided this control cycle; the margins above are those of the "
+        "student of this version, which decides differently\n";
   }
   return text;
 }

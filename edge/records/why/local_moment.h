@@ -1,6 +1,6 @@
-// A moment as a person says it, on the market's wall clock: 14:32, the newest one that has been;
-// today 14:32; yesterday 14:32; yesterday, at this time of day; 2026-11-23 14:32; 2h, so long ago;
-// or, to be exact where an hour comes twice, UTC: 2026-11-23T13:32:00Z.
+// Parser of a time in the market's local time: 14:32 (the latest), today 14:32, yesterday 14:32,
+// yesterday (this time of day), 2026-11-23 14:32, 2h (ago); or UTC, unambiguous where an hour
+// repeats: 2026-11-23T13:32:00Z.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace bess {
 
-/// False when it is none of these.
+/// False for any other text.
 inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int64_t& utc_s) {
   if (parse_utc(text, utc_s)) return true;
   std::int64_t ago_s = 0;

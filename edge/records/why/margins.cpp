@@ -5,8 +5,8 @@
 namespace bess {
 namespace {
 
-// What of the lattice lies at its ends stands for everything beyond them, up to the thresholds.
-// Nearest whole numbers, halves up: 84 is 83.50 to 84.49.
+// The ends of the lattice also cover all values beyond them, up to the thresholds. Lattice prices
+// are rounded, halves up: 84 is 83.50 to 84.49.
 constexpr std::int32_t kCentiBelow = kCentiPerEur / 2;
 constexpr std::int32_t kCentiAbove = kCentiPerEur - kCentiBelow - 1;
 constexpr std::int32_t kSocBelow = kSocE4PerLatticeStep / 2;

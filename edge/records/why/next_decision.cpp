@@ -21,7 +21,7 @@ Action decide_at(const LatticeState& state, std::int32_t price_centi,
   return decide_with_student(state);
 }
 
-/// At the next tick, if price and SoC stay.
+/// State at the next tick, at constant price and SoC.
 LatticeState state_at(const CycleRecord& newest, std::int64_t utc_s) {
   const LocalMinute then = local_minute_of(utc_s);
   return make_lattice_state(then, student_context_class(then, context_centi_of(newest)),
@@ -50,7 +50,7 @@ const char* doing(Action action) {
     case Action::kDischarge:
       return "discharging";
     case Action::kIdle:
-      return "resting";
+      return "idle";
     case Action::kCharge:
       break;
   }
@@ -106,10 +106,10 @@ std::string next_decision_text(const NextDecision& next) {
     if (next.power_w != 0) text += formatted(" %d W", std::abs(next.power_w));
     text += " if price and SoC stay";
   } else {
-    text += ", without a price or a measurement nothing is driven";
+    text += ", no control without price and measurement";
   }
   if (!next.reason.empty()) {
-    text += "; " + next.reason + " stands above it";
+    text += "; " + next.reason + " overrides it";
     if (!next.ends.empty()) text += ", " + next.ends;
   }
   text += '\n';

@@ -1,5 +1,4 @@
-// What ends a reason: the last column of the table of reasons, with the values of this cycle and
-// these settings.
+// End conditions of reasons, with the values of this control cycle and these settings.
 #include <string>
 #include <string_view>
 
@@ -19,7 +18,7 @@ std::string string(const Text& text) {
   return std::string(text.view());
 }
 
-/// Names of the rules that have a say at this point.
+/// Names of the rules that apply at this point.
 std::string rules_at(const CycleRecord& record) {
   const std::int32_t price_centi = decided_price_centi(record);
   const LocalMinute now = local_minute_of(record.utc_s);
@@ -36,7 +35,7 @@ std::string rules_at(const CycleRecord& record) {
 using Cycle = const CycleRecord&;
 using Settings = const ControlSettings&;
 
-/// What a row of the table may name in braces.
+/// Values that a row of the table may name in braces.
 struct NamedValue {
   std::string_view name;
   std::string (*text)(Cycle, Settings);
@@ -71,7 +70,7 @@ const NamedValue kValues[] = {
      [](Cycle, Settings s) { return std::to_string(s.guard.thresholds.high_eur_per_mwh); }},
 };
 
-/// A name that nobody knows stays as it is, braces and all: the test of the table finds it.
+/// An unknown name stays in braces, for the test of the table.
 std::string value_of(std::string_view name, Cycle record, Settings settings) {
   for (const NamedValue& value : kValues) {
     if (value.name == name) return value.text(record, settings);
@@ -83,7 +82,7 @@ std::string value_of(std::string_view name, Cycle record, Settings settings) {
 
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings) {
   if (record.is_tripped && is_stop_reason(record.reason)) {
-    return formatted("tripped at %s: until a person has looked and says `bess-edge clear --yes`",
+    return formatted("tripped at %s, until cleared with `bess-edge clear --yes`",
                      local_text(record.trip.utc_s).c_str());
   }
   std::string text;

@@ -93,10 +93,10 @@ TEST(EarningsOfDays, SayTheSameInEachForm) {
   const Earnings both = two_days({.capacity_wh = 8'000});
   const std::string text = both.text();
   EXPECT_THAT(text, HasSubstr("2026-11-22       -0.10          2.0             0.0"));
-  EXPECT_THAT(text, HasSubstr("together         +0.15          2.0             1.0"));
-  EXPECT_THAT(text, HasSubstr("1.0 kWh more are stored than at the beginning, worth 0.14 EUR"));
-  EXPECT_THAT(text, HasSubstr("+0.29 EUR with the same charge at both ends"));
-  EXPECT_THAT(text, HasSubstr("cycles that the student did not decide: price_age 1\n"));
+  EXPECT_THAT(text, HasSubstr("total            +0.15          2.0             1.0"));
+  EXPECT_THAT(text, HasSubstr("stored energy: 1.0 kWh more at the end, worth 0.14 EUR"));
+  EXPECT_THAT(text, HasSubstr("+0.29 EUR at equal SoC"));
+  EXPECT_THAT(text, HasSubstr("control cycles without a student decision: price_age 1\n"));
   EXPECT_THAT(
       both.csv(),
       HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,3,0,0,0,"));
