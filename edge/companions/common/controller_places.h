@@ -1,6 +1,5 @@
-// What a companion program knows of the controller by its configuration: which program answers, and
-// where its state lies. Read apart from the controller's own reader: a configuration that keeps the
-// controller from starting must still be seen, and reported.
+// Controller location for companion programs: program, folders, name. Independent of the
+// controller's own reader, so that a configuration that stops the controller is still reported.
 #pragma once
 
 #include <string>
@@ -13,11 +12,11 @@ struct ControllerPlaces {
   std::string name;  ///< [battery] name
   std::string id;    ///< battery_id
   std::string config_path;
-  std::string program;       ///< bess-edge, which answers
+  std::string program;       ///< path of bess-edge
   std::string state_folder;  ///< [state] folder
 };
 
-/// Of the whole configuration. `program` is bess-edge beside this program, as both are installed.
+/// `root`: whole configuration. `program` is bess-edge in the folder of this program.
 ControllerPlaces controller_places(TomlTable& root);
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// SIGTERM and SIGINT of a companion program, taken by a thread of their own, so that nothing is cut
-// in the middle.
+// Stop signals SIGTERM and SIGINT of a companion program, received by a separate thread, so that no
+// work is interrupted.
 #pragma once
 
 #include <pthread.h>
@@ -12,8 +12,8 @@ namespace bess {
 
 class StopSignals {
  public:
-  /// Before any other thread, which would not have them blocked. `on_stop` is called once, on the
-  /// thread: at a signal, otherwise in the destructor.
+  /// Construct before any other thread, which inherits the blocked signals. `on_stop` is called
+  /// once by the thread: at a signal, or in the destructor.
   explicit StopSignals(std::function<void()> on_stop)
       : thread_([signals = block(), on_stop = std::move(on_stop)] {
           int ignored = 0;
@@ -28,7 +28,7 @@ class StopSignals {
   }
 
  private:
-  /// A connection that the other side closes is an error to handle, not an end, too.
+  /// Also ignores SIGPIPE: a closed connection is an error to handle, not an end.
   static sigset_t block() {
     sigset_t signals;
     sigemptyset(&signals);

@@ -15,7 +15,7 @@ std::string text_of(const NotifySettings& settings, const Message& message) {
     text += "since " + std::string(utc_text(message.since_utc_s).view()) + "\n";
   }
   text += "seen at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
-          settings.name + "\nmore: bess-edge status, bess-edge log --last 20\n";
+          settings.name + "\ndetails: bess-edge status, bess-edge log --last 20\n";
   if (!settings.contact.empty()) text += "call: " + settings.contact + "\n";
   return text;
 }
@@ -23,7 +23,7 @@ std::string text_of(const NotifySettings& settings, const Message& message) {
 }  // namespace
 
 std::string headline(const Message& message) {
-  const std::string before = message.severity == "alarm" ? "ALARM: "
+  const std::string before = message.severity == "alarm" ? "ALERT: "
                              : message.severity == "day" ? "day "
                                                          : message.severity + ": ";
   return before + one_line(message.text, 400);
@@ -32,7 +32,7 @@ std::string headline(const Message& message) {
 std::string run_alarm_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop) {
   const std::string text = text_of(settings, message);
-  // By env and as words, so that nothing in a text is read by the shell.
+  // Passed by env as separate words, so that the shell interprets no part of a text.
   const std::vector<std::string> words = {
       "/usr/bin/env",
       "BESS_SEVERITY=" + message.severity,

@@ -1,9 +1,10 @@
-// The operator's command: `apprise`, `mail` or a script. /bin/sh runs it for each message, with
-//   BESS_SEVERITY  alarm, over (its end), day (yesterday in a line) or test
-//   BESS_TITLE     "[bess NAME] ALARM: ...", one line
-//   BESS_TEXT      the same with since when, what to run and whom to call; also its input
+// Notification command of the operator: `apprise`, `mail` or a script. /bin/sh runs it for each
+// message with these environment variables:
+//   BESS_SEVERITY  alarm, over (its end), day (yesterday in one line) or test
+//   BESS_TITLE     "[bess NAME] ALERT: ...", one line
+//   BESS_TEXT      the same with start time, commands and contact; also on standard input
 //   BESS_NODE, BESS_KEY, BESS_UTC
-// in its environment. Exit code 0 means delivered; otherwise, or after a minute, it is run again.
+// Exit code 0 means delivered. Otherwise, or after a minute, the command is repeated.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +17,16 @@ namespace bess {
 
 struct Message {
   std::string severity = "test";
-  std::string key{};             ///< of the alarm; of the day, its date
+  std::string key{};             ///< of the alert; for a day, its date
   std::string text{};            ///< one line
-  std::int64_t utc_s = 0;        ///< when it was observed; it may be delivered much later
-  std::int64_t since_utc_s = 0;  ///< of an alarm and its end; 0 = of something else
+  std::int64_t utc_s = 0;        ///< time of observation; delivery may be much later
+  std::int64_t since_utc_s = 0;  ///< start of an alert; 0 for other messages
 };
 
-/// "ALARM: ...", one line.
+/// "ALERT: ...", one line.
 std::string headline(const Message& message);
 
-/// Empty when the command took it; else why not. Gives up soon once it is asked to stop.
+/// Empty when delivered; else the error. Returns soon after a stop request.
 std::string run_alarm_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop = {});
 

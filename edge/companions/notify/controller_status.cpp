@@ -14,7 +14,7 @@ namespace {
 constexpr int kStatusMsMax = 10'000;
 constexpr std::int64_t kEarnedSMax = 30;
 
-/// The same sentence with other numbers is the same trouble, and so is a WARN that became CRITICAL.
+/// Key of a line: numbers and level (WARN, CRITICAL) do not distinguish troubles.
 std::string key_of_line(std::string_view line) {
   for (const std::string_view level : {"WARN: ", "CRITICAL: "}) {
     if (line.starts_with(level)) line.remove_prefix(level.size());
@@ -30,13 +30,13 @@ std::string key_of_line(std::string_view line) {
   return key;
 }
 
-/// One outage is one trouble, from the first failed answer to the safe mode that follows.
+/// One outage is one trouble, from the first failed answer to the following safe mode.
 std::string key_of(std::string_view line, std::string_view reason) {
   const bool is_mode = line.starts_with("WARN: mode is ");
   if (is_mode ? reason == "link" : line.starts_with("WARN: battery: no usable ")) return "battery";
   const bool is_late = reason == "no_price" || reason == "price_age" || reason == "price_qh";
   if (is_mode ? is_late : line.starts_with("WARN: prices: no usable ")) return "prices";
-  // Holding becomes safe while the reason stays.
+  // Mode holding becomes safe with the same reason.
   return is_mode ? "not running: " + std::string(reason) : key_of_line(line);
 }
 
@@ -52,7 +52,7 @@ ControllerStatus ask_controller(const ControllerPlaces& controller) {
   Json json = Json::parse(result.output);
   if (json.value()["health"].text() == nullptr) {
     status.trouble = controller.program + " status gives no status (exit code " +
-                     std::to_string(result.exit_code) + "): try it by hand";
+                     std::to_string(result.exit_code) + "): run it manually";
     return status;
   }
   status.json = std::move(json);
@@ -77,12 +77,12 @@ std::vector<Trouble> troubles_of(const ControllerStatus& status) {
 }
 
 std::string settled_trouble(const std::string& file, std::int64_t now_utc_s) {
-  constexpr std::int64_t kLateS = 4 * kSecondsPerDay;  // a day is published on the next
-  constexpr const char* kMend = ": bess-prices --settle says why";
+  constexpr std::int64_t kLateS = 4 * kSecondsPerDay;  // a day is published on the next day
+  constexpr const char* kMend = ": bess-prices --settle shows the cause";
   SettledPrices prices;
   const std::string loss = prices.read(file);
   if (!loss.empty()) return loss;
-  if (prices.quarters().empty()) return std::string("no settled price has come yet") + kMend;
+  if (prices.quarters().empty()) return std::string("no settled price received yet") + kMend;
   const std::int64_t newest_utc_s = prices.quarters().back().start_utc_s;
   if (now_utc_s - newest_utc_s <= kLateS) return "";
   return "no settled price is newer than " + std::string(utc_text(newest_utc_s).view()) + kMend;

@@ -1,5 +1,5 @@
-// The controller's status as bess-edge prints it, and the troubles in it. Asking takes no lock, so
-// it cannot delay the controller.
+// Status of the controller as bess-edge prints it, and the troubles in it. Takes no lock, so it
+// cannot delay the controller.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 namespace bess {
 
 struct ControllerStatus {
-  std::string trouble{};  ///< empty when there is a status; else why there is none
+  std::string trouble{};  ///< why there is no status, or empty
   Json json = Json::object();
 };
 
-/// `bess-edge status --json`; waits ten seconds at most.
+/// Runs `bess-edge status --json`; waits at most 10 s.
 ControllerStatus ask_controller(const ControllerPlaces& controller);
 
-/// `bess-edge earned --json` of one day; waits half a minute at most. Does not exist where the log
-/// has nothing of that day, or there is no answer.
+/// Runs `bess-edge earned --json` for one day; waits at most 30 s. Does not exist without an answer
+/// or without records of that day.
 Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words);
 
-/// Each reason that health names, as it is named: rules of a later controller are reported as well.
+/// Each health reason unchanged, so that reasons of a later version are reported too.
 std::vector<Trouble> troubles_of(const ControllerStatus& status);
 
-/// Why the settled prices in `file`, which should be there days ago, are not; empty: they are.
+/// Why the settled prices in `file` are late; empty if they are not.
 std::string settled_trouble(const std::string& file, std::int64_t now_utc_s);
 
 }  // namespace bess

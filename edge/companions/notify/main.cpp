@@ -1,6 +1,5 @@
-// bess-notify: calls for help. A program of its own, outside the control process: it asks bess-edge
-// and reports what is wrong by a command and MQTT. Killed, stuck or absent, it changes nothing for
-// the controller.
+// Alert program bess-notify, outside the control process: it reads bess-edge status and reports
+// troubles by a command and MQTT. Killed, hanging or absent, it does not affect the controller.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -17,14 +16,14 @@ namespace bess {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Each alarm is reported once, and its end once, also over restarts; what the command does not
-take is repeated every round. It asks bess-edge and takes no lock of it: the controller does not
-know that it exists. One bess-notify to one [notify] folder: a second one is refused; --test and
---check may run beside it.
+    R"(Reports each alert once and its end once, also over restarts. Messages that the command does
+not accept stay in a retry queue and are repeated every round. Reads bess-edge status without a lock
+and does not disturb the controller. Each [notify] folder has one bess-notify: a second one is
+refused, except with --test or --check.
 Exit codes:
   0 done
-  1 the settings are wrong, another bess-notify runs, a test message was not taken
-  2 the command line is wrong)";
+  1 settings wrong, another bess-notify runs, or a test message not delivered
+  2 command line error)";
 
 struct Options {
   std::string config_path = "/etc/bess/edge.toml";
@@ -37,9 +36,9 @@ std::int64_t now_utc_s() { return clock_ns(CLOCK_REALTIME) / kNanosecondsPerSeco
 
 int print_check(const NotifySettings& settings) {
   const MqttSettings& mqtt = settings.mqtt;
-  const std::string broker =
-      mqtt.host + ":" + std::to_string(mqtt.port) + (mqtt.ca_file.empty() ? "" : " with TLS") +
-      ", topics " + topic(settings.name, "...") + (mqtt.orders ? ", holds may be ordered" : "");
+  const std::string broker = mqtt.host + ":" + std::to_string(mqtt.port) +
+                             (mqtt.ca_file.empty() ? "" : " with TLS") + ", topics " +
+                             topic(settings.name, "...") + (mqtt.orders ? ", holds allowed" : "");
   std::printf("node       %s, every %d s, reported after %d s\n", settings.name.c_str(),
               settings.every_s, settings.after_s);
   std::printf("asks       %s status --config %s\n", settings.program.c_str(),
@@ -49,7 +48,7 @@ int print_check(const NotifySettings& settings) {
   return 0;
 }
 
-/// Rounds begin at fixed times; one that is late is left out.
+/// Rounds start at fixed times; a late round is skipped.
 void watch(Notifier& notifier, std::int32_t every_s, const std::stop_token& stop) {
   auto next = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
@@ -60,7 +59,8 @@ void watch(Notifier& notifier, std::int32_t every_s, const std::stop_token& stop
   }
 }
 
-/// Where the folder refuses a lock nothing is refused: reported twice is better than not at all.
+/// Without a lock for other causes than another bess-notify it runs: two reports are better than
+/// none.
 bool is_alone(const NotifySettings& settings, InstanceLock& lock) {
   FileMessage error;
   make_folder(folder_of(settings.lock.c_str()).c_str());
@@ -85,7 +85,7 @@ int run(const Options& options) {
   Notifier notifier(settings, stop.get_token());
   if (options.once) {
     notifier.run_round(now_utc_s());
-    notifier.finish(std::chrono::minutes(2));  // a command's time, and as much again
+    notifier.finish(std::chrono::minutes(2));  // twice the time limit of the command
     return 0;
   }
   watch(notifier, settings.every_s, stop.get_token());
@@ -97,15 +97,16 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   bess::CommandLine line("bess-notify",
-                         "reports by a command and MQTT when a battery controller needs help",
+                         "Report troubles of a battery controller by a command and MQTT",
                          "bess-notify " BESS_VERSION);
   bess::Options options;
   bess::ProgramCommand root = line.root();
-  root.option("--config", options.config_path, "the controller's settings; section [notify]")
+  root.option("--config", options.config_path, "settings of the controller, section [notify]")
       .with_default()
       .value_name("FILE");
-  root.flag("--once", options.once, "one round, for a timer; default: every [notify] every_s");
-  root.flag("--test", options.test, "one message to every channel that is configured")
+  root.flag("--once", options.once,
+            "run one round, for a timer; default: a round every [notify] every_s");
+  root.flag("--test", options.test, "send one test message to every configured channel")
       .excludes("--once");
   root.flag("--check", options.check, "check [notify], send nothing")
       .excludes("--once")

@@ -18,7 +18,7 @@ constexpr int kKeepAliveS = 60;
 constexpr unsigned kReconnectSMax = 5;
 constexpr std::string_view kOffline = "offline";
 
-/// Connects, and goes: empty when host, port and certificate are as they should be.
+/// Connects and disconnects; empty when host, port and certificate are correct.
 std::string probe_connection(const MqttSettings& broker) {
   constexpr long kProbeMsMax = 5'000;
   CURL* const curl = curl_easy_init();
@@ -43,7 +43,7 @@ std::string probe_connection(const MqttSettings& broker) {
   const std::string reason =
       code == CURLE_OK
           ? ""
-          : transfer_trouble(curl, code, detail, "mqtt_ca_file must hold the one that signed it")
+          : transfer_trouble(curl, code, detail, "mqtt_ca_file must hold its issuer's certificate")
                 .reason;
   curl_easy_cleanup(curl);
   return reason;
@@ -58,7 +58,7 @@ MqttClient::MqttClient(const NotifySettings& settings, MqttPresence presence, On
       status_topic_(topic(settings.name, "status")),
       order_topics_{topic(settings.name, kHoldTopic), topic(settings.name, kHoldPowerTopic)} {
   mosquitto_lib_init();
-  // A broker cuts off the client whose name a newcomer has.
+  // A broker disconnects a client when another one connects with its id.
   const std::string visit = presence == MqttPresence::kVisits ? "-" + std::to_string(getpid()) : "";
   client_ = mosquitto_new(("bess-notify-" + settings.id + visit).c_str(), true, this);
   if (client_ == nullptr) throw std::bad_alloc();
@@ -70,7 +70,7 @@ MqttClient::MqttClient(const NotifySettings& settings, MqttPresence presence, On
   mosquitto_publish_callback_set(
       client_, [](mosquitto*, void* self, int id) { static_cast<Self>(self)->on_published(id); });
   mosquitto_message_callback_set(client_, [](mosquitto*, void* self, const mosquitto_message* got) {
-    if (got->retain) return;  // ordered when the notifier was not here: not meant for now
+    if (got->retain) return;  // an order from before this connection
     const std::string payload(static_cast<const char*>(got->payload),
                               static_cast<std::size_t>(got->payloadlen));
     static_cast<Self>(self)->on_order_(got->topic, payload);
@@ -87,9 +87,9 @@ MqttClient::MqttClient(const NotifySettings& settings, MqttPresence presence, On
   if (!settings_.ca_file.empty() &&
       mosquitto_tls_set(client_, settings_.ca_file.c_str(), nullptr, nullptr, nullptr, nullptr) !=
           MOSQ_ERR_SUCCESS) {
-    return;  // never in clear; find_trouble says why
+    return;  // never unencrypted; find_trouble reports the cause
   }
-  mosquitto_loop_start(client_);  // begins without a broker, too, and tries again for ever
+  mosquitto_loop_start(client_);  // also without a broker; retries without end
   mosquitto_connect_async(client_, settings_.host.c_str(), settings_.port, kKeepAliveS);
 }
 
@@ -108,7 +108,7 @@ MqttClient::~MqttClient() {
     mosquitto_loop_stop(client, false);
     mosquitto_destroy(client);
   };
-  // Without a connection the library's thread may sit in a connect, or a look-up, of minutes.
+  // Without a connection the library's thread may block for minutes in a connect or a look-up.
   was_connected ? end() : std::thread(end).detach();
 }
 
@@ -149,16 +149,16 @@ bool MqttClient::is_cut_off() {
 
 std::string MqttClient::find_trouble() {
   if (wait_until_sent({})) return "";
-  if (is_connected()) return "the broker does not acknowledge: is it overloaded, is the line bad?";
+  if (is_connected()) return "the broker does not acknowledge: check its load and the network";
   const std::string before = "no connection to the broker: ";
   const std::string trouble = probe_connection(settings_);
   if (!trouble.empty()) return before + trouble;
   const std::lock_guard lock(mutex_);
   if (refusal_ != 0) {
     return before + mosquitto_connack_string(refusal_) +
-           " see mqtt_user, mqtt_password_file and the broker's log";
+           " check mqtt_user, mqtt_password_file and the broker's log";
   }
-  return before + "it can be reached, but does not let us in: does it speak MQTT there?";
+  return before + "reachable, but no MQTT session: check mqtt_port and the broker's log for MQTT";
 }
 
 void MqttClient::on_connect(int code) {

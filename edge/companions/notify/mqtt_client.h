@@ -1,6 +1,6 @@
-// A broker, reached in the background: libmosquitto's own thread connects again whenever it is
-// lost. Retained values are published as they come and again after each connect; an event waits in
-// libmosquitto's memory until the broker acknowledges it.
+// MQTT client in the background: the thread of libmosquitto reconnects after each loss. Retained
+// values are published immediately and again after each connect; an event stays in the memory of
+// libmosquitto until the broker acknowledges it.
 #pragma once
 
 #include <chrono>
@@ -17,34 +17,32 @@ struct mosquitto;
 
 namespace bess {
 
-/// A visitor leaves neither `status` nor a will, and takes no name that the watching notifier has.
+/// kVisits: no `status` topic, no last will, and another client id than the running notifier.
 enum class MqttPresence { kStays, kVisits };
 
 class MqttClient {
  public:
-  /// Of an order's topic and payload, by libmosquitto's thread.
+  /// Called with topic and payload of an order, by the thread of libmosquitto.
   using OnOrder = std::function<void(const std::string& topic, const std::string& payload)>;
 
-  /// Nothing is sent yet; who stays leaves `status` as the last will. Without `on_order` nothing
-  /// may be ordered.
+  /// Sends nothing yet; kStays sets `status` as the last will. Without `on_order`, no orders.
   MqttClient(const NotifySettings& settings, MqttPresence presence, OnOrder on_order = {});
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;
-  /// Says offline, and goes.
+  /// Publishes "offline" and disconnects.
   ~MqttClient();
 
-  /// Retained by the broker for later subscribers. Kept here as well, for the next connect.
+  /// Retained by the broker for later subscribers, and here for the next connect.
   void retain(const std::string& topic, const std::string& payload);
   /// Not retained: delivered once, to current subscribers.
   void publish(const std::string& topic, const std::string& payload);
-  /// Until the broker has all that was published; false when it has not within that time.
+  /// Waits until the broker has acknowledged all messages; false after `patience`.
   bool wait_until_sent(std::chrono::milliseconds patience);
 
   bool is_connected();
-  /// Connections keep ending soon after they begin: another client has this client id.
+  /// True when connections repeatedly end early: another client has this client id.
   bool is_cut_off();
-  /// Empty when the broker has all that was published; else why it has it not. Waits five
-  /// seconds at most.
+  /// Why the broker has not acknowledged all messages, or empty. Waits at most 5 s.
   std::string find_trouble();
 
  private:

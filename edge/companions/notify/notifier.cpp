@@ -40,7 +40,7 @@ Notifier::Notifier(const NotifySettings& settings, std::stop_token stop)
       kept_(notifier_state_text(state_)) {
   if (!settings_.has_channel()) {
     say(JournalLevel::kWarning,
-        "[notify] names no channel (command, mqtt_host): alarms stand in the journal alone");
+        "[notify] names no channel: set command or mqtt_host; alerts go only to the journal");
   }
   say(JournalLevel::kNotice, "started");
   if (settings_.mqtt.host.empty()) return;
@@ -69,7 +69,7 @@ void Notifier::run_round(std::int64_t now_utc_s) {
   tell_day(status, now_utc_s);
   if (mqtt_ != nullptr) note_connection();
   publish(status);
-  keep();  // before it is sent: killed in between, a message is sent late and not never
+  keep();  // before sending: a kill in between delays a message but does not lose it
   run_command();
 }
 
@@ -103,8 +103,8 @@ void Notifier::tell_alarms(const ControllerStatus& status, std::int64_t now_utc_
   }
   if (mqtt_ != nullptr && mqtt_->is_cut_off()) {
     troubles.push_back({.key = "mqtt_cut_off",
-                        .text = "the MQTT broker ends each connection: is there another client "
-                                "with the id of this one, from a copied machine?"});
+                        .text = "the MQTT broker ends each connection: check for another client "
+                                "with the same id, such as a copied machine"});
   }
   for (const auto& [is_over, alarm] :
        observe(state_.alarms, troubles, settings_.after_s, now_utc_s)) {
@@ -113,15 +113,15 @@ void Notifier::tell_alarms(const ControllerStatus& status, std::int64_t now_utc_
                     .text = alarm.text,
                     .utc_s = now_utc_s,
                     .since_utc_s = alarm.since_utc_s};
-    // It began up to a round before it was first seen, and ended up to a round after the last time.
+    // It began up to one round before it was first seen and ended up to one round after the last.
     const std::int64_t lasted_s = alarm.seen_utc_s - alarm.since_utc_s + settings_.every_s;
     if (is_over) message.text += " (lasted " + duration_text(lasted_s) + ")";
     tell(message);
   }
 }
 
-/// Only behind a new cycle: an answer costs a reading of the log. A day is over when the next has
-/// its first cycle; the days before the first look were not watched.
+/// Only after a new control cycle, because each answer reads the log. A day is complete with the
+/// first control cycle of the next day; days before the start are not reported.
 void Notifier::tell_day(const ControllerStatus& status, std::int64_t now_utc_s) {
   const std::string newest_utc = status.json.value()["last"]["utc"].text_or("");
   if (newest_utc.empty() || newest_utc == newest_utc_) return;
@@ -152,16 +152,16 @@ void Notifier::tell(const Message& message) {
   state_.pending.push_back(message);
   if (state_.pending.size() <= kPendingMax) return;
   const auto oldest = state_.pending.begin() + (is_command_running_ ? 1 : 0);
-  say(JournalLevel::kError, "too many wait for the command; dropped: " + headline(*oldest));
+  say(JournalLevel::kError, "retry queue full; dropped: " + headline(*oldest));
   state_.pending.erase(oldest);
 }
 
-/// Logged once for each time that the connection is lost.
+/// Logs each loss of the connection once.
 void Notifier::note_connection() {
-  constexpr int kRounds = 2;  // one that has just begun is no trouble
+  constexpr int kRounds = 2;  // a short loss is not reported
   rounds_apart_ = mqtt_->is_connected() ? 0 : rounds_apart_ + 1;
   if (rounds_apart_ != kRounds) return;
-  say(JournalLevel::kWarning, "mqtt: " + mqtt_->find_trouble() + "; tried again");
+  say(JournalLevel::kWarning, "mqtt: " + mqtt_->find_trouble() + "; retrying");
 }
 
 void Notifier::publish(const ControllerStatus& status) {
@@ -173,7 +173,7 @@ void Notifier::publish(const ControllerStatus& status) {
   mqtt_->retain(topic(settings_.name, "alarms"), alarms_json(state_.alarms));
 }
 
-/// As a command of bess-edge, with its checks, its refusals and its line in the journal.
+/// Runs bess-edge hold, with its checks, and logs the result.
 void Notifier::follow(const Order& order) {
   std::vector<std::string> words = {settings_.program, "hold"};
   if (order.topic.ends_with(kHoldPowerTopic)) {
@@ -182,12 +182,12 @@ void Notifier::follow(const Order& order) {
     const auto [read_up_to, error] = std::from_chars(order.payload.data(), end, power_w);
     if (error != std::errc{} || read_up_to != end || std::abs(power_w) > settings_.power_w) {
       return say(JournalLevel::kWarning,
-                 "mqtt order: hold_power/set takes whole W up to [battery] power_w");
+                 "mqtt order refused: hold_power/set must be whole W, at most [battery] power_w");
     }
     hold_power_w_ = power_w;
     if (!is_held_) return;
   } else if (order.payload != "ON" && order.payload != "OFF") {
-    return say(JournalLevel::kWarning, "mqtt order: hold/set takes ON or OFF");
+    return say(JournalLevel::kWarning, "mqtt order refused: hold/set must be ON or OFF");
   }
   if (order.payload == "OFF") {
     words.emplace_back("--release");
@@ -198,7 +198,7 @@ void Notifier::follow(const Order& order) {
   constexpr std::int64_t kOrderSMax = 10;
   const ProgramResult result = run_and_hear(words, kOrderSMax);
   say(result.is_well() ? JournalLevel::kNotice : JournalLevel::kWarning,
-      "mqtt orders: hold " + words[2] + ": " + (result.is_well() ? "done" : result.complaint()));
+      "mqtt order: hold " + words[2] + ": " + (result.is_well() ? "done" : result.complaint()));
 }
 
 void Notifier::keep() {
@@ -209,10 +209,10 @@ void Notifier::keep() {
       std::exchange(memory_trouble_, write_notifier_state(settings_.memories, kept_));
   if (before.empty() == memory_trouble_.empty()) return;
   say(JournalLevel::kWarning,
-      memory_trouble_.empty() ? "what is reported is kept again" : memory_trouble_);
+      memory_trouble_.empty() ? "notifier state stored again" : memory_trouble_);
 }
 
-/// For the oldest message, unless it runs for one.
+/// Starts the command for the oldest message, unless it is running.
 void Notifier::run_command() {
   if (is_command_running_ || state_.pending.empty()) return;
   is_command_running_ = true;
@@ -224,12 +224,12 @@ void Notifier::run_command() {
   });
 }
 
-/// One that has just failed would only cost its time again: the rest waits for the next round.
+/// After a failure the queue waits for the next round.
 void Notifier::hear_of_command(const std::string& trouble) {
   is_command_running_ = false;
   const bool is_new = std::exchange(command_trouble_, trouble) != trouble;
   if (!trouble.empty()) {
-    if (is_new) say(JournalLevel::kWarning, trouble + "; tried again every round");
+    if (is_new) say(JournalLevel::kWarning, trouble + "; retrying every round");
     return;
   }
   state_.pending.pop_front();

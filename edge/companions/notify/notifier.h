@@ -1,9 +1,9 @@
-// One round of the notifier: ask bess-edge, compare with what was reported, report the rest.
-//   bess-edge status -> troubles -> alarms -> messages -> queue -> command
+// Notifier round: reads bess-edge status and reports changes.
+//   bess-edge status -> troubles -> alerts -> messages -> retry queue -> command
 //   bess-edge earned -> yesterday          -> messages -> MQTT event
 //   both                                   -> MQTT state, alarms, day
-// It reads and asks; nothing here holds what the controller needs. The command runs beside the
-// rounds, one message at a time; what it does not take is kept, and tried again every round.
+// Takes nothing that the controller needs. The command runs in its own thread, one message at a
+// time; the retry queue keeps undelivered messages for the next round.
 #pragma once
 
 #include <chrono>
@@ -28,19 +28,18 @@ class Notifier {
   static constexpr std::size_t kPendingMax = 200;
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Once `stop` is requested nothing here waits for long any more.
+  /// After a stop request no call here waits long.
   explicit Notifier(const NotifySettings& settings, std::stop_token stop = {});
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
-  /// Lets the command end what it is at, for two seconds; what is cut then is reported after the
-  /// next start.
+  /// Waits up to 2 s for the running command; an interrupted message is sent after the next start.
   ~Notifier();
 
   void run_round(std::int64_t now_utc_s);
-  /// Until that time or the stop, follows what the broker orders and hears of the command.
+  /// Until that time or a stop request, handles orders of the broker and results of the command.
   void serve_until(TimePoint until) { serve(until, stop_, false); }
-  /// Until the command has taken what is pending, or has failed, and a broker that is there has the
-  /// newest values. False when the command is still at it after that time.
+  /// Waits until the command has delivered the queue or failed, and a connected broker has the
+  /// newest values. False when the command is still running after that time.
   bool finish(std::chrono::milliseconds patience);
 
  private:
@@ -63,26 +62,26 @@ class Notifier {
   const NotifySettings settings_;
   const std::stop_token stop_;
   NotifierState state_;
-  std::string kept_;               ///< the text of it that was written last
-  std::string memory_trouble_;     ///< why what is reported cannot be kept; empty = it is
-  Json today_ = Json::object();    ///< as bess-edge earned has it
-  std::string newest_utc_;         ///< of the cycle behind which it was asked
-  bool is_held_ = false;           ///< by the newest status
-  std::int32_t hold_power_w_ = 0;  ///< of the next hold that is ordered
-  int rounds_apart_ = 0;           ///< in a row, without a connection to the broker
+  std::string kept_;               ///< state text written last
+  std::string memory_trouble_;     ///< why the state cannot be stored, or empty
+  Json today_ = Json::object();    ///< from bess-edge earned
+  std::string newest_utc_;         ///< control cycle of the last `earned` query
+  bool is_held_ = false;           ///< in the newest status
+  std::int32_t hold_power_w_ = 0;  ///< for the next ordered hold
+  int rounds_apart_ = 0;           ///< rounds in a row without a connection to the broker
   bool is_command_running_ = false;
   std::string command_trouble_;  ///< logged once, not every round
 
-  std::mutex mutex_;  ///< of what other threads leave for `serve`
+  std::mutex mutex_;  ///< for data that other threads pass to `serve`
   std::condition_variable_any changed_;
   std::deque<Order> orders_;
   std::optional<std::string> outcome_;  ///< of the command
 
-  std::unique_ptr<MqttClient> mqtt_;  ///< null: no broker is configured
+  std::unique_ptr<MqttClient> mqtt_;  ///< null: no broker configured
   std::jthread command_;
 };
 
-/// A message to each channel, past the queue. False when one did not take it.
+/// Sends a message to each channel, bypassing the queue. False when one failed.
 bool send_test(const NotifySettings& settings, std::int64_t now_utc_s);
 
 }  // namespace bess

@@ -14,7 +14,7 @@ namespace bess {
 std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
                                 std::int64_t after_s, std::int64_t now_utc_s) {
   std::vector<AlarmEvent> events;
-  for (Alarm& alarm : alarms) {  // a clock that was in the future must not silence anything
+  for (Alarm& alarm : alarms) {  // a clock set back must not suppress an alert
     alarm.since_utc_s = std::min(alarm.since_utc_s, now_utc_s);
     alarm.seen_utc_s = std::min(alarm.seen_utc_s, now_utc_s);
   }
@@ -30,7 +30,7 @@ std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Tr
     events.push_back({.is_over = false, .alarm = *alarm});
   }
   std::erase_if(alarms, [&](const Alarm& alarm) {
-    // Strictly longer than 0, or with after_s = 0 what was just seen would be over.
+    // Strictly longer than 0; else with after_s = 0 a trouble just seen would be over.
     const std::int64_t away_s = now_utc_s - alarm.seen_utc_s;
     if (away_s == 0 || away_s < after_s) return false;
     if (alarm.is_told) events.push_back({.is_over = true, .alarm = alarm});
@@ -69,15 +69,15 @@ NotifierState state_in(JsonValue all) {
   return state;
 }
 
-/// False with errno, 0 where it is damaged.
+/// False with errno; 0 if damaged.
 bool read_place(const std::string& path, NotifierState& state) {
-  constexpr std::size_t kBytesMax = 4 * 1024 * 1024;  // 200 messages need a twentieth
+  constexpr std::size_t kBytesMax = 4 * 1024 * 1024;  // 20 times the size of 200 messages
   std::string text(kBytesMax, '\0');
   const ssize_t size = read_beginning(path.c_str(), text, Links::kRefused);
   if (size < 0) return false;
   text.resize(static_cast<std::size_t>(size));
   errno = 0;
-  const Json json = Json::parse(text);  // one of an older program has no checksum
+  const Json json = Json::parse(text);  // older versions wrote no checksum
   const bool is_broken = check_text(text, kJsonChecksum) == TextState::kBroken;
   if (is_broken || json.value()["version"].number() != kVersion) return false;
   state = state_in(json.value());
@@ -96,12 +96,12 @@ NotifierState read_notifier_state(const std::vector<std::string>& paths,
       if (!is_known || state.number > newest.number) newest = std::move(state);
       is_known = true;
     } else if (errno != ENOENT) {
-      losses.push_back(path + (errno == 0 ? " is damaged, or of another version: not believed"
+      losses.push_back(path + (errno == 0 ? " is damaged or of another version: ignored"
                                           : std::string(" cannot be read: ") + strerror(errno)));
     }
   }
   if (!is_known && !losses.empty()) {
-    losses.emplace_back("what was reported is not known: alarms are reported again");
+    losses.emplace_back("reported alerts unknown: current alerts are reported again");
   }
   return newest;
 }
@@ -139,8 +139,8 @@ std::string write_notifier_state(const std::vector<std::string>& paths, const st
     if (trouble.empty()) trouble = message.view();
   }
   if (trouble.empty()) return "";
-  return trouble + (kept.empty() ? "; what is reported is kept nowhere: a restart reports it again"
-                                 : "; what is reported is kept in " + kept + " alone");
+  return trouble + (kept.empty() ? "; notifier state not stored: a restart repeats alerts"
+                                 : "; notifier state stored only in " + kept);
 }
 
 }  // namespace bess

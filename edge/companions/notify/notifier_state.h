@@ -1,6 +1,6 @@
-// What must outlast a restart of the notifier: the alarms that were reported, the last day that
-// was, and what the command has not taken yet. One JSON text with a checksum, replaced at once: in
-// [notify] folder and, for a disk that dies, in run_folder.
+// Notifier state that survives a restart: sent alerts, last reported day, retry queue. One JSON
+// text with a checksum, replaced atomically, in [notify] folder and, in case the disk fails, in
+// run_folder.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,12 @@
 
 namespace bess {
 
-// Which troubles have been reported: each once, and its end once. Pure, over UTC seconds.
-//   a trouble that lasts `after_s`                is reported
-//   one that comes back within `after_s`          is still the same
-//   a reported one that stays away for `after_s`  is over, and that is reported
-// Between two looks it is a list that the caller keeps in a file: a restart repeats nothing.
+// Alert bookkeeping: each trouble and its end are reported once. Pure, over UTC seconds.
+//   a trouble that lasts `after_s`           is reported
+//   one that returns within `after_s`        is the same
+//   a reported one absent for `after_s`      is over, which is reported
 
-/// Something that is wrong now. Two looks see the same trouble when the key is the same; the text
-/// may differ, by a number that grows.
+/// A current trouble. The key identifies it; numbers in the text may change.
 struct Trouble {
   std::string key{};
   std::string text{};
@@ -27,9 +25,9 @@ struct Trouble {
 
 struct Alarm {
   std::string key{};
-  std::string text{};  ///< as it was last seen
+  std::string text{};  ///< newest text
   std::int64_t since_utc_s = 0;
-  std::int64_t seen_utc_s = 0;  ///< last time
+  std::int64_t seen_utc_s = 0;  ///< last observation
   bool is_told = false;
 };
 
@@ -38,27 +36,26 @@ struct AlarmEvent {
   Alarm alarm{};
 };
 
-/// Takes into `alarms`, oldest first, that these troubles and no others are there now. Returns what
-/// is to be reported.
+/// Updates `alarms`, oldest first, with the current troubles. Returns the events to report.
 std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
                                 std::int64_t after_s, std::int64_t now_utc_s);
 
 struct NotifierState {
-  std::uint64_t number = 0;  ///< grows with every time that it is kept
-  std::string day{};         ///< the newest of which the log had a cycle; empty = none yet
+  std::uint64_t number = 0;  ///< of the stored version
+  std::string day{};         ///< newest day with a control cycle in the log; empty = none
   std::vector<Alarm> alarms{};
   std::deque<Message> pending{};  ///< oldest first
 };
 
-/// The one that was kept last; a file that is damaged or not ours is named in `losses`, one line
-/// each, and is as if nothing had been reported.
+/// Newest stored state. A damaged or foreign file is named in `losses`, one line each, and counts
+/// as empty.
 NotifierState read_notifier_state(const std::vector<std::string>& paths,
                                   std::vector<std::string>& losses);
 
 std::string notifier_state_text(const NotifierState& state);
 
-/// What `notifier_state_text` gave, to every place; a folder that is missing is made. Empty, or one
-/// line: which place could not be written, and what follows from it.
+/// Writes the text of `notifier_state_text` to every path and creates missing folders. Empty, or
+/// one line with the failed path and the consequence.
 std::string write_notifier_state(const std::vector<std::string>& paths, const std::string& text);
 
 }  // namespace bess

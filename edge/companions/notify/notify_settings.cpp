@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-/// The first line of a file that others may not read.
+/// First line of a file that other users may not read.
 std::string read_password(TomlTable& table, std::string_view key, const std::string& name) {
   const std::string path = table.resolved(name);
   char line[256] = "";
@@ -23,10 +23,9 @@ std::string read_password(TomlTable& table, std::string_view key, const std::str
   file.getline(line, sizeof line);
   const std::string password(line, std::strcspn(line, "\r"));
   if (file.fail() || password.empty() || stat(path.c_str(), &info) != 0) {
-    table.fail(key,
-               "= " + path + " must be a file that can be read, of one line of 1 to 255 bytes");
+    table.fail(key, "= " + path + " must be a readable file with one line of 1 to 255 bytes");
   } else if ((info.st_mode & S_IRWXO) != 0) {
-    table.fail(key, "= " + path + " is readable for others: chmod o-rwx it");
+    table.fail(key, "= " + path + " is readable by other users: chmod o-rwx it");
   }
   return password;
 }
@@ -42,7 +41,7 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   if (mqtt.host.empty() || !table.ok()) return;
   const bool is_here = mqtt.host == "localhost" || is_loopback_address(mqtt.host);
   if (mqtt.orders && mqtt.user.empty() && !is_here) {
-    table.fail("mqtt_orders", "needs mqtt_user: a broker that lets in anybody lets anybody order");
+    table.fail("mqtt_orders", "needs mqtt_user: an open broker would accept orders from anyone");
   }
   if (mqtt.port == 0) mqtt.port = mqtt.ca_file.empty() ? 1883 : 8883;
   if (!mqtt.ca_file.empty()) {
@@ -55,7 +54,7 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   if (mqtt.user.empty()) table.fail("mqtt_password_file", "needs mqtt_user");
   if (mqtt.ca_file.empty() && !is_here) {
     table.fail("mqtt_password_file",
-               "would be sent in clear: add mqtt_ca_file, or use a broker on this machine");
+               "would be sent unencrypted: add mqtt_ca_file, or use a broker on this machine");
   }
   mqtt.password = read_password(table, "mqtt_password_file", password_file);
 }

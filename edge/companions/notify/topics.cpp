@@ -7,18 +7,18 @@
 namespace bess {
 namespace {
 
-constexpr const char* kNotRunning = "not running";  ///< as `bess-edge status` says it
+constexpr const char* kNotRunning = "not running";  ///< health of `bess-edge status`
 
 bool is_true(JsonValue value) { return value.boolean().value_or(false); }
 
-/// Absent, not 0, where it is unknown.
+/// An unknown number is absent, not 0.
 void set_number(Json& json, const char* member, JsonValue value, double divisor = 1,
                 int decimals = 0) {
   const std::optional<double> number = value.number();
   if (number.has_value()) json.set(member, Decimals{*number / divisor, decimals});
 }
 
-/// Who decides, and what ends it: "student", or "price_age, until a newer price comes".
+/// Decider and end condition: "student", or "price_age, until a newer price comes".
 std::string why_text(JsonValue next) {
   const std::string reason = next["reason"].text_or("");
   const std::string ends = next["ends"].text_or("");
@@ -26,7 +26,7 @@ std::string why_text(JsonValue next) {
   return ends.empty() ? reason : reason + ", " + ends;
 }
 
-/// What the last cycle saw and did.
+/// Inputs and order of the last control cycle.
 void set_newest(Json& json, JsonValue all) {
   const JsonValue last = all["last"];
   if (is_true(last["has_measurement"])) {
@@ -76,7 +76,7 @@ std::string state_json(const ControllerStatus& status, const std::vector<Alarm>&
                     {"utc", all["last"]["utc"].text_or("")},
                     {"why", is_running ? why_text(all["next"]) : kNotRunning},
                     {"held", is_running && is_true(all["last"]["held"])}});
-  if (is_running) set_newest(json, all);  // of one that has ended nothing is known any more
+  if (is_running) set_newest(json, all);  // unknown after the end of the controller
   const JsonValue day = *today["days"].begin();
   set_number(json, "charged_kwh", day["charged_kwh"], 1, 3);
   set_number(json, "discharged_kwh", day["discharged_kwh"], 1, 3);
@@ -126,7 +126,7 @@ std::string discovery_topic(const NotifySettings& settings) {
 
 std::string discovery_json(const NotifySettings& settings, const std::string& version) {
   std::string text(page_file("discovery.json"));
-  std::string controls(page_file("controls.json"));  // an object: its members go among the others
+  std::string controls(page_file("controls.json"));  // its members join those of discovery.json
   controls = controls.substr(1, controls.rfind('}') - 1) + ",";
   replace(text, "\"$CONTROLS\": {},", settings.mqtt.orders ? controls : "");
   replace(text, "$ID", "bess_" + settings.id);

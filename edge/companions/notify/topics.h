@@ -1,12 +1,11 @@
-// What stands where in the broker: a versioned tree, so that no later version moves what users have
-// built upon.
+// MQTT topics: a versioned tree, stable for users.
 //   bess/v1/NAME/status   online | offline (the last will), retained
 //   bess/v1/NAME/state    the newest values, one JSON object, retained
-//   bess/v1/NAME/alarms   the alarms that are reported and not over, JSON list, retained
+//   bess/v1/NAME/alarms   active alerts, JSON list, retained
 //   bess/v1/NAME/day      yesterday, JSON, retained
-//   bess/v1/NAME/event    each alarm, its end and each day as it is reported, JSON, not retained
-//   bess/v1/NAME/hold/set, hold_power/set   orders, where [notify] mqtt_orders allows them
-// A member may be added to an object; none is renamed or removed within v1.
+//   bess/v1/NAME/event    each alert, its end and each day, when reported, JSON, not retained
+//   bess/v1/NAME/hold/set, hold_power/set   orders, if [notify] mqtt_orders allows them
+// Members may be added to an object; none is renamed or removed within v1.
 #pragma once
 
 #include <optional>
@@ -26,21 +25,20 @@ inline constexpr const char* kHoldPowerTopic = "hold_power/set";  ///< whole W, 
 /// "bess/v1/NAME/TOPIC".
 std::string topic(const std::string& node, const char* name);
 
-/// `today` is what ask_earned gave; `hold_power_w` is of the next hold, where one may be ordered.
+/// `today`: from ask_earned. `hold_power_w`: of the next hold, if orders are allowed.
 std::string state_json(const ControllerStatus& status, const std::vector<Alarm>& alarms,
                        JsonValue today, std::optional<std::int32_t> hold_power_w);
 Json alarm_json(const Alarm& alarm);
-/// Of those that are reported.
+/// Reported alerts only.
 std::string alarms_json(const std::vector<Alarm>& alarms);
-/// `earned` is what ask_earned gave of that day: all of its numbers.
+/// All numbers of `earned`, from ask_earned.
 std::string day_json(JsonValue earned);
 Json event_json(const std::string& node, const Message& message);
 
-/// discovery.json or controls.json, embedded when it is built: the discovery message, with
-/// $NAMES of what is ours.
+/// Embedded discovery.json or controls.json: the discovery message with $NAMES to replace.
 std::string_view page_file(std::string_view name);
 
-/// Home Assistant's discovery: one message for the device and all its entities (since 2024.11).
+/// Discovery of Home Assistant (2024.11 or later): one message for the device and its entities.
 std::string discovery_topic(const NotifySettings& settings);
 std::string discovery_json(const NotifySettings& settings, const std::string& version);
 

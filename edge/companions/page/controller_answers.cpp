@@ -68,7 +68,7 @@ Answer ask_controller(const PageSettings& settings, std::vector<std::string> wor
   words.insert(words.begin(), settings.program);
   words.insert(words.end(), {"--config", settings.config_path});
   ProgramResult result = run_and_hear(words, kAnswerS);
-  // A controller that is degraded or gone says so by the exit code, and gives its answer.
+  // A degraded or stopped controller has another exit code and still gives an answer.
   const bool has_ended = result.trouble.empty() && result.exit_code < kSignalled;
   const bool is_answer =
       is_json ? Json::parse(result.output).value().exists() : !result.output.empty();
@@ -92,7 +92,7 @@ std::shared_ptr<const Answer> KeptAnswer::newest() {
   if (auto answer = fresh()) return answer;
   std::unique_lock making(making_, std::try_to_lock);
   if (!making.owns_lock()) {
-    // Another thread is at it: the old one must do, but for the very first.
+    // Another thread is fetching: use the old answer, except for the first.
     {
       const std::scoped_lock lock(lock_);
       if (kept_ != nullptr) return kept_;

@@ -1,6 +1,5 @@
-// bess-page: the controller, to look at in a browser. A program of its own, outside the control
-// process, which passes on what `bess-edge` answers. If it is killed, hangs or is absent, nothing
-// changes for the controller.
+// Web page program bess-page, outside the control process: it serves the output of bess-edge.
+// Killed, hanging or absent, it does not affect the controller.
 #include <cstdio>
 #include <string>
 
@@ -14,15 +13,15 @@ namespace bess {
 namespace {
 
 constexpr const char* kFooter =
-    R"(The last 24 hours of price, power and state of charge, the reason of the last order and the
-price at which it would be another, this month's money, alarms, versions. Read-only: orders are
-given by bess-edge. Listens on 127.0.0.1 by default. /api/status, why, month and map have the
-numbers as JSON, /api/log as CSV, /metrics for Prometheus: as bess-edge prints them. It takes no
-lock of the controller, which does not know that it exists.
+    R"(Shows price, power and state of charge of the last 24 hours, the last decision with its
+margins, earnings of this month, alerts and versions. Read-only: use bess-edge for orders. Listens
+on 127.0.0.1 by default. The output of bess-edge is available as JSON (/api/status, why, month,
+map), CSV (/api/log) and for Prometheus (/metrics). Takes no lock and does not disturb the
+controller.
 Exit codes:
   0 done
-  1 the settings are wrong, or the port is taken
-  2 the command line is wrong
+  1 settings wrong, or port in use
+  2 command line error
 Examples:
   bess-page --check
   bess-page --config edge.toml --port 0
@@ -69,14 +68,15 @@ int run(const Options& options) {
 }  // namespace bess
 
 int main(int argc, char** argv) {
-  bess::CommandLine line("bess-page", "the battery controller as a web page",
+  bess::CommandLine line("bess-page", "Show a battery controller as a web page",
                          "bess-page " BESS_VERSION);
   bess::Options options;
   bess::ProgramCommand root = line.root();
-  root.option("--config", options.config_path, "the controller's settings; section [page]")
+  root.option("--config", options.config_path, "settings of the controller, section [page]")
       .with_default()
       .value_name("FILE");
-  root.option("--port", options.port, "instead of [page] port; 0: any free one, which is printed")
+  root.option("--port", options.port,
+              "port to listen on, 0: any free port, printed; default: [page] port")
       .value_name("PORT")
       .range(0, 65'535);
   root.flag("--check", options.is_check, "check [page], serve nothing");

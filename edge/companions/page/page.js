@@ -1,4 +1,4 @@
-// Shows what bess-edge answers: the state every ten seconds, the rest once a cycle.
+// Page script: shows bess-edge status every ten seconds, the rest once per control cycle.
 "use strict";
 
 const kEveryMs = 10000;
@@ -7,7 +7,7 @@ const kHourMs = 3600000;
 const charts = {};  // by canvas: {chart, draw}
 let shownCycle = null;
 let state = null;  // newest answer of api/status
-let isAsking = false;  // a controller that hangs is not asked twice at a time
+let isAsking = false;  // one request at a time, also when it hangs
 
 const byId = (id) => document.getElementById(id);
 const colour = (name) =>
@@ -17,7 +17,7 @@ const clock = (time) => new Date(time).toLocaleTimeString(
 const moment = (time) =>
   new Date(time).toLocaleString("sv-SE", {timeZone: "Europe/Brussels"}).slice(0, 16);
 
-/** "−1,200 W"; a dash where there is no number. */
+/** "−1,200 W"; a dash without a number. */
 function say(value, decimals = 0, unit = "") {
   if (typeof value !== "number") return "\u2013";
   const digits = {minimumFractionDigits: decimals, maximumFractionDigits: decimals};
@@ -45,7 +45,7 @@ async function ask(path) {
 }
 
 const doing = (watts) => watts > 0 ? `charge at ${say(watts, 0, "W")}`
-  : watts < 0 ? `discharge at ${say(-watts, 0, "W")}` : "rest";
+  : watts < 0 ? `discharge at ${say(-watts, 0, "W")}` : "stay idle";
 const isRunning = () => state.health !== "not running";
 
 function showStatus(status) {
@@ -70,7 +70,7 @@ function showStatus(status) {
     element("div", "", element("dt", name),
             element("dd", value, ...(note ? [element("br"), element("small", note)] : [])))));
   const facts = {
-    version: status.version, student: status.student, "learnt from": status.provenance,
+    version: status.version, student: status.student, "trained on": status.provenance,
     retrain: status.retrain, battery: status.battery, map: status.map,
     since: status.start_utc && moment(status.start_utc), update: status.update?.phase};
   fill("facts", Object.entries(facts).filter(([, value]) => value).flatMap(
@@ -81,66 +81,66 @@ function showStatus(status) {
 function showNext(next, noEffect) {
   const told = [];
   if (!next) {
-    told.push("Nothing is decided next.");
+    told.push("No next decision.");
   } else if (next.action === null) {
-    told.push(`At ${next.local} nothing is driven without a price and a measurement.`);
+    told.push(`At ${next.local} no control without price and measurement.`);
   } else {
     told.push(
-      `At ${next.local} it would ${doing(next.power_w)} if price and state of charge stay.`);
+      `At ${next.local} it will ${doing(next.power_w)} if price and state of charge stay.`);
   }
-  if (next?.reason) told.push(`${next.reason} stands above it${next.ends && ", " + next.ends}.`);
+  if (next?.reason) told.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
   for (const change of next?.reserve_changes || []) {
     told.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
   }
   if (typeof next?.full_charge_in_days === "number") {
     told.push(`Days to the next full charge: ${next.full_charge_in_days}.`);
   }
-  lines("next", [...told, ...noEffect.map((key) => `Set, and without effect: ${key}`)], "li");
+  lines("next", [...told, ...noEffect.map((key) => `Unused setting: ${key}`)], "li");
 }
 
 function showWhy(why) {
   const ends = why.ends ? `; ${why.ends}` : "";
   byId("sentence").textContent =
-    `At ${why.local} the battery was to ${doing(why.ordered_power_w)}, decided by ${why.reason}, ` +
-    `for ${say(why.cycles_with_reason)} cycles by now${ends}.`;
+    `At ${why.local} the order was to ${doing(why.ordered_power_w)}, decided by ${why.reason}, ` +
+    `for ${say(why.cycles_with_reason)} control cycles${ends}.`;
   const told = [`Price ${price(why.price_eur_per_mwh)}, state of charge ` +
-                `${percent(why.soc_percent)}. The student would ${why.student || "not be asked"}.`];
+                `${percent(why.soc_percent)}. Student: ${why.student || "no decision"}.`];
   const at = why.margins;
   if (at) {
     told.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
-              `${price(at.discharge_from_eur_per_mwh)} on; between them it rests.`);
+              `${price(at.discharge_from_eur_per_mwh)}; between them it is idle.`);
   }
   if (at?.charge_up_to_soc_percent != null) {
     told.push(`At this price it would charge up to ${percent(at.charge_up_to_soc_percent)}.`);
   }
   if (at?.discharge_from_soc_percent != null) {
     told.push(
-      `At this price it would discharge from ${percent(at.discharge_from_soc_percent)} on.`);
+      `At this price it would discharge from ${percent(at.discharge_from_soc_percent)}.`);
   }
   lines("why", told, "p");
 }
 
 const kColumns = [  // head, key, decimals
-  ["earned, EUR", "earned_eur", 2], ["of it an estimate", "estimated_eur", 2],
+  ["earned, EUR", "earned_eur", 2], ["of which estimated", "estimated_eur", 2],
   ["charged, kWh", "charged_kwh", 1], ["discharged, kWh", "discharged_kwh", 1],
   ["full cycles", "full_cycles", 2], ["EUR/MWh, mean", "mean_price_eur_per_mwh", 2],
-  ["cycles driven", "driven_cycles", 0]];
+  ["control cycles driven", "driven_cycles", 0]];
 
 function showMonth(month) {
   const stops = month.stops.by_reason.map((stop) =>
-    ` ${stop.reason}: ${say(stop.cycles)} cycles, ${say(stop.not_driven)} not driven.`);
+    ` ${stop.reason}: ${say(stop.cycles)} control cycles, ${say(stop.not_driven)} not driven.`);
   byId("money").textContent =
-    `${eur(month.earned_eur)} earned, ${eur(month.estimated_eur)} of it an estimate: ` +
+    `${eur(month.earned_eur)} earned, of which ${eur(month.estimated_eur)} estimated: ` +
     `${say(month.settled_quarter_hours)} of ${say(month.quarter_hours)} quarter-hours are at ` +
-    "their settled price. With the same charge at both ends " +
+    "their settled price. At equal state of charge: " +
     `${eur(month.earned_at_equal_soc_eur)}. ` +
-    `Driven ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
+    `In control ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
   fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
     ...kColumns.map(([, key, decimals]) => element("td", say(day[key], decimals))))));
 }
 
-/** Draws a chart, and draws it again when the page turns dark or light. */
+/** Draws a chart; kept for redrawing in another colour scheme. */
 function drawChart(id, draw) {
   charts[id]?.chart.destroy();
   const config = draw();
@@ -160,7 +160,7 @@ const line = (label, name, data, more) => ({
   label, data, borderColor: colour(name), backgroundColor: colour(name), borderWidth: 1.6,
   pointRadius: 0, ...more});
 
-/** Steps through the cycles; a hole of the log is a hole of the line. */
+/** Steps through the control cycles; a gap in the log is a gap in the line. */
 function steps(cycles, value) {
   return cycles.flatMap((cycle, index) => {
     const x = cycle.time, y = value(cycle), next = cycles[index + 1];
@@ -177,7 +177,7 @@ function drawDay(csv) {
     time: Date.parse(row[column("utc")]),
     price: row[column("price_minute_utc")] === "none" ? NaN
       : number(row, "price_centi_eur_per_mwh", 100),
-    // What was not measured stands there as 0.
+    // A missing measurement is 0.
     soc: number(row, "soc_e4", 100) || NaN,
     measured: number(row, "soc_e4", 1) ? number(row, "battery_power_w", 1000) : NaN,
     ordered: row[column("written")] === "1" ? number(row, "ordered_power_w", 1000) : NaN,
@@ -213,7 +213,7 @@ function drawDay(csv) {
 }
 
 function drawMap({columns}) {
-  if (columns.length === 0) return "The student decided nothing in this cycle.";
+  if (columns.length === 0) return "No student decision in this control cycle.";
   const last = state.last;
   const now = {x: last.soc_e4 / 100, y: last.price_centi_eur_per_mwh / 100};
   const points = (key) => columns.map((column) => ({x: column.soc_percent, y: column[key]}));
@@ -238,7 +238,7 @@ function drawMap({columns}) {
   }));
 }
 
-/** Asks and shows; false when there was trouble. That, or what `draw` says, stands at `trouble`. */
+/** Fetches and shows; false after an error. Element `trouble` shows it, or the text of `draw`. */
 async function show(path, trouble, draw) {
   try {
     byId(trouble).textContent = draw(await ask(path)) || "";
@@ -249,10 +249,10 @@ async function show(path, trouble, draw) {
   }
 }
 
-/** What is shown is from `last`, and this is why there is nothing newer. */
+/** Marks the data as old, with the reason. */
 function markOld(why) {
   const last = state?.last?.utc;
-  byId("old").textContent = why && (last ? `${why} What is shown is of ${moment(last)}.` : why);
+  byId("old").textContent = why && (last ? `${why} Data of ${moment(last)}.` : why);
   byId("old").hidden = !why;
   document.body.classList.toggle("old", Boolean(why));
 }
@@ -270,10 +270,10 @@ async function renew() {
         show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
       shownCycle = shown.every(Boolean) ? cycle : null;
     }
-    markOld(isRunning() ? "" : "No controller runs.");
+    markOld(isRunning() ? "" : "No controller is running.");
   } catch (error) {
     markOld(`The controller does not answer: ${error.message}.`);
-    if (!state) byId("health").textContent = "not known";
+    if (!state) byId("health").textContent = "unknown";
   }
   isAsking = false;
   document.documentElement.dataset.ready = "true";

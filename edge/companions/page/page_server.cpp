@@ -13,7 +13,7 @@ namespace bess {
 
 namespace {
 
-/// Without its port; of "[::1]:80" what stands in the brackets.
+/// Host without port; of "[::1]:80" the part in brackets.
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
@@ -41,14 +41,14 @@ bool is_our_host(std::string_view host, const PageSettings& settings) {
   for (const std::string& ours : settings.hosts) {
     if (equals_ignoring_case(name, ours)) return true;
   }
-  // Listening everywhere: any address is one of ours, but no name that is not in `hosts`.
+  // Listening on all addresses: any address is ours, but only names in `hosts`.
   return (settings.host == "0.0.0.0" || settings.host == "::") &&
          is_numeric_address(std::string(name));
 }
 
 namespace {
 
-// A connection that says nothing, or a byte now and then, holds its own thread only.
+// A silent or slow connection occupies only its own thread.
 constexpr int kThreads = 128;
 constexpr int kQueued = 128;
 constexpr time_t kReadS = 5;  ///< without a byte
@@ -56,7 +56,7 @@ constexpr time_t kWriteS = 5;
 constexpr std::size_t kBodyBytesMax = 4'096;
 constexpr const char* kJson = "application/json";
 
-/// Nothing of the page comes from elsewhere, goes elsewhere, or stands in somebody else's frame.
+/// Forbids content from other hosts, requests to other hosts, and embedding in other pages.
 void set_headers(httplib::Server& server) {
   server.set_default_headers(
       {{"Content-Security-Policy",
@@ -74,16 +74,16 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   response.set_content(why + "\n", "text/plain; charset=utf-8");
 }
 
-/// What is refused before anything is looked for.
+/// Refuses wrong hosts and methods before routing.
 bool is_refused(const httplib::Request& request, httplib::Response& response,
                 const PageSettings& settings) {
   if (!is_our_host(request.get_header_value("Host"), settings)) {
-    refuse(response, 421, "this is not that host: name it in [page] hosts");
+    refuse(response, 421, "unknown host name: add it to [page] hosts");
     return true;
   }
   if (request.method == "GET" || request.method == "HEAD") return false;
   response.set_header("Allow", "GET, HEAD");
-  refuse(response, 405, "the page is only read: orders are given by bess-edge");
+  refuse(response, 405, "the page is read-only: use bess-edge for orders");
   return true;
 }
 
@@ -91,7 +91,7 @@ bool is_refused(const httplib::Request& request, httplib::Response& response,
 
 PageServer::PageServer(const PageSettings& settings)
     : settings_(settings), server_(std::make_unique<httplib::Server>()) {
-  // The library's own would let two pages share a port unnoticed.
+  // The library's default (SO_REUSEPORT) would let two pages share a port.
   server_->set_socket_options([this](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -110,7 +110,7 @@ PageServer::PageServer(const PageSettings& settings)
   });
   server_->set_exception_handler(
       [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-        refuse(response, 500, "the page could not be made");
+        refuse(response, 500, "internal error: the page could not be generated");
       });
   add_files();
   add_answers();
@@ -174,9 +174,9 @@ bool PageServer::bind(std::string& error) {
                             : server_->bind_to_port(settings_.host, settings_.port);
   if (!is_bound) {
     error = "[page] host, port: " + settings_.host + ":" + std::to_string(settings_.port) +
-            " cannot be listened on: is another program there?";
+            " cannot be opened: is another program using the port?";
   }
-  // The library's own queue is five long: a sixth client would wait for a second.
+  // The library's default queue holds 5 clients: a sixth would wait for a second.
   if (is_bound) ::listen(listening_socket_, kQueued);
   return is_bound;
 }

@@ -1,13 +1,13 @@
-// The page over HTTP, to be read by anybody who reaches it: static files, and the controller's
-// answers, which the page's script shows.
+// Page server over HTTP, unauthenticated and read-only: static files, and output of bess-edge for
+// the page's script.
 //
 //   /                                        page.html, page.css, page.js, chart.min.js
-//   /api/status /api/why /api/month          what bess-edge prints with --json
-//   /api/log                                 its last 24 hours, as CSV
-//   /api/map                                 the student's decisions around the present
+//   /api/status /api/why /api/month          output of bess-edge with --json
+//   /api/log                                 last 24 hours, as CSV
+//   /api/map                                 decisions of the student at this minute
 //   /metrics                                 for Prometheus
 //
-// GET and HEAD alone, one request a connection; a slow client makes nobody else wait.
+// Only GET and HEAD, one request per connection; a slow client does not delay others.
 #pragma once
 
 #include <memory>
@@ -24,17 +24,11 @@ class Server;
 
 namespace bess {
 
-// The static files of the page, embedded when it is built.
-
-/// "page.html", "page.css", "page.js" or "chart.min.js".
+/// Embedded static file: "page.html", "page.css", "page.js" or "chart.min.js".
 std::string_view page_file(std::string_view name);
 
-// Who may ask. A page on the loopback device is within reach of every browser on that machine, and
-// so of every web site that it visits: the name that is asked for must be ours (no rebinding of a
-// foreign name).
-
-/// `host` of the request, with or without a port: this server's address, localhost on loopback, or
-/// one of `hosts`.
+/// Check of the Host header, with or without a port: this server's address, localhost on loopback,
+/// or one of `hosts`. Prevents DNS rebinding by web sites in a browser on this machine.
 bool is_our_host(std::string_view host, const PageSettings& settings);
 
 class PageServer {
@@ -44,10 +38,10 @@ class PageServer {
   PageServer& operator=(const PageServer&) = delete;
   ~PageServer();
 
-  /// False with one line. Port 0 of the settings: any free one.
+  /// False with one line. Port 0 of the settings: any free port.
   bool bind(std::string& error);
   [[nodiscard]] int port() const { return port_; }
-  /// Until `stop`, from another thread.
+  /// Serves until `stop` from another thread.
   void serve();
   void stop();
 

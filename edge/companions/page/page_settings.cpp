@@ -12,7 +12,7 @@ void read_hosts(TomlTable& table, std::vector<std::string>& hosts) {
   for (const TomlValue& name : *names) {
     const auto* const text = name.as<std::string>();
     if (text == nullptr || text->empty() || text->find_first_of(" /:@") != text->npos) {
-      return table.fail_at(name, "[page] hosts must be names of a host, without scheme and port");
+      return table.fail_at(name, "[page] hosts must be host names, without scheme and port");
     }
     hosts.push_back(*text);
   }
@@ -23,7 +23,7 @@ void read_page(TomlTable table, PageSettings& settings) {
   table.integer("port", settings.port, 1, 65'535);
   read_hosts(table, settings.hosts);
   if (!is_numeric_address(settings.host)) {
-    table.fail("host", "must be a numeric address: 127.0.0.1, ::1, or one of this machine");
+    table.fail("host", "must be a numeric address of this machine, such as 127.0.0.1 or ::1");
   }
   table.finish();
 }

@@ -1,4 +1,4 @@
-// [page] of the controller's configuration, and where the controller's log lies.
+// Settings of the page: [page] of the controller's configuration, and the controller's paths.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,13 @@
 namespace bess {
 
 struct PageSettings : ControllerPlaces {
-  std::string host = "127.0.0.1";  ///< numeric; where it listens
+  std::string host = "127.0.0.1";  ///< numeric address to listen on
   std::int32_t port = 8745;
-  std::vector<std::string>
-      hosts;                   ///< names under which it may be asked for, besides its own address
-  std::int32_t refresh_s = 5;  ///< what is shown is at most this old
+  std::vector<std::string> hosts;  ///< accepted host names, in addition to its address
+  std::int32_t refresh_s = 5;      ///< maximum age of the data
 };
 
-/// False with one line: file, key, and the mend. Makes nothing and connects to nothing.
+/// False with one line: file, key and remedy. Creates nothing and opens no connection.
 bool load_page_settings(const std::string& path, PageSettings& settings, std::string& error);
 
 }  // namespace bess

@@ -123,7 +123,7 @@ TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
     killed.signal(SIGKILL);
     killed.wait();
   }
-  EXPECT_TRUE(is_mailed("ALARM: CRITICAL: "));
+  EXPECT_TRUE(is_mailed("ALERT: CRITICAL: "));
   ChildProcess running = controller();
   EXPECT_TRUE(is_mailed("over: CRITICAL: "));
   EXPECT_EQ(SimulatedSite::stop(notify), 0);

@@ -74,7 +74,7 @@ class StateFiles : public SiteTest {
     add_notifier();
     ASSERT_EQ(ask({"hold", "0", "--for", "7d"}).exit_code, 0);
     ASSERT_THAT(run_controller(), AllOf(HasSubstr("reason=held"), Not(HasSubstr("commissioned"))));
-    ASSERT_THAT(notify(), HasSubstr("ALARM: CRITICAL: "));
+    ASSERT_THAT(notify(), HasSubstr("ALERT: CRITICAL: "));
     newest_utc_ = edge_log().back().at("utc");
     newest_local_ = local_text_of(newest_utc_);
     for (const char* folder : kFolders) {

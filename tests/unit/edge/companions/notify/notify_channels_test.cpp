@@ -101,7 +101,7 @@ TEST_F(Channels, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   running.broker.freeze();
   set_status("degraded", R"("WARN: one")");
   ASSERT_TRUE(await_lines("told", 1));
-  EXPECT_THAT(told(), HasSubstr("ALARM: WARN: one"));
+  EXPECT_THAT(told(), HasSubstr("ALERT: WARN: one"));
   std::this_thread::sleep_for(std::chrono::seconds(3));  // several tries
   running.broker.thaw();
   ASSERT_NE(running.all->await("/event", "WARN: one"), "");
@@ -162,7 +162,7 @@ TEST_F(Channels, AKillLosesNothing) {
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
   for (int i = 0; i < kKills; ++i) {
     const std::string headline =
-        "ALARM: WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i));
+        "ALERT: WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i));
     for (int wait = 0; wait < 600 && count_of(told(), headline) == 0; ++wait) usleep(50'000);
     EXPECT_GE(count_of(told(), headline), 1U) << headline;
   }
@@ -208,7 +208,7 @@ TEST_F(Channels, ANotifierThatCannotLockStillTells) {
   const Said said = run({"--config", file, "--once"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.text, AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
-                               HasSubstr("ALARM: WARN: a trouble")));
+                               HasSubstr("ALERT: WARN: a trouble")));
 }
 
 }  // namespace

@@ -274,7 +274,7 @@ TEST_F(AlarmCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
                 "cat; } >" +
                 folder_.file("said")),
             "");
-  EXPECT_THAT(said(), HasSubstr("alarm|[bess garage] ALARM: WARN: mode is safe, reason link "));
+  EXPECT_THAT(said(), HasSubstr("alarm|[bess garage] ALERT: WARN: mode is safe, reason link "));
   EXPECT_THAT(said(), HasSubstr("|garage|not running: link|2023-03-27T00:02:00Z\n"));
   EXPECT_THAT(said(), HasSubstr("since 2023-03-26T23:57:00Z\n"));
   EXPECT_THAT(said(), HasSubstr("call: Ann, +32 2 555 01 23\n"));

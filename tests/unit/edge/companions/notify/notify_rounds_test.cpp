@@ -21,7 +21,7 @@ TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
   for (int s = 0; s <= 1'200; s += 30) round_of_its_own(settings_, kNow + s);  // each a restart
   EXPECT_EQ(count_of(told(), "Subject: "), 1U);
   EXPECT_THAT(told(),
-              HasSubstr("Subject: [bess garage] ALARM: WARN: mode is safe, reason no_price"));
+              HasSubstr("Subject: [bess garage] ALERT: WARN: mode is safe, reason no_price"));
   set_status("ok");
   for (int s = 1'230; s <= 2'400; s += 30) round_of_its_own(settings_, kNow + s);
   EXPECT_EQ(count_of(told(), "Subject: "), 2U);
@@ -120,7 +120,7 @@ TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   settings_.after_s = 0;
   settings_.settled_file = folder_.file("notify/settled.csv");
   round_of_its_own(settings_, kNow);
-  EXPECT_THAT(told(), HasSubstr("ALARM: no settled price has come yet: bess-prices --settle"));
+  EXPECT_THAT(told(), HasSubstr("ALERT: no settled price received yet: bess-prices --settle"));
   const auto settle_until = [&](std::int64_t utc_s) {
     SettledPrices prices;
     prices.put(std::vector<SettledQuarter>{{utc_s / 900 * 900 - 900, 80}});
@@ -128,10 +128,10 @@ TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   };
   settle_until(kNow - 2 * 86'400);
   round_of_its_own(settings_, kNow + 600);
-  EXPECT_THAT(told(), HasSubstr("over: no settled price has come yet"));
+  EXPECT_THAT(told(), HasSubstr("over: no settled price received yet"));
   settle_until(kNow - 4 * 86'400);
   round_of_its_own(settings_, kNow + 1'200);
-  EXPECT_THAT(told(), HasSubstr("ALARM: no settled price is newer than 2023-03-22T23:45:00Z"));
+  EXPECT_THAT(told(), HasSubstr("ALERT: no settled price is newer than 2023-03-22T23:45:00Z"));
   EXPECT_EQ(count_of(told(), "Subject: "), 3U);
 }
 
