@@ -27,7 +27,7 @@ std::int32_t day_of(Days days) {
          static_cast<int>(static_cast<unsigned>(date.day()));
 }
 
-/// From its first day to its last.
+/// First to last day of the month.
 Period month_of(std::int32_t day) {
   using namespace std::chrono;
   const year_month month =
@@ -89,7 +89,7 @@ bool parse_period(std::string_view text, std::int32_t today, Period& period) {
 
 namespace {
 
-/// The newest record that is older than `day`, or the oldest of all; 0: the log is empty.
+/// Newest record before `day`, or the oldest of all; 0 = empty log.
 std::uint64_t number_before(const LogReader& log, std::int32_t day) {
   CycleRecord record;
   std::uint64_t oldest = 0;
@@ -151,8 +151,8 @@ std::vector<DayAccount> DayBook::accounts() const {
   return accounts;
 }
 
-/// The last measured record before these days, and the first behind them, tell what flowed, and
-/// what was paid, at both ends.
+/// Includes the last measured record before these days and the first after them, for the energy at
+/// both ends.
 std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
                                          std::int32_t last_day, const MoneyTerms& terms) {
   DayBook book(first_day, last_day, terms);

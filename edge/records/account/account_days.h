@@ -1,4 +1,4 @@
-// The accounts of local days, from the decision log.
+// Accounts of local days, from the decision log.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,35 @@
 
 namespace bess {
 
-// Local days as a person asks for them: today, yesterday, week, month, last-month, 2026-11,
-// 2026-11-23, 2026-11-01..2026-11-23.
-
-/// Both ends belong to it; days as 20231126.
+/// Local days, both ends included, as 20231126.
 struct Period {
   std::int32_t first_day = 0;
   std::int32_t last_day = 0;
   friend constexpr bool operator==(const Period&, const Period&) = default;
 };
 
-/// A week begins on Monday; week and month end today. False when it is none of these, or ends
-/// before it begins.
+/// Parses today, yesterday, week, month, last-month, 2026-11, 2026-11-23 or
+/// 2026-11-01..2026-11-23. A week begins on Monday; week and month end today. False for other texts
+/// and for an end before the begin.
 bool parse_period(std::string_view text, std::int32_t today, Period& period);
 
-/// False of a record without a measurement.
+/// False for a record without a measurement.
 bool sample_of(const CycleRecord& record, ExchangeSample& sample);
 
-/// Records, one after the other, into the accounts of their days.
+/// Sorts records into the accounts of their days.
 class DayBook {
  public:
-  /// Of the days from `first_day` to `last_day`, as 20231126; a record of another day counts only
-  /// for what flowed between.
+  /// Days from `first_day` to `last_day`, as 20231126. Records of other days count only for the
+  /// energy at both ends.
   DayBook(std::int32_t first_day, std::int32_t last_day, const MoneyTerms& terms)
       : first_day_(first_day),
         last_day_(last_day),
         capacity_wh_(terms.capacity_wh),
         prices_(terms.settled.quarters()) {}
 
-  /// The oldest first.
+  /// Oldest record first.
   void add(const CycleRecord& as_logged);
-  /// The days that had a cycle, oldest first.
+  /// Days with a control cycle, oldest first.
   [[nodiscard]] std::vector<DayAccount> accounts() const;
 
  private:
@@ -54,11 +52,11 @@ class DayBook {
   std::int32_t capacity_wh_;
   QuarterPrices prices_;
   std::map<std::int32_t, DayAccount> days_;
-  std::int64_t last_utc_s_ = INT64_MAX;  ///< of the newest cycle of these days
+  std::int64_t last_utc_s_ = INT64_MAX;  ///< newest control cycle of these days
   std::vector<ExchangeSample> samples_;
 };
 
-/// The days from `first_day` to `last_day` of which the log has a cycle, oldest first.
+/// Days from `first_day` to `last_day` with a control cycle in the log, oldest first.
 std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
                                          std::int32_t last_day, const MoneyTerms& terms);
 

@@ -11,7 +11,7 @@
 namespace bess {
 
 void DayAccount::add(const CycleRecord& record) {
-  if (record.mode == Mode::kStopping) return;  // no cycle
+  if (record.mode == Mode::kStopping) return;  // no control cycle
   const auto reason = static_cast<std::size_t>(record.reason);
   const bool is_driven = record.mode == Mode::kRunning;
   ++cycles_;

@@ -1,5 +1,5 @@
-// A local day in one line: money, energy, cycles, interventions, from the decision log's records.
-// Money is before fees, taxes and wear: what a contract takes of it says `bess-train log`.
+// Account of a local day from the decision log: money, energy, cycles, interventions. Money is
+// before fees, taxes and wear, which `bess-train log` subtracts.
 #pragma once
 
 #include <array>
@@ -12,15 +12,14 @@
 
 namespace bess {
 
-// What one cycle moved and earned, by its record alone: an estimate, at the price decided on.
+// Energy and money of one control cycle, an estimate from its record at the price of the decision.
 
-/// Grid side, positive is charged; nothing where nothing was measured.
+/// Grid side, positive is charged; 0 without a measurement.
 constexpr double cycle_energy_wh(const CycleRecord& record) {
   return record.has_measurement ? record.measurement.power_w * kHoursPerStep : 0.0;
 }
 
-/// Nothing where there is no price. From 0: a cycle at rest has earned nothing, and not minus
-/// nothing.
+/// 0 without a price. Subtracted from 0 to avoid -0 for an idle battery.
 constexpr double cycle_earned_eur(const CycleRecord& record) {
   if (!record.price.has_row) return 0.0;
   return 0.0 - cycle_energy_wh(record) / kWattsPerMegawatt * record.price.price_centi_eur_per_mwh /
@@ -34,12 +33,12 @@ class DayAccount {
   /// `local_day` as 20231126 (local_time.h).
   explicit DayAccount(std::int32_t local_day) : local_day_(local_day) {}
 
-  /// A record of that day; the order does not matter.
+  /// Adds a record of that day, in any order.
   void add(const CycleRecord& record);
-  /// Ticks of that day that have no record.
+  /// Adds ticks of that day without a record.
   void add_missing(std::int64_t cycles) { missing_cycles_ += static_cast<int>(cycles); }
   void set_exchanged(const ExchangedDay& exchanged) { exchanged_ = exchanged; }
-  /// Takes another day in: of both together.
+  /// Adds another day.
   void add(const DayAccount& other);
 
   [[nodiscard]] bool is_empty() const { return cycles_ == 0; }
@@ -47,34 +46,34 @@ class DayAccount {
   [[nodiscard]] double earned_eur() const { return money().earned_eur; }
   [[nodiscard]] double charged_kwh() const { return exchanged_.charged_wh / 1'000; }
   [[nodiscard]] double discharged_kwh() const { return exchanged_.discharged_wh / 1'000; }
-  /// Of both together: while nobody looked, by the state of charge alone.
+  /// Charged and discharged without a measurement, estimated from the SoC.
   [[nodiscard]] double unseen_kwh() const { return exchanged_.unseen_wh / 1'000; }
   [[nodiscard]] const QuarterHourMoney& money() const { return exchanged_.money; }
   [[nodiscard]] double full_cycles() const;
   [[nodiscard]] int cycles() const { return cycles_; }
   [[nodiscard]] int missing_cycles() const { return missing_cycles_; }
-  /// In which the battery followed an order, 0 W included.
+  /// Control cycles with an order in force, 0 W included.
   [[nodiscard]] int driven_cycles() const { return driven_cycles_; }
-  /// 0 to 1, of the ticks, those without a record included.
+  /// Share of all ticks, 0 to 1, those without a record included.
   [[nodiscard]] double driven_share() const;
-  /// Of `cycles`, with a measurement and a price.
+  /// Control cycles with a measurement and a price.
   [[nodiscard]] int valued_cycles() const { return valued_cycles_; }
-  /// State of charge when it was first and last measured, percent; NaN: never.
+  /// First and last measured state of charge, percent; NaN = none.
   [[nodiscard]] double first_soc_percent() const;
   [[nodiscard]] double last_soc_percent() const;
-  /// More (negative: less) is stored at the end than at the beginning; 0 where it was not measured.
+  /// Change in stored energy over the day; 0 without a measurement.
   [[nodiscard]] double stored_kwh() const;
-  /// That as if it was sold at once, or bought, at the mean price, with the losses of [SPEC 3].
+  /// Its value at the mean price, with the losses of [SPEC 3].
   [[nodiscard]] double stored_eur() const;
   [[nodiscard]] const CyclesByReason& cycles_by_reason() const { return cycles_by_reason_; }
-  /// Of these, with the battery at 0 W or in its own mode.
+  /// Of these, outside mode running.
   [[nodiscard]] const CyclesByReason& not_driven_by_reason() const { return not_driven_; }
   [[nodiscard]] int interventions() const;
-  /// Local midnight, at which the day begins; 23, 24 or 25 hours before the next.
+  /// Local midnight at the start of the day.
   [[nodiscard]] std::int64_t start_utc_s() const;
   /// "2023-11-26".
   [[nodiscard]] std::string date() const;
-  /// "price_age 12, soc_empty 3": what ordered something else than the student.
+  /// "price_age 12, soc_empty 3": reasons other than the student.
   [[nodiscard]] std::string interventions_text() const;
   [[nodiscard]] std::string line() const;
 

@@ -53,7 +53,7 @@ bool parse_line(std::string_view line, SettledQuarter& quarter) {
 }  // namespace
 
 void SettledPrices::put(std::span<const SettledQuarter> quarters) {
-  // The newer ones stand behind those of the same time, which they replace.
+  // Newer ones come after those of the same time and replace them.
   quarters_.insert(quarters_.end(), quarters.begin(), quarters.end());
   std::ranges::stable_sort(quarters_, {}, &SettledQuarter::start_utc_s);
   std::vector<SettledQuarter> kept;
@@ -125,7 +125,7 @@ std::string SettledPrices::read(const std::string& path) {
   if (size < 0) return errno == ENOENT ? "" : path + ": cannot be read: " + std::strerror(errno);
   text.resize(static_cast<std::size_t>(size));
   if (parse(text)) return "";
-  return path + ": is damaged: bess-prices --settle fetches its prices again";
+  return path + ": is damaged: fetch its prices again with bess-prices --settle";
 }
 
 }  // namespace bess

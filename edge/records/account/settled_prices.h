@@ -1,8 +1,8 @@
-// Prices of quarter-hours as they are billed: written by bess-prices once a day, read by whoever
-// counts money. A text of one line a quarter-hour, with a checksum at its end, replaced at once.
+// Settled prices of quarter-hours, as billed: written by bess-prices once a day. A text with one
+// line per quarter-hour and a checksum at its end, replaced atomically.
 //   2026-11-23T22:45:00Z,131.07,published
-// A quarter-hour is published on the day after, and may change until it is validated, after the
-// 15th of the next month. One that is not in the file is known by its minutes alone: indicative.
+// A quarter-hour is published on the next day and may change until it is validated, after the 15th
+// of the next month. Other quarter-hours have only indicative prices.
 #pragma once
 
 #include <cstdint>
@@ -18,45 +18,44 @@ namespace bess {
 
 class SettledPrices {
  public:
-  /// Newer ones count; what is validated is never published again. In any order.
+  /// Adds prices in any order. Newer ones replace older ones, but published ones no validated ones.
   void put(std::span<const SettledQuarter> quarters);
   void drop_before(std::int64_t utc_s);
-  /// Null: not published yet.
+  /// Null if not published yet.
   [[nodiscard]] const SettledQuarter* find(std::int64_t utc_s) const;
   [[nodiscard]] const std::vector<SettledQuarter>& quarters() const { return quarters_; }
-  /// The first from `utc_s` on that is not validated, known or not; `utc_s` as a quarter-hour's.
+  /// First quarter-hour from `utc_s` that is not validated, known or not.
   [[nodiscard]] std::int64_t first_open(std::int64_t utc_s) const;
 
   [[nodiscard]] std::string text() const;
-  /// False when it is no such text, or damaged; then nothing is known.
+  /// False, and no prices, for another or damaged text.
   bool parse(std::string_view text);
-  /// Empty where there is no file, or all is well; else one line, and nothing is known.
+  /// Empty without a file or without an error; else one line, and no prices.
   std::string read(const std::string& path);
 
  private:
   std::vector<SettledQuarter> quarters_;  ///< by time
 };
 
-/// So many quarter-hours are kept: 100 days, with those of 25 hours among them.
+/// Days of quarter-hours that are kept, days of 25 hours included.
 inline constexpr int kSettledDaysMax = 100;
 
-// What of the configuration counts money: where bess-prices keeps settled prices, and the capacity
-// of a battery that does not tell its own. Read apart from the controller's settings.
-
+/// Settings for earnings: file of settled prices, and capacity of a battery that reports none.
+/// Independent of the controller's settings.
 struct MoneySettings {
   std::int32_t capacity_wh = 8'000;  ///< [battery] capacity_wh
-  std::string settled_file;          ///< of bess-prices; there may be none
+  std::string settled_file;          ///< of bess-prices; may be missing
 };
 
-/// `root` is the whole configuration, whose slips others name.
+/// `root`: whole configuration; other readers report its errors.
 MoneySettings read_money_settings(TomlTable& root);
 
-/// What is counted with.
+/// Input for earnings.
 struct MoneyTerms {
   SettledPrices settled{};
-  std::int32_t capacity_wh = 0;  ///< of a device that tells none
+  std::int32_t capacity_wh = 0;  ///< of a device that reports none
 };
-/// With what lies in the file of settled prices; `trouble` is one line when that cannot be read.
+/// Reads the file of settled prices; `trouble` is one line if it is unreadable.
 MoneyTerms money_terms(const MoneySettings& settings, std::string& trouble);
 
 }  // namespace bess

@@ -18,7 +18,7 @@ std::string host_name() {
   return gethostname(name, sizeof name - 1) == 0 && *name != '\0' ? name : "bess";
 }
 
-/// Differs between machines that were made from one image and have one host name.
+/// Differs between machines from one image with the same host name.
 std::string machine_id() {
   std::string id;
   std::ifstream("/etc/machine-id") >> id;

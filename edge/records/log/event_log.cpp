@@ -20,14 +20,14 @@
 namespace bess {
 
 bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line) {
-  if (record.mode == Mode::kStopping) return false;  // it asks for no hold; the next run goes on
+  if (record.mode == Mode::kStopping) return false;  // it reads no hold; the next run continues it
   const HoldReport now = record.hold;
   const HoldReport before = std::exchange(before_, now);
   if (now.unreadable) {
     if (before.unreadable) return false;
     line.add(
-        "hold: the file hold in [state] folder is not one that bess-edge hold wrote, or ends "
-        "later than it may: not followed; give it again, or bess-edge hold --release");
+        "hold: file hold in [state] folder is malformed or ends too late, hold ignored: repeat "
+        "bess-edge hold, or bess-edge hold --release");
     return true;
   }
   if (now.held) {
@@ -35,29 +35,29 @@ bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuff
         before.held && before.power_w == now.power_w && before.until_utc_s == now.until_utc_s;
     if (is_same) return false;
     line.add("hold: %d W until %s%s", now.power_w, utc_text(now.until_utc_s).c_str(),
-             is_in_control ? "" : " (read-only: nothing is written)");
+             is_in_control ? "" : " (read-only: not written)");
     return true;
   }
   if (before.held) {
     const bool is_early = record.utc_s < std::int64_t{before.until_utc_s};
-    line.add("hold: %s; the prices decide again", is_early ? "released" : "over");
+    line.add("hold: %s; prices decide again", is_early ? "released" : "over");
     return true;
   }
-  if (before.unreadable) line.add("hold: none; the prices decide again");
+  if (before.unreadable) line.add("hold: none; prices decide again");
   return before.unreadable;
 }
 
 bool MeterLines::add_trust_line(const CycleRecord& record, TextBuffer& line) {
-  if (record.mode == Mode::kStopping) return false;  // nothing was measured; the next run goes on
+  if (record.mode == Mode::kStopping) return false;  // no measurement; the next run continues
   const MeterTrust& trust = record.site.trust;
   if (std::exchange(was_mismatch_, trust.is_mismatch) == trust.is_mismatch) return false;
   if (trust.is_mismatch) {
     line.add(
-        "meter: it does not step with the battery: frozen, inverted, late, of another phase or "
-        "ratio, or the battery's measured power is wrong; as good as lost, tried again from %s on",
+        "meter: does not respond to battery steps: frozen, inverted, late, wrong phase or ratio, "
+        "or wrong battery power; treated as lost, tested again from %s",
         utc_text(trust.pause_until_utc_s).c_str());
   } else {
-    line.add("meter: it steps with the battery again, and is believed");
+    line.add("meter: responds to battery steps again and is used");
   }
   return true;
 }
@@ -68,8 +68,8 @@ bool MeterLines::add_house_line(const CycleRecord& record, TextBuffer& line) {
   if (std::exchange(was_implausible_, is_implausible) == is_implausible) return false;
   if (is_implausible) {
     line.add(
-        "meter: grid %d W less battery %d W leaves the house a load below zero: a sign, the phase "
-        "or the place of the meter is wrong; where panels do that, set [meter] pv_w_max",
+        "meter: grid %d W less battery %d W gives a negative house load: check signs, phase and "
+        "position of the meter; with solar panels, set [meter] pv_w_max",
         record.site.grid_power_w, record.measurement.power_w);
   } else {
     line.add("meter: the house's load is plausible again");
@@ -79,7 +79,7 @@ bool MeterLines::add_house_line(const CycleRecord& record, TextBuffer& line) {
 
 namespace {
 
-/// Of a number as records have it: 1 + index, 0 = none.
+/// `number`: 1 + index, 0 = none.
 const char* name_of(const RunIdentity& identity, int number) {
   const bool is_known = number > 0 && number <= identity.point_names.size();
   return is_known ? identity.point_names[number - 1].c_str() : "a register";
@@ -92,9 +92,8 @@ bool ReadingLines::add_lost_line(const CycleRecord& record, const RunIdentity& i
   const std::int16_t now = record.measurement.lost_point;
   const std::int16_t before = std::exchange(lost_, now);
   if (record.mode == Mode::kStopping || now == before) return false;
-  line.add(
-      now != 0 ? "battery: %s could not be read, or is not plausible" : "battery: %s is read again",
-      name_of(identity, now != 0 ? now : before));
+  line.add(now != 0 ? "battery: %s not read or implausible" : "battery: %s is read again",
+           name_of(identity, now != 0 ? now : before));
   return true;
 }
 
@@ -103,14 +102,14 @@ bool ReadingLines::add_cut_line(const CycleRecord& record, const RunIdentity& id
   if (!record.has_measurement) return false;
   const std::int16_t now = record.measurement.cut_point;
   if (std::exchange(cut_, now) == now || now == 0) return false;
-  line.add("battery: %s is beyond its range, and taken for the end of it (SoC %.2f %%)",
-           name_of(identity, now), record.measurement.soc_e4 / 100.0);
+  line.add("battery: %s is out of range and was clamped (SoC %.2f %%)", name_of(identity, now),
+           record.measurement.soc_e4 / 100.0);
   return true;
 }
 
 namespace {
 
-/// Of the run folder's ring: the eight hours that supervision judges again at a start.
+/// Ring of the run folder: the eight hours that supervision restores at a start.
 constexpr std::int64_t kRunRecords = 256;
 
 bool append_line(int fd, const char* text, std::size_t size) {
@@ -174,7 +173,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   return true;
 }
 
-/// A log that has no room to grow goes on at its size; the next start tries again.
+/// A log without room to grow keeps its size; the next start tries again.
 bool EventLog::open_ring(FileMessage& error) {
   const std::int64_t capacity = settings_.ring_days * kStepsPerDay;
   if (!ring_.open(settings_.ring.c_str(), capacity, error)) return false;
@@ -182,7 +181,7 @@ bool EventLog::open_ring(FileMessage& error) {
   return true;
 }
 
-/// What fails here is tried again with every record.
+/// A failure is retried with every record.
 void EventLog::open_run_ring() {
   if (settings_.run_ring.empty()) return;
   FileMessage ignored;
@@ -209,7 +208,7 @@ bool EventLog::open_csv(FileMessage& error) {
   return fail_with_errno(path, "cannot write the log here", error);
 }
 
-/// The names of the columns, where nothing stands before them.
+/// Writes the column names into an empty file.
 bool EventLog::head_csv() {
   if (csv_has_head_) return true;
   struct stat info {};
@@ -250,8 +249,7 @@ void EventLog::run() {
   }
 }
 
-/// The rings first, status last: whoever is told of a record finds it in a ring, a next run as
-/// well.
+/// Write order: rings before status, so that a published record is always readable.
 void EventLog::keep(const CycleRecord& record) {
   const std::uint64_t number = newer_ring().newest_number() + 1;
   const std::int64_t dropped = dropped_;
@@ -270,7 +268,7 @@ void EventLog::keep_in_memory(const CycleRecord& record, std::uint64_t number) {
   publish_in_memory();
 }
 
-/// Whatever a disk does here, even if it never answers again: memory knows the record.
+/// The disk may block without end here: the run folder already has the record.
 void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   const std::int64_t failures_before = totals_.disk_failures;
   char line[kLogLineBytes];
@@ -293,17 +291,17 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   tell_of_disk(totals_.disk_is_failing, &record);
 }
 
-/// On the journal, once each time: what a person has to end.
+/// Logs each trip and each clearance once.
 void EventLog::tell_of_trip(const CycleRecord& record) {
   if (record.is_tripped == was_tripped_) return;
   was_tripped_ = record.is_tripped;
   char line[160];
-  const int size = std::snprintf(
-      line, sizeof line, "tripped: %s; the battery is in its own mode until bess-edge clear",
-      reason_name(record.trip.reason).data());
+  const int size = std::snprintf(line, sizeof line,
+                                 "tripped: %s; the battery is released until bess-edge clear --yes",
+                                 reason_name(record.trip.reason).data());
   write_journal_line(record.is_tripped ? JournalLevel::kError : JournalLevel::kNotice,
                      record.is_tripped ? std::string_view(line, static_cast<std::size_t>(size))
-                                       : "cleared: a person lets the battery be driven again");
+                                       : "cleared: control continues");
 }
 
 bool EventLog::append_to_run_ring(const CycleRecord& record, std::uint64_t number) {
@@ -313,7 +311,7 @@ bool EventLog::append_to_run_ring(const CycleRecord& record, std::uint64_t numbe
   return is_open && run_ring_.append(record, number);
 }
 
-/// A log that the disk refused at the start is tried again.
+/// Opens a log that failed at the start again.
 bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
   FileMessage ignored;
   if (ring_.is_open() && !ring_.is_at(settings_.ring.c_str()) && !follow_the_folder()) return false;
@@ -321,9 +319,8 @@ bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
          ring_.append(record, number);
 }
 
-/// The state folder is another one: unmounted, mounted, replaced. An empty one, or one that this
-/// run has written to, is gone on with. The log of others may hold a trip: the next start has to
-/// read it.
+/// Handles a changed state folder (unmounted, mounted, replaced). An empty folder, or a log of this
+/// run, is continued. Another log may hold a trip, which the next start must read.
 bool EventLog::follow_the_folder() {
   RingLog there;
   FileMessage ignored;
@@ -336,19 +333,19 @@ bool EventLog::follow_the_folder() {
   if (is_log && !is_known) {
     if (std::exchange(is_ending_run_, true)) return false;
     write_journal_line(JournalLevel::kError,
-                       "the state folder now holds another log, of a disk that was mounted late or "
-                       "replaced: this run ends, so that the next start knows what is in it");
+                       "[state] folder now has another log (disk mounted late or replaced): this "
+                       "run ends, the next start reads it");
     kill(getpid(), SIGTERM);
     return false;
   }
   write_journal_line(JournalLevel::kError,
-                     is_log ? "the state folder is back where it was: its log goes on"
-                            : "the decision log is gone from its place, was its disk unmounted? A "
-                              "new one begins there");
+                     is_log ? "[state] folder is back: its log continues"
+                            : "the decision log is missing: was its disk unmounted? Starting a new "
+                              "log");
   return open_ring(ignored);
 }
 
-/// What the disk refused for a while, as far as memory still has it.
+/// Appends records that the disk refused, as far as the run folder still has them.
 bool EventLog::catch_up(std::uint64_t number) {
   const std::uint64_t first = ring_.newest_number() + 1;
   if (first >= number) return true;
@@ -363,10 +360,9 @@ bool EventLog::catch_up(std::uint64_t number) {
   }
   char text[160];
   TextBuffer line(text);
-  line.add(
-      "the decision log goes on: %llu records that it missed are taken from memory, %llu are lost",
-      static_cast<unsigned long long>(kept),
-      static_cast<unsigned long long>(number - first - kept));
+  line.add("the decision log continues: %llu missed records restored from memory, %llu lost",
+           static_cast<unsigned long long>(kept),
+           static_cast<unsigned long long>(number - first - kept));
   write_journal_line(JournalLevel::kWarning, line.view());
   return true;
 }
@@ -379,22 +375,22 @@ bool EventLog::append_to_csv(const CycleRecord& record) {
   return append_line(csv_fd_, line, format_csv_line(record, line));
 }
 
-/// What the controller does all the same; before its first cycle nobody knows.
+/// Adds what the controller does during the disk failure.
 void EventLog::add_what_goes_on(const CycleRecord* record, TextBuffer& line) const {
   if (record == nullptr) {
-    line.add("What follows says whether the battery is driven");
+    line.add("The next lines show whether the battery is controlled");
   } else if (record->is_tripped) {
     line.add("The battery stays released: tripped, %s", reason_name(record->trip.reason).data());
   } else if (!identity_.control) {
-    line.add("The battery is read on");
+    line.add("Reading of the battery continues");
   } else if (record->mode == Mode::kRunning) {
-    line.add("The battery is driven on");
+    line.add("Control continues");
   } else {
-    line.add("The battery is not driven now: %s", reason_name(record->reason).data());
+    line.add("No control now: %s", reason_name(record->reason).data());
   }
 }
 
-/// On the journal, once each time: the files that would tell of it cannot be written.
+/// Logs each begin and end of a disk failure once.
 void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
   if (is_failing == was_failing_) return;
   was_failing_ = is_failing;
@@ -402,11 +398,10 @@ void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
   TextBuffer line(text);
   if (is_failing) {
     line.add(
-        "the files of [state], [log] or [metrics] cannot be written, is the disk full or "
-        "read-only? ");
+        "files of [state], [log] or [metrics] cannot be written: is the disk full or read-only? ");
     add_what_goes_on(record, line);
   } else {
-    line.add("the files of [state], [log] and [metrics] are written again");
+    line.add("files of [state], [log] and [metrics] are written again");
   }
   write_journal_line(JournalLevel::kWarning, line.view());
 }
@@ -451,9 +446,9 @@ void EventLog::tell_of_run_folder() {
   was_run_failing_ = totals_.run_folder_is_failing;
   write_journal_line(JournalLevel::kWarning,
                      was_run_failing_
-                         ? "the files of [state] run_folder cannot be written: if the disk dies as "
-                           "well, nobody can be told how things are"
-                         : "the files of [state] run_folder are written again");
+                         ? "files of [state] run_folder cannot be written: check its permissions; "
+                           "if the disk fails too, no status is available"
+                         : "files of [state] run_folder are written again");
 }
 
 void EventLog::publish_in_memory() {

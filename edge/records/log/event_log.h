@@ -1,10 +1,10 @@
-// The log of the controller. The control thread hands over one record a cycle and never waits; a
-// log thread of its own, on a static stack, writes it everywhere:
+// Event log of the controller. The control thread passes one record per control cycle and never
+// waits; the log thread, on a static stack, writes it:
 //   CycleRecord -> queue -> log thread -> run folder (memory): short ring, metrics, status
 //                                      -> stdout (journal), ring log, CSV, metrics, status
-// The run folder comes first: what is in it holds, however the disk dies. A disk may stand still
-// for seconds: 64 records, two hours, fit into the queue; what does not fit is dropped and counted.
-// After `open` neither thread allocates here.
+// The run folder comes first, because it survives a disk failure. A disk may block: the queue holds
+// 64 records (two hours); further records are dropped and counted. After `open` neither thread
+// allocates here.
 #pragma once
 
 #include <atomic>
@@ -21,25 +21,23 @@
 
 namespace bess {
 
-// Lines of the journal on holds, on a meter and on readings of the battery, one for each change.
-// Written by the log thread; nothing allocates.
+// Journal lines on changes of holds, meter and battery readings, written by the log thread without
+// allocation.
 
-// An operator's hold: a line when it begins, when it changes, when it is over, and once when its
-// file cannot be read.
+// Operator's hold: a line when it begins, changes or ends, and once when its file is unreadable.
 class HoldLines {
  public:
-  /// Appends the line that this cycle is worth; false when it is worth none.
+  /// Appends the line of this control cycle; false without one.
   bool add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line);
 
  private:
   HoldReport before_{};
 };
 
-// A meter that is not to be believed: a line when it is found, and when it agrees again; the same
-// of a house load that cannot be.
+// Meter mismatch and implausible house load: a line at begin and end.
 class MeterLines {
  public:
-  /// Appends the line that this cycle is worth; false when it is worth none.
+  /// Appends the line of this control cycle; false without one.
   bool add_trust_line(const CycleRecord& record, TextBuffer& line);
   bool add_house_line(const CycleRecord& record, TextBuffer& line);
 
@@ -48,10 +46,10 @@ class MeterLines {
   bool was_implausible_ = false;
 };
 
-// A reading that is missing or beyond its range: a line when it begins and when it is over.
+// Readings that are missing or out of range: a line at begin and end.
 class ReadingLines {
  public:
-  /// Appends the line that this cycle is worth; false when it is worth none.
+  /// Appends the line of this control cycle; false without one.
   bool add_lost_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
   bool add_cut_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
 
@@ -80,26 +78,25 @@ class EventLog {
   ~EventLog();
 
   /// Opens the files, publishes a first status and starts the log thread. False with one line. A
-  /// disk that is full, read-only or broken is told and no reason to fail: what it refuses is tried
-  /// again with every record.
+  /// full, read-only or broken disk is reported and retried with every record.
   bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
-  /// The newest record of earlier runs, for counters that a restart must take over; false = none.
-  /// Only before the first `write`.
+  /// Newest record of earlier runs, for counters that survive a restart; false = none. Only before
+  /// the first `write`.
   bool newest(CycleRecord& record) const { return newer_ring().newest(record); }
-  /// The record that many before the newest; false = there is none, or it is torn. As `newest`.
+  /// The record `records` before the newest; false = none, or torn. As `newest`.
   bool read_back(std::int64_t records, CycleRecord& record) const {
     const std::uint64_t newest = newer_ring().newest_number();
     const auto back = static_cast<std::uint64_t>(records);
     return back < newest &&
            (ring_.read(newest - back, record) || run_ring_.read(newest - back, record));
   }
-  /// The two logs, for what one of them knows alone. Only before the first `write`.
+  /// The two rings. Only before the first `write`.
   [[nodiscard]] const RingLog& ring() const { return ring_; }
   [[nodiscard]] const RingLog& run_ring() const { return run_ring_; }
 
-  /// From the control thread; never waits.
+  /// Called by the control thread; never waits.
   void write(const CycleRecord& record);
-  /// Waits until everything handed over is written, or until the limit: for the end of the process.
+  /// Waits at most `wall_ns_max` until all records are written, at the end of the process.
   bool drain(std::int64_t wall_ns_max) const;
 
  private:

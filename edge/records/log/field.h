@@ -1,5 +1,4 @@
-// What the tables of logged fields are made of: which member, in which output it stands at which
-// place, and under which name.
+// Field descriptors of the log tables: member, and place and name in each output.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +9,8 @@
 
 namespace bess {
 
-/// Where a field stands in one output, and its name there when that is not its own. An output is
-/// written by rising places; 0 = the field is not in it.
+/// Position of a field in one output, and its name there if different. Outputs are written by
+/// rising position; 0 = absent.
 struct Place {
   constexpr Place(int place = 0, const char* other_name = nullptr)  // NOLINT: implicit on purpose
       : at(place), name(other_name) {}
@@ -22,13 +21,13 @@ struct Place {
 
 struct Places {
   Place journal{};
-  Place csv{};      ///< the column; new ones go behind the last: CSV files are appended to
+  Place csv{};      ///< column; append new ones at the end, because CSV files are continued
   Place last{};     ///< in that section of status.json; the tens are its line
   Place totals{};   ///< as `last`
   Place metrics{};  ///< the tens are their MetricGroup
 };
 
-/// Between the groups run_status.cpp writes what is more than one field.
+/// Between the groups run_status.cpp writes metrics of several fields.
 enum class MetricGroup { kSite = 1, kBus, kRun, kPeople, kConnection, kOutlook };
 
 using Output = Place Places::*;
@@ -56,7 +55,7 @@ struct Field {
   }
 };
 
-/// The fields of a table that stand in one output, in its order. Two at one place do not compile.
+/// Fields of a table in one output, in its order. Two at one position do not compile.
 template <const auto& kFields, Output kOutput>
 consteval auto in_order() {
   const auto is_shown = [](const auto& field) { return field.place_in(kOutput) > 0; };

@@ -1,6 +1,5 @@
-// A fixed queue from one thread to one other: the giver never waits, never locks, never allocates;
-// the taker sleeps until something comes. The control thread hands its records to the log thread
-// through it, so that no disk can hold up an order.
+// Fixed-size queue from one thread to another: the producer never waits, locks or allocates; the
+// consumer sleeps until an item arrives. It decouples the control thread from the disk.
 #pragma once
 
 #include <semaphore.h>
@@ -20,7 +19,7 @@ class HandoverQueue {
   HandoverQueue& operator=(const HandoverQueue&) = delete;
   ~HandoverQueue() { sem_destroy(&filled_); }
 
-  /// False when the queue is full: the item is not in it.
+  /// False when the queue is full; the item is dropped.
   bool push(const T& item) {
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - begin_.load(std::memory_order_acquire) == kCapacity) return false;
@@ -29,10 +28,10 @@ class HandoverQueue {
     sem_post(&filled_);
     return true;
   }
-  /// Wakes the taker without an item.
+  /// Wakes the consumer without an item.
   void wake() { sem_post(&filled_); }
 
-  /// Waits for an item or a wake-up; false when it was a wake-up and the queue is empty.
+  /// Waits for an item or a wake-up; false after a wake-up with an empty queue.
   bool wait_and_pop(T& item) {
     while (sem_wait(&filled_) != 0 && errno == EINTR) continue;
     const std::size_t begin = begin_.load(std::memory_order_relaxed);
@@ -44,8 +43,8 @@ class HandoverQueue {
 
  private:
   std::array<T, kCapacity> slots_{};
-  std::atomic<std::size_t> begin_{0};  ///< moved by the taker
-  std::atomic<std::size_t> end_{0};    ///< moved by the giver
+  std::atomic<std::size_t> begin_{0};  ///< moved by the consumer
+  std::atomic<std::size_t> end_{0};    ///< moved by the producer
   sem_t filled_{};
 };
 

@@ -12,8 +12,7 @@
 namespace bess {
 namespace {
 
-/// JOURNAL_STREAM names device and inode of the socket that systemd gave us; output that was
-/// redirected elsewhere must stay free of prefixes.
+/// JOURNAL_STREAM names device and inode of the journal's socket; redirected output gets no prefix.
 bool leads_to_journal(int fd) {
   const char* const stream = std::getenv("JOURNAL_STREAM");
   struct stat info {};

@@ -1,5 +1,5 @@
-// The decision log for who only reads it: the ring of the state folder and, where there is one, the
-// short ring of the run folder, which goes on when the disk under the other has died.
+// Reader of the decision log: the ring of the state folder and the short ring of the run folder, if
+// any, which continues after a disk failure.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class LogReader {
   /// False with one line, of the state folder's ring, when neither can be read.
   bool open(const EventLogSettings& settings, FileMessage& error);
 
-  /// As of RingLog. Numbers between may be missing.
+  /// As in RingLog. Numbers between may be missing.
   [[nodiscard]] std::uint64_t newest_number() const;
   [[nodiscard]] std::uint64_t oldest_number() const;
   bool newest(CycleRecord& record) const { return read(newest_number(), record); }

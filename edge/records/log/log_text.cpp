@@ -10,7 +10,7 @@ namespace {
 constexpr auto kJournalFields = in_order<kRecordFields, &Places::journal>();
 constexpr auto kCsvFields = in_order<kRecordFields, &Places::csv>();
 
-/// A name or a time that does not exist is "none"; a number stays as it is.
+/// A missing name or time is "none"; a number is printed as it is.
 void add_value(const Field<CycleRecord>& field, const CycleRecord& record, TextBuffer& text) {
   const std::int64_t value = field.access.read(record);
   switch (field.access.kind) {

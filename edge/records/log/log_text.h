@@ -1,5 +1,5 @@
-// The text forms of one cycle's record: a key=value line for the journal and for people, a CSV line
-// for programs. Built in a stack buffer: no stdio stream, no heap. Which fields: record_fields.h.
+// Text forms of a record: a key=value line for journal and people, a CSV line for programs. Built
+// in a stack buffer: no stdio stream, no heap. Fields: record_fields.h.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineByte
 std::size_t format_csv_header(char (&line)[kLogLineBytes]);
 std::size_t format_csv_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
 
-/// EUR/MWh of the hundredths that a record has.
+/// EUR/MWh from hundredths.
 constexpr double eur_of(std::int64_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 
 /// Power of the house behind the meter, without the battery.

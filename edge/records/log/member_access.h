@@ -1,5 +1,5 @@
-// One member of a struct as an integer, behind plain functions, so that one loop writes them all.
-// A member is named by its path from the struct:
+// Access to a member of a struct as an integer, so that one loop writes all members. A member is
+// named by its path from the struct:
 //   member<&CycleRecord::price, &PriceReport::fetch_us>()
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace bess {
 
-/// What the integer means: itself, 0 or 1, seconds since 1970, an enumerator's stable code.
+/// Meaning of the integer: number, 0 or 1, seconds since 1970, stable code of an enumerator.
 enum class MemberKind : std::uint8_t { kNumber, kFlag, kUtc, kName };
 
 template <typename Source>
@@ -20,12 +20,11 @@ struct MemberAccess {
   MemberKind kind;
   std::size_t bytes;  ///< on disk
   std::int64_t (*read)(const Source&);
-  bool (*set)(Source&, std::int64_t);       ///< false: a code of a later program
-  const char* (*name_of)(std::int64_t);     ///< of a code; null when the kind is another
+  bool (*set)(Source&, std::int64_t);       ///< false: a code of a later version
+  const char* (*name_of)(std::int64_t);     ///< name of a code; null for other kinds
   bool (*exists)(const Source&) = nullptr;  ///< null: always
 
-  /// The value means something only while the flag at this path is set, or the enumerator at it is
-  /// not the first.
+  /// The value exists only while the flag at this path is set, or the enumerator is not the first.
   template <auto... kFlagPath>
   [[nodiscard]] constexpr MemberAccess given() const {
     MemberAccess conditional = *this;
@@ -47,7 +46,7 @@ struct PathStart {
 
 }  // namespace detail
 
-/// The struct that a path starts from.
+/// Struct at the start of a path.
 template <auto... kPath>
 using SourceOf = typename detail::PathStart<kPath...>::Source;
 

@@ -29,7 +29,7 @@ std::uint64_t take(std::size_t count, const std::uint8_t* bytes) {
   return bits;
 }
 
-/// Of everything before it.
+/// CRC of all preceding bytes.
 std::uint32_t crc_of(std::span<const std::uint8_t> record) {
   Crc32 crc;
   crc.add_bytes(record.data(), record.size() - kCrcBytes);
@@ -57,7 +57,7 @@ bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
                    std::uint64_t& sequence) {
   if (!is_intact(stored)) return false;
   const std::size_t crc_offset = stored.size() - kCrcBytes;
-  RecordBytes bytes{};  // fields behind an older record's end read as zero
+  RecordBytes bytes{};  // fields beyond the end of an older record read as zero
   std::copy_n(stored.begin(), crc_offset, bytes.begin());
   record = CycleRecord{};
   sequence = take(kNumberBytes, bytes.data());

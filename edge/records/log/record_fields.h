@@ -1,9 +1,9 @@
-// The one table of what is logged of a cycle. Ring, journal, CSV, status.json and metrics are
+// Table of the logged fields of a control cycle. Ring, journal, CSV, status.json and metrics are
 // written from it, and the ring is read by it.
 //
 // A new field is a member of CycleRecord and an entry here, at the END: the order of the entries is
-// their order on disk (record_codec.h). In a record of an older program it reads as 0. What the
-// numbers mean: `Places` in field.h.
+// their order on disk (record_codec.h). In a record of an older version it reads as 0. Numbers:
+// `Places` in field.h.
 #pragma once
 
 #include "edge/core/control/control_types.h"
@@ -324,8 +324,7 @@ consteval auto make_record_fields() {
 
 inline constexpr auto kRecordFields = make_record_fields();
 
-// The table of what a run counts, beside that of a cycle: status.json and metrics
-// hold both.
+// Table of the totals of a run, for status.json and metrics.
 
 consteval auto make_run_fields() {
   using T = RunTotals;

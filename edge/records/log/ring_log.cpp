@@ -18,22 +18,22 @@ namespace bess {
 void describe_damage(const RingDamage& damage, const char* path, TextBuffer& line) {
   line.add("%s is damaged", path);
   if (damage.is_set_aside) {
-    line.add(": nothing in it can be understood; it is set aside as .old, a new one begins");
+    line.add(": unreadable; renamed to .old, starting a new log");
     return;
   }
   if (damage.header == RingDamage::Header::kFromCopy) {
-    line.add("; its header was broken, its copy counts");
+    line.add("; header broken, its copy is used");
   } else if (damage.header == RingDamage::Header::kFromRecords) {
-    line.add("; header and copy were broken; they are rebuilt from the records");
+    line.add("; header and copy broken, rebuilt from the records");
   }
   const auto broken = static_cast<long long>(damage.broken_records);
   if (broken > 0) line.add("; %lld %s lost", broken, broken == 1 ? "record is" : "records are");
   if (damage.missing_records > 0) {
-    line.add("; its end is cut off: the places of %lld records are gone",
+    line.add("; end truncated: %lld records are missing",
              static_cast<long long>(damage.missing_records));
   }
   if (damage.newest_lost > 0) {
-    line.add("; perhaps %lld of the newest: the last one before counts",
+    line.add("; up to %lld of the newest records lost: the last intact one is used",
              static_cast<long long>(damage.newest_lost));
   }
 }
@@ -67,7 +67,7 @@ void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_by
   put(header + 24, crc.value(), 4);
 }
 
-/// Neither as it was written (perhaps by a later program), nor a place that was never written to.
+/// Neither intact (possibly of a later version) nor never written.
 bool is_broken(std::span<const std::uint8_t> stored) {
   return !is_intact(stored) &&
          std::any_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte != 0; });
@@ -123,9 +123,9 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
   return false;
 }
 
-/// On a read-only disk nothing can be added, but what earlier runs left is known. Always false.
+/// On a read-only disk the log can be read but not extended. Always false.
 bool RingLog::open_read_only(const char* path, std::int64_t capacity, FileMessage& error) {
-  if (fd_ < 0) {  // else it is known from before: nothing has been added to it
+  if (fd_ < 0) {  // else already read, and unchanged
     fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
     damage_.was_absent = fd_ < 0;
     damage_.is_set_aside = fd_ >= 0 && !understand(capacity);
@@ -144,26 +144,27 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
   close_file();
   char line[700];
   std::snprintf(line, sizeof line,
-                "%s: is not a decision log of this program; the next start sets it aside", path);
+                "%s: is not a decision log of this program; the next start renames it to .old",
+                path);
   static_cast<void>(error.assign(line));
   return false;
 }
 
-/// Of no use to anybody but a person, whether there is room for another one or not.
+/// Renames an unreadable log, only for manual inspection.
 void RingLog::set_aside(const char* path) {
   damage_.is_set_aside = true;
   const FixedText<643> aside = beside(path, ".old");
   if (rename(path, aside.c_str()) == 0) close_file();
 }
 
-/// The new file is there as a whole before the old one loses its name.
+/// The new file is complete before the old one is renamed.
 bool RingLog::replace(const char* path, FileMessage& error) {
   const FixedText<643> new_path = beside(path, ".new");
   const int made = make_whole(new_path.c_str());
-  if (made < 0) return fail_with_errno(new_path.c_str(), "cannot make the log", error);
+  if (made < 0) return fail_with_errno(new_path.c_str(), "cannot create the log", error);
   const bool is_free = fd_ < 0 || rename(path, beside(path, ".old").c_str()) == 0;
   if (!is_free || rename(new_path.c_str(), path) != 0) {
-    fail_with_errno(path, "cannot set aside the log", error);
+    fail_with_errno(path, "cannot rename the log", error);
     close(made);
     unlink(new_path.c_str());
     return false;
@@ -175,13 +176,13 @@ bool RingLog::replace(const char* path, FileMessage& error) {
   return true;
 }
 
-/// At its full size, with its header and the newest record that is known, on the disk: what a
-/// restart needs is never in one process alone. Negative with errno set, and nothing left.
+/// Creates a file of full size with header and newest known record, synced to disk. Negative with
+/// errno set, and no file left.
 int RingLog::make_whole(const char* path) const {
   const int made = make_afresh(path);
   if (made < 0) return -1;
   const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
-  int cause = posix_fallocate(made, 0, size);  // a full disk must show now, not in a month
+  int cause = posix_fallocate(made, 0, size);  // detects a full disk now, not in a month
   errno = ENOSPC;                              // what a short write means
   if (cause == 0 && write_header(made) && write_newest(made) && fsync(made) == 0) return made;
   if (cause == 0) cause = errno;
@@ -191,7 +192,7 @@ int RingLog::make_whole(const char* path) const {
   return -1;
 }
 
-/// By its header, the header's copy, or the records. `likely_capacity` 0: not known.
+/// By header, its copy, or the records. `likely_capacity` 0: unknown.
 bool RingLog::understand(std::int64_t likely_capacity) {
   if (read_header(0) || read_header(kHeaderCopyAt)) {
     const Scan scan = find_newest();
@@ -229,8 +230,7 @@ bool RingLog::read_header(std::int64_t offset) {
   return fstat(fd_, &info) == 0;
 }
 
-/// Without a header: the size of the file says how many records it has, and each record by its
-/// number in which place it must lie.
+/// Without a header: the file size gives the number of records, and each record's number its slot.
 bool RingLog::find_geometry(std::int64_t likely_capacity) {
   struct stat info {};
   if (fstat(fd_, &info) != 0 || info.st_size <= kHeaderBytes) return false;
@@ -247,7 +247,7 @@ bool RingLog::find_geometry(std::int64_t likely_capacity) {
   return false;
 }
 
-/// Also a log in which nothing stands yet, at the size that it would have.
+/// True also for an empty log of the expected size.
 bool RingLog::fits(const Geometry& geometry) {
   if (geometry.capacity < 1) return false;
   record_bytes_ = geometry.record_bytes;
@@ -260,8 +260,7 @@ bool RingLog::fits(const Geometry& geometry) {
   return scan.misplaced == 0 && (scan.whole > 0 || is_empty);
 }
 
-/// Headers as they must be, the file at its full size. Where the disk refuses, the next start tries
-/// again.
+/// Restores headers and file size. On a disk error the next start tries again.
 void RingLog::mend() {
   const bool is_written = write_header(fd_);
   const bool is_long = damage_.missing_records == 0 || posix_fallocate(fd_, 0, file_bytes()) == 0;
@@ -269,7 +268,7 @@ void RingLog::mend() {
   static_cast<void>(is_kept);
 }
 
-/// Into a new file of `capacity_`.
+/// Writes the newest record into a new file of `capacity_`.
 bool RingLog::write_newest(int fd) const {
   if (newest_number_ == 0) return true;
   RecordBytes bytes;
@@ -293,9 +292,8 @@ bool RingLog::write_header(int fd) const {
   return true;
 }
 
-/// By the numbers at the records' heads alone, little of the work of looking at each: who asks
-/// wants an answer at once. False where the one that is newest by them is not whole, where anything
-/// cannot be read, and in an empty log: then each record is looked at.
+/// Fast search by the numbers at the heads of the records. False if the newest is not intact, on a
+/// read error, and for an empty log: then each record is checked.
 bool RingLog::find_newest_by_number() {
   constexpr std::int64_t kSlotsOfChunk = 64;
   std::uint8_t chunk[static_cast<std::size_t>(kSlotsOfChunk) * kRecordBytes];
@@ -318,7 +316,7 @@ bool RingLog::find_newest_by_number() {
   return true;
 }
 
-/// What the disk cannot read costs the records that lie there.
+/// A read error loses only the records of that place.
 RingLog::Scan RingLog::find_newest() {
   constexpr std::int64_t kSlotsOfChunk = 64;
   std::uint8_t chunk[static_cast<std::size_t>(kSlotsOfChunk) * kRecordBytes];
@@ -335,7 +333,7 @@ RingLog::Scan RingLog::find_newest() {
       scan.missing = left;
       return scan;
     }
-    if (bytes < 0 && slots_at_once > 1) {  // one by one, from here on
+    if (bytes < 0 && slots_at_once > 1) {  // from here one by one
       slots_at_once = 1;
       continue;
     }
@@ -366,7 +364,7 @@ void RingLog::look_at(std::span<const std::uint8_t> stored, std::int64_t slot, S
   }
 }
 
-/// Whether what stood in the place of this record is gone.
+/// Whether the slot of this record is unreadable or broken.
 bool RingLog::is_lost_at(std::uint64_t number) const {
   RecordBytes bytes;
   const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));

@@ -1,15 +1,13 @@
-// The decision log on disk: a ring of fixed-size records in one file of constant size. Written by
-// the log thread of bess-edge, read by `bess-edge log` and `bess-edge status` while it is being
-// written.
+// Decision log on disk: a ring of fixed-size records in one file of constant size. Written by the
+// log thread of bess-edge, read at the same time by `bess-edge log` and `bess-edge status`.
 //
 //   0     header: "BESSRING", version, bytes of a record, capacity, CRC-32
 //   2048  the header again; zeros up to 4096
-//   4096  capacity records of 512 bytes (record_codec.h); record number n lies in slot n % capacity
+//   4096  capacity records of 512 bytes (record_codec.h); record number n is in slot n % capacity
 //
-// Power cuts: the file is made beside its place and renamed, so its header is never half written; a
-// record overwrites the oldest one and carries a CRC, so a torn one costs itself and nothing else.
-// A card that forgets: a broken header is taken from its second copy, or found from the records
-// themselves, whose numbers and places prove it; what cannot be read is passed over and counted.
+// Power cuts: a new file is written completely, then renamed; a record overwrites the oldest one
+// and has a CRC, so a torn record affects no other. Lost bytes: a broken header is restored from
+// its copy, or from numbers and slots of the records; unreadable records are skipped and counted.
 // Nothing here allocates.
 #pragma once
 
@@ -23,24 +21,23 @@
 
 namespace bess {
 
-// What an opening of the decision log found lost: a card that dies forgets bytes here and there.
-
+/// Damage found when opening the decision log, as by a failing card.
 struct RingDamage {
   enum class Header { kSound, kFromCopy, kFromRecords };
 
   Header header = Header::kSound;
-  std::int64_t broken_records = 0;   ///< slots that hold neither a record nor nothing
-  std::int64_t missing_records = 0;  ///< slots behind the end of the file
-  std::int64_t newest_lost = 0;  ///< of both, right behind the newest that is left: perhaps newer
-  bool is_set_aside = false;     ///< nothing of the file could be understood
-  bool was_absent = false;       ///< no file: not a loss by itself
+  std::int64_t broken_records = 0;   ///< slots that are neither intact nor empty
+  std::int64_t missing_records = 0;  ///< slots beyond the end of the file
+  std::int64_t newest_lost = 0;      ///< of both, directly after the newest intact record
+  bool is_set_aside = false;         ///< the file was unreadable
+  bool was_absent = false;           ///< no file, which alone is no damage
 
   [[nodiscard]] bool is_any() const {
     return header != Header::kSound || broken_records > 0 || missing_records > 0 || is_set_aside;
   }
 };
 
-/// One line for the journal: what was lost and what was done; only where there is any.
+/// One journal line with damage and repair; only with damage.
 void describe_damage(const RingDamage& damage, const char* path, TextBuffer& line);
 
 class RingLog {
@@ -50,37 +47,34 @@ class RingLog {
   RingLog& operator=(const RingLog&) = delete;
   ~RingLog();
 
-  /// For writing. A missing file is made; one of another capacity, of smaller records or of which
-  /// nothing can be understood is set aside as "PATH.old", its numbers and newest record are taken
-  /// over as far as they can be read. Where the disk has no room for another one, a sound log goes
-  /// on at the size that it has. On a read-only disk it fails, and what is in the log can be read
-  /// all the same. False with one line and errno; may be tried again.
+  /// For writing. Creates a missing file. A file of another capacity, with smaller records, or
+  /// unreadable is renamed to "PATH.old"; numbers and newest record are kept as far as readable.
+  /// Without room for a new file an intact log keeps its size. On a read-only disk it fails, but
+  /// the log can be read. False with one line and errno; may be retried.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
-  /// For reading, beside a writer. Damage is counted only where the newest record cannot be told
-  /// without.
+  /// For reading, at the same time as a writer. Damage is counted only if the newest record cannot
+  /// be found otherwise.
   bool open_to_read(const char* path, FileMessage& error);
 
-  /// For what it was opened for.
-  /// Whether the file that is open is still the one of that name: a disk may be unmounted below it,
-  /// or mounted over it.
+  /// Whether the open file is still the one at `path`: its disk may have been unmounted or covered.
   [[nodiscard]] bool is_at(const char* path) const;
   [[nodiscard]] bool is_open() const { return fd_ >= 0 && !is_read_only_; }
   [[nodiscard]] std::int64_t capacity() const { return capacity_; }
 
-  /// Writes behind the newest record and waits for the disk. False when the disk refused; the next
-  /// call tries the same slot again.
+  /// Appends after the newest record and syncs. False on a disk error; the next call retries the
+  /// same slot.
   bool append(const CycleRecord& record) { return append(record, newest_number_ + 1); }
-  /// The same under a later number: the ones between are left out.
+  /// The same with a later number; the numbers between stay unused.
   bool append(const CycleRecord& record, std::uint64_t number);
 
-  /// The newest whole record that was there at opening or was appended since; false = none.
+  /// Newest intact record; false = none.
   bool newest(CycleRecord& record) const;
-  /// Numbers of the records that may be read, from 1; newest 0 = empty.
+  /// Numbers of the readable records, from 1; newest 0 = empty.
   [[nodiscard]] std::uint64_t newest_number() const { return newest_number_; }
   [[nodiscard]] std::uint64_t oldest_number() const;
-  /// False when that record was never written, is torn, or has been overwritten.
+  /// False for a record that was never written, is torn, or was overwritten.
   bool read(std::uint64_t number, CycleRecord& record) const;
-  /// What was lost of the file that the last `open` found.
+  /// Damage found by the last `open`.
   [[nodiscard]] const RingDamage& damage() const { return damage_; }
 
  private:
@@ -89,10 +83,10 @@ class RingLog {
     std::int64_t capacity = 0;
   };
   struct Scan {
-    std::int64_t whole = 0;      ///< records in their places
-    std::int64_t misplaced = 0;  ///< records in others' places
-    std::int64_t broken = 0;     ///< neither a record nor never written
-    std::int64_t missing = 0;    ///< behind the end of the file
+    std::int64_t whole = 0;      ///< records in their slots
+    std::int64_t misplaced = 0;  ///< records in other slots
+    std::int64_t broken = 0;     ///< neither intact nor empty
+    std::int64_t missing = 0;    ///< beyond the end of the file
   };
 
   bool open_read_only(const char* path, std::int64_t capacity, FileMessage& error);
@@ -115,8 +109,8 @@ class RingLog {
   void close_file();
 
   int fd_ = -1;
-  bool is_read_only_ = false;                ///< although it was opened for writing
-  std::size_t record_bytes_ = kRecordBytes;  ///< of the file that is open
+  bool is_read_only_ = false;                ///< although opened for writing
+  std::size_t record_bytes_ = kRecordBytes;  ///< of the open file
   std::int64_t capacity_ = 0;
   std::uint64_t newest_number_ = 0;
   CycleRecord newest_{};

@@ -17,8 +17,7 @@ namespace {
 long long as_long(std::int64_t value) { return value; }
 const char* as_bool(bool value) { return value ? "true" : "false"; }
 
-/// Text from a file (map names, provenance) inside quotes: what JSON and Prometheus must not meet
-/// there is replaced by a space or an apostrophe.
+/// Text for quotes in JSON and Prometheus: control characters become spaces, quotes apostrophes.
 template <int kCapacity>
 FixedText<kCapacity> quotable(const FixedText<kCapacity>& text) {
   char plain[kCapacity + 1];
@@ -44,7 +43,7 @@ void add_identity(const RunIdentity& id, TextBuffer& json) {
            id.cadence_ms);
 }
 
-/// The run's own fields and those of its last cycle, woven by their places in one output.
+/// Visits fields of the run and of its last control cycle, in the order of one output.
 template <Output kOutput, typename Visit>
 void visit_in_order(const RunTotals& t, const Visit& visit) {
   constexpr auto kRun = in_order<kRunFields, kOutput>();
@@ -58,7 +57,7 @@ void visit_in_order(const RunTotals& t, const Visit& visit) {
   for (; next < kRun.size(); ++next) visit(*kRun[next], t);
 }
 
-/// Numbers and times stand beside the flag that says whether they exist; a name has none.
+/// Numbers and times have a flag for their existence next to them; a missing name is "none".
 template <typename Source>
 void add_json_value(const Field<Source>& field, const Source& source, TextBuffer& json) {
   const std::int64_t value = field.access.read(source);
@@ -96,13 +95,13 @@ void add_cycles_by_reason(const RunTotals& t, TextBuffer& json) {
   json.add("\n  }");
 }
 
-/// Metrics, each with the battery's name: several controllers may write into one folder.
+/// Metrics with the battery's name as a label, because several controllers may share a folder.
 struct Metrics {
   TextBuffer& out;
   char label[80];
 };
 
-/// What counts up has a name that says so: the naming rule of Prometheus.
+/// Names of counters end in _total, the naming rule of Prometheus.
 void add_head(TextBuffer& text, const char* name, const char* help) {
   const bool is_counter = std::string_view(name).ends_with("_total");
   text.add("# HELP %s %s\n# TYPE %s %s\n", name, help, name, is_counter ? "counter" : "gauge");
@@ -113,7 +112,7 @@ void add_value(const Metrics& text, const char* name, const char* help, double v
   text.out.add("%s{%s} %.10g\n", name, text.label, value);
 }
 
-/// The metrics that are one field each. What does not exist is absent, not zero.
+/// Metrics of one field each. A missing value is absent, not 0.
 void add_fields(MetricGroup group, const RunTotals& totals, const Metrics& text) {
   visit_in_order<&Places::metrics>(totals, [&](const auto& field, const auto& source) {
     const bool is_due = tens(field.place_in(&Places::metrics)) == static_cast<int>(group);
@@ -160,7 +159,7 @@ void add_model(const RunIdentity& id, const Metrics& text) {
                quotable(id.student_provenance).c_str(), quotable(id.map).c_str());
 }
 
-/// Only what the device tells.
+/// Only values that the device reports.
 void add_wear(const CardWear& wear, const Metrics& text) {
   if (wear.used_life_percent > 0) {
     add_value(text, "bess_card_used_life_ratio",
@@ -180,7 +179,7 @@ void add_wear(const CardWear& wear, const Metrics& text) {
   }
 }
 
-/// Of a memory image: padding is written, read and checked as it is.
+/// CRC of the memory image, padding included.
 std::uint32_t crc_of(const RunStatus& status) {
   Crc32 crc;
   crc.add_bytes(&status, sizeof status);
@@ -195,7 +194,7 @@ void RunTotals::count(const CycleRecord& record) {
   ++cycles_by_reason[static_cast<std::size_t>(record.reason)];
   if (record.written) ++written_orders;
   if (record.battery_status != Status::kOk) ++battery_failures;
-  const bool has_asked = record.mode != Mode::kStopping;  // the last record asks for no price
+  const bool has_asked = record.mode != Mode::kStopping;  // the last record has no price request
   if (has_asked && record.price.status != Status::kOk) ++price_failures;
 }
 

@@ -1,6 +1,5 @@
-// The code of an enumerator on disk is its place in these lists. They only ever grow at the end,
-// whatever order the enumerations have in the program: what was logged a year ago must keep its
-// meaning.
+// Stable codes of enumerators on disk: the position in these lists. Append only, independent of the
+// order in the enumeration, so that old logs keep their meaning.
 #pragma once
 
 #include <array>
@@ -29,7 +28,7 @@ struct StableCodes<Action> {
   static constexpr auto kNameOf = action_name;
 };
 
-/// By the codes of the table.
+/// Reasons ordered by the code in their table.
 constexpr std::array<Reason, kReasonCount> reasons_by_code() {
   std::array<Reason, kReasonCount> list{};
   for (int i = 0; i < kReasonCount; ++i) {
@@ -78,7 +77,7 @@ std::int64_t code_of(const Enum& enumerator) {
   return static_cast<std::int64_t>(code);
 }
 
-/// False when the code is of a later program.
+/// False for a code of a later version.
 template <typename Enum>
 bool set_by_code(std::int64_t code, Enum& enumerator) {
   if (code < 0 || code >= static_cast<std::int64_t>(kCodeCount<Enum>)) return false;
@@ -86,7 +85,7 @@ bool set_by_code(std::int64_t code, Enum& enumerator) {
   return true;
 }
 
-/// As written in texts; ends in 0.
+/// Name in texts, null-terminated.
 template <typename Enum>
 const char* name_of_code(std::int64_t code) {
   return StableCodes<Enum>::kNameOf(StableCodes<Enum>::kList[static_cast<std::size_t>(code)])

@@ -1,5 +1,5 @@
-// Text of limited length, appended to with printf formats, in storage that the owner provides. What
-// does not fit is cut and remembered. No stdio stream, no heap.
+// Text buffer of limited length with printf formats, in storage of the owner. Excess text is cut
+// and `was_cut` set. No stdio stream, no heap.
 #pragma once
 
 #include <cstdarg>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kDigits = 8;
 
-/// The end that a checked text of this frame has; shorter than that: the whole.
+/// End of the text with the size of this frame's checksum; a shorter text in full.
 std::string_view end_of(std::string_view text, const ChecksumFrame& frame) {
   const std::size_t size = frame.before.size() + kDigits + frame.after.size();
   return text.size() < size ? text : text.substr(text.size() - size);
@@ -57,14 +57,14 @@ struct Belonging {
   mode_t mode;
 };
 
-/// What lies in a folder is for whoever may enter it, whatever the umask says and whoever makes it:
-/// what root leaves there, the service must be able to read and to replace.
+/// File permissions follow the folder's permissions, independent of umask and creator: the service
+/// must be able to read and replace files made by root.
 void belong(int fd, const Belonging& wanted) {
   struct stat made {};
   if (fstat(fd, &made) != 0) return;
   const bool is_root = geteuid() == 0;
   const bool is_others = made.st_uid != wanted.user || made.st_gid != wanted.group;
-  // Where it is refused, it stays as it was made.
+  // On refusal the file keeps its owner.
   bool is_done = !is_root || !is_others || fchown(fd, wanted.user, wanted.group) == 0;
   if ((made.st_mode & 07777) != wanted.mode) is_done = fchmod(fd, wanted.mode) == 0 && is_done;
   static_cast<void>(is_done);
@@ -183,7 +183,7 @@ bool fail_with_errno(const char* path, std::string_view what, FileMessage& error
   char line[768];
   std::snprintf(line, sizeof line, "%s: %.*s: %s%s", path, static_cast<int>(what.size()),
                 what.data(), reason,
-                is_refused ? " (does it belong to the user that runs bess-edge?)" : "");
+                is_refused ? " (check that it belongs to the user that runs bess-edge)" : "");
   static_cast<void>(error.assign(line));
   errno = cause;
   return false;

@@ -1,6 +1,5 @@
-// Files that other programs read while bess-edge writes them: a new text replaces the old one at
-// once (written beside it, then renamed), so a reader never sees half of it. Nothing here
-// allocates.
+// Atomic replacement of files that other programs read: the new text is written to a second file
+// and renamed, so a reader never sees a part of it. Nothing here allocates.
 #pragma once
 
 #include <sys/types.h>
@@ -12,78 +11,75 @@
 
 namespace bess {
 
-// A checksum as the end of a text that other programs and people read as well: a comment of TOML
-// and of Prometheus, or the last member of a JSON object. Nothing here allocates.
+// Checksum at the end of a text: a comment of TOML and Prometheus, or the last JSON member.
 
-/// What stands before and behind the eight hexadecimal digits. The checksum is of all that stands
-/// before.
+/// Text before and after the eight hexadecimal digits. The checksum covers all preceding text.
 struct ChecksumFrame {
   std::string_view before;
   std::string_view after;
 };
 inline constexpr ChecksumFrame kCommentChecksum{"# crc32=", "\n"};
 inline constexpr ChecksumFrame kJsonChecksum{",\n  \"crc32\": \"", "\"\n}\n"};
-/// Of a file that is one line.
+/// For a file of one line.
 inline constexpr ChecksumFrame kLineChecksum{" crc32=", "\n"};
 
-/// What makes a checked text of this one.
+/// Checksum with its frame, to append to `text`.
 FixedText<31> checksum_end(std::string_view text, const ChecksumFrame& frame);
 
 enum class TextState {
-  kUnchecked,  ///< of an older program, or its end is cut off
+  kUnchecked,  ///< no checksum: older version, or truncated
   kIntact,
   kBroken,
 };
 TextState check_text(std::string_view text, const ChecksumFrame& frame);
 
-/// What the checksum is of; of an unchecked text the whole.
+/// Text without its checksum; an unchecked text in full.
 std::string_view without_checksum(std::string_view text, const ChecksumFrame& frame);
 
 using FileMessage = FixedText<767>;
 
-/// False with errno set. Not forced to the disk: such a file says how things are now, and after a
-/// power cut it would be wrong anyway.
+/// False with errno set. Not synced: the file shows the current state, which a power cut
+/// invalidates anyway.
 bool replace_file(const char* path, std::string_view text);
 
-/// The same; where the disk has no room for a new one, the old text is taken away first: none says
-/// less that is wrong than an old one. False with errno set.
+/// The same; on a full disk the old text is removed first, because no file is better than an old
+/// one. False with errno set.
 bool replace_or_remove_file(const char* path, std::string_view text);
 
-/// As `replace_file`, and on the disk before it returns: for what must outlast a power cut.
+/// As `replace_file`, synced to disk: for data that must survive a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
-/// Root, the user of this process, and whoever owns the folder around `path`, who can put anything
-/// there.
+/// Trusted owner check: root, the user of this process, or the owner of the folder of `path`.
 bool is_of_the_house(uid_t owner, const char* path);
 
-/// Whether a path may lead through a link to what another user pointed it at, and be of any owner.
+/// Whether a path may be a link, and have any owner.
 enum class Links { kRefused, kFollowed };
 
-/// Reads the beginning of a regular file, never what could block (a pipe). Returns the bytes read,
-/// at most `text.size()`; negative with errno set: ENOENT where there is no such file, EPERM where
-/// it is a stranger's.
+/// Reads the beginning of a regular file, never a pipe, which could block. Returns the bytes read,
+/// at most `text.size()`; negative with errno set: ENOENT without a file, EPERM for a file of an
+/// untrusted user.
 ssize_t read_beginning(const char* path, std::span<char> text, Links links);
 
-/// A new file of that name, for writing and reading: what lies there, a link as well, is removed
-/// and not followed. Whoever may enter the folder may read it; made by root, it belongs to the
-/// folder's owner. Negative with errno set.
+/// Creates a file for writing and reading. An existing file or link is removed, not followed.
+/// Permissions follow the folder; made by root, it belongs to the folder's owner. Negative with
+/// errno set.
 int make_afresh(const char* path);
 
-/// Makes a folder that everybody may enter, where there is none; made by root, it belongs to the
-/// owner of the one around it. False with errno set.
+/// Creates a missing folder, open to all users; made by root, it belongs to its parent's owner.
+/// False with errno set.
 bool make_folder(const char* path);
 
-/// The folder that holds a file, "." for a bare name.
+/// Folder of a file, "." for a bare name.
 FixedText<639> folder_of(const char* path);
 
-/// Of an errno: the disk is full, read-only or broken. That keeps no battery from being driven;
-/// anything else is the operator's to mend.
+/// True for an errno of a full, read-only or broken disk. Control continues then; other errors need
+/// the operator.
 bool is_disk_trouble(int error);
 
-/// Makes a rename in this file's folder outlast a power cut.
+/// Syncs the folder of a file, so that a rename survives a power cut.
 void sync_folder_of(const char* path);
 
-/// Puts "PATH: WHAT: why by errno" into `error`; always false. Keeps errno.
+/// Puts "PATH: WHAT: errno text" into `error`; always false. Keeps errno.
 bool fail_with_errno(const char* path, std::string_view what, FileMessage& error);
 
 }  // namespace bess
