@@ -11,7 +11,6 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
-#include "workstation/base/palette.h"
 #include "workstation/data/env/drawdown.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
@@ -23,7 +22,7 @@ namespace bess {
 namespace {
 
 constexpr const char* kAllMonths = "all";
-constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk};
+constexpr std::array kLineColours{"muted", "soft", "discharge", "charge", "ink"};
 
 constexpr const char* kBacktestShownKeys =
     "policy,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
@@ -129,7 +128,7 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   for (const DayResult& day : results.policies.front().total.days) dates.push_back(day.date);
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   for (std::size_t p = 0; p < shown.size(); ++p) {
-    series.add(Json::list_of(shown[p]->name, kLineColours[p % kLineColours.size()]->name,
+    series.add(Json::list_of(shown[p]->name, kLineColours[p % kLineColours.size()],
                              Json::list_from(values(shown[p]->cumulative_eur_per_mwh()))));
   }
   return Json::object({{"id", id},

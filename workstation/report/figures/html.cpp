@@ -2,25 +2,10 @@
 
 #include <fmt/core.h>
 
-#include "workstation/base/palette.h"
 #include "workstation/report/figures/page_files.h"
 
 namespace bess {
 namespace {
-
-std::string variables(std::string_view Colour::*shade) {
-  std::string text;
-  for (const Colour& colour : kPalette) text += fmt::format("--{}:{};", colour.name, colour.*shade);
-  return text;
-}
-
-/// Dark only on screens that ask for it: paper stays white.
-std::string colour_scheme() {
-  return fmt::format(
-      ":root{{color-scheme:light dark;{}}}\n"
-      "@media screen and (prefers-color-scheme:dark){{:root{{{}}}}}",
-      variables(&Colour::light), variables(&Colour::dark));
-}
 
 std::string table_row(const std::vector<std::string>& cells, const std::vector<std::string>& header,
                       const std::string& link) {
@@ -63,9 +48,7 @@ std::string format_table(const std::string& caption, const Table& table) {
   return format_table(shown);
 }
 
-std::string style_sheet() {
-  return colour_scheme() + "\n" + std::string(page_file("document.css"));
-}
+std::string style_sheet() { return std::string(page_file("document.css")); }
 
 std::string format_page(std::string_view title, std::string_view body) {
   return fmt::format(

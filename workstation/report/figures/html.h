@@ -25,7 +25,7 @@ std::string format_table(const HtmlTable& table);
 /// The columns that have a title.
 std::string format_table(const std::string& caption, const Table& table);
 
-/// The colours, light and dark, as variables, and page/document.css.
+/// Base style sheet of every page, shared/host/made/document.css.
 std::string style_sheet();
 
 /// A complete document: light and dark, phone and print, nothing fetched from outside.

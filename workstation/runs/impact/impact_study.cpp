@@ -10,7 +10,6 @@
 #include "shared/host/file.h"
 #include "workstation/base/answer.h"
 #include "workstation/base/in_parallel.h"
-#include "workstation/base/palette.h"
 #include "workstation/base/progress.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
@@ -232,7 +231,7 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
 
 namespace {
 
-constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark, &kIdle};
+constexpr std::array kLineColours{"ink", "charge", "discharge", "muted", "soft", "mark", "idle"};
 
 std::string formula_name(PriceFormula formula) {
   return std::string(kFormulaNames[static_cast<std::size_t>(formula)]);
@@ -295,7 +294,7 @@ Json lines_chart(const std::string& id, const ImpactPlan& plan,
   Json series = Json::list();
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto value_of = [&](double mw) { return value(n, mw); };
-    series.add(Json::list_of(names[n], kLineColours[n % kLineColours.size()]->name,
+    series.add(Json::list_of(names[n], kLineColours[n % kLineColours.size()],
                              Json::list_from(plan.fleet_mw, value_of)));
   }
   return Json::object({{"id", id},

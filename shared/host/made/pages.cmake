@@ -1,4 +1,4 @@
-# BESS_CHART_JS: the chart library, which the workstation's report and the edge's page embed.
+# BESS_PAGE_FILES: chart library and base style sheet, which every page embeds.
 find_file(BESS_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_PATH
           NO_CMAKE_FIND_ROOT_PATH  # a sysroot has no scripts
           DOC "Chart.js 3.9, minified, of Debian's libjs-chart.js")
@@ -11,3 +11,4 @@ if(NOT chart_js_head MATCHES "Chart\\.js v3\\.9\\.")
   message(FATAL_ERROR "${BESS_CHART_JS}: is not Chart.js 3.9, which the pages are written for: "
                       "name that of Debian 12's libjs-chart.js with -DBESS_CHART_JS=FILE")
 endif()
+set(BESS_PAGE_FILES ${BESS_CHART_JS} ${CMAKE_SOURCE_DIR}/shared/host/made/document.css)
