@@ -1,6 +1,6 @@
-// CHECK: programmer errors, in every build. The handler is replaceable: bess-edge drives the
-// battery to its safe state before the process ends, so that a bug costs a restart and never leaves
-// an order behind.
+// CHECK: detection of programming errors, in every build. The handler is replaceable: bess-edge
+// drives the battery to its safe state before the process ends, so that a bug costs a restart and
+// leaves no order behind.
 #pragma once
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ inline CheckHandler& check_handler() {
 }
 
 [[noreturn]] inline void check_failed(const char* expression, const char* file, int line) {
-  // write(2) instead of stdio: nothing here may allocate or depend on a healthy heap.
+  // write(2) instead of stdio: must neither allocate nor depend on a healthy heap.
   const auto put = [](const char* text) {
     const ssize_t ignored = write(STDERR_FILENO, text, std::strlen(text));
     static_cast<void>(ignored);
@@ -30,7 +30,7 @@ inline CheckHandler& check_handler() {
   put(" in ");
   put(file);
   put("\n");
-  // Once: the handler drives the code that has just failed, and may fail again.
+  // Called once: the handler runs the code that has just failed, and may fail again.
   const CheckHandler handler = std::exchange(check_handler(), nullptr);
   if (handler != nullptr) handler(expression, file, line);
   std::_Exit(70);

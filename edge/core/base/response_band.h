@@ -1,5 +1,5 @@
-// How quickly and how exactly a device follows an order: its register map says it ([response]), the
-// supervision of its answers judges by it.
+// Response band: speed and tolerance with which a device follows an order, from [response] of its
+// register map. Input of the supervision.
 #pragma once
 
 #include <algorithm>
@@ -8,19 +8,18 @@
 namespace bess {
 
 struct ResponseBand {
-  std::int32_t settle_s = 20;           ///< from an order to the power that answers it
+  std::int32_t settle_s = 20;           ///< from an order until the power has settled
   std::int32_t tolerance_percent = 15;  ///< of the ordered power
-  std::int32_t tolerance_w = 200;       ///< own consumption and error of the meter, at any power
-  std::int32_t soc_step_e4 = 100;   ///< the smallest change of the state of charge that it shows
-  std::int32_t soc_refresh_s = 60;  ///< as old as that the state of charge may be
-  bool charges_by_itself = false;   ///< surplus PV charges it, whatever is ordered
+  std::int32_t tolerance_w = 200;       ///< own consumption and meter error, at any power
+  std::int32_t soc_step_e4 = 100;       ///< resolution of the state of charge
+  std::int32_t soc_refresh_s = 60;      ///< maximum age of the state of charge
+  bool charges_by_itself = false;       ///< surplus PV charges it, independent of the order
 
-  /// What measured power may be off by at any power; also 2.5 % of the rating: a large battery's
-  /// pumps and fans.
+  /// Power error at any power, at least 2.5 % of the rating: pumps and fans of a large battery.
   [[nodiscard]] constexpr std::int32_t noise_w(std::int32_t rated_w) const {
     return std::max(tolerance_w, rated_w / 40);
   }
-  /// By how much power that answers an order of that size may differ from it.
+  /// Permitted difference between measured and ordered power.
   [[nodiscard]] constexpr std::int32_t tolerance_of_w(std::int32_t rated_w,
                                                       std::int32_t ordered_w) const {
     const std::int64_t share_w = std::int64_t{ordered_w} * tolerance_percent / 100;

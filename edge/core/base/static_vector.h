@@ -1,5 +1,5 @@
-// A vector of at most kCapacity trivial elements with inline storage: no heap, copyable, zero at
-// start.
+// Vector of at most kCapacity trivial elements with inline storage: no heap, copyable,
+// zero-initialised.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class StaticVector {
     BESS_CHECK(size_ < kCapacity);
     items_[static_cast<std::size_t>(size_++)] = value;
   }
-  /// False, and nothing changes, when it is full: for input from outside.
+  /// Returns false and changes nothing when full: for input from outside.
   [[nodiscard]] constexpr bool try_push_back(const T& value) {
     if (size_ == kCapacity) return false;
     push_back(value);

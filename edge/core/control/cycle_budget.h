@@ -1,5 +1,5 @@
-// How far the state of charge has been moved today, against the operator's cycle budget. A cycle is
-// 100 % of charge moved in and 100 % moved out, as in training. Pure integers; the day is local.
+// Full-cycle budget of the day: SoC moved so far against the operator's limit. A full cycle is 100
+// % charged and 100 % discharged, as in training. Pure integers; days are local.
 #pragma once
 
 #include <bit>
@@ -10,13 +10,13 @@
 
 namespace bess {
 
-// How often orders have changed between charging and discharging in the last hour, against the
-// operator's cap: what bounds the harm of a price source that lies. Idling in between does not make
-// two reversals of one, nor none. Pure integers; one bit for each step of the hour.
+// Reversal cap: changes between charging and discharging in the last hour, against the operator's
+// limit. It bounds the damage of a wrong price source. Idle steps in between neither add nor remove
+// a reversal. Pure integers; one bit per step of the hour.
 
 inline constexpr int kStepsPerHour = 60 / kMinutesPerStep;
 
-/// What a restart takes over, as it stood at the record's time.
+/// State for a restart, at the record's time.
 struct ReversalHistory {
   std::uint32_t steps = 0;     ///< bit n: the order n steps ago was a reversal
   std::int16_t direction = 0;  ///< sign of the last order that was not 0 W
@@ -33,7 +33,7 @@ class ReversalCap {
     step_ = utc_s / kSecondsPerStep;
   }
 
-  /// Once a cycle, before its decision. A clock that was stepped back forgets nothing.
+  /// Called once per cycle, before its decision. A clock step backwards keeps the history.
   constexpr void advance(std::int64_t utc_s) {
     const std::int64_t step = utc_s / kSecondsPerStep;
     const std::int64_t passed = step > step_ ? step - step_ : 0;
@@ -42,7 +42,7 @@ class ReversalCap {
     count();
   }
 
-  /// Sign of the power that would be one reversal too many; 0 = either may be ordered.
+  /// Sign of the power that would exceed the cap; 0 = both are allowed.
   [[nodiscard]] constexpr int barred_direction() const {
     const bool is_spent = per_hour_max_ > 0 && history_.in_hour >= per_hour_max_;
     return is_spent ? -history_.direction : 0;
@@ -72,7 +72,7 @@ class ReversalCap {
   std::int64_t step_ = 0;
 };
 
-/// What a restart takes over: the local day as 20231126, and the sum of |dSoC| in 1e-4 on it.
+/// State for a restart: local day as 20231126, and sum of |dSoC| in 1e-4 on that day.
 struct DayThroughput {
   std::int32_t local_day = 0;
   std::int32_t soc_moved_e4 = 0;
@@ -80,14 +80,14 @@ struct DayThroughput {
 
 class CycleBudget {
  public:
-  /// `cycles_per_day_max_e4` in 1e-4 cycles; 0 = no budget.
+  /// `cycles_per_day_max_e4` in 1e-4 full cycles; 0 = no budget.
   explicit constexpr CycleBudget(std::int32_t cycles_per_day_max_e4)
       : cycles_per_day_max_e4_(cycles_per_day_max_e4) {}
 
   constexpr void restore(const DayThroughput& before) { today_ = before; }
 
-  /// Once a cycle. Only what was moved under an order counts: neither the jitter of a resting
-  /// battery's last digit nor what the battery does in its own mode is ours.
+  /// Called once per control cycle. Counts only movement under an order: neither the last-digit
+  /// jitter of a resting battery nor its own mode.
   constexpr void update(std::int32_t local_day, std::int32_t soc_e4, bool was_driven) {
     if (local_day != today_.local_day) today_ = {.local_day = local_day};
     const std::int32_t moved_e4 = soc_e4 > soc_e4_ ? soc_e4 - soc_e4_ : soc_e4_ - soc_e4;
@@ -95,7 +95,7 @@ class CycleBudget {
     soc_e4_ = soc_e4;
     has_soc_ = true;
   }
-  /// The next measurement has no predecessor: the link was down meanwhile.
+  /// After a link failure the next measurement has no predecessor.
   constexpr void forget_soc() { has_soc_ = false; }
 
   [[nodiscard]] constexpr bool is_spent() const {

@@ -1,5 +1,5 @@
-// The signature of what this build decides (shared/decision_signature.h): its student and its guard
-// replay the recorded days.
+// Decision signature of this build (shared/decision_signature.h): student and guard replay the
+// recorded days.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace bess {
 
-/// What the guard is given at a site where nothing is wrong, the student's wish included at this
-/// level or break-even price, whichever is its context. The time zone must be set.
+/// Guard inputs at a site without faults, with the student's action at this level or break-even
+/// price, whichever is its context. The time zone must be set.
 GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4,
                                std::int32_t context_centi, std::int64_t price_minute_utc_s,
                                std::int32_t price_centi_eur_per_mwh);

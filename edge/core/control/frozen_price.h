@@ -1,17 +1,15 @@
-// A price that does not move although its stamps do: a source that hangs behind a clock that goes
-// on. After a while it is called frozen, which is told; after a longer one it is no price at all.
-// Pure integers.
+// Frozen price: the price does not change while its time stamps advance. First reported, later
+// treated as no price. Pure integers.
 //
-// How long honest prices stand still, to the cent, measured on 23 November 2026 on Elia's data:
-//   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes at most (22 between the
-//     rows that a controller asks for)
-//   52,530 real settled quarter-hours of January 2023 to June 2025: 10 in a row at most (150.00, on
-//     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to what is
-//     settled, so a run of theirs is at most two times 14 minutes longer: under 3 hours, had each
-//     of them shown it
-// So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours.
-// Among four values (FewValues) it must stay four times as long to be told, and two and a half
-// times as long to be none.
+// Longest constant correct prices, to the cent, measured on 23 November 2026 on Elia's data:
+//   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes (22 between the rows
+//     that a controller requests)
+//   52,530 real settled quarter-hours of January 2023 to June 2025: 10 in a row (150.00, on
+//     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to the settled
+//     price, so a run of minutes is at most two times 14 minutes longer: under 3 hours
+// Hence 30 minutes are reported, and 3 hours exceed any correct price. The thresholds for
+// alternation between four values (FewValues) are four times as long to report and 2.5 times as
+// long to stop.
 #pragma once
 
 #include <algorithm>
@@ -24,29 +22,29 @@
 
 namespace bess {
 
-// A price that goes to and fro between a few values under new stamps: a source that hangs, and
-// shows now one and now another of its last rows. Pure integers.
+// Alternation between a few values under new time stamps: a source that hangs and shows several of
+// its last rows in turn. Pure integers.
 //
-// How long honest prices stay within four values, to the cent, measured on 23 November 2026 on
-// Elia's data, of every second minute, as a controller asks:
-//   the 1,631 real minutes of 6 September 2024 and 8 April 2025   66 minutes at most
+// Longest stay of correct prices within four values, to the cent, measured on 23 November 2026 on
+// Elia's data, every second minute, as a controller requests:
+//   the 1,631 real minutes of 6 September 2024 and 8 April 2025   66 minutes
 //   the 204,420 rebuilt minutes of January to May 2023            50 minutes
 //   52,530 real settled quarter-hours of January 2023 to June     405 minutes, in December 2024
-//   2025, had every minute of them shown it
-// Five values and more pass for a price that moves.
+//   2025, as if every minute had shown them
+// Five or more values count as a changing price.
 
 class FewValues {
  public:
   static constexpr std::size_t kValues = 4;
 
-  /// `counted_s` since the row before.
+  /// `counted_s`: time since the previous row.
   constexpr void observe(std::int32_t value, std::int64_t counted_s) {
     now_s_ += counted_s;
     Seen* seen = std::find_if(begin(), end(), [&](const Seen& s) { return s.value == value; });
     if (seen == end() && count_ < kValues) {
       ++count_;
       if (count_ == 1) since_s_ = moved_s_ = now_s_;
-    } else if (seen == end()) {  // the others are all that was seen since the oldest
+    } else if (seen == end()) {  // the others are all values since the oldest
       seen = std::min_element(begin(), end(),
                               [](const Seen& a, const Seen& b) { return a.last_s < b.last_s; });
       since_s_ = seen->last_s;
@@ -56,9 +54,9 @@ class FewValues {
     newest_ = value;
   }
   [[nodiscard]] constexpr std::int32_t newest() const { return newest_; }
-  /// The newest, in a row.
+  /// Time for which the newest value has not changed.
   [[nodiscard]] constexpr std::int64_t stood_s() const { return now_s_ - moved_s_; }
-  /// For so long there were no more than four.
+  /// Time for which there were at most four values.
   [[nodiscard]] constexpr std::int64_t lasted_s() const { return now_s_ - since_s_; }
 
  private:
@@ -79,16 +77,16 @@ class FewValues {
 };
 
 struct FrozenPriceSettings {
-  std::int32_t frozen_s = 1'800;  ///< after this long it is called frozen; 0 = never
-  std::int32_t stop_s = 10'800;  ///< after this long the price counts as none; 0 = it always counts
+  std::int32_t frozen_s = 1'800;  ///< reported as frozen after this time; 0 = never
+  std::int32_t stop_s = 10'800;   ///< no price after this time; 0 = never
 };
 
-/// The newest row that a decision saw, and how long its price has stood by then. Kept over
-/// restarts: none thaws a price.
+/// The newest row used by a decision, and for how long its price has not changed. Kept over
+/// restarts: a restart does not reset the frozen state.
 struct StandingPrice {
   std::int64_t minute_utc_s = 0;  ///< 0 = no row yet
   std::int32_t centi_eur_per_mwh = 0;
-  std::int32_t unchanged_s = 0;  ///< from stamp to stamp, since the price last moved
+  std::int32_t unchanged_s = 0;  ///< from time stamp to time stamp, since the last change
 };
 
 class FrozenPrice {
@@ -97,19 +95,19 @@ class FrozenPrice {
 
   constexpr void restore(const StandingPrice& before) { price_ = before; }
 
-  /// A row that an earlier run decided on, by its log, oldest first.
+  /// A row used by an earlier run, from its log, oldest first.
   constexpr void recall(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
     const bool goes_on = few_minute_utc_s_ > 0 && minute_utc_s > few_minute_utc_s_;
     const std::int64_t since_s = goes_on ? minute_utc_s - few_minute_utc_s_ : 0;
-    // What stood for so long was told as that, and has moved.
+    // A price unchanged for this long was reported as frozen; now it has changed.
     const bool thaws = few_values_.stood_s() >= kStoodS;
     if (thaws && centi_eur_per_mwh != few_values_.newest()) few_values_ = FewValues{};
     few_values_.observe(centi_eur_per_mwh, std::min(since_s, kCountedGapS));
     few_minute_utc_s_ = minute_utc_s;
   }
 
-  /// The newest row that a decision sees. Of an outage only a step counts: it neither thaws a price
-  /// nor makes two equal rows hours apart a frozen one.
+  /// The newest row used by a decision. An outage counts as one step: it neither resets the frozen
+  /// state nor turns two equal rows hours apart into a frozen price.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
     recall(minute_utc_s, centi_eur_per_mwh);
     const bool stands = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
@@ -134,14 +132,14 @@ class FrozenPrice {
   }
 
  private:
-  static constexpr std::int64_t kStoodS = 1'800;  ///< longer than any honest minutes
+  static constexpr std::int64_t kStoodS = 1'800;  ///< longer than any run of correct minutes
   static constexpr std::int64_t kCountedGapS =
-      2 * kSecondsPerStep;  ///< a step, and one that failed
+      2 * kSecondsPerStep;  ///< one step, and one that failed
 
   FrozenPriceSettings settings_;
   StandingPrice price_{};
   FewValues few_values_;
-  std::int64_t few_minute_utc_s_ = 0;  ///< of its newest row; 0 = none
+  std::int64_t few_minute_utc_s_ = 0;  ///< newest row in few_values_; 0 = none
 };
 
 }  // namespace bess

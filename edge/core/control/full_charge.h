@@ -1,7 +1,7 @@
-// A full charge every N days, so that the battery's management can balance its cells and set its
-// SoC right. Counts local days since the SoC was last full. When N are over, nothing is discharged,
-// and the battery charges while the price is not above the trailing level; one day later at any
-// price. Pure integers.
+// Full charge every N days, so that the battery management can balance its cells and recalibrate
+// its SoC. Counts local days since the SoC was last full. After N days nothing is discharged, and
+// the battery charges while the price is not above the trailing level; one day later it charges at
+// any price. Pure integers.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline std::int32_t local_day_number(const LocalMinute& now) {
   return static_cast<std::int32_t>(midnight_s / kSecondsPerDay);
 }
 
-/// What an earlier run's newest record tells: the local day of the last full charge; 0 = no record.
+/// Local day of the last full charge, from the newest record of an earlier run; 0 = no record.
 inline std::int32_t last_full_day_of(std::int64_t record_utc_s, std::int16_t days_since_full) {
   if (record_utc_s == 0) return 0;
   return local_day_number(local_minute_of(record_utc_s)) - days_since_full;
@@ -28,17 +28,17 @@ inline std::int32_t last_full_day_of(std::int64_t record_utc_s, std::int16_t day
 
 class FullCharge {
  public:
-  /// Devices stop a little before their own 100 %.
+  /// Devices stop slightly below their own 100 %.
   static constexpr std::int32_t kFullE4 = 9'950;
 
   /// 0 = never.
   explicit constexpr FullCharge(std::int32_t every_days) : every_days_(every_days) {}
 
-  /// `last_full_day` as `last_full_day_of` gives it.
+  /// `last_full_day`: result of `last_full_day_of`.
   constexpr void restore(std::int32_t last_full_day) { last_full_day_ = last_full_day; }
 
-  /// Once a cycle in which the battery was read. Where nothing is known the days count from now on,
-  /// as they do after a clock that was in the future.
+  /// Called once per cycle in which the battery was read. An unknown or future day restarts the
+  /// count from now.
   constexpr void update(std::int32_t local_day, std::int32_t soc_e4) {
     const bool is_unknown = last_full_day_ == 0 || last_full_day_ > local_day;
     if (is_unknown || soc_e4 >= kFullE4) last_full_day_ = local_day;

@@ -1,4 +1,4 @@
-// An operator's hold: so many watts until an instant, whatever prices and student say. It crosses
+// Operator's hold: a fixed power until an end time, independent of prices and student. It passes
 // from the thread that reads its file to the control thread in one atomic word, so that neither
 // waits for the other, nor the control thread for a disk.
 #pragma once
@@ -13,17 +13,17 @@ namespace bess {
 inline constexpr std::int64_t kHoldSecondsMin = 120;  ///< shorter ones could fall between two ticks
 inline constexpr std::int64_t kHoldSecondsMax = 7 * kSecondsPerDay;
 
-/// What the file said when it was last read. Not wanted, or unreadable: no power and no end.
+/// The file's content when last read. No hold, or unreadable: no power and no end.
 struct Hold {
   std::int32_t power_w = 0;  ///< charge positive
-  /// UTC; 32 bits last until 2106. 0 = nobody holds.
+  /// UTC; 32 bits last until 2106. 0 = no hold.
   std::uint32_t until_utc_s = 0;
-  bool unreadable = false;  ///< there is a file, and it is not one of ours
+  bool unreadable = false;  ///< the file exists but is not a valid hold
 
   friend constexpr bool operator==(const Hold&, const Hold&) = default;
 };
 
-/// What a cycle made of it, for the log.
+/// The hold's effect on a cycle, for the log.
 struct HoldReport {
   bool held = false;
   bool unreadable = false;
@@ -31,8 +31,8 @@ struct HoldReport {
   std::uint32_t until_utc_s = 0;
 };
 
-/// A hold that ends later than any can that was ever allowed was made by a wrong clock, or is
-/// judged by one: it is not followed, and is told of as unreadable.
+/// An end time beyond the permitted maximum means a wrong clock, then or now: the hold is ignored
+/// and reported as unreadable.
 constexpr HoldReport hold_at(const Hold& hold, std::int64_t now_utc_s) {
   const std::int64_t left_s = std::int64_t{hold.until_utc_s} - now_utc_s;
   if (hold.unreadable || left_s > kHoldSecondsMax + kHoldSecondsMin) return {.unreadable = true};
@@ -40,7 +40,7 @@ constexpr HoldReport hold_at(const Hold& hold, std::int64_t now_utc_s) {
   return {.held = true, .power_w = hold.power_w, .until_utc_s = hold.until_utc_s};
 }
 
-/// The newest hold, from its reader to the control loop. Neither side ever waits.
+/// The newest hold, from its reader to the control loop. Wait-free on both sides.
 class HoldMailbox {
  public:
   void publish(const Hold& hold) {
@@ -55,7 +55,7 @@ class HoldMailbox {
   }
 
  private:
-  static constexpr std::uint64_t kUnreadable = UINT32_MAX;  ///< no hold ends then
+  static constexpr std::uint64_t kUnreadable = UINT32_MAX;  ///< not a possible end time
 
   std::atomic<std::uint64_t> word_{0};
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);

@@ -1,9 +1,9 @@
-// How the trailing price level is come by when the program starts. In this order:
-//   the log      the level rests while nobody runs, so the newest record has it
-//   history      the prices of the last days, from the server
-//   setting      what the operator expects
+// Initial price level at program start, in this order of sources:
+//   log          the newest record: the level does not change while the program is stopped
+//   history      prices of the last days, from the server
+//   setting      the operator's estimate
 //   none         the first price sets it
-// A student by month needs no more than the log.
+// A student by month needs only the log.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 
 namespace bess {
 
-// What an imbalance price that is too old to trade on has probably become: of its distance from the
-// trailing level a thirtieth goes with each step, so that a third is left after an hour. Measured
-// on three years ("When prices stay away", edge/prices/record/README.md): for half an hour this
-// keeps up to two fifths of what a short outage costs; after an hour no guess earns anything.
+// Estimate of an imbalance price that is too old to trade on: its distance from the trailing level
+// decays by 1/30 per step, to about a third after an hour. Measured on three years ("When prices
+// stay away", edge/prices/record/README.md): for half an hour this saves up to two fifths of the
+// cost of a short outage; after an hour no estimate is profitable.
 
 /// Hundredths of EUR/MWh. `age_s` from 0 to a day.
 constexpr std::int32_t stand_in_centi(std::int32_t newest_centi, std::int32_t level_centi,
@@ -38,12 +38,11 @@ enum class LevelSource : std::uint8_t { kLog, kHistory, kSetting, kNone };
 struct LevelStart {
   PriceLevel level{};
   LevelSource source = LevelSource::kNone;
-  bool refused_log = false;  ///< the log had a level that no prices lead to
+  bool refused_log = false;  ///< the logged level cannot result from prices
 };
 
-/// The level of the newest record, as far as it may be believed. A row later than any that can
-/// exist was logged while the clock was wrong: what the level is stands, but rows of now must count
-/// again.
+/// The level of the newest record, validated. A row from the future was logged under a wrong clock:
+/// its level is kept, but present rows must count again.
 constexpr PriceLevel level_from_log(const PriceLevel& logged, std::int64_t now_utc_s) {
   if (!logged.is_known() || !logged.is_sound()) return {};
   const std::int64_t newest_possible_utc_s = std::max<std::int64_t>(now_utc_s / 60 * 60 - 60, 1);
@@ -51,8 +50,8 @@ constexpr PriceLevel level_from_log(const PriceLevel& logged, std::int64_t now_u
           .row_minute_utc_s = std::min(logged.row_minute_utc_s, newest_possible_utc_s)};
 }
 
-/// `fetch_history` gives the level of the last days, not known where no row came; it is asked only
-/// when it is needed.
+/// `fetch_history` returns the level of the last days, unknown without rows; called only when
+/// needed.
 template <typename FetchHistory>
 LevelStart find_start_level(ContextKind kind, const PriceLevel& logged, std::int64_t now_utc_s,
                             std::optional<std::int32_t> setting_centi_eur_per_mwh,

@@ -1,5 +1,5 @@
-// The newest orders that power was to flow by: which of them were lost before their end. Logged, so
-// that a restart goes on counting; told by status, health and metrics.
+// Lost orders among the newest orders with power. Logged, so that a restart continues the count;
+// shown by status, health and metrics.
 #pragma once
 
 #include <bit>
@@ -8,12 +8,12 @@
 namespace bess {
 
 struct LostOrderHistory {
-  static constexpr int kRemembered = 30;  ///< an hour of them
+  static constexpr int kRemembered = 30;  ///< one hour
 
-  std::uint32_t orders = 0;  ///< one bit each, 1 = lost, the newest in the lowest
-  std::int16_t judged = 0;   ///< how many of the bits count, 0..30
-  std::int16_t lost = 0;     ///< of these
-  bool is_found = false;     ///< too many, and orders have not held for long enough since
+  std::uint32_t orders = 0;  ///< one bit per order, 1 = lost, newest in the lowest bit
+  std::int16_t judged = 0;   ///< number of valid bits, 0..30
+  std::int16_t lost = 0;     ///< lost orders among them
+  bool is_found = false;     ///< finding: too many, and no long enough series held since
 
   constexpr void note(bool is_lost) {
     constexpr std::uint32_t kMask = (1U << kRemembered) - 1;

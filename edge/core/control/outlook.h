@@ -1,10 +1,10 @@
-// What a student by outlook is given at a tick: the break-even price that a plan on day-ahead
-// prices has for this moment and SoC (shared/outlook). Plans are made on a thread of their own
-// (edge/prices/fetch), which offers the rows of the ticks ahead; a cycle takes what is there.
-//   planned   made for this tick, and the price of its quarter-hour was published
-//   usual     made for this tick, and it was not: what is usual at this hour and level
-//   late      the thread has not kept up: of a plan for an earlier tick, or another level
-//   missing   nothing is offered for this tick: the usual day, found at the start
+// Outlook input of the student: break-even price of the plan on day-ahead prices (shared/outlook)
+// for this tick and SoC. A thread of its own (edge/prices/fetch) plans and offers the rows of the
+// next ticks; a control cycle takes what is available.
+//   planned   plan for this tick, with the published price of its quarter-hour
+//   usual     plan for this tick, with the usual price of this hour and level
+//   late      plan for an earlier tick or another level: the thread is behind
+//   missing   no row for this tick: the usual day, computed at start
 #pragma once
 
 #include <atomic>
@@ -16,20 +16,20 @@
 
 namespace bess {
 
-// The newest value of a kind from one thread to another, larger than a word: of three places one is
-// being written, one being read, and one holds what was posted last. Neither side ever waits.
+// Newest value from one thread to another, larger than a word. Of three places one is being
+// written, one is being read, and one holds the last posted value. Wait-free on both sides.
 
 template <typename Value>
 class Mailbox {
  public:
-  /// The writer's place, with what it held some posts ago.
+  /// The writer's place, with the value of an earlier post.
   Value& draft() { return places_[writing_]; }
   void post() {
     writing_ = handed_over_.exchange(static_cast<std::uint8_t>(writing_ | kNew),
                                      std::memory_order_acq_rel) &
                kPlace;
   }
-  /// The reader's: what was posted last; before anything was, a value by default.
+  /// The reader's place: the last posted value, default-constructed before the first.
   const Value& latest() {
     if ((handed_over_.load(std::memory_order_relaxed) & kNew) != 0) {
       reading_ = handed_over_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
@@ -59,46 +59,46 @@ struct PricedQuarterHour {
   std::int32_t centi_eur_per_mwh = 0;
 };
 
-/// What a cycle made of it, for the log; nothing where the context is another.
+/// The outlook's part of a cycle, for the log; empty for other contexts.
 struct OutlookReport {
   OutlookSource source = OutlookSource::kNone;
   std::int32_t break_even_centi = 0;
-  std::int16_t known_quarter_hours = 0;     ///< published, from the tick on
+  std::int16_t known_quarter_hours = 0;     ///< published, from the tick onwards
   PricedQuarterHour dearest{}, cheapest{};  ///< of those
-  Status feed = Status::kOk;                ///< how day-ahead prices were last answered
-  std::int64_t planned_utc_s = 0;           ///< newest tick that was planned, else the first of all
+  Status feed = Status::kOk;                ///< status of the last day-ahead request
+  std::int64_t planned_utc_s = 0;           ///< newest planned tick, else the first of all
 };
 
-/// The rows of the next ticks, at the two levels between which the next decision's must lie.
+/// Rows of the next ticks, at the two levels that enclose the next decision's level.
 struct OutlookOffer {
-  static constexpr int kTicks = 15;  ///< half an hour that the planning thread may be late
+  static constexpr int kTicks = 15;  ///< the planning thread may be half an hour late
   static constexpr int kLevels = 2;
 
   std::int64_t first_tick_utc_s = 0;
-  int ticks = 0;  ///< no further than to midnight
+  int ticks = 0;  ///< at most until midnight
   int levels = 0;
   std::int32_t level_centi[kLevels] = {};
   BreakEvenRow rows[kLevels][kTicks] = {};
-  bool is_published = false;  ///< the price of the first tick's quarter-hour
+  bool is_published = false;  ///< price of the first tick's quarter-hour
   std::int16_t known_quarter_hours = 0;
   PricedQuarterHour dearest{}, cheapest{};
   Status feed = Status::kOk;
 };
 
-/// A day without any day-ahead price, by local quarter-hour: what there is where nothing else is.
+/// A day without day-ahead prices, by local quarter-hour: the fallback.
 struct UsualDay {
   std::int32_t level_centi = 0;
   BreakEvenRow rows[kQuarterHourCount] = {};
 };
 
-/// Where planning thread and control thread meet.
+/// Data exchange between planning thread and control thread.
 struct OutlookBoard {
   const OutlookModel* model = nullptr;
   UsualDay usual{};  ///< written before the loop starts
   Mailbox<OutlookOffer> offers{};
 };
 
-/// At a tick, at the level of its decision. Everything but `planned_utc_s`.
+/// At a tick, at the level of its decision. Sets all fields but `planned_utc_s`.
 OutlookReport outlook_at(OutlookBoard& board, std::int64_t tick_utc_s, std::int32_t soc_e4,
                          std::int32_t level_centi);
 

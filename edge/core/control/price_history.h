@@ -1,6 +1,5 @@
-// The prices of the last hours before the program started, and the level that a controller which
-// had run all the time would have by now. Filled in any order: servers answer with the newest rows
-// first.
+// Prices of the last hours before program start, and the level that a controller running all the
+// time would have now. Filled in any order: servers answer with the newest rows first.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@ class PriceHistory {
  public:
   static constexpr int kHoursMax = 96;  ///< four time constants of the level
 
-  /// Of the rows that the decisions of the `hours` (1..kHoursMax) before now have seen.
+  /// Covers the rows used by decisions of the `hours` (1..kHoursMax) before now.
   PriceHistory(int hours, std::int64_t now_utc_s)
       : minutes_(60 * hours),
         first_minute_utc_s_(now_utc_s / kSecondsPerStep * kSecondsPerStep -
@@ -23,7 +22,7 @@ class PriceHistory {
     centi_.fill(kNoRow);
   }
 
-  /// Rows outside the hours are passed over; of two rows of one minute the last one stays.
+  /// Rows outside the hours are ignored; the last row of a minute wins.
   void add(std::int64_t minute_utc_s, std::int32_t price_centi_eur_per_mwh) {
     const std::int64_t minute = (minute_utc_s - first_minute_utc_s_) / 60;
     if (minute_utc_s < first_minute_utc_s_ || minute >= minutes_) return;
@@ -41,8 +40,8 @@ class PriceHistory {
   }
   [[nodiscard]] std::int64_t first_minute_utc_s() const { return first_minute_utc_s_; }
 
-  /// At each tick the newest row decides: that of the minute before it, or of the one before that.
-  /// A still older one was seen by the tick before.
+  /// At each tick the newest row decides: that of the previous minute, or of the one before. An
+  /// older row was used by the previous tick.
   [[nodiscard]] PriceLevel level() const {
     PriceLevel level;
     for (int minute = 0; minute < minutes_; minute += kMinutesPerStep) {

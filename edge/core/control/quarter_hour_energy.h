@@ -1,10 +1,11 @@
-// What has been imported, and what the battery has taken, in the quarter-hour under way: the sum
-// that the Belgian capacity tariff takes its mean of. Pure integers, fed with every reading.
-// Between two readings import is the mean of both (export pays nothing back), and the battery's
-// power the higher of the two: orders change it between readings, and it must not be counted short.
+// Energy of the current quarter-hour: import, and the battery's share. The Belgian capacity tariff
+// uses its mean. Pure integers, updated with every reading. Between two readings import is the mean
+// of both (export is not credited). Battery power is the higher of the two: orders change it
+// between readings, and it must not be underestimated.
 //
-// What nobody measured (a gap longer than `gap_s_max`, the time before the first reading) counts as
-// the cap, or as the reading after or before it if that is more: after a restart the rest of the
+// Unmeasured time (a gap longer than `gap_s_max`, or before the first reading) counts as the cap,
+// or as a higher neighbouring reading. After a restart the rest of the quarter-hour keeps its own
+// share of the cap and no more.
 // quarter-hour has its own share of the cap left and nothing that may not be there.
 #pragma once
 
@@ -17,8 +18,7 @@ namespace bess {
 
 inline constexpr std::int64_t kQuarterHourS = kMinutesPerQuarterHour * 60;
 
-/// Quarter-hours of local time are quarter-hours of UTC: every offset in use is a multiple of 15
-/// minutes.
+/// Local quarter-hours are UTC quarter-hours: every offset in use is a multiple of 15 minutes.
 constexpr std::int64_t quarter_hour_of(std::int64_t utc_s) { return utc_s / kQuarterHourS; }
 
 class QuarterHourEnergy {
@@ -32,7 +32,7 @@ class QuarterHourEnergy {
   QuarterHourEnergy(std::int32_t assumed_w, std::int32_t gap_s_max)
       : assumed_w_(assumed_w), gap_s_max_(gap_s_max) {}
 
-  /// What an earlier run had counted up to `utc_s`.
+  /// Count of an earlier run up to `utc_s`.
   void restore(std::int64_t utc_s, std::int32_t import_wh, std::int32_t battery_wh) {
     last_utc_s_ = utc_s;
     is_restored_ = true;
@@ -40,7 +40,7 @@ class QuarterHourEnergy {
     battery_ws_ = std::int64_t{battery_wh} * kWsPerWh;
   }
 
-  /// A reading at `utc_s`. A clock that was stepped back begins anew.
+  /// A reading at `utc_s`. A clock step backwards resets the sums.
   void add(std::int64_t utc_s, std::int32_t grid_w, std::int32_t battery_w) {
     const std::int64_t quarter_start_s = quarter_hour_of(utc_s) * kQuarterHourS;
     const bool goes_on = last_utc_s_ >= quarter_start_s && last_utc_s_ <= utc_s;
@@ -63,7 +63,7 @@ class QuarterHourEnergy {
     is_restored_ = false;
   }
 
-  /// At an instant soon after the last reading, at which that still holds.
+  /// Sums shortly after the last reading, extrapolated at constant power.
   [[nodiscard]] Sums at(std::int64_t utc_s) const {
     QuarterHourEnergy then = *this;
     then.add(std::max(utc_s, last_utc_s_), last_grid_w_, last_battery_w_);
@@ -78,7 +78,7 @@ class QuarterHourEnergy {
  private:
   std::int32_t assumed_w_;
   std::int32_t gap_s_max_;
-  bool is_restored_ = false;  ///< nothing was measured since what the earlier run had counted
+  bool is_restored_ = false;  ///< no measurement since the restored count
   std::int64_t last_utc_s_ = INT64_MIN / 2;
   std::int32_t last_grid_w_ = 0;
   std::int32_t last_battery_w_ = 0;

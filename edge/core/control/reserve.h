@@ -1,6 +1,5 @@
-// The backup reserve: a state of charge that is kept for a black-out, by the hour of the local day
-// and, where wanted, by month. Apart from soc_min, which is for the battery's health. Pure
-// integers.
+// Backup reserve: state of charge kept for a power failure, by local hour and optionally by month.
+// Independent of soc_min, which protects the battery. Pure integers.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +14,9 @@ struct ReservePeriod {
   static constexpr std::uint16_t kEveryMonth = 0x0FFF;
 
   std::int16_t from_minute = 0;             ///< of the local day, wall clock
-  std::int16_t to_minute = kMinutesPerDay;  ///< before it; below `from_minute`: over midnight
+  std::int16_t to_minute = kMinutesPerDay;  ///< exclusive; below `from_minute`: over midnight
   std::int16_t soc_e4 = 0;
-  std::uint16_t months = kEveryMonth;  ///< bit 0 is January: of the day on which the minute lies
+  std::uint16_t months = kEveryMonth;  ///< bit 0 is January: month of the minute's day
 
   [[nodiscard]] constexpr bool holds_at(const LocalMinute& now) const {
     if ((months >> (now.month - 1) & 1) == 0) return false;
@@ -29,7 +28,7 @@ struct ReservePeriod {
 
 using ReservePlan = StaticVector<ReservePeriod, 24>;
 
-/// The highest reserve of the periods that hold now; 0 = none.
+/// The highest reserve of the current periods; 0 = none.
 constexpr std::int16_t reserve_soc_e4_at(const ReservePlan& plan, const LocalMinute& now) {
   std::int16_t reserve_e4 = 0;
   for (const ReservePeriod& period : plan) {

@@ -55,7 +55,7 @@ std::optional<Reason> SafetyGuard::price_stop_reason(const GuardInputs& in) cons
 
 std::optional<Reason> SafetyGuard::age_stop_reason(const GuardInputs& in) const {
   const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
-  if (age_s > settings_.price_age_s_max || age_s < -60) {  // a row of the future is no price either
+  if (age_s > settings_.price_age_s_max || age_s < -60) {  // a future row is no price either
     return Reason::kPriceAge;
   }
   const bool is_of_now =
@@ -81,7 +81,7 @@ GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
   return decision;
 }
 
-/// To the nearest action that the rules leave, and to the power that they leave of it.
+/// Moves to the nearest action and power that the rules permit.
 void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) const {
   const std::int32_t ruled_w = ruled_power_w(rules, decision.power_w, settings_.power_w);
   if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
@@ -91,7 +91,7 @@ GuardDecision SafetyGuard::find_wish_of_price(const GuardInputs& in) const {
   const Action of_price = settings_.thresholds.action_beyond(in.price_centi_eur_per_mwh);
   if (of_price == Action::kIdle) return find_wish_between_thresholds(in);
   const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;
-  // Where the student agrees it is no intervention.
+  // Agreement with the student is no intervention.
   return {.power_w = power_sign(of_price) * settings_.power_w,
           .reason = of_price == in.student_action ? students_reason(in) : of_threshold};
 }
@@ -117,7 +117,7 @@ void SafetyGuard::update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4) {
 
 void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const {
   if (settings_.ramp_w_max == 0) return;
-  // An order that was found in force may be another controller's, of a larger power than ours.
+  // An order found in force may be another controller's, with a larger power.
   const std::int32_t from_w =
       clamp_to<std::int32_t>(previous_power_w, -settings_.power_w, settings_.power_w);
   const std::int32_t ramped = clamp_to<std::int32_t>(
@@ -127,7 +127,7 @@ void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decis
 
 void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) const {
   if (decision.power_w > 0 && soc_.is_full) decision = {.power_w = 0, .reason = Reason::kSocFull};
-  // Relief gives back what was just taken: it goes down to the bound, whatever was there before.
+  // Relief returns energy taken in this quarter-hour: it may go down to the bound.
   const bool is_relief = decision.reason == Reason::kQuarterHourPeak;
   const std::int32_t soc_e4 = in.measurement.soc_e4;
   const bool is_empty = is_relief ? soc_e4 <= settings_.soc_min_e4 : soc_.is_empty;
@@ -148,14 +148,14 @@ void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) c
   apply_site(in.site, decision);
 }
 
-/// Before the limits: a battery that is empty, or not allowed more, gives the house no relief.
+/// Applied before the limits: an empty or limited battery gives no relief.
 void SafetyGuard::apply_relief(const SiteRange& site, GuardDecision& decision) {
   if (site.relief_w > 0 && decision.power_w > -site.relief_w) {
     decision = {.power_w = -site.relief_w, .reason = Reason::kQuarterHourPeak};
   }
 }
 
-/// After all others: it only cuts, and what cuts the furthest names the reason.
+/// Applied last: it only cuts; the tightest cut sets the reason.
 void SafetyGuard::apply_site(const SiteRange& site, GuardDecision& decision) {
   if (decision.power_w > site.charge_w_max) {
     decision = {.power_w = site.charge_w_max, .reason = site.charge_reason};

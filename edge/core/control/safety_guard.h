@@ -1,8 +1,8 @@
-// The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
+// Guard between student and battery [SPEC 7]: pure integers, no state but the SoC hysteresis.
 // Precedence: stop reasons (clock, link, alarm, temperature, off-grid, supervision, price) > limits
-// of SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > the operator's
-// rules > price thresholds > full charge > student. Every intervention carries its reason. A hold
-// needs no price: its stop reasons do not count meanwhile.
+// of SoC, reserve, full cycles, reversals, power and site > ramp > operator's hold > operator's
+// rules > price thresholds > full charge > student. Every intervention has a reason. A hold needs
+// no price: price stop reasons do not apply.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@ namespace bess {
 
 struct GuardSettings {
   std::int32_t power_w = 4'000;     ///< rated power of the battery, both directions
-  PriceThresholds thresholds = {};  ///< beyond them the student is not asked
+  PriceThresholds thresholds = {};  ///< beyond them the student is ignored
   std::int32_t soc_min_e4 = 1'000;
   std::int32_t soc_max_e4 = 10'000;
-  std::int32_t soc_hysteresis_e4 = 50;  ///< back inside by this much before the bound opens again
-  std::int32_t ramp_w_max = 0;          ///< largest change from one order to the next; 0 = any
+  std::int32_t soc_hysteresis_e4 = 50;  ///< distance from a bound before it opens again
+  std::int32_t ramp_w_max = 0;          ///< largest change from one order to the next; 0 = no limit
   std::int32_t price_age_s_max = 240;
-  /// For so long after it what the price has probably become may stand in; 0 = not at all.
+  /// Time after it in which an estimated price may be used; 0 = never.
   std::int32_t stand_in_s_max = 0;
   std::int32_t temperature_min_deci_c = 0;
   std::int32_t temperature_max_deci_c = 500;
-  std::int32_t full_charge_power_w = 0;  ///< of a full charge that is due
+  std::int32_t full_charge_power_w = 0;  ///< power of a full charge
 };
 
 struct GuardInputs {
@@ -37,26 +37,26 @@ struct GuardInputs {
   bool clock_ok = false;
   bool link_ok = false;
   BatteryMeasurement measurement;  ///< valid when link_ok
-  /// Why supervision of the battery's answers stops it.
+  /// Stop reason of the supervision.
   std::optional<Reason> supervision{};
   bool cycle_budget_spent = false;
-  int barred_direction = 0;           ///< sign of a power that would be a reversal too many
-  std::int32_t previous_power_w = 0;  ///< of the order in force until now
+  int barred_direction = 0;           ///< sign of a power that would exceed the reversal cap
+  std::int32_t previous_power_w = 0;  ///< order in force until now
   bool has_price = false;
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
-  bool price_is_frozen = false;  ///< for so long that it is none
-  bool price_stands_in = false;  ///< what it has probably become, the newest being too old
+  bool price_is_frozen = false;  ///< for so long that it is no price
+  bool price_stands_in = false;  ///< estimate, because the newest price is too old
   Action student_action = Action::kIdle;
   bool held = false;                ///< an operator's hold is in force
   std::int32_t held_power_w = 0;    ///< of that hold
-  std::int32_t reserve_soc_e4 = 0;  ///< kept for a black-out at this hour; 0 = none
+  std::int32_t reserve_soc_e4 = 0;  ///< kept for a power failure at this hour; 0 = none
   FullChargeWish full_charge = FullChargeWish::kNone;
-  RuleLimits rules{};  ///< of the operator at this state
+  RuleLimits rules{};  ///< operator's rules at this state
   SiteRange site{};
 };
 
-/// Seconds since the row was computed, at the END of its minute.
+/// Seconds since the row was computed, which is the END of its minute.
 constexpr std::int64_t price_age_s(std::int64_t now_utc_s, std::int64_t price_minute_utc_s) {
   return now_utc_s - (price_minute_utc_s + 60);
 }
@@ -67,14 +67,14 @@ class SafetyGuard {
       : settings_(settings),
         soc_{settings.soc_min_e4, settings.soc_max_e4, settings.soc_hysteresis_e4} {}
 
-  /// Power to order, and the reason when it is not the student's wish.
+  /// Power to order, and the reason if it is not the student's action.
   GuardDecision decide(const GuardInputs& in);
 
-  /// The newest price is too old to trade on, and not for so long that nothing may stand in for it.
+  /// The newest price is too old to trade on, but recent enough for an estimate.
   [[nodiscard]] bool may_stand_in(const GuardInputs& in) const;
 
-  /// The order in force (`previous_power_w`) held against the limits as they are now, between two
-  /// decisions: never more charging or discharging than it was, but for the site's relief.
+  /// Applies the present limits to the order in force (`previous_power_w`) between two decisions.
+  /// Never increases charging or discharging, except for the site's peak relief.
   [[nodiscard]] std::int32_t rechecked_power_w(const GuardInputs& in) const;
 
  private:

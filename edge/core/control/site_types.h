@@ -1,7 +1,6 @@
-// What is measured and limited beyond the battery: the house behind the same meter, its connection
-// to the grid, and whoever may cap the battery's power from outside.
+// Site measurements and limits: house, grid connection, outside limit.
 //   meter -> SiteReport -> log            limits -> SiteRange -> guard
-// Grid power is positive for import, house load for consumption (negative: more sun than load).
+// Grid power is positive for import, house load for consumption (negative: more PV than load).
 #pragma once
 
 #include <cstdint>
@@ -11,50 +10,49 @@
 
 namespace bess {
 
-/// Where a limit in W is not set.
+/// No limit, in W.
 inline constexpr std::int32_t kAnyPowerW = INT32_MAX;
 
-/// How far the meter is believed, and why (meter_witness.h). All zero: nothing speaks against it.
+/// Trust in the meter, and its evidence (meter_witness.h). All zero: no doubt.
 struct MeterTrust {
-  bool is_mismatch = false;            ///< found: it does not step with the battery
-  std::int32_t doubt = 0;              ///< points, 9 are a finding
-  std::int64_t pause_until_utc_s = 0;  ///< of the last finding
+  bool is_mismatch = false;            ///< finding: the meter does not step with the battery
+  std::int32_t doubt = 0;              ///< points; 9 are a finding
+  std::int64_t pause_until_utc_s = 0;  ///< pause after the last finding
   std::int32_t pause_s = 0;
-  /// Sums over the last steps, in permille of the battery's rating: its steps, the meter's errors.
+  /// Sums over the last steps, in permille of the battery's rating: battery steps, meter errors.
   std::int32_t steps = 0;
   std::int64_t step_squares = 0;
   std::int64_t error_products = 0;
   std::int64_t error_squares = 0;
 };
 
-/// The site's part of one cycle, for the log. All zero where neither meter nor limits are
-/// configured.
+/// The site's part of one cycle, for the log. All zero without meter and limits.
 struct SiteReport {
-  bool has_grid_power = false;  ///< the meter was read, and lately enough to decide by it
+  bool has_grid_power = false;  ///< the meter was read recently enough to decide by it
   std::int32_t grid_power_w = 0;
   std::int32_t quarter_hour_import_wh = 0;  ///< imported in this quarter-hour, rounded up
-  /// Of it, what the battery took and has not given back.
+  /// Share of it that the battery took and has not returned.
   std::int32_t quarter_hour_battery_wh = 0;
   std::int32_t order_cuts = 0;        ///< orders cut between two cycles, since start
   Status meter_status = Status::kOk;  ///< of the last reading
-  /// kTimeout: the outside limit has lapsed, kMalformed: it cannot be understood.
+  /// kTimeout: the outside limit has lapsed; kMalformed: it cannot be parsed.
   Status limit_status = Status::kOk;
   bool house_is_implausible = false;  ///< meter_witness.h
   MeterTrust trust{};
 };
 
-/// How far an order may go, by the site: the result of meter and outside limits, the guard's input.
-/// Always contains 0 W: a limit takes power away and never asks for any; what asks is `relief_w`.
+/// Range of an order at the site: result of meter and outside limits, input of the guard. Always
+/// contains 0 W: a limit only reduces power; `relief_w` requests it.
 struct SiteRange {
   std::int32_t charge_w_max = kAnyPowerW;     ///< 0 or more
   std::int32_t discharge_w_max = kAnyPowerW;  ///< 0 or more
-  Reason charge_reason{};                     ///< what set the limit, where there is one
+  Reason charge_reason{};                     ///< reason of the limit, if any
   Reason discharge_reason{};
-  /// To be discharged at least, so that the quarter-hour stays under its cap; within SoC, cycle and
-  /// power limits, and within `discharge_w_max`.
+  /// Minimum discharge that keeps the quarter-hour under its cap; within SoC, full-cycle and power
+  /// limits, and within `discharge_w_max`.
   std::int32_t relief_w = 0;
 
-  /// The tightest limit names the reason; of equal ones the first.
+  /// The tightest limit sets the reason; of equal limits the first.
   constexpr void limit_charge(std::int64_t power_w, Reason reason) {
     limit(power_w, reason, charge_w_max, charge_reason);
   }

@@ -1,5 +1,4 @@
-// The grid of decisions: a tick is a multiple of 2 minutes UTC, and what belongs to one ends with
-// it.
+// Decision grid: a tick is a multiple of 2 minutes UTC.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +10,12 @@
 
 namespace bess {
 
-// The controller's modes and every transition between them: a pure function, tested as a table.
+// Modes of the controller and all transitions: a pure function, tested as a table.
 //
-//   start     nothing was ordered yet; waits for battery, price and clock   -> running, holding
+//   start     no order yet; waits for battery, price and clock             -> running, holding
 //   running   orders follow student and guard                               -> holding, safe
 //   holding   a stop reason is present: 0 W is held for a while             -> running, safe
-//   safe      released: the battery is in its own mode, the loop goes on    -> running
+//   safe      released: the battery is in its own mode, the loop continues  -> running
 //   stopping  the process ends: 0 W, then release                           (reached from all)
 
 enum class Mode : std::uint8_t { kStart, kRunning, kHolding, kSafe, kStopping };
@@ -30,10 +29,10 @@ constexpr std::string_view mode_name(Mode mode) {
 
 struct ModeInputs {
   bool stop_requested;
-  bool stop_reason;   ///< the guard forbids driving the battery
+  bool stop_reason;   ///< the guard does not permit driving the battery
   bool hold_elapsed;  ///< 0 W has been held for the configured time
   bool release_now;   ///< the reason is one that 0 W makes worse
-  bool order_found;   ///< at start the battery was found following an order, of an earlier run
+  bool order_found;   ///< at start the battery followed an order of an earlier run
 };
 
 constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
@@ -58,8 +57,8 @@ constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
   return (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
 }
 
-/// The instant in monotonic time, at most `longest_s` from now: to a clock that was stepped back
-/// the tick lies far ahead.
+/// The instant in monotonic time, at most `longest_s` from now: after a clock step backwards the
+/// tick is far in the future.
 template <typename Clock>
 std::int64_t bounded_monotonic_ns(Clock& clock, std::int64_t utc_s, std::int64_t longest_s) {
   const std::int64_t longest_ns = clock.now_utc_ns() + longest_s * kNanosecondsPerSecond;
@@ -67,8 +66,7 @@ std::int64_t bounded_monotonic_ns(Clock& clock, std::int64_t utc_s, std::int64_t
   return clock.monotonic_ns_at(utc_ns < longest_ns ? utc_ns : longest_ns);
 }
 
-/// UTC as it would be, had nobody stepped the clock since this was made: for how long something
-/// took.
+/// UTC without clock steps since construction: for durations.
 template <typename Clock>
 class SteadyTime {
  public:
@@ -81,7 +79,7 @@ class SteadyTime {
     const std::int64_t stepped_ns = start_monotonic_ns_ - clock_.monotonic_ns_at(start_utc_ns_);
     return (clock_.now_utc_ns() - stepped_ns) / kNanosecondsPerSecond + ahead_s_;
   }
-  /// Before it is asked.
+  /// Must be called before `now_s`.
   void set_ahead(std::int64_t ahead_s) { ahead_s_ = ahead_s; }
 
  private:

@@ -1,6 +1,6 @@
-// Battery and site, read for a cycle and looked after between two: the watchdog is fed as often as
-// its map asks, and what the site no longer bears of the order in force is taken off it. Only a
-// tick gives it back.
+// Battery watch: reads battery and site for a cycle, and checks them between two. It refreshes the
+// watchdog as often as the map asks, and cuts an order that the site no longer allows. Only a tick
+// restores the power.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class BatteryWatch {
   using Order = OrderInForce<Battery, Clock>;
   using Parts = CycleParts<Site>;
 
-  /// All of them are the loop's, and outlive this object.
+  /// All references belong to the loop and outlive this object.
   BatteryWatch(const ControlSettings& settings, Battery& battery, Clock& clock, Order& order,
                Parts& parts, const SafetyGuard& guard, const Mode& mode)
       : settings_(settings),
@@ -54,16 +54,16 @@ class BatteryWatch {
     }
   }
 
-  /// When the site is to be looked at next; never where there is nothing to look at.
+  /// Time of the next site check; never if there is nothing to check.
   [[nodiscard]] std::int64_t check_due_utc_ns() const {
     const std::int32_t interval_s = site().check_every_s();
     if (interval_s <= 0) return INT64_MAX;
     const std::int64_t now_ns = clock_.now_utc_ns();
-    if (looked_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
+    if (looked_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back
     return looked_utc_ns_ + interval_s * kNanosecondsPerSecond;
   }
 
-  /// Is the order in force still borne?
+  /// Is the order in force still allowed?
   void check() {
     BatteryMeasurement measurement;
     Status status = site().needs_battery() ? battery_.read(measurement) : Status::kNotConnected;
@@ -74,18 +74,18 @@ class BatteryWatch {
     if (bearable(known, Margin::kHalf).power_w == order_.power_w() && !cut_failed_) return;
     const Bearable left = bearable(known, Margin::kWhole);
     if (!site().needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
-    // What became of our order is for the tick to see, and not to be hidden by the next one. Some
-    // follow none of 0 W: there is nothing to hide.
+    // A lost order is for the tick to detect; a new order would hide it. Some devices do not report
+    // an order of 0 W: nothing to hide.
     const bool has_ended = measurement.order_ended && order_.drives();
     if (is_read && (measurement.order_replaced || has_ended)) return;
-    // What flowed under the order until now would be taken for the next one's at the next reading.
+    // At the next reading, energy that flowed so far would be assigned to the next order.
     if (is_read) observe(Look::kCut, now_utc_s(), Status::kOk, order_.response(measurement));
     cut(left);
   }
 
-  /// This tick orders anew.
+  /// New order at this tick.
   void forget_failed_cut() { cut_failed_ = false; }
-  /// Since start, between two ticks.
+  /// Orders cut between two ticks, since start.
   [[nodiscard]] std::int32_t order_cuts() const { return order_cuts_; }
 
  private:
@@ -112,17 +112,17 @@ class BatteryWatch {
     std::int32_t reserve_soc_e4 = 0;
   };
 
-  /// Of the order in force.
+  /// Limits of the order in force.
   [[nodiscard]] Bearable bearable(const BatteryMeasurement& measurement, Margin margin) {
     GuardInputs in{
         .now_utc_s = now_utc_s(), .measurement = measurement, .previous_power_w = order_.power_w()};
-    CycleRecord between;  // of no cycle
+    CycleRecord between;  // belongs to no cycle
     parts_.put({.is_tick = false, .margin = margin, .power_w = settings_.guard.power_w}, between,
                in);
     return {.power_w = guard_.rechecked_power_w(in), .reserve_soc_e4 = in.reserve_soc_e4};
   }
 
-  /// As fresh as the readings that it follows from, and never longer than its cycle's order.
+  /// Expires with the readings that caused it, and at the latest with its cycle's order.
   void cut(const Bearable& left) {
     if (left.power_w != order_.power_w()) ++order_cuts_;
     was_cut_ = true;
@@ -130,7 +130,7 @@ class BatteryWatch {
         clock_.monotonic_ns() + settings_.order_deadline_s * kNanosecondsPerSecond;
     const Status status = order_.write(left.power_w, left.reserve_soc_e4,
                                        std::min(order_.feed_until_ns(), write_until_ns));
-    cut_failed_ = status != Status::kOk;  // the next cycle's record says what became of it
+    cut_failed_ = status != Status::kOk;  // reported by the next cycle's record
     parts_.note(left.power_w);
   }
 
@@ -141,10 +141,10 @@ class BatteryWatch {
   Parts& parts_;
   const SafetyGuard& guard_;
   const Mode& mode_;
-  BatteryMeasurement measured_;     ///< the last that was read at a tick
-  std::int64_t looked_utc_ns_ = 0;  ///< when the site was last looked at
+  BatteryMeasurement measured_;     ///< at the last tick
+  std::int64_t looked_utc_ns_ = 0;  ///< time of the last site check
   std::int32_t order_cuts_ = 0;
-  bool cut_failed_ = false;  ///< since this tick: the battery may still follow more
+  bool cut_failed_ = false;  ///< since this tick: the battery may still follow a larger order
   bool was_cut_ = false;     ///< since the last tick's reading
 };
 

@@ -1,21 +1,20 @@
-// One cycle of the controller: read the battery, wait for the newest price, decide, guard, order,
-// record. A template over battery, price source and clock, so that the very same code runs against
-// Modbus and HTTP, against the battery model in tests, and in simulated time; nothing is virtual,
-// nothing allocates.
+// Control loop: one control cycle reads the battery, waits for the newest price, decides, guards,
+// orders and records. A template over battery, price source and clock: the same code runs against
+// Modbus and HTTP, against the battery model in tests, and in simulated time. No virtual functions,
+// no allocation.
 //
 //   Battery      Status read(BatteryMeasurement&), order(const PowerOrder&), refresh(), release();
 //                int32 refresh_interval_s();  BatteryCounters counters()
 //   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
 //                bool wait(until_monotonic_ns);  PriceReport latest()
-//   Site         the house behind the same meter and who limits it (site_limits.h); NoSite: nothing
+//   Site         house, meter and outside limits (site_limits.h); NoSite: none
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
 //                pause_ns(ns), stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery and site measured   t  the row of minute t-1 is requested
 //   row in, or price_wait_s over                 decision, order written and read back
-// Between cycles the battery's watchdog is fed as often as its register map asks, and an order that
-// the site no longer bears is cut (battery_watch.h). What has a say: cycle_parts.h.
+// Between cycles: battery_watch.h. Parts of a decision: cycle_parts.h.
 #pragma once
 
 #include <cstdint>
@@ -50,26 +49,25 @@ class ControlLoop {
     order_.set_ahead(of<SupervisionPart>().time.ahead_s());
   }
 
-  /// What an earlier run left behind, by its newest record, empty where there was none, and the
-  /// trip in force.
+  /// State of an earlier run: its newest record (empty if none), and the trip in force.
   void take_over(const CycleRecord& before, const std::optional<Trip>& trip = std::nullopt) {
     parts_.restore(before);
     of<SupervisionPart>().take_over(before, trip);
     order_.expect(before);
   }
 
-  /// Follows the holds that are published there, which outlives the loop.
+  /// Follows the holds published there; `holds` must outlive the loop.
   void follow_holds(const HoldMailbox& holds) { of<HoldPart>().mailbox = &holds; }
-  /// The plans that give a student by outlook its context; null where it is another.
+  /// Plans for a student by outlook; null for other contexts.
   void follow_outlook(OutlookBoard* board) { of<OutlookPart>().board = board; }
 
   [[nodiscard]] const std::optional<Trip>& trip() const {
     return parts_.template get<SupervisionPart>().supervision.trip();
   }
-  /// A person has looked: the battery may be driven again.
+  /// Cleared by a person: the battery may be driven again.
   void clear_trip() { of<SupervisionPart>().supervision.clear(); }
 
-  /// Runs the cycle of the next tick; false when the process was asked to stop before it.
+  /// Runs the cycle of the next tick; false if a stop was requested before it.
   bool run_cycle(CycleRecord& record) {
     std::int64_t tick_utc_s = 0;
     if (!waits_.await_next_tick(tick_utc_s)) return false;
@@ -88,16 +86,16 @@ class ControlLoop {
     return true;
   }
 
-  /// The last order keeps its whole step; returns early when a stop is requested.
+  /// The last order lasts its whole step; returns early on a stop request.
   void finish_step() { waits_.finish_step(); }
 
-  /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
-  /// ordered. Where no timer of the device would end the order, it is tried for longer than the
-  /// link pauses between two connects.
+  /// Safe state: 0 W, then release. Called once on every exit; harmless without an order. Without a
+  /// device timer that would end the order it retries for longer than the link pauses between two
+  /// connects.
   void stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
     if (settings_.control && !order_.has_looked()) {
-      watch_.read(Look::kLast, record);  // of the run before
+      watch_.read(Look::kLast, record);  // an order of the run before
       record.battery_status = Status::kOk;
     }
     if (!settings_.control || !order_.exists()) return;
@@ -107,18 +105,17 @@ class ControlLoop {
       clock_.pause_ns(kStopPauseNs);
       released = give_back(record);
     }
-    if (released == Status::kOk)
-      watch_.read(Look::kLast, record);  // the SoC that is left, for the log
+    if (released == Status::kOk) watch_.read(Look::kLast, record);  // the final SoC, for the log
     record.battery_status = released;
     fill_totals(record);
   }
 
   [[nodiscard]] bool is_in_control() const { return settings_.control; }
-  /// False: what was ordered last stays in force until somebody ends it.
+  /// False: the last order stays in force until another controller ends it.
   [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_watchdog; }
 
-  /// Ends without touching the battery, for the next run to take over; its watchdog ends the order
-  /// if none comes. False when it has none, or no order is in force: then stop.
+  /// Ends without touching the battery, so that the next run takes over; otherwise its watchdog
+  /// ends the order. False without a watchdog or an order in force: then stop.
   bool hand_over(CycleRecord& record) {
     if (!settings_.has_watchdog || !order_.exists()) return false;
     record = final_record(Reason::kHandOver);
@@ -170,8 +167,8 @@ class ControlLoop {
     record.decision_us = elapsed_us(start_ns);
   }
 
-  /// The tick, unless more than the wait for the price has passed since: a process that was
-  /// suspended, or a clock that jumped, must not act on what was new before.
+  /// The tick, or later if more than the price wait has passed: after a suspend or a clock jump old
+  /// data must not count as new.
   std::int64_t decision_utc_s(std::int64_t tick_utc_s) const {
     const std::int64_t latest_utc_s = now_utc_s() - settings_.price_wait_s;
     return latest_utc_s > tick_utc_s ? latest_utc_s : tick_utc_s;
@@ -234,7 +231,7 @@ class ControlLoop {
     record.written = record.battery_status == Status::kOk;
   }
 
-  /// Late is an order that was needed and not in force `order_deadline_s` after its tick.
+  /// A deadline miss: a required order not in force `order_deadline_s` after its tick.
   void count_deadline_miss(const CycleRecord& record) {
     const bool needed = settings_.control && (mode_ == Mode::kRunning || mode_ == Mode::kHolding);
     const std::int64_t deadline_s = record.utc_s + settings_.order_deadline_s;

@@ -1,8 +1,7 @@
-// Parts of the cycle: what has a say in it besides price and student: site, hold, reserve, full
-// charge, frozen price, budget, cap, supervision. The loop asks them in the order of CycleParts,
-// and the record that a part reports to is the state that the next run restores it from. One more
-// is one class and one row at the end; it derives from CyclePart and hides what it needs. Nothing
-// is virtual, nothing allocates.
+// Parts of a decision other than price and student: site, hold, reserve, full charge, frozen price,
+// budget, cap, supervision. The loop calls them in the order of CycleParts. The record that a part
+// reports to is the state that the next run restores it from. A new part is one class, derived from
+// CyclePart, and one row at the end. No virtual functions, no allocation.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +23,13 @@
 
 namespace bess {
 
-// When the readings in a log were taken, without the steps of the clock of then: records bear
-// ticks, and a clock that was stepped between two of them has made the time between them look
-// shorter or longer. The age of the order that the battery followed was measured steadily, and
-// tells.
+// Time of the readings in a log, without clock steps: records have ticks, and a clock step between
+// two of them distorts the time between them. The age of the followed order was measured steadily,
+// and shows the step.
 
 class RecalledTime {
  public:
-  /// Of the next reading, oldest first, `read_lead_s` before its tick; in UTC, ahead of it by
+  /// Time of the next reading, oldest first, `read_lead_s` before its tick; in UTC, advanced by
   /// `ahead_s`.
   std::int64_t steady_s(const CycleRecord& record, std::int32_t read_lead_s) {
     const std::int64_t utc_s = record.utc_s - read_lead_s;
@@ -42,7 +40,7 @@ class RecalledTime {
     followed_ = record.followed;
     return utc_s + steady_ahead_s_;
   }
-  /// Of steady time before UTC, at the newest reading.
+  /// Steady time minus UTC at the newest reading.
   [[nodiscard]] std::int64_t ahead_s() const { return steady_ahead_s_; }
 
  private:
@@ -56,61 +54,61 @@ class RecalledTime {
     const bool goes_on = now.power_w == followed_.power_w && now.age_s > followed_.age_s;
     if (goes_on) return now.age_s - followed_.age_s;
     const std::int64_t by_age_s = std::int64_t{now.age_s} + read_lead_s;
-    if (by_age_s > by_clock_s) return by_age_s;  // it cannot be older than the reading before
-    // A step forward, or a reading that is missing: it is not known what flowed.
+    if (by_age_s > by_clock_s) return by_age_s;  // cannot be older than the previous reading
+    // A clock step forward, or a missing reading: the energy in between is unknown.
     return by_age_s < by_clock_s - kDoubtS ? by_clock_s + kTooLongS : by_clock_s;
   }
 
-  std::int64_t utc_s_ = 0;  ///< of the reading before; 0 = none
+  std::int64_t utc_s_ = 0;  ///< of the previous reading; 0 = none
   std::int64_t steady_ahead_s_ = 0;
   FollowedOrder followed_{};
 };
 
 enum class Look : std::uint8_t {
-  kTick,   ///< of a cycle, before its decision
-  kLast,   ///< of a run, after its release
-  kCheck,  ///< between two ticks: is the order still borne?
-  kCut     ///< just before it is taken back
+  kTick,   ///< at a tick, before its decision
+  kLast,   ///< at the end of a run, after its release
+  kCheck,  ///< between two ticks: is the order still allowed?
+  kCut     ///< just before the order is cut
 };
 
-/// The battery was read, or could not be.
+/// Result of a battery reading.
 struct Reading {
   Look look = Look::kTick;
-  std::int64_t utc_s = 0;       ///< the tick's; between two, now
+  std::int64_t utc_s = 0;       ///< the tick; between two ticks, now
   Status status = Status::kOk;  ///< of the reading
   bool is_read = false;
   bool is_under_control = false;
-  bool holds_nothing = false;  ///< what the battery follows is not ours
-  bool drives = false;         ///< an order of ours is in force, and not of 0 W
+  bool holds_nothing = false;  ///< the battery follows no order of ours
+  bool drives = false;         ///< an order of ours other than 0 W is in force
   Response response{};
 
-  /// What flowed since the one before belongs to one order.
+  /// The energy since the previous reading belongs to one order.
   [[nodiscard]] bool ends_step() const { return look == Look::kTick || look == Look::kLast; }
 };
 
-/// When the guard is asked.
+/// Time at which the guard decides.
 struct Moment {
-  bool is_tick = true;  ///< false: the order in force is held against the limits as they are now
+  bool is_tick = true;  ///< false: the present limits are applied to the order in force
   Margin margin = Margin::kWhole;
   std::int32_t power_w = 0;  ///< rated
 };
 
 struct CyclePart {
-  /// The newest record of an earlier run.
+  /// Restores the newest record of an earlier run.
   void restore(const CycleRecord&) {}
   /// A cycle of an earlier run, oldest first and before `restore`.
   void recall(const CycleRecord&, bool /*is_under_control*/) {}
   void observe(const Reading&) {}
-  /// What the guard is to know; what holds in this cycle alone is noted in its record as well. A
-  /// limit of one more reason needs nothing of the guard: `in.site.limit_charge(power_w, reason)`,
+  /// Adds to the guard's inputs; what applies to this cycle only is recorded too. A limit with a
+  /// new reason needs no change of the guard: `in.site.limit_charge(power_w, reason)`,
   /// `limit_discharge` or `forbid`.
   void put(const Moment&, CycleRecord&, GuardInputs&) {}
-  /// That power is ordered now.
+  /// The power ordered now.
   void note(std::int32_t) {}
   void report(CycleRecord&) const {}
 };
 
-// House, connection and outside limits; first of all, for a limit of another part is within them.
+// House, connection and outside limits; first, because limits of other parts are within them.
 
 template <typename Site>
 struct SitePart : CyclePart {
@@ -131,7 +129,7 @@ struct SitePart : CyclePart {
   Site site;
 };
 
-// What an operator asks of a cycle: a hold, and a reserve at this hour.
+// An operator's requests: a hold, and a reserve at this hour.
 
 struct HoldPart : CyclePart {
   void put(const Moment& now, CycleRecord& record, GuardInputs& in) {
@@ -155,10 +153,10 @@ struct ReservePart : CyclePart {
   }
 
   ReservePlan plan;
-  std::int16_t soc_e4 = 0;  ///< of this hour; 0 = none
+  std::int16_t soc_e4 = 0;  ///< reserve of this hour; 0 = none
 };
 
-// What bounds the battery's wear by orders: cycles a day, and reversals an hour.
+// Bounds on wear: full cycles per day, and reversals per hour.
 
 struct CycleBudgetPart : CyclePart {
   explicit CycleBudgetPart(std::int32_t per_day_max_e4) : budget(per_day_max_e4) {}
@@ -192,8 +190,8 @@ struct ReversalCapPart : CyclePart {
   ReversalCap cap;
 };
 
-// What other prices have to do with this cycle: the level that student and full charge hold a price
-// against, the outlook on later ones, and a price that stands still.
+// Other prices: the level with which student and full charge compare a price, the outlook, and a
+// frozen price.
 
 struct FullChargePart : CyclePart {
   explicit FullChargePart(std::int32_t every_days) : charge(every_days) {}
@@ -223,7 +221,7 @@ struct FullChargePart : CyclePart {
 
 struct OutlookPart : CyclePart {
   void restore(const CycleRecord& before) { planned_utc_s = before.outlook.planned_utc_s; }
-  /// What the student's class is made of; the battery was read.
+  /// Source of the student's context class; the battery was read.
   std::int32_t context_centi(const PriceLevel& level, CycleRecord& record) {
     const std::int32_t level_centi = level.centi_eur_per_mwh();
     if (board == nullptr) return level_centi;
@@ -261,8 +259,8 @@ struct FrozenPricePart : CyclePart {
   FrozenPrice frozen;
 };
 
-// Supervision of the battery's answers. Findings of an earlier run, short of a trip, are found
-// again from its logged readings: killing the program between two of them hides nothing.
+// Supervision of the battery's response. Findings of an earlier run, except trips, are reproduced
+// from its logged readings: restarting the program hides nothing.
 
 struct SupervisionPart : CyclePart {
   SupervisionPart(const SupervisionSettings& settings, std::int32_t lead_s)

@@ -1,5 +1,5 @@
-// What a decision is made from besides what the parts of a cycle put: the record's reading and
-// price, and the student.
+// Decision inputs besides those of the cycle parts: the record's reading and price, and the
+// student.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace bess {
 
-/// `now_utc_s`: the tick, or later where more than the wait for the price has passed since.
+/// `now_utc_s`: the tick, or later if more than the price wait has passed.
 inline GuardInputs guard_inputs(const CycleRecord& record, std::int64_t now_utc_s,
                                 std::int32_t price_age_s_max) {
   // Suspended between reading and deciding: a reading may be as old as a price, not older.
@@ -25,7 +25,7 @@ inline GuardInputs guard_inputs(const CycleRecord& record, std::int64_t now_utc_
           .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh};
 }
 
-/// What a price that is too old to trade on has probably become, where the guard lets it.
+/// Replaces a price that is too old to trade on by an estimate, if the guard permits.
 inline void let_stand_in(const SafetyGuard& guard, const PriceLevel& level, CycleRecord& record,
                          GuardInputs& in) {
   if (!level.is_known() || !guard.may_stand_in(in)) return;
@@ -35,7 +35,7 @@ inline void let_stand_in(const SafetyGuard& guard, const PriceLevel& level, Cycl
   record.stand_in_centi_eur_per_mwh = in.price_centi_eur_per_mwh;
 }
 
-/// Its action, and what the operator's rules leave, where battery and price are known.
+/// Student's action and rule limits, if battery and price are known.
 inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleRecord& record,
                         GuardInputs& in) {
   if (!record.has_measurement || !record.price.has_row) return;
@@ -50,8 +50,8 @@ inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleReco
   in.rules = student_rule_limits(now, state, price_centi);
 }
 
-/// A device that answers, but no longer as the right one, was stopped for what it is, and not
-/// because it could not be read.
+/// A device that responds with a wrong identity or capacity was stopped for that, not because it
+/// could not be read.
 constexpr Reason cause_of(Reason reason, std::optional<Reason> supervision, Status battery_status) {
   const bool is_implausible = reason == Reason::kLink && battery_status == Status::kImplausible;
   return is_implausible ? supervision.value_or(reason) : reason;

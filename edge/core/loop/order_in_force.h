@@ -1,5 +1,5 @@
-// The order that the battery follows, or may follow: found after a restart, written, fed to its
-// watchdog, bound to its tick, released. Battery and Clock as in control_loop.h.
+// Order that the battery follows or may follow: found after a restart, written, refreshed, bound to
+// its tick, released. Battery and Clock as in control_loop.h.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace bess {
 
-/// When the power of a record's order was ordered first, to some seconds: the battery was read a
-/// little before its tick.
+/// Time at which this power was first ordered, to a few seconds: the battery is read shortly before
+/// its tick.
 inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
   const FollowedOrder& before = record.followed;
   const bool goes_on = before.is_judged && before.power_w == record.ordered_power_w;
@@ -37,15 +37,15 @@ class OrderInForce {
   [[nodiscard]] bool exists() const { return exists_; }
   [[nodiscard]] std::int32_t power_w() const { return power_w_; }
   [[nodiscard]] bool drives() const { return exists_ && power_w_ != 0; }
-  /// The first reading has told what an earlier run left in force, and whether there was anything.
+  /// The first reading has shown whether an earlier run left an order in force.
   [[nodiscard]] bool has_looked() const { return has_looked_; }
   [[nodiscard]] bool was_found() const { return was_found_; }
-  /// Monotonic, of this cycle's order.
+  /// Monotonic deadlines of this cycle's order.
   [[nodiscard]] std::int64_t write_until_ns() const { return write_until_ns_; }
   [[nodiscard]] std::int64_t feed_until_ns() const { return feed_until_ns_; }
 
-  /// After a restart the battery may still follow the order of the run before: it goes on until the
-  /// first decision, and from now on it is this run's to hold and to release.
+  /// After a restart the battery may still follow the previous run's order. It continues until the
+  /// first decision, and from now on this run holds and releases it.
   void find(const BatteryMeasurement& measurement) {
     if (has_looked_) return;
     has_looked_ = true;
@@ -61,19 +61,19 @@ class OrderInForce {
     if (is_expected) since_s_ -= utc_s - expected_since_utc_s_;
   }
 
-  /// The newest order of the run before, by its log: found in force, it is as old as its power, and
-  /// its answer counts.
+  /// The newest logged order of the previous run: if found in force, it keeps its age, and the
+  /// battery's response counts.
   void expect(const CycleRecord& newest) {
     expected_power_w_ = newest.ordered_power_w;
     expected_utc_s_ = newest.utc_s;
     expected_since_utc_s_ = ordered_since_utc_s(newest);
   }
 
-  /// Of steady time before UTC: it goes on from what was recalled.
+  /// Steady time minus UTC, continued from the recalled log.
   void set_ahead(std::int64_t ahead_s) { time_.set_ahead(ahead_s); }
 
-  /// An order belongs to its tick: a process that was stopped and goes on later neither writes it
-  /// nor feeds it, for the price that it was decided on is gone.
+  /// An order belongs to its tick: a process that was suspended neither writes nor refreshes it
+  /// later, because its price is out of date.
   void bind(std::int64_t tick_utc_s) {
     const std::int32_t write_s = settings_.order_deadline_s;
     const std::int32_t feed_s = kSecondsPerStep + settings_.price_wait_s + write_s;
@@ -85,7 +85,7 @@ class OrderInForce {
 
   Status write(std::int32_t power_w, std::int32_t reserve_soc_e4, std::int64_t write_until_ns) {
     if (!exists_ || power_w != power_w_) since_s_ = time_.now_s();
-    exists_ = true;  // even when it fails: the battery may have understood
+    exists_ = true;  // even if writing fails: the battery may have received it
     power_w_ = power_w;
     fed_utc_ns_ = clock_.now_utc_ns();
     soc_floor_e4_ = std::max(settings_.guard.soc_min_e4, reserve_soc_e4);
@@ -109,28 +109,27 @@ class OrderInForce {
     return status;
   }
 
-  /// Without control: what would be in force, for the ramp goes from there.
+  /// Without control: the hypothetical order, as the start of the ramp.
   void imagine(std::int32_t power_w) { power_w_ = power_w; }
 
-  /// When the battery's watchdog is to be fed next; never where it has none, or nothing is in
-  /// force.
+  /// Time of the next watchdog refresh; never without a watchdog or an order in force.
   [[nodiscard]] std::int64_t refresh_due_utc_ns() const {
     const std::int32_t interval_s = battery_.refresh_interval_s();
     if (!settings_.control || !exists_ || interval_s <= 0) return INT64_MAX;
     const std::int64_t now_ns = clock_.now_utc_ns();
-    if (fed_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
+    if (fed_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back
     return fed_utc_ns_ + interval_s * kNanosecondsPerSecond;
   }
 
   void refresh() {
-    // A failure shows in the counters, and the next order finds out what is wrong.
+    // A failure shows in the counters; the next order finds the cause.
     static_cast<void>(battery_.refresh());
     fed_utc_ns_ = clock_.now_utc_ns();
   }
 
-  /// Only the order that the battery really follows can be answered: one that it refused, or that
-  /// has run out, leaves it in its own mode, which goes any way. Of one that a run before gave,
-  /// under a clock that was stepped since, nobody knows for how long it has been followed.
+  /// A response exists only to an order that the battery follows: after a refused or expired order
+  /// it is in its own mode, where any power is possible. If the clock was stepped since an earlier
+  /// run gave the order, its age is unknown.
   [[nodiscard]] Response response(const BatteryMeasurement& m) const {
     const std::int64_t read_s = time_.now_s();
     const bool is_known = (m.has_order_power || is_confirmed_) && read_s > since_s_;
@@ -157,11 +156,11 @@ class OrderInForce {
   SteadyTime<Clock> time_;
   bool exists_ = false;
   std::int32_t power_w_ = 0;
-  bool is_confirmed_ = false;    ///< it was read back
-  std::int64_t number_ = 0;      ///< of the orders that were
-  std::int64_t since_s_ = 0;     ///< steady: when that power was ordered first
-  std::int64_t fed_utc_ns_ = 0;  ///< when the battery last got an order or a refresh
-  std::int32_t soc_floor_e4_;    ///< at which the device itself stops to discharge by it
+  bool is_confirmed_ = false;    ///< read back
+  std::int64_t number_ = 0;      ///< of the confirmed orders
+  std::int64_t since_s_ = 0;     ///< steady: when this power was first ordered
+  std::int64_t fed_utc_ns_ = 0;  ///< last order or refresh
+  std::int32_t soc_floor_e4_;    ///< at which the device itself stops discharging
   std::int64_t write_until_ns_ = 0;
   std::int64_t feed_until_ns_ = 0;
   std::int32_t expected_power_w_ = 0;

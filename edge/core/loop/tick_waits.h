@@ -1,6 +1,6 @@
-// The waits of a cycle: for its tick, for the price of the minute before, for its start. Meanwhile
-// the battery is looked after. None is without a deadline, and a clock that is stepped back ends
-// each.
+// Waits of a control cycle: for its tick, for the price of the previous minute, for the end of its
+// step. The battery is watched while waiting. Every wait has a deadline and ends when the clock is
+// stepped back.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ class TickWaits {
   TickWaits(const TickWaits&) = delete;
   TickWaits& operator=(const TickWaits&) = delete;
 
-  /// Sleeps until `read_lead_s` before the next tick; false when asked to stop. A clock that is
-  /// stepped back meanwhile has other ticks.
+  /// Sleeps until `read_lead_s` before the next tick; false on a stop request. After a clock step
+  /// backwards the next tick is another one.
   bool await_next_tick(std::int64_t& tick_utc_s) {
     do {
       tick_utc_s = next_tick_utc_s(now_utc_s());
@@ -36,17 +36,17 @@ class TickWaits {
   [[nodiscard]] std::int32_t missed_ticks() const { return missed_ticks_; }
 
   bool sleep_until_tick() { return sleep_until_s(tick_utc_s_); }
-  /// The last order keeps its whole step.
+  /// The last order lasts its whole step.
   void finish_step() { sleep_until_s(tick_utc_s_ + kSecondsPerStep); }
 
-  /// Of the minute before the tick.
+  /// Requests the price of the minute before the tick.
   void request_price() {
     request_ns_ = clock_.monotonic_ns();
     prices_.request(tick_utc_s_ - 60,
                     bounded_monotonic_ns(clock_, tick_utc_s_, settings_.read_lead_s),
                     price_deadline_ns());
   }
-  /// In slices, so that a stop request is seen.
+  /// In slices, so that a stop request is noticed.
   PriceReport await_price() {
     constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
     const std::int64_t deadline_ns = price_deadline_ns();
@@ -58,7 +58,7 @@ class TickWaits {
     }
     return prices_.latest();
   }
-  /// This cycle's own request brought it.
+  /// Received by this cycle's own request.
   [[nodiscard]] bool is_fresh(const PriceReport& price) const {
     return price.has_row && price.received_monotonic_ns >= request_ns_;
   }
@@ -70,8 +70,8 @@ class TickWaits {
 
   bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
 
-  /// False when asked to stop. Returns early when the clock was stepped back: the instant may lie
-  /// hours ahead by now.
+  /// False on a stop request. Returns early when the clock was stepped back: the instant may now be
+  /// hours ahead.
   bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
@@ -102,7 +102,7 @@ class TickWaits {
   OrderInForce<Battery, Clock>& order_;
   Watch& watch_;
   std::int64_t tick_utc_s_ = 0;  ///< of this cycle, or the last
-  std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
+  std::int64_t request_ns_ = 0;  ///< time of this cycle's price request
   std::int32_t missed_ticks_ = 0;
 };
 

@@ -38,7 +38,7 @@ void SeldomSoc::observe(const Response& now) {
   if (is_new) restart_standstill();
 }
 
-/// The battery may follow as late as it settles, and show it as late as it refreshes.
+/// Power may lag by the settling time, the SoC by its refresh time.
 SeldomSoc::Reading SeldomSoc::reading_of(const Response& now,
                                          std::int64_t refreshed_after_s) const {
   const std::int64_t refreshed_s =
@@ -70,36 +70,36 @@ namespace {
 
 using Kind = EnergyInterval::Kind;
 
-// Shares of the measured energy in percent. A capacity 15 % off, losses of 10 % each way and a
-// battery that follows its order half a minute late stay within 70 and 150.
+// Shares of the measured energy in percent. A capacity error of 15 %, losses of 10 % each way and a
+// response delayed by half a minute stay within 70 and 150.
 constexpr std::int64_t kToldBelow = 70;
 constexpr std::int64_t kToldAbove = 150;
 constexpr std::int64_t kContradictedBelow = 40;
 constexpr std::int64_t kContradictedAbove = 250;
 constexpr int kIntervalsToTell = 6;
 constexpr int kIntervalsToContradict = 2;
-/// So many of them, and delays have had their share as well.
+/// With this many intervals delays are averaged out.
 constexpr int kIntervalsBeyondDelay = 15;
-constexpr int kIntervalsOfRest = 5;        ///< until what is lost unmeasured is told
-constexpr int kIntervalsOfShownRest = 10;  ///< until what is measured at 0 W is
+constexpr int kIntervalsOfRest = 5;        ///< before an unmeasured loss is reported
+constexpr int kIntervalsOfShownRest = 10;  ///< before a measured one is
 
-/// Under orders that go both ways, what leaves or comes besides: beyond what is lost on the way,
-/// and what another capacity makes of the energy that did not come back.
+/// Drift under orders in both directions: beyond conversion losses, and beyond the effect of a
+/// wrong capacity on the net energy.
 constexpr std::int64_t kLostOnTheWayPercent = 15;
 constexpr std::int64_t kUsuallyLostPercent = 5;
 constexpr std::int64_t kWrongScalePercent = 35;
 constexpr int kIntervalsOfDrift = 10;
 
-/// Half standard deviations. An honest battery is far from either bound, so that few will do.
+/// Half standard deviations. A healthy battery is far from either bound, so few are enough.
 constexpr std::int64_t kHalfSigmasToTell = 4;
 constexpr std::int64_t kHalfSigmasToContradict = 5;
 constexpr std::int64_t kPercent = 100;
-/// Of any count of charge, besides its resolution, in 1e-4 of the capacity.
+/// Error of any SoC besides its resolution, in 1e-4 of the capacity.
 constexpr std::int64_t kSocErrorE4 = 15;
-/// Set right slowly at rest, a count of charge may move that far: more is no error of counting.
+/// A slow SoC recalibration at rest may move this much; more is no counting error.
 constexpr std::int64_t kRestContradictedE4 = 2'000;
 
-/// Sum of contributions, and how much of it the largest one is.
+/// Sum of contributions, and the largest of them.
 struct Evidence {
   std::int64_t sum = 0;
   std::int64_t largest = 0;
@@ -108,7 +108,7 @@ struct Evidence {
     sum += contribution;
     largest = std::max(largest, contribution);
   }
-  /// Without its largest part it still exceeds what noise of this standard deviation makes.
+  /// Without its largest contribution it still exceeds noise of this standard deviation.
   [[nodiscard]] bool holds(std::int64_t half_sigmas, std::int64_t deviation) const {
     return 2 * (sum - largest) > half_sigmas * deviation;
   }
@@ -129,7 +129,7 @@ std::int64_t square_root(std::int64_t square) {
   return root * root < square ? root + 1 : root;
 }
 
-/// Sum of (e_i - e_(i+1))^2 over a span that grows backwards, with nothing on either side of it.
+/// Sum of (e_i - e_(i+1))^2 over a span that grows backwards, zero outside it.
 class Roughness {
  public:
   void add(std::int64_t energy_e4) {
@@ -144,14 +144,14 @@ class Roughness {
   std::int64_t oldest_ = 0;
 };
 
-/// Contribution to "less than `percent` of the energy arrives"; its negative: more than that.
+/// Contribution to "less than `percent` of the energy arrives"; negated: more than that.
 std::int64_t lack(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc_e4) {
   return (percent * energy_e4 - kPercent * soc_e4) * energy_e4;
 }
 
-/// As above, against the least of an honest battery. Where the order has changed, what was late
-/// cannot be told from what is missing: then only what is beyond any delay counts, and nothing
-/// speaks against it.
+/// As above, against the minimum of a healthy battery. After a change of the order a delay cannot
+/// be distinguished from missing energy: then only energy beyond any delay counts, and nothing
+/// counts against it.
 std::int64_t lack_beyond_delay(const EnergyInterval& interval) {
   const std::int64_t energy = interval.energy_e4;
   const std::int64_t late = interval.late_energy_e4;
@@ -190,7 +190,7 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     const std::int64_t energy = flows ? interval.energy_e4 : 0;
     roughness.add(energy);
     const std::int64_t lacking = flows ? lack_beyond_delay(interval) : 0;
-    beyond_delay.add(lacking != 0 ? energy : 0);  // what says nothing makes no noise
+    beyond_delay.add(lacking != 0 ? energy : 0);  // intervals without evidence add no noise
     if (!flows) continue;
     ++flowing;
     little.add(lack(kToldBelow, energy, interval.soc_e4));
@@ -211,14 +211,14 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     }
     if (flowing >= kIntervalsToTell && (little.tells(noise) || much.tells(noise))) {
       const std::int64_t percent = explained > 0 ? 100 * shown / explained : 0;
-      // 0 means that nothing is found.
+      // 0 means no finding.
       findings_.share_percent = static_cast<std::int16_t>(
           percent == 0 ? 1 : std::clamp<std::int64_t>(percent, -1'000, 1'000));
     }
   }
 }
 
-/// At 0 W: what the meter shows, and what the SoC loses besides.
+/// At 0 W: the measured power, and the additional loss of the SoC.
 void EnergyBalance::judge_rest(std::int64_t soc_variance) {
   const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
   const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;
@@ -256,8 +256,8 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
   }
 }
 
-/// Under orders: s_i = k e_i + b t_i, with a loss b that no meter shows. Orders that go both ways
-/// tell it from k.
+/// Under orders: s_i = k e_i + b t_i, with an unmeasured loss b. Orders in both directions separate
+/// b from k.
 void EnergyBalance::judge_drift(std::int64_t soc_variance) {
   const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
   const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;
@@ -288,7 +288,7 @@ void EnergyBalance::judge_drift(std::int64_t soc_variance) {
     const bool gains =
         2 * beyond_e4(gained) > kHalfSigmasToTell * noise && !settings_.charges_by_itself;
     if (!loses && !gains) continue;
-    if (findings_.share_percent == 0) {  // else it is told already
+    if (findings_.share_percent == 0) {  // else already reported
       const std::int64_t drift_e4 = lost.sum - kUsuallyLostPercent * moved_e4 / kPercent;
       findings_.rest_loss_w = static_cast<std::int32_t>(drift_e4 * capacity_ws / 10'000 / seconds);
     }

@@ -1,18 +1,16 @@
-// Does the state of charge move as the measured power explains? One reading of a coarse state of
-// charge says little, two hours of them much: every span of the newest intervals that ends now is
-// judged, short ones and long ones, charging and discharging together, against the noise that the
-// resolution of the SoC alone makes.
+// Energy balance: SoC change against measured energy. One reading of a coarse SoC is weak evidence,
+// two hours are strong. Every span of the newest intervals that ends now is judged, short and long,
+// charging and discharging together, against the noise due to the SoC resolution.
 //
-// An interval i between two readings brings energy e_i (measured) and a change of the SoC s_i, both
-// in 1e-4 of the capacity. With k the share of the energy that arrives, s_i = k e_i + u_i -
-// u_(i-1), where u is the error of one reading of the SoC, independent of the others. Over a span
+// An interval i between two readings has energy e_i (measured) and SoC change s_i, both in 1e-4 of
+// the capacity. With k the share of the energy that arrives, s_i = k e_i + u_i - u_(i-1), where u
+// is the independent error of one SoC reading. Over a span
 //
 //   sum (K e_i - s_i) e_i  =  (K - k) sum e_i^2  -  sum u_i (e_i - e_(i+1))
 //
 // so that k < K is shown when the left side exceeds z sigma_u sqrt(sum (e_i - e_(i+1))^2), with e =
-// 0 outside the span. A single interval is no evidence, however far it lies off: the finding must
-// hold without the one that speaks for it most, or a battery that sets its count right would be
-// accused.
+// 0 outside the span. A single interval is never sufficient: the finding must hold without its
+// largest contribution, else a recalibration of the SoC would cause a finding.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +23,8 @@
 
 namespace bess {
 
-// How much energy had flowed by when, for as long as a state of charge may be old: a reading of it
-// tells of some instant within a window that ends now, and the energy of that instant lies between
-// the least and the most of it.
+// Cumulative energy over the age that an SoC may have: a reading shows the SoC at some instant
+// within a window that ends now; its energy is between the minimum and maximum of that window.
 
 /// In watt-seconds, charging positive.
 struct EnergyRange {
@@ -38,7 +35,7 @@ struct EnergyRange {
   [[nodiscard]] constexpr EnergyRange since(const EnergyRange& before) const {
     return {least_ws - before.most_ws, most_ws - before.least_ws};
   }
-  /// That flowed whichever the instants were, with its sign; 0: it may have been none.
+  /// Energy that flowed for every choice of instants, signed; 0: possibly none.
   [[nodiscard]] constexpr std::int64_t surely_ws() const {
     return least_ws > 0 ? least_ws : std::min<std::int64_t>(most_ws, 0);
   }
@@ -46,15 +43,15 @@ struct EnergyRange {
 
 class EnergyPath {
  public:
-  static constexpr std::size_t kPoints =
-      64;  ///< two for each reading and each cut; a window is 620 s at most
+  /// Two for each reading and each cut; a window is 620 s at most.
+  static constexpr std::size_t kPoints = 64;
 
-  /// What flowed before is not known.
+  /// The energy before this is unknown.
   void begin(std::int64_t steady_s) {
     count_ = 0;
     push({steady_s, newest().energy_ws});
   }
-  /// `power_w` since the point before.
+  /// `power_w` since the previous point.
   void add(std::int64_t steady_s, std::int32_t power_w) {
     const std::int64_t seconds = std::max<std::int64_t>(steady_s - newest().steady_s, 0);
     if (seconds == 0) return;
@@ -62,7 +59,7 @@ class EnergyPath {
   }
   [[nodiscard]] std::int64_t energy_ws() const { return newest().energy_ws; }
 
-  /// Between then and now. What is not remembered went at most at `power_w_max`, either way.
+  /// Between then and now. Forgotten time counts at up to `power_w_max`, in either direction.
   [[nodiscard]] EnergyRange since(std::int64_t from_s, std::int32_t power_w_max) const {
     EnergyRange range{newest().energy_ws, newest().energy_ws};
     const auto include = [&range](std::int64_t energy_ws) {
@@ -106,16 +103,15 @@ class EnergyPath {
   std::size_t count_ = 1;
 };
 
-// How much energy has flowed against or beyond orders, whatever its rhythm: a count of bad readings
-// forgives a fault that is rare enough, a sum of energy does not. A one-sided CUSUM over days, in
-// shares of the capacity:
+// Wrong energy: energy against or beyond orders, whatever its pattern. A leaky count forgives a
+// rare fault; a sum of energy does not. One-sided CUSUM over days, in shares of the capacity:
 //
-//   S <- max(0, S + wrong power * time - a * time),  told from h / 4 on, a trip at h = 20 %
+//   S <- max(0, S + wrong power * time - a * time);  reported from h / 4, trip at h = 20 %
 //
-//   a = 2.5 % a day   what is taken for wrong of an honest battery
+//   a = 2.5 % per day   apparent wrong energy of a healthy battery
 //
-// A fault that moves r a day is found before it has moved h r / (r - a), and what one reading adds:
-// that is less than twice h for any r from 5 % a day on. One of less than a is never found.
+// A fault of r per day is found before it moves h r / (r - a) plus one reading: less than 2 h for
+// any r from 5 % per day. A fault below a is never found.
 
 class WrongEnergy {
  public:
@@ -123,7 +119,7 @@ class WrongEnergy {
   static constexpr std::int64_t kToldE6 = kFoundE6 / 4;
   static constexpr std::int64_t kForgivenE6PerDay = 25'000;
 
-  /// A reading that was judged; `wrong_w`: against or beyond its order, since the one before.
+  /// A judged reading; `wrong_w`: power against or beyond its order, since the previous one.
   void add(const Response& now, std::int64_t wrong_w, std::int64_t capacity_wh) {
     const std::int64_t seconds =
         judged_s_ == 0 ? 0 : std::max<std::int64_t>(now.steady_s - judged_s_, 0);
@@ -137,9 +133,9 @@ class WrongEnergy {
     judged_s_ = now.steady_s;
   }
   [[nodiscard]] bool is_found() const { return share_e6() >= kFoundE6; }
-  /// Of the capacity.
+  /// Share of the capacity.
   [[nodiscard]] std::int32_t share_e6() const { return static_cast<std::int32_t>(sum_e9_ / 1'000); }
-  /// Of an earlier run, by its log, in place of what was recalled of it.
+  /// Value of an earlier run, from its log; replaces the recalled one.
   void restore(std::int32_t share_e6) {
     sum_e9_ = std::clamp<std::int64_t>(std::int64_t{share_e6} * 1'000, 0, kMostE9);
   }
@@ -147,33 +143,33 @@ class WrongEnergy {
  private:
   static constexpr std::int64_t kMostE9 = 2 * kFoundE6 * 1'000;
   static constexpr std::int64_t kWattsMax = 100'000'000;
-  /// Of longer ago a reading says nothing: its watchdog may have ended the order meanwhile.
+  /// Longer gaps are unknown: the watchdog may have ended the order.
   static constexpr std::int64_t kKnownS = 300;
 
   std::int64_t sum_e9_ = 0;
-  std::int64_t judged_s_ = 0;  ///< when the newest reading was; 0 = none yet
+  std::int64_t judged_s_ = 0;  ///< time of the newest reading; 0 = none yet
 };
 
-/// What two readings of the battery, one after the other, say together.
+/// Result of two consecutive readings of the battery.
 struct EnergyInterval {
   enum class Kind : std::uint8_t {
     kUnknown,  ///< not under control throughout, too long, excused, or hardly any power
     kFlowing,
-    kResting,  ///< 0 W were ordered, and next to nothing was measured at both ends
+    kResting,  ///< 0 W ordered, and almost none measured at both ends
   };
   Kind kind = Kind::kUnknown;
   std::int16_t energy_e4 = 0;  ///< measured; charging is positive
-  /// The same, had the battery followed its order, and the SoC the battery, as late as they may:
-  /// less where the order has changed, and of the other sign after a reversal.
+  /// The same with the largest permitted delay of power and SoC: smaller after a change of the
+  /// order, of opposite sign after a reversal.
   std::int16_t late_energy_e4 = 0;
-  std::int16_t soc_e4 = 0;  ///< by how much the SoC rose
+  std::int16_t soc_e4 = 0;  ///< increase of the SoC
   std::int16_t seconds = 0;
-  std::int32_t power_w = 0;  ///< measured at its end
+  std::int32_t power_w = 0;  ///< at the end of the interval
 };
 
 struct EnergyBalanceSettings {
   std::int32_t capacity_wh = 8'000;
-  std::int32_t noise_w = 200;  ///< own consumption, and error of the meter
+  std::int32_t noise_w = 200;  ///< own consumption, and meter error
   bool charges_by_itself = false;
 };
 
@@ -181,21 +177,21 @@ class EnergyBalance {
  public:
   static constexpr std::size_t kIntervals = 60;  ///< two hours
 
-  /// What the spans show. Shares in percent of the measured energy; 0: nothing is found.
+  /// Findings over the spans. Shares in percent of the measured energy; 0 = no finding.
   struct Findings {
-    bool contradicts =
-        false;  ///< beyond what any honest battery does: less than 40 %, more than 250 %
-    std::int16_t share_percent =
-        0;  ///< of the energy shows in the SoC: below 70 or above 150 where it is found
-    std::int32_t rest_loss_w = 0;  ///< at 0 W, or besides its orders, it loses that much (negative:
-                                   ///< gains), measured or not
+    /// Beyond any healthy battery: less than 40 %, more than 250 %.
+    bool contradicts = false;
+    /// Share of the energy that shows in the SoC: below 70 or above 150 for a finding.
+    std::int16_t share_percent = 0;
+    /// Loss at 0 W or in addition to orders (negative: gain), measured or not.
+    std::int32_t rest_loss_w = 0;
   };
 
   explicit EnergyBalance(const EnergyBalanceSettings& settings) : settings_(settings) {}
 
-  /// The newest interval; `soc_span_e4`: how far two readings of the same SoC may lie apart.
+  /// The newest interval; `soc_span_e4`: possible difference of two readings of the same SoC.
   void observe(const EnergyInterval& interval, std::int32_t soc_span_e4);
-  /// Between the intervals before and the next nothing is known.
+  /// The time between the previous and the next interval is unknown.
   void interrupt() { add(EnergyInterval{}); }
 
   [[nodiscard]] const Findings& findings() const { return findings_; }
@@ -217,63 +213,61 @@ class EnergyBalance {
   Findings findings_;
 };
 
-// A state of charge that its device brings up to date every few minutes, as its map says
-// ([response] soc_refresh_s). Each reading of it is of some instant since then, and orders turn
-// meanwhile: what the energy of an interval between two readings is off by may be more than the
-// interval. So
-//   - a reading of the SoC has a range of energies, not one; where the SoC has just changed, a
-//     narrower one;
-//   - it stands still only if energy has flowed whichever instants the readings are of;
-//   - readings are put together until that is three quarters of what has flowed, most of it one
-//     way: then they are one interval of EnergyBalance. Where orders turn more often than that,
-//     nothing is said.
+// Sparse SoC: the device updates it only every few minutes ([response] soc_refresh_s of its map).
+// Each reading is of an unknown instant since then, and orders reverse in the same time, so that
+// the energy error of one interval may exceed the interval. Therefore
+//   - a reading of the SoC has a range of energies, narrower where the SoC has just changed;
+//   - the SoC counts as constant only if energy flowed for every choice of instants;
+//   - readings are combined until the certain energy is three quarters of the total, mostly in one
+//     direction: then they are one interval of EnergyBalance. If orders reverse more often, there
+//     is no result.
 
 class SeldomSoc {
  public:
-  static constexpr std::int32_t kUsualRefreshS = 60;  ///< as old as that is any
+  static constexpr std::int32_t kUsualRefreshS = 60;  ///< maximum age of a normal SoC
 
   explicit SeldomSoc(const ResponseSettings& settings) : settings_(settings) {}
 
   [[nodiscard]] bool is_seldom() const { return settings_.band.soc_refresh_s > kUsualRefreshS; }
 
-  /// Nothing is known of what was before this reading.
+  /// The time before this reading is unknown.
   void begin(const Response& now);
-  /// `power_before_w` at the reading before, until the order of this one.
+  /// `power_before_w`: power at the previous reading, until this one's order.
   void note_power(const Response& now, std::int32_t power_before_w);
-  /// After `note_power` of it.
+  /// Must follow `note_power` of the same reading.
   void observe(const Response& now);
 
-  /// Since the reading before.
+  /// Since the previous reading.
   [[nodiscard]] EnergyRange change() const { return now_.energy.since(before_.energy); }
-  /// That has surely flowed since the SoC last changed, with its sign.
+  /// Certain energy since the SoC last changed, signed.
   [[nodiscard]] std::int64_t still_ws() const {
     return now_.energy.since(changed_.energy).surely_ws();
   }
   [[nodiscard]] std::int64_t still_s() const { return now_.steady_s - changed_.steady_s; }
   [[nodiscard]] std::int32_t still_readings() const { return still_readings_; }
 
-  /// Readings that say enough together.
+  /// Combined readings.
   struct Interval {
     std::int64_t energy_ws = 0;
     std::int64_t surely_ws = 0;
-    std::int32_t soc_e4 = 0;  ///< by how much it rose
+    std::int32_t soc_e4 = 0;  ///< increase of the SoC
     std::int64_t seconds = 0;
   };
-  /// False: not yet. The next one begins where this one ends.
+  /// False: not enough yet. The next interval begins where this one ends.
   bool take_interval(Interval& interval);
-  /// What has come together so far says nothing: it was too long, or is excused.
+  /// The combined readings give no result: too long, or excused.
   [[nodiscard]] bool is_too_long() const;
   void restart_interval() { from_ = now_; }
   void restart_standstill() { changed_ = now_, still_readings_ = 0; }
 
  private:
-  /// A reading, and of what energy its SoC may be.
+  /// A reading, with the energy range of its SoC.
   struct Reading {
     std::int64_t steady_s = 0;
     std::int32_t soc_e4 = 0;
     EnergyRange energy{};
     std::int64_t energy_ws = 0;
-    std::int64_t moved_ws = 0;  ///< both ways together
+    std::int64_t moved_ws = 0;  ///< both directions added
   };
 
   [[nodiscard]] Reading reading_of(const Response& now, std::int64_t refreshed_after_s) const;
@@ -283,8 +277,8 @@ class SeldomSoc {
   std::int64_t moved_ws_ = 0;
   std::int64_t noted_s_ = 0;
   Reading now_, before_;
-  Reading changed_;  ///< the last at which the SoC was another one than before
-  Reading from_;     ///< with which the interval began
+  Reading changed_;  ///< the last at which the SoC changed
+  Reading from_;     ///< start of the interval
   std::int32_t still_readings_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Faults that come and go: a bad reading weighs three times what a good one forgives.
+// Leaky count for intermittent faults: a bad reading weighs three times a good one.
 //
 //   level <- min(level + 3, 6) on a bad reading, max(level - 1, 0) on a good one; found: level >= 5
 //
@@ -17,7 +17,7 @@ namespace bess {
 struct LeakyCount {
   static constexpr std::int16_t kBadWeight = 3;
   static constexpr std::int16_t kFound = 5;
-  /// What was bad for a day is forgiven as soon as what was bad twice.
+  /// A day of faults is forgiven as soon as two are.
   static constexpr std::int16_t kMost = 2 * kBadWeight;
 
   constexpr void bad() {
@@ -28,7 +28,7 @@ struct LeakyCount {
   }
   [[nodiscard]] constexpr bool is_found() const { return level >= kFound; }
   constexpr void forget() { level = 0; }
-  /// Of an earlier run, by what it wrote down: whatever stands there, the level is one that can be.
+  /// Restores a logged level of an earlier run, clamped to its valid range.
   constexpr void restore(std::int16_t logged) {
     level = std::clamp<std::int16_t>(logged, 0, kMost);
   }

@@ -1,11 +1,11 @@
-// Orders of ours that are not in force when they are read back before their end: somebody else
-// replaced them, or they ended, by the device or by a hand that wrote just that. Counted once each,
-// so that who comes and goes is found as well (leaky_count.h); one that nobody meant is no finding:
+// Lost orders: set points replaced or ended before their time, found at read-back. Each counts
+// once, in a leaky count, so that intermittent losses are found too (leaky_count.h). Losses that
+// are no fault do not count:
 //
-//   0 W that ended, and no power flows                     it rests, as it was told
-//   charging that ended near full, discharging near empty  there was nothing left to do
-//   an alarm, an island, charging in the cold              the device's own safety
-//   its time was over, the link was away, it was released  the driver tells these apart
+//   0 W that ended, and no power flows                     the battery rests, as ordered
+//   charging that ended near full, discharging near empty  nothing left to do
+//   alarm, off-grid, charging in the cold                  the device's own safety
+//   expired, link lost, released                           the driver tells these apart
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class LostOrders {
 
   explicit LostOrders(const ResponseSettings& settings) : settings_(settings) {}
 
-  /// `follows_another`: nothing of ours is in force, and the battery follows an order.
+  /// `follows_another`: no order of ours is in force, and the battery follows another one.
   void observe(const Response& now, bool follows_another) {
     if (lost_s_ != 0 && now.steady_s - lost_s_ > kForgottenAfterS) forget_old();
     const Fate fate = follows_another ? Fate::kReplaced : fate_of(now);
@@ -42,28 +42,28 @@ class LostOrders {
     }
   }
 
-  /// Time to give the battery back: the newest order was lost, and so were others before it. Who
-  /// insists tries for an hour first, and after that as long as less than half is lost.
+  /// Release is due: the newest order was lost, and others before it. With `yields` false an hour
+  /// of retries comes first, and continues while less than half is lost.
   [[nodiscard]] bool is_to_be_given_up(std::int64_t steady_s, bool yields) const {
     if (!was_lost_ || !count_.is_found()) return false;
     const bool most = 2 * history_.lost >= history_.judged;
     return yields || (most && steady_s - first_lost_s_ >= kInsistsForS);
   }
-  /// Why: kOtherMaster where somebody's hand was seen, else kNoAnswer.
+  /// kOtherMaster if an overwritten register was seen, else kNoAnswer.
   [[nodiscard]] Reason reason() const {
     return was_replaced_ ? Reason::kOtherMaster : Reason::kNoAnswer;
   }
-  /// Orders have held for long enough since one was lost.
+  /// Enough orders have held since the last loss.
   [[nodiscard]] bool has_settled() const { return first_lost_s_ == 0; }
 
-  /// The battery has been given back: found anew from here.
+  /// The battery was released: detection restarts here.
   void forget_findings() {
     count_.forget();
     was_replaced_ = was_lost_ = false;
   }
 
   [[nodiscard]] const LostOrderHistory& history() const { return history_; }
-  /// Of an earlier run, by its log: `utc_s` is that of the record.
+  /// History of an earlier run, from its log; `utc_s`: time of the record.
   void restore(const LostOrderHistory& logged, std::int64_t utc_s) {
     constexpr int kMost = LostOrderHistory::kRemembered;
     for (int i = std::clamp<int>(logged.judged, 0, kMost) - 1; i >= 0; --i) {
@@ -86,7 +86,7 @@ class LostOrders {
  private:
   enum class Fate : std::uint8_t { kNothingToSee, kHolds, kReplaced, kEnded };
 
-  /// A battery may be done this far from the ends that its order names.
+  /// Distance from the ends of the ordered SoC range at which a battery may be done.
   static constexpr std::int32_t kDoneBelowCeilingE4 = 500;
   static constexpr std::int32_t kDoneAboveFloorE4 = 1'000;
   /// Below this, in 0.1 degC, charging may be refused.
@@ -145,12 +145,12 @@ class LostOrders {
   ResponseSettings settings_;
   LeakyCount count_;
   LostOrderHistory history_;
-  bool was_lost_ = false;          ///< by the newest reading
-  bool was_replaced_ = false;      ///< one of those that are counted
-  std::int64_t lost_order_ = -1;   ///< number of the newest that was
-  std::int64_t lost_s_ = 0;        ///< when that was seen; 0 = long ago
-  std::int64_t first_lost_s_ = 0;  ///< of those since orders had settled; 0 = they have
-  std::int32_t held_ = 0;          ///< in a row since then
+  bool was_lost_ = false;          ///< at the newest reading
+  bool was_replaced_ = false;      ///< at least one of the counted ones
+  std::int64_t lost_order_ = -1;   ///< number of the newest lost order
+  std::int64_t lost_s_ = 0;        ///< time of the last loss; 0 = long ago
+  std::int64_t first_lost_s_ = 0;  ///< first loss since orders settled; 0 = settled
+  std::int32_t held_ = 0;          ///< consecutive orders held since then
   std::int32_t replaced_ = 0;
   std::int32_t ended_ = 0;
 };

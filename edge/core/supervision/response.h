@@ -1,4 +1,4 @@
-// One reading of the battery and the order that it followed, as the supervision judges it.
+// One reading of the battery with the order that it followed: input of the supervision.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,11 @@
 
 namespace bess {
 
-/// INT32_MIN, which a device may send, has none.
+/// Negation; INT32_MIN, which a device may send, saturates.
 constexpr std::int32_t opposite_power_w(std::int32_t power_w) {
   return -std::max(power_w, -INT32_MAX);
 }
 
-/// Without its sign.
 constexpr std::int32_t power_magnitude_w(std::int32_t power_w) {
   return power_w < 0 ? opposite_power_w(power_w) : power_w;
 }
@@ -22,25 +21,25 @@ constexpr std::int32_t power_magnitude_w(std::int32_t power_w) {
 struct ResponseSettings {
   ResponseBand band;
   std::int32_t power_w = 4'000;      ///< rated
-  std::int32_t capacity_wh = 8'000;  ///< where the device tells none
+  std::int32_t capacity_wh = 8'000;  ///< if the device reports none
 
   [[nodiscard]] constexpr std::int32_t noise_w() const { return band.noise_w(power_w); }
-  /// By how much power that answers this order may differ from it.
+  /// Permitted difference between response and order.
   [[nodiscard]] constexpr std::int32_t tolerance_w(std::int32_t ordered_w) const {
     return band.tolerance_of_w(power_w, power_magnitude_w(ordered_w));
   }
 };
 
-/// One reading, and the order that the battery followed when it was taken.
+/// One reading, and the order that the battery followed at that time.
 struct Response {
   std::int64_t utc_s = 0;
-  std::int64_t steady_s = 0;      ///< without this run's steps of the clock: for what lies between
-  bool is_driven = false;         ///< false: the battery is in its own mode, which goes any way
-  std::int64_t order_number = 0;  ///< every order that was read back has its own
+  std::int64_t steady_s = 0;      ///< without clock steps of this run: for durations
+  bool is_driven = false;         ///< false: the battery is in its own mode
+  std::int64_t order_number = 0;  ///< unique for every confirmed order
   std::int32_t ordered_power_w = 0;
-  std::int32_t order_age_s = 0;          ///< since this power was ordered
-  std::int32_t soc_floor_e4 = 1'000;     ///< where the device itself stops to discharge by it
-  std::int32_t soc_ceiling_e4 = 10'000;  ///< and to charge
+  std::int32_t order_age_s = 0;          ///< since this power was first ordered
+  std::int32_t soc_floor_e4 = 1'000;     ///< where the device itself stops discharging
+  std::int32_t soc_ceiling_e4 = 10'000;  ///< where it stops charging
   BatteryMeasurement measurement;
 };
 

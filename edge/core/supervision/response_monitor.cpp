@@ -8,28 +8,28 @@
 namespace bess {
 namespace {
 
-/// From here to full, and this much above the floor of the orders, a battery may slow down.
+/// Above this SoC, and up to this much above the orders' floor, a battery may reduce power.
 constexpr std::int32_t kSlowFromE4 = 8'000;
 constexpr std::int32_t kSlowAboveFloorE4 = 2'000;
-/// Below this, in 0.1 degC, charging is slowed down or refused.
+/// Below this, in 0.1 degC, charging may be reduced or refused.
 constexpr std::int32_t kColdDeciC = 80;
-/// Up to here a battery saves itself from being empty; from there on it balances its cells.
+/// Up to here a battery protects itself from deep discharge; from there on it balances its cells.
 constexpr std::int32_t kSavesItselfE4 = 1'200;
 constexpr std::int32_t kBalancesFromE4 = 9'500;
 constexpr std::int32_t kBalancingPercentMax = 15;  ///< of the rating
-/// A battery that takes longer from rest to its rating has not followed, whatever it moves.
+/// A battery with a slower ramp from rest to its rating does not follow, whatever it moves.
 constexpr std::int32_t kFullRampS = 180;
-/// A device may begin that much later than its map says: after a cut, or in a cycle that a stepped
-/// clock makes short, it still shows the order before.
+/// A device may start later than its map says: after a cut, or in a cycle shortened by a clock
+/// step, it still follows the previous order.
 constexpr std::int32_t kLateS = 10;
-constexpr std::int64_t kReadingGapMaxS = 300;  ///< a reading that was lost, and the time of both
+constexpr std::int64_t kReadingGapMaxS = 300;  ///< one lost reading, and the intervals of both
 
 }  // namespace
 
 void ResponseMonitor::observe(const Response& now) {
   judge_power(now);
   soc_.observe(now);
-  trip_if(soc_.contradicts(), Reason::kSocMismatch);  // what power shows says more
+  trip_if(soc_.contradicts(), Reason::kSocMismatch);  // power is stronger evidence
   count_locked(now.measurement);
   has_before_ = true;
   before_s_ = now.steady_s;
@@ -47,7 +47,7 @@ ResponseFindings ResponseMonitor::findings() const {
           .wrong_energy_e6 = wrong_energy_.share_e6()};
 }
 
-/// Nothing is ordered then that could go unanswered.
+/// No order can then go unanswered.
 void ResponseMonitor::count_locked(const BatteryMeasurement& m) {
   const bool is_locked = std::max(m.charge_w_max, m.discharge_w_max) <= settings_.noise_w();
   const int readings = is_locked ? locked_readings_ + 1 : 0;
@@ -68,7 +68,7 @@ void ResponseMonitor::note_wrong(const Response& now, std::int64_t wrong_w, Reas
   if (wrong_w > 0) trip_if(wrong_energy_.is_found(), reason);
 }
 
-/// Judged as if it ended a step. What has hardly begun is no evidence: orders may change before.
+/// Judged as if it ended a step. Too early is no evidence: orders may change before.
 void ResponseMonitor::note_between(const Response& now) {
   if (now.order_age_s < settings_.band.settle_s + kLateS) return;
   ResponseMonitor as_if = *this;
@@ -108,11 +108,11 @@ void ResponseMonitor::judge_driven(const Response& now) {
   const bool is_charging = now.ordered_power_w > 0;
   const std::int32_t measured_w =  // positive: as ordered
       is_charging ? now.measurement.power_w : opposite_power_w(now.measurement.power_w);
-  // The sun may outdo an order to discharge: that proves nothing.
+  // PV may exceed a discharge order: no evidence.
   if (!is_charging && measured_w < 0 && settings_.band.charges_by_itself) return;
   if (measured_w < -noise_w) {
     if (is_care(now.measurement)) return care_.bad();
-    // A device may ramp its setpoint: then it comes from the order before, whatever of it flowed.
+    // A device may ramp its set point: it then starts from the previous order, whatever flowed.
     if (!is_ramp(now) && !note_ramp(now, before_ordered_w_)) {
       opposed_.bad(is_charging);
       trip_if(opposed_.is_found(), Reason::kWrongDirection);
@@ -153,15 +153,15 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
     return;
   }
   if (!answers_) unexplained_.bad(is_charging);
-  // What stands at 0 W is not on its way through it.
+  // Constant 0 W is not a ramp through 0 W.
   if (measured_w <= noise_w || !note_ramp(now, before_power_w_)) ++weak_answers_;
 }
 
-/// Whether the power is on its way to a new order, too slow for its map but quicker than a fault
-/// that merely differs from one reading to the next.
+/// True if the power is ramping to a new order, too slow for its map but faster than a fault that
+/// merely differs between readings.
 bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   if (!knows_before(now)) return false;
-  // From its order on; of an order that is read a second time on its way, since the reading before.
+  // From its order on; for an order read again while ramping, since the previous reading.
   const bool is_young = is_new_order(now) || now.order_age_s <= kFullRampS;
   const std::int64_t seconds = std::min<std::int64_t>(now.order_age_s, now.steady_s - before_s_);
   if (!is_young || seconds <= 0) return false;
@@ -174,13 +174,13 @@ bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   if (towards_w < least_w || towards_w > std::max(left_w, -left_w)) return false;
   is_on_its_way_ = true;
   if (slow_.level == 0) ramp_w_per_s_ = 0;
-  // A lag moves a small step by less in the same time: what it cannot exceed shows at the largest.
+  // A lag moves a small step less in the same time: the largest step shows the limit.
   ramp_w_per_s_ = std::max(ramp_w_per_s_, static_cast<std::int32_t>(towards_w / seconds));
   slow_.bad();
   return true;
 }
 
-/// Of a reading long ago it is not known what came after it.
+/// After a long gap the intermediate power is unknown.
 bool ResponseMonitor::knows_before(const Response& now) const {
   const std::int64_t seconds = now.steady_s - before_s_;
   return has_before_ && seconds > 0 && seconds <= kReadingGapMaxS;
@@ -190,7 +190,7 @@ bool ResponseMonitor::is_new_order(const Response& now) const {
   return knows_before(now) && now.order_age_s <= now.steady_s - before_s_;
 }
 
-/// Just settled by its map, and it still does what it did before the order.
+/// Just past its settling time, and power still follows the previous order.
 bool ResponseMonitor::has_not_begun(const Response& now) const {
   const std::int32_t latest_s = std::min(settings_.band.settle_s + kLateS, kSecondsPerStep / 2);
   if (!is_new_order(now) || now.order_age_s >= latest_s) return false;
@@ -203,8 +203,8 @@ bool ResponseMonitor::is_ramp(const Response& now) {
   return note_ramp(now, before_power_w_) || is_ramp_of_order_before(now);
 }
 
-/// Near full and near empty less flows than the setpoint of its ramp, which comes from the order
-/// before: first that has to fall below what flows. And what was on its way has gone on with it.
+/// Near full and near empty less power flows than the ramped set point, which starts at the
+/// previous order and must first fall below that power. An earlier ramp has continued with it.
 bool ResponseMonitor::is_ramp_of_order_before(const Response& now) {
   const std::int32_t moved_w =
       power_magnitude_w(before_power_w_) - power_magnitude_w(now.measurement.power_w);
@@ -212,8 +212,7 @@ bool ResponseMonitor::is_ramp_of_order_before(const Response& now) {
   return (is_less || before_is_on_its_way_) && note_ramp(now, before_ordered_w_);
 }
 
-/// The first reading of a new order, with nothing known of the one before: it comes from its rating
-/// at most.
+/// The first reading of a new order, previous one unknown: it starts from the rating at most.
 bool ResponseMonitor::may_be_ramp(const Response& now) const {
   if (now.order_age_s > kSecondsPerStep) return false;
   const std::int64_t apart_w = std::int64_t{now.measurement.power_w} - now.ordered_power_w;
@@ -228,7 +227,7 @@ bool ResponseMonitor::is_care(const BatteryMeasurement& m) const {
   return m.soc_e4 <= kSavesItselfE4 || (m.soc_e4 >= kBalancesFromE4 && m.power_w <= balancing_w);
 }
 
-/// Of the order, what the device's own limits let through.
+/// Ordered power within the device's own limits.
 std::int32_t ResponseMonitor::reachable_power_w(const Response& now) const {
   const BatteryMeasurement& m = now.measurement;
   const std::int32_t limit_w = now.ordered_power_w > 0 ? m.charge_w_max : m.discharge_w_max;
@@ -239,7 +238,7 @@ bool ResponseMonitor::may_be_less(const Response& now) const {
   const BatteryMeasurement& m = now.measurement;
   const bool is_charging = now.ordered_power_w > 0;
   if (is_charging && m.temperature_min_deci_c < kColdDeciC) return true;
-  if (!is_charging && settings_.band.charges_by_itself) return true;  // the sun takes its share
+  if (!is_charging && settings_.band.charges_by_itself) return true;  // PV takes its share
   return is_charging ? m.soc_e4 >= kSlowFromE4 : m.soc_e4 <= now.soc_floor_e4 + kSlowAboveFloorE4;
 }
 

@@ -1,21 +1,21 @@
-// Does the battery do what it is told? Registers that read back as written prove only that they
-// were stored: some batteries acknowledge and do nothing, a map with a wrong sign charges when it
-// should discharge, and values can stand still while power flows. Pure integers, fed with every
-// reading and the order that was in force, 0 W included.
+// Response monitor: does the battery follow its set point? A read-back proves only that registers
+// were stored: some batteries acknowledge and do nothing, a map with a wrong sign charges instead
+// of discharging, and values can freeze while power flows. Pure integers, updated with every
+// reading and the order in force, 0 W included.
 //
-//   what is seen                                      what follows
-//   opposite direction; more power than ordered       trip: a person has to look
-//   SoC that stands still or runs apart from power    trip (soc_monitor.h)
-//   no power in the middle of the SoC                 pause: given back, tried again later
-//   charging by itself near empty, balancing at full  pause: a battery looks after itself
-//   SoC that jumps                                    stop until readings agree again
-//   less power than ordered, energy that does not     told, not stopped
-//   arrive, loss at 0 W, a slow ramp, limits of
-//   its own that allow nothing
-// Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is
-// found soon; what is too rare for them is found by its energy (energy_balance.h). A reading that
-// could not show a fault leaves its count as it is: a battery that goes the wrong way at every
-// other order, with idle between, is found as well.
+//   observation                                       consequence
+//   opposite direction; more power than ordered       trip until a person clears it
+//   SoC constant, or not matching the power           trip (soc_monitor.h)
+//   no power in the middle of the SoC range           pause: released, retried later
+//   charging by itself near empty, balancing at full  pause: self-protection
+//   jump of the SoC                                   stop until readings agree again
+//   less power than ordered, missing energy, loss at  reported as a warning
+//   0 W, a slow ramp, own limits that permit nothing
+//
+// Each kind of fault has its own counts (leaky_count.h), so that intermittent faults are found
+// soon; rarer ones are found by their energy (energy_balance.h). A reading that could not show a
+// fault leaves its count unchanged: wrong direction at every other order, idle between, is found
+// too.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,8 @@
 
 namespace bess {
 
-/// Of a fault that may be of orders of one sign alone: right answers to the others do not forgive
-/// it.
+/// Count per sign of the order: a fault may affect one sign only, and correct responses to the
+/// other do not forgive it.
 class DirectedCount {
  public:
   void bad(bool is_charging) {
@@ -61,37 +61,37 @@ class ResponseMonitor {
       : settings_(settings), soc_(settings) {}
 
   void observe(const Response& now);
-  /// Between two readings that are judged, just before an order changes: counts what has flowed.
+  /// Between two judged readings, just before an order changes: adds the energy.
   void note_power(const Response& now) { soc_.note_cut(now); }
-  /// Any other between the two: counts what has flowed wrongly, and nothing else.
+  /// Any other reading in between: adds wrong energy only.
   void note_between(const Response& now);
 
-  /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found.
+  /// kWrongDirection, kUncontrolledPower or kSocMismatch once found.
   [[nodiscard]] std::optional<Reason> trip() const { return trip_; }
   [[nodiscard]] bool gives_no_answer() const { return unexplained_.is_found(); }
-  /// It charges although it is nearly empty and was not told to, or balances its full cells.
+  /// Charges without an order when nearly empty, or balances its full cells.
   [[nodiscard]] bool looks_after_itself() const { return care_.is_found(); }
-  /// The newest reading has shown that it does not.
+  /// The newest reading has shown no self-protection.
   [[nodiscard]] bool needs_no_care() const { return needs_no_care_; }
   [[nodiscard]] bool has_jumped() const { return soc_.has_jumped(); }
-  /// The newest reading showed power that an order asked for.
+  /// The newest reading showed power as ordered.
   [[nodiscard]] bool has_answered() const { return answers_; }
-  /// Driven readings in a row with less power than ordered, and no reason for it.
+  /// Consecutive driven readings with less power than ordered, without an explanation.
   [[nodiscard]] std::int32_t weak_answers() const { return weak_answers_; }
-  /// Driven readings in a row without any answer, explained or not.
+  /// Consecutive driven readings without any response, explained or not.
   [[nodiscard]] std::int32_t unanswered_orders() const { return unanswered_orders_; }
-  /// Found, and short of a reason to stop.
+  /// Findings that are no reason to stop.
   [[nodiscard]] ResponseFindings findings() const;
 
-  /// A person has looked: counted anew from here.
+  /// Counters restart after a manual clear.
   void clear() { *this = ResponseMonitor(settings_); }
-  /// A pause begins: the same, but that rare faults are rarer than pauses.
+  /// A pause begins: the same, but wrong energy is kept, since rare faults are rarer than pauses.
   void forget() {
     const WrongEnergy wrong_energy = wrong_energy_;
     clear();
     wrong_energy_ = wrong_energy;
   }
-  /// Of an earlier run, by its log.
+  /// Value of an earlier run, from its log.
   void restore(const ResponseFindings& logged) { wrong_energy_.restore(logged.wrong_energy_e6); }
 
  private:
@@ -126,8 +126,8 @@ class ResponseMonitor {
   LeakyCount excessive_idle_;
   LeakyCount care_;
   LeakyCount slow_;
-  WrongEnergy wrong_energy_;       ///< what comes too seldom for the counts
-  std::int32_t ramp_w_per_s_ = 0;  ///< the most of answers that were still on their way
+  WrongEnergy wrong_energy_;       ///< faults too rare for the counts
+  std::int32_t ramp_w_per_s_ = 0;  ///< largest of the responses still ramping
   std::int16_t locked_readings_ = 0;
   std::int32_t weak_answers_ = 0;
   std::int32_t unanswered_orders_ = 0;
@@ -135,7 +135,7 @@ class ResponseMonitor {
   std::int64_t before_s_ = 0;
   std::int32_t before_power_w_ = 0;
   std::int32_t before_ordered_w_ = 0;
-  bool before_may_be_less_ = false;  ///< it may have held back what it was ordered
+  bool before_may_be_less_ = false;  ///< its power may have been limited
   bool before_is_on_its_way_ = false;
 };
 

@@ -8,24 +8,22 @@
 namespace bess {
 namespace {
 
-/// Beyond these its count of its charge is set right, or clings to the end.
+/// Beyond these the SoC may be recalibrated, or stick to the end.
 constexpr std::int32_t kSocEndHighE4 = 9'500;
 constexpr std::int32_t kSocEndLowE4 = 1'000;
-/// What is left to an end, and by how much an honest count is wrong: beyond, the energy goes
-/// elsewhere.
+/// Distance to an end, and error of a correct SoC: beyond it, the energy goes elsewhere.
 constexpr std::int64_t kExcusedE4Max = 2'000;
 
-/// Full and empty as displayed: a count that was set right beyond them shows nothing else for a
-/// while.
+/// Displayed full and empty: an SoC recalibrated beyond them stays constant for a while.
 constexpr std::int32_t kShownFullE4 = 9'990;
 constexpr std::int32_t kShownEmptyE4 = 10;
 
-constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond: what flowed between is not known
+constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond it, the energy in between is unknown
 constexpr std::int32_t kReadingsUntilSettled = 3;
 constexpr std::int32_t kStillReadings = 2;
 constexpr std::int64_t kStillSlackE4 = 50;
 
-constexpr std::int64_t kSocErrorE4 = 100;  ///< of any count of charge from one reading to the next
+constexpr std::int64_t kSocErrorE4 = 100;  ///< error of any SoC from one reading to the next
 constexpr std::int32_t kUnknownStepE4 = 100;
 
 bool is_high(std::int32_t soc_e4) { return soc_e4 >= kSocEndHighE4; }
@@ -101,7 +99,7 @@ void SocMonitor::begin_anew(const Response& now) {
   seldom_.begin(now);
 }
 
-/// The reading's own power since its order, the power of the reading before until then.
+/// The reading's own power since its order, the previous reading's power until then.
 std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) const {
   const std::int64_t seconds = std::max<std::int64_t>(now.steady_s - flow_s_, 0);
   const std::int64_t of_order_s = std::clamp<std::int64_t>(now.order_age_s - delay_s, 0, seconds);
@@ -109,8 +107,8 @@ std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) co
          std::int64_t{flow_power_w_} * (seconds - of_order_s);
 }
 
-/// As if the battery had followed its order as late as its map allows, and its SoC shown it as
-/// late. One that has not reached its order is on its way there all the time.
+/// As if power lagged by the map's settling time and the SoC by its refresh time. Power that has
+/// not reached its order is assumed to ramp all the time.
 std::int64_t SocMonitor::late_ws(const Response& now) const {
   const std::int64_t late_ws =
       flowed_ws(now, settings_.band.settle_s + settings_.band.soc_refresh_s);
@@ -136,33 +134,33 @@ SocMonitor::Flow SocMonitor::flow_until(const Response& now) const {
             std::max(most_e4 * 3 / 5, most_e4 * 7 / 5)};
   }
   const std::int64_t late_e4 = e4_of(late_ws_ + late_ws(now));
-  // Losses, ageing and a rounded capacity are all within these bounds.
+  // Bounds include losses, ageing and a rounded capacity.
   const auto [least_e4, most_e4] =
       std::minmax({energy_e4 * 3 / 5, energy_e4 * 7 / 5, late_e4 * 3 / 5, late_e4 * 7 / 5});
   return {energy_e4, late_e4, least_e4, most_e4};
 }
 
-/// Told to, and it does.
+/// Rest as ordered.
 bool SocMonitor::rests(const Response& reading) const {
   const std::int32_t noise_w = settings_.noise_w();
   return reading.is_driven && power_magnitude_w(reading.ordered_power_w) <= noise_w &&
          power_magnitude_w(reading.measurement.power_w) <= 2 * noise_w;
 }
 
-/// What the map says, or what the device shows: a register of 0.1 % may count in whole percents.
+/// Resolution from the map or as observed: a register of 0.1 % may count in whole percents.
 std::int32_t SocMonitor::soc_step_e4() const {
   const std::int32_t shown_e4 = shown_step_e4_ > 0 ? shown_step_e4_ : kUnknownStepE4;
   return std::max(settings_.band.soc_step_e4, std::min(shown_e4, kUnknownStepE4));
 }
 
-/// One that is refreshed seldom lags by what flows meanwhile.
+/// A sparse SoC lags by the energy since its refresh.
 std::int32_t SocMonitor::soc_span_e4() const {
   const std::int64_t lag_s = settings_.band.soc_refresh_s - SeldomSoc::kUsualRefreshS;
   const std::int64_t lag_ws = std::int64_t{settings_.power_w} * std::max<std::int64_t>(lag_s, 0);
   return soc_step_e4() + static_cast<std::int32_t>(e4_of(lag_ws));
 }
 
-/// Charging at the upper end and discharging at the lower: it may stand still, or go on at once.
+/// Charging at the upper end and discharging at the lower: it may stay constant, or jump.
 bool SocMonitor::is_excused(const Response& now, const Flow& flow, std::int64_t change_e4) {
   const std::int32_t before_e4 = before_.measurement.soc_e4;
   const std::int32_t soc_e4 = now.measurement.soc_e4;
@@ -199,7 +197,7 @@ bool SocMonitor::judge_jump(const Response& now, const Flow& flow, std::int64_t 
     if (was_driven) jumps_.good();
     return false;
   }
-  // There and back again is one jump.
+  // A jump and its return are one jump.
   if (was_driven && unsettled_readings_ == 0) jumps_.bad();
   unsettled_readings_ = kReadingsUntilSettled;
   beyond_end_e4_ = std::abs(change_e4);
@@ -212,7 +210,7 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
   const std::int64_t seconds = now.steady_s - before_.steady_s;
   const std::int32_t noise_w = settings_.noise_w();
   const std::int64_t flowing_e4 = e4_of(4 * std::int64_t{noise_w} * seconds);
-  // In its own mode the power changes between the readings.
+  // In the battery's own mode the power changes between readings.
   const bool is_known = now.is_driven && before_.is_driven;
   const bool is_at_rest = rests(now) && rests(before_) && now.order_age_s >= seconds;
   const bool flows = std::abs(flow.energy_e4) >= flowing_e4;
@@ -227,8 +225,7 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
           .power_w = now.measurement.power_w};
 }
 
-/// Whenever the battery followed its order, and whatever its meter is off by: nothing where it may
-/// have gone either way.
+/// Minimum energy over all delays and meter errors; none if it may have either sign.
 std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds) const {
   if ((flow.energy_e4 < 0) != (flow.late_energy_e4 < 0)) return 0;
   const std::int64_t measured_e4 =
@@ -238,10 +235,10 @@ std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds)
   return flow.energy_e4 < 0 ? -sure_e4 : sure_e4;
 }
 
-/// A count may flicker by a step: it must have gone further.
+/// The SoC may flicker by a step: it must have moved further.
 std::int64_t SocMonitor::must_show_e4() const { return soc_step_e4() * 6 / 5 + kStillSlackE4; }
 
-/// Readings are judged where enough of them have come together.
+/// Judges readings once enough of them are combined.
 void SocMonitor::judge_seldom(const Response& now, bool excused) {
   using Kind = EnergyInterval::Kind;
   const bool is_known = now.is_driven && before_.is_driven;
@@ -289,7 +286,7 @@ void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool ex
   ++still_readings_;
   const std::int64_t must_show_e4 = this->must_show_e4();
   const std::int64_t range_e4 = (still_most_e4_ - still_least_e4_) * 7 / 8;
-  // To and fro brings it back to where it was, but not without a step on either way.
+  // Alternation returns to the start, but not without a step in either direction.
   const std::int64_t total_e4 = still_total_e4_ * 7 / 8;
   const bool moved = range_e4 > must_show_e4 || total_e4 > 2 * must_show_e4;
   if (still_readings_ >= kStillReadings && moved) contradicts_ = true;

@@ -1,13 +1,12 @@
-// The state of charge against the measured power, reading by reading.
+// SoC monitor: state of charge against measured power, reading by reading.
 //
-//   stands still while power flows; runs apart from it over a longer span   contradiction
-//   changes at once by more than power explains                             jump: it was set right
-//   shows another share of the energy, or loses some at rest                told (energy_balance.h)
-//
-// Near the ends a count of charge clings and is set right: charging above 95 %, and discharging
-// below 10 %, explains a SoC that stands still or goes further than power does. Only these:
-// discharging at 97 %, it must fall. And only for as much energy as an honest count can be wrong
-// by.
+//   constant while power flows; does not match it over a longer span        contradiction
+//   changes suddenly by more than power explains                            jump: recalibrated
+//   shows another share of the energy, or loses some at rest                warning
+//                                                                           (energy_balance.h)
+// Near the ends the SoC may stick and be recalibrated: charging above 95 % and discharging below 10
+// % explain a constant SoC or a larger change than power. Only these: discharging at 97 %, it must
+// fall. And only for as much energy as a correct SoC can be wrong by.
 #pragma once
 
 #include <cstdint>
@@ -24,21 +23,21 @@ class SocMonitor {
   explicit SocMonitor(const ResponseSettings& settings);
 
   void observe(const Response& now);
-  /// Between two readings that are judged, just before an order changes: counts what has flowed.
+  /// Between two judged readings, just before an order changes: adds the energy.
   void note_cut(const Response& now);
 
-  /// The SoC is not that of this battery's energy.
+  /// The SoC does not match this battery's energy.
   [[nodiscard]] bool contradicts() const { return contradicts_; }
-  /// It changed by more than power explains, and readings have not agreed for long enough since.
+  /// It changed by more than power explains, and readings have not yet agreed again.
   [[nodiscard]] bool has_jumped() const { return unsettled_readings_ > 0; }
   [[nodiscard]] const EnergyBalance::Findings& balance() const { return balance_.findings(); }
 
  private:
-  /// What the power of an interval may have moved, in 1e-4 of the capacity.
+  /// Possible SoC change due to the power of an interval, in 1e-4 of the capacity.
   struct Flow {
     std::int64_t energy_e4 = 0;       ///< each reading's power since its order
-    std::int64_t late_energy_e4 = 0;  ///< followed, and shown, as late as it may be
-    std::int64_t least_e4 = 0;  ///< change of the SoC that losses and a rounded capacity leave
+    std::int64_t late_energy_e4 = 0;  ///< with the largest delay of power and SoC
+    std::int64_t least_e4 = 0;        ///< SoC change within losses and capacity error
     std::int64_t most_e4 = 0;
   };
 
@@ -63,7 +62,7 @@ class SocMonitor {
 
   ResponseSettings settings_;
   EnergyBalance balance_;
-  SeldomSoc seldom_;  ///< instead of every reading, where the SoC is seldom refreshed
+  SeldomSoc seldom_;  ///< instead of every reading, for a sparse SoC
   bool contradicts_ = false;
 
   bool has_before_ = false;
@@ -74,16 +73,16 @@ class SocMonitor {
   std::int64_t flow_s_ = 0;
   std::int32_t flow_power_w_ = 0;
 
-  std::int32_t shown_step_e4_ = 0;  ///< the smallest change that it has shown; 0 = none yet
+  std::int32_t shown_step_e4_ = 0;  ///< smallest observed change; 0 = none yet
   std::int32_t unsettled_readings_ = 0;
-  LeakyCount jumps_;                ///< under power; at rest a count of charge may be set right
+  LeakyCount jumps_;                ///< under power; at rest a recalibration is possible
   std::int64_t excused_e4_ = 0;     ///< at this end, since it was reached
-  std::int64_t beyond_end_e4_ = 0;  ///< what a jump onto an end may have left beyond it
-  /// Moved by the measured power since the SoC last changed: now, and how far it went.
+  std::int64_t beyond_end_e4_ = 0;  ///< remainder beyond an end after a jump onto it
+  /// Energy since the SoC last changed: now, and its extremes.
   std::int64_t still_e4_ = 0;
   std::int64_t still_least_e4_ = 0;
   std::int64_t still_most_e4_ = 0;
-  std::int64_t still_total_e4_ = 0;  ///< all ways together
+  std::int64_t still_total_e4_ = 0;  ///< absolute sum
   std::int32_t still_readings_ = 0;
 };
 

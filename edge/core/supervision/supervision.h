@@ -1,10 +1,10 @@
-// What follows from how the battery answers: a trip that only a person ends, or a pause after which
-// it is tried again, longer each time. The controller believes nothing that it has not seen.
+// Supervision result: trip until cleared, or pause with retries at growing intervals. Only what was
+// measured counts.
 //
 //   trip    wrong direction, uncontrolled power, SoC against power   until `bess-edge clear`
-//   pause   no answer, orders that fail, another master, a battery   10 min, doubling to 6 h
-//           that looks after itself (a trip if it never ends)
-//   stop    capacity of another battery, SoC that jumps              while it is seen
+//   pause   no answer, failing orders, another controller, a         10 min, doubling to 6 h
+//           self-protecting battery (a trip if it never ends)
+//   stop    capacity of another battery, jump of the SoC             while it is present
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace bess {
 
-/// Not tried again before its end; every next one without a success between is twice as long.
+/// No retry before its end; its length doubles until a success.
 class Pause {
  public:
   static constexpr std::int64_t kFirstS = 600;
@@ -28,13 +28,13 @@ class Pause {
     end_utc_s_ = utc_s + length_s_;
     length_s_ = std::min(2 * length_s_, kLongestS);
   }
-  /// A clock that was stepped back does not make it longer.
+  /// A clock step backwards does not extend it.
   [[nodiscard]] bool is_over(std::int64_t utc_s) const {
     return utc_s >= end_utc_s_ || utc_s < end_utc_s_ - kLongestS;
   }
-  /// While it lasts.
+  /// Present while it lasts.
   [[nodiscard]] std::optional<Reason> reason() const { return reason_; }
-  /// What it waits for is still there.
+  /// Its cause is still present.
   void prolong(std::int64_t utc_s) { end_utc_s_ = std::max(end_utc_s_, utc_s + kFirstS); }
   void end() { reason_.reset(); }
   void on_success() { length_s_ = kFirstS; }
@@ -47,7 +47,7 @@ class Pause {
 
 struct SupervisionSettings {
   ResponseSettings response{};
-  std::int32_t capacity_wh_min = 0;  ///< what a battery must report that reports any
+  std::int32_t capacity_wh_min = 0;  ///< accepted range of a reported capacity
   std::int32_t capacity_wh_max = INT32_MAX;
   bool yields_to_other_master = true;  ///< false: insists
 };
@@ -56,14 +56,13 @@ class Supervision {
  public:
   static constexpr std::int32_t kFailedOrdersToPause = 3;
   static constexpr std::int32_t kUnreadToPause = 6;
-  /// No battery needs that long to save itself, or to balance its cells.
+  /// Longer than any self-protection or cell balancing.
   static constexpr std::int64_t kCareWithoutEndS = 24 * 3'600;
 
   explicit Supervision(const SupervisionSettings& settings)
       : settings_(settings), response_(settings.response), lost_(settings.response) {}
 
-  /// Every reading of a battery that is under control. `holds_nothing`: what it follows is not
-  /// ours.
+  /// Every reading of a controlled battery. `holds_nothing`: no order of ours is in force.
   void observe(const Response& now, bool holds_nothing) {
     note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);
@@ -73,41 +72,40 @@ class Supervision {
     judge(now);
   }
 
-  /// A reading of an earlier run, by its log, oldest first: what was found by then is found again.
+  /// A logged reading of an earlier run, oldest first: reproduces its findings.
   void recall(const Response& then) {
     end_pause(then.utc_s);
     if (!trip_) judge(then);
   }
 
-  /// What a battery reports, also where it could not be read any further; 0 or less: it does not
-  /// say.
+  /// The reported capacity, also when nothing else could be read; 0 or less: not reported.
   void note_capacity(std::int32_t capacity_wh) { capacity_fits_ = is_right_capacity(capacity_wh); }
 
-  /// A reading in the middle of a step, just before the order changes: nothing is judged by it.
+  /// A reading within a step, just before the order changes: only recorded.
   void note_power(const Response& now) { response_.note_power(now); }
-  /// Any other reading in the middle of a step.
+  /// Any other reading within a step.
   void note_between(const Response& now) {
     if (trip_) return;
     response_.note_between(now);
     trip_if_found(now);
   }
 
-  /// How an order ended that was due, with the battery within reach.
+  /// Result of an order that was due, with the battery reachable.
   void on_ordered(std::int64_t utc_s, Status status) {
-    // Flash that has had its writes of the day is a rule of ours, not a fault of the link.
+    // The daily flash write limit is our own rule, not a link fault.
     const bool failed = status != Status::kOk && status != Status::kWriteBudget;
     failed_orders_ = failed ? failed_orders_ + 1 : 0;
     if (failed_orders_ >= kFailedOrdersToPause) pause(utc_s, Reason::kOrdersFail);
   }
 
-  /// A reading that failed at the end of a step. A fault that comes with every order and goes at
-  /// 0 W is of the orders; one of the link may do so by chance for longer.
+  /// A failed reading at the end of a step. Failures with every order but not at 0 W are caused by
+  /// orders; random link failures need more of them.
   void note_unread(std::int64_t utc_s, bool was_driven, bool is_temporary) {
     unread_ = was_driven ? unread_ + (is_temporary ? 1 : kUnreadToPause / 2) : 0;
     if (unread_ >= kUnreadToPause && !trip_) pause(utc_s, Reason::kOrdersFail);
   }
 
-  /// Why the battery must not be driven now.
+  /// Reason not to drive the battery now.
   [[nodiscard]] std::optional<Reason> stop_reason() const {
     if (trip_) return trip_->reason;
     if (pause_.reason()) return pause_.reason();
@@ -117,7 +115,7 @@ class Supervision {
   }
 
   [[nodiscard]] const std::optional<Trip>& trip() const { return trip_; }
-  /// Of an earlier run, by its log.
+  /// Trip of an earlier run, from its log.
   void restore(const std::optional<Trip>& trip) { trip_ = trip; }
   void clear() {
     trip_.reset();
@@ -125,9 +123,9 @@ class Supervision {
   }
   [[nodiscard]] const ResponseMonitor& response() const { return response_; }
   [[nodiscard]] const LostOrders& lost_orders() const { return lost_; }
-  /// Of an earlier run, by its log; nothing of one that tripped since a person has looked.
+  /// Findings of an earlier run, from its log; none of a trip that was cleared.
   void restore(const ResponseFindings& logged) { response_.restore(logged); }
-  /// Of an earlier run, by its log of then.
+  /// History of an earlier run, from its log at `utc_s`.
   void restore(const LostOrderHistory& orders, std::int64_t utc_s) { lost_.restore(orders, utc_s); }
 
  private:
@@ -154,7 +152,7 @@ class Supervision {
     unread_ = 0;
     response_.forget();
   }
-  /// Tried again soon, as often as it takes: the price may want it meanwhile.
+  /// A short pause, repeated as often as needed: the price may require the battery.
   void pause_for_care(const Response& now) {
     pause_.on_success();
     pause(now.utc_s, Reason::kBatteryCare);
@@ -166,7 +164,8 @@ class Supervision {
     if (pause_.reason() && pause_.is_over(utc_s)) pause_.end();
   }
 
-  /// Where it insists, what others order while nothing is in force is none of its business.
+  /// With `yields_to_other_master` false, orders of others are ignored while none of ours is in
+  /// force.
   void observe_orders(const Response& now, bool holds_nothing) {
     const bool yields = settings_.yields_to_other_master;
     const bool follows_another = yields && holds_nothing && now.measurement.dispatch_active;
@@ -188,9 +187,9 @@ class Supervision {
   Pause pause_;
   bool capacity_fits_ = true;
   LostOrders lost_;
-  std::int64_t care_since_s_ = 0;  ///< without an honest reading since; 0 = it needs none
+  std::int64_t care_since_s_ = 0;  ///< no healthy reading since; 0 = no care needed
   std::int32_t failed_orders_ = 0;
-  std::int32_t unread_ = 0;  ///< points against orders with which nothing can be read
+  std::int32_t unread_ = 0;  ///< points for orders during which the battery cannot be read
 };
 
 }  // namespace bess
