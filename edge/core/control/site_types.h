@@ -16,7 +16,7 @@ inline constexpr std::int32_t kAnyPowerW = INT32_MAX;
 /// Trust in the meter, and its evidence (meter_witness.h). All zero: no doubt.
 struct MeterTrust {
   bool is_mismatch = false;            ///< finding: the meter does not step with the battery
-  std::int32_t doubt = 0;              ///< points; 9 are a finding
+  std::int32_t doubt = 0;              ///< points; 10 are a finding
   std::int64_t pause_until_utc_s = 0;  ///< pause after the last finding
   std::int32_t pause_s = 0;
   /// Sums over the last steps, in permille of the battery's rating: battery steps, meter errors.

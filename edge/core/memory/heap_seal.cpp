@@ -79,11 +79,11 @@ constexpr sock_filter jump(std::uint16_t code, std::uint32_t value, std::uint8_t
           .k = value};
 }
 
-/// Load the architecture, refuse another one; load the number; two instructions for each call.
+/// Loads and checks the architecture; loads the call number; two instructions per forbidden call.
 Filter make_filter(std::uint32_t memory_answer, std::uint32_t process_answer) {
   constexpr std::uint16_t kLoad = BPF_LD | BPF_W | BPF_ABS;
   constexpr std::uint16_t kReturn = BPF_RET | BPF_K;
-  // x86-64 kernels answer the numbers of the x32 ABI as well, which start here: no call of ours.
+  // x86-64 kernels also accept x32 call numbers, which start here: never used.
   constexpr std::uint32_t kX32Numbers = 0x40000000;
   Filter filter{};
   filter[0] = statement(kLoad, offsetof(seccomp_data, arch));
@@ -99,7 +99,7 @@ Filter make_filter(std::uint32_t memory_answer, std::uint32_t process_answer) {
   for (const std::uint32_t number : kMemoryCalls) forbid(number, memory_answer);
   for (const std::uint32_t number : kProcessCalls) forbid(number, process_answer);
   for (const std::uint32_t number : kServerCalls) forbid(number, process_answer);
-  // A socket to a battery or meter; the one to systemd is open.
+  // Only sockets to a battery or meter; the one to systemd is already open.
   constexpr std::size_t kDomain = offsetof(seccomp_data, args);  // its low half: little-endian
   filter[i++] = jump(BPF_JEQ, __NR_socket, 0, 3);
   filter[i++] = statement(kLoad, kDomain);
@@ -121,7 +121,7 @@ int install_seccomp_filter(ForbiddenCall consequence) {
   const long result =
       syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program);
   if (result < 0) return errno;
-  return result == 0 ? 0 : EBUSY;  // the number of a thread that could not be brought along
+  return result == 0 ? 0 : EBUSY;  // id of a thread that could not be synchronised
 }
 
 namespace {
@@ -131,9 +131,9 @@ constexpr bool kIsSealed = false;
 #else
 constexpr bool kIsSealed = true;
 #endif
-constexpr std::size_t kThreadStackBytes = 256 * 1024;  // measured use of any: 20 KiB
+constexpr std::size_t kThreadStackBytes = 256 * 1024;  // measured use: at most 20 KiB
 
-/// One line on stderr by write(2): stdio would allocate its buffer.
+/// Writes one line to stderr with write(2): stdio would allocate its buffer.
 template <typename... Values>
 void put_line(const char* format, Values... values) {
   char line[256];
@@ -145,7 +145,7 @@ void put_line(const char* format, Values... values) {
   static_cast<void>(ignored);
 }
 
-/// Touches the stack that the control thread will need, so that it is there before it is needed.
+/// Touches the stack that the control thread will need.
 void prefault_stack() {
   volatile char stack[kControlStackBytes];
   for (std::size_t i = 0; i < sizeof stack; i += 512) stack[i] = 0;
@@ -154,10 +154,10 @@ void prefault_stack() {
 std::atomic<bool> is_sealed = false;
 std::atomic<std::uint32_t> allocator_calls = 0;
 
-/// Is it malloc_family.cpp that answers?
+/// True if malloc_family.cpp is in use.
 bool counts_allocator_calls() {
   const std::uint32_t before = allocator_calls;
-  std::free(strdup("whose allocator is this?"));
+  std::free(strdup("allocator probe"));
   return allocator_calls != before;
 }
 
@@ -166,7 +166,7 @@ void lock_memory() {
   const int error = errno;
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
-  munlockall();  // all or nothing: half a lock would make a later page fault fatal
+  munlockall();  // all or nothing: with half a lock a later page fault would be fatal
   put_line(
       "bess-edge: note: memory is not locked (%s, limit %llu KiB): set LimitMEMLOCK=infinity in "
       "the unit, or ulimit -l\n",
@@ -178,7 +178,7 @@ void forbid_system_calls() {
   const bool kills = wish != nullptr && std::string_view(wish) == "kill";
   const int error = install_seccomp_filter(kills ? ForbiddenCall::kKills : ForbiddenCall::kFails);
   if (error == 0) return;
-  put_line("bess-edge: note: this kernel has no seccomp (%s): going on without its filter\n",
+  put_line("bess-edge: note: this kernel has no seccomp (%s): continuing without its filter\n",
            std::strerror(error));
 }
 
@@ -191,10 +191,10 @@ bool prepare_memory() {
   pthread_attr_setstacksize(&thread, kThreadStackBytes);
   pthread_setattr_default_np(&thread);  // stacks are locked in whole
   pthread_attr_destroy(&thread);
-  mallopt(M_ARENA_MAX, 1);  // of the C library: one for all threads, or each reserves 64 MiB
+  mallopt(M_ARENA_MAX, 1);  // of the C library: one arena for all threads, or each reserves 64 MiB
   if (counts_allocator_calls()) return true;
   put_line("%s",
-           "bess-edge: the malloc family is not ours: build bess-edge with malloc_family.cpp and "
+           "bess-edge: malloc is not replaced: build bess-edge with malloc_family.cpp and "
            "default visibility; unset LD_PRELOAD\n");
   return false;
 }
@@ -202,17 +202,17 @@ bool prepare_memory() {
 void require_unsealed_heap() {
   allocator_calls.fetch_add(1, std::memory_order_relaxed);
   if (is_sealed.load(std::memory_order_relaxed)) {
-    is_sealed = false;  // for what a failed CHECK still does
+    is_sealed = false;  // for a failed CHECK
     check_failed("no allocator call after start-up", "malloc_family.cpp", 0);
   }
 }
 
 HeapSeal::HeapSeal() {
   if (!kIsSealed) {
-    put_line("%s", "bess-edge: note: a sanitizer build, nothing is sealed\n");
+    put_line("%s", "bess-edge: note: sanitizer build, not sealed\n");
     return;
   }
-  malloc_trim(0);  // what start-up has given back need not be locked
+  malloc_trim(0);  // memory freed by start-up need not be locked
   prefault_stack();
   lock_memory();
   forbid_system_calls();

@@ -1,8 +1,8 @@
-// malloc and its relatives, as strong symbols that the loader prefers over the C library's, for
-// every shared library too: they hand on to the C library until the process is sealed
-// (heap_seal.h), and from then on any call ends it through CHECK. Linked into bess-edge alone, as
-// an object, never hidden (hidden symbols would silently leave the C library's in use: heap_seal
-// checks that at start), and not in sanitizer builds, which bring their own.
+// malloc family as strong symbols that the loader prefers over the C library's, for shared
+// libraries too. They forward to the C library until the process is sealed (heap_seal.h); then any
+// call ends it through CHECK. Linked into bess-edge only, as an object and never hidden: with
+// hidden symbols the C library's would silently be used (heap_seal checks this at start). Not in
+// sanitizer builds, which have their own.
 #include <bit>
 #include <cerrno>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 extern "C" {
 
-// What glibc's own malloc family is called besides.
+// Other names of glibc's malloc family.
 void* __libc_malloc(std::size_t size);
 void __libc_free(void* payload);
 void* __libc_calloc(std::size_t count, std::size_t size);

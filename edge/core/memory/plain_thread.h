@@ -1,5 +1,5 @@
-// A thread with the stack that is the process's default (heap_seal.h), started without the heap of
-// this program: the proof of the control path finds no allocator here.
+// Thread with the default stack size of the process (heap_seal.h), started without this program's
+// heap, so that the control path contains no allocator call.
 #pragma once
 
 #include <pthread.h>
@@ -15,7 +15,7 @@ class PlainThread {
   PlainThread& operator=(const PlainThread&) = delete;
   ~PlainThread() { BESS_CHECK(!is_running_); }
 
-  /// `(owner->*kRun)()` on it.
+  /// Runs `(owner->*kRun)()` on the thread.
   template <auto kRun, typename Owner>
   void start(Owner* owner) {
     BESS_CHECK(!is_running_);

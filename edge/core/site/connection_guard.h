@@ -1,20 +1,18 @@
-// Limits of the connection to the grid, for the battery behind the house's meter: pure integers,
-// from what was measured to how far the battery's order may go.
+// Connection limits for a battery behind the house meter: from measurements to the range of its
+// order. Pure integers.
 //
 //   house = grid - battery, both measured         grid with an order = house + order
 //   charge    <= import_w_max - margin - house     discharge <= export_w_max - margin + house
 //
-// The house is never limited: where its load alone is above a limit, the battery is left 0 W.
+// The house is never limited: if its load alone exceeds a limit, the battery gets 0 W.
 //
-// Quarter-hour peak (the Belgian capacity tariff bills the mean import of the dearest
-// quarter-hour): with E imported so far, B of it taken by the battery, s seconds left and C =
-// peak_w_max - margin,
-//   E + (house + charge) s <= 900 C      the mean stays under the cap if the house stays
-// If the house does rise, so that E + house s > 900 C, the battery gives back what it took in this
-// quarter-hour (relief). Thus a quarter-hour ends above the cap only where the house alone leads
-// there; what the margin must cover is a rise that comes too late to be answered, and what an empty
-// battery has lost of the energy that it gives back. With `peak_shave` relief is not bounded by B:
-// the house itself is kept under.
+// Quarter-hour peak (the Belgian capacity tariff bills the highest mean import of a quarter-hour):
+// with E imported so far, B of it taken by the battery, s seconds left and C = peak_w_max - margin,
+//   E + (house + charge) s <= 900 C      the mean stays under the cap at constant house load
+// If the house load rises so that E + house s > 900 C, the battery returns what it took in this
+// quarter-hour (relief). A quarter-hour then ends above the cap only because of the house itself.
+// The margin must cover a rise too late to respond to, and the losses of the returned energy. With
+// `peak_shave` relief is not bounded by B: the house itself is kept under the cap.
 #pragma once
 
 #include <charconv>
@@ -28,9 +26,9 @@
 
 namespace bess {
 
-// A limit that another program sets (a grid operator's box, a site controller): one line of text,
+// Outside limit, set by another program (a grid operator's device, a site controller): one line,
 //   charge_w discharge_w utc_until      e.g.  0 any 2026-11-22T10:15:00Z
-// in W, 0 or more, or `any`. It ends by itself at its time. Pure parsing; limit_file reads it.
+// in W, 0 or more, or `any`. It expires at its time. Pure parsing; limit_file reads it.
 
 struct OutsideLimit {
   std::int32_t charge_w_max = kAnyPowerW;
@@ -40,7 +38,7 @@ struct OutsideLimit {
 
 inline constexpr std::string_view kAnyPowerText = "any";
 
-/// Longest line that can be one, its end of line included.
+/// Longest valid line, including its end of line.
 inline constexpr std::size_t kLimitBytesMax = 64;
 
 inline bool parse_limit_power(std::string_view text, std::int32_t& power_w) {
@@ -52,7 +50,7 @@ inline bool parse_limit_power(std::string_view text, std::int32_t& power_w) {
   return error == std::errc{} && end == text.data() + text.size() && power_w >= 0;
 }
 
-/// Takes the word before the next blank off the front of `text`, and the blank; false without one.
+/// Removes the first word and its blank from `text`; false without a blank.
 inline bool take_word(std::string_view& text, std::string_view& word) {
   const std::size_t size = text.find(' ');
   if (size == text.npos) return false;
@@ -61,8 +59,8 @@ inline bool take_word(std::string_view& text, std::string_view& word) {
   return true;
 }
 
-/// kMalformed unless the whole text is that one line with its end of line: a file that was cut
-/// short must not be taken for a smaller number.
+/// kMalformed unless the whole text is one line with its end of line: a truncated file must not be
+/// read as a smaller number.
 inline Status parse_outside_limit(std::string_view text, OutsideLimit& limit) {
   limit = OutsideLimit{};
   if (!text.ends_with('\n')) return Status::kMalformed;
@@ -86,11 +84,11 @@ struct ConnectionSettings {
 struct ConnectionState {
   std::int32_t grid_w = 0;
   std::int32_t battery_w = 0;
-  std::int32_t relief_w_max = 0;  ///< P: what the battery can discharge
+  std::int32_t relief_w_max = 0;  ///< maximum discharge of the battery
   QuarterHourEnergy::Sums quarter_hour{};
 };
 
-/// Narrows `range` to what the connection bears with `margin_w` kept free.
+/// Narrows `range` to the limits of the connection, keeping `margin_w` free.
 void limit_at_connection(const ConnectionSettings& settings, std::int32_t margin_w,
                          const ConnectionState& state, SiteRange& range);
 

@@ -8,32 +8,32 @@
 namespace bess {
 namespace {
 
-// Points, chosen on houses drawn from seeds (tests/system/closed_loop/meter_liars_test.cpp): with 7
-// two of 96 months of 30 days accuse an honest meter, with 10 none; a step under doubt is taken
-// back at once, so that the fourth contradiction costs no more of a limit than the third.
+// Points, chosen on random houses (tests/system/closed_loop/meter_liars_test.cpp): with 7, two of
+// 96 months of 30 days had a false finding, with 10 none. A doubtful step is undone immediately, so
+// that the fourth contradiction loads a limit no more than the third.
 constexpr std::int32_t kContradicts = 3;
 constexpr std::int32_t kLateAnswer = 3;
 constexpr std::int32_t kTurnsAround = 2;
 constexpr std::int32_t kFollows = 1;
 constexpr std::int32_t kFoundFrom = 10;
 
-/// Smaller steps, of the rating, drown in the house.
+/// Smaller steps, as a share of the rating, are lost in the house load.
 constexpr std::int64_t kStepMinPermille = 100;
 constexpr std::int64_t kMeterErrorW = 100;   ///< of both meters, at any power
-constexpr std::int64_t kHouseFadesS = 600;   ///< time constant of what the house has moved by
-constexpr std::int64_t kDoubtFadesS = 600;   ///< by one point
-constexpr std::int64_t kHouseGapMaxS = 90;   ///< between two readings that tell of the house
-constexpr std::int64_t kWindowBeyondS = 60;  ///< a step is judged within settle_s and this
-constexpr std::int64_t kLateMaxS = 240;      ///< what shows later is the house's
+constexpr std::int64_t kHouseFadesS = 600;   ///< time constant of the house variation
+constexpr std::int64_t kDoubtFadesS = 600;   ///< per point
+constexpr std::int64_t kHouseGapMaxS = 90;   ///< between two readings that measure the house
+constexpr std::int64_t kWindowBeyondS = 60;  ///< a step is judged within settle_s plus this
+constexpr std::int64_t kLateMaxS = 240;      ///< later changes are attributed to the house
 constexpr std::int64_t kBeyondAnyW = 100'000'000;
 
-constexpr std::int32_t kSumSteps = 16;    ///< that the sums remember
-constexpr std::int32_t kSumStepsMin = 8;  ///< that a finding by them needs
+constexpr std::int32_t kSumSteps = 16;    ///< covered by the sums
+constexpr std::int32_t kSumStepsMin = 8;  ///< needed for a finding by sums
 constexpr std::int32_t kTestSteps = 6;    ///< that end a finding
 constexpr std::int64_t kPermilleMax = 4'000;
 constexpr std::int64_t kRatioMin = 450;
 constexpr std::int64_t kRatioMax = 2'000;
-constexpr std::int64_t kRatioStandsS = 1'200;  ///< without a step that shows it again
+constexpr std::int64_t kRatioStandsS = 1'200;  ///< without another step that shows it
 
 constexpr std::int64_t kFirstPauseS = 600;
 constexpr std::int64_t kLongestPauseS = 6 * 3'600;
@@ -51,7 +51,7 @@ void MeterWitness::observe(const WitnessReading& now) {
   if (!settings_.judges) return;
   if (!now.order.is_driven || (before_ && now.utc_s < before_->utc_s)) before_.reset();
   if (!now.order.is_driven) return;
-  // Within one second the reading came first: settled, it cannot be of an order that young.
+  // Within one second the reading came first: a settled reading cannot be of such a young order.
   const bool is_next_order = before_ && now.utc_s - now.order.age_s >= before_->utc_s;
   if (now.order.age_s < settings_.settle_s) {
     if (is_next_order) judge_excess(now);
@@ -66,7 +66,7 @@ void MeterWitness::observe(const WitnessReading& now) {
   before_ = now;
 }
 
-/// Contradictions of one cause come close together.
+/// Doubt decays: contradictions of one cause come close together.
 void MeterWitness::fade_doubt(std::int64_t utc_s) {
   if (utc_s - faded_utc_s_ < kDoubtFadesS && utc_s >= faded_utc_s_) return;
   faded_utc_s_ = utc_s;
@@ -85,13 +85,13 @@ void MeterWitness::note_house(const WitnessReading& now) {
     return on_contradiction(now, kLateAnswer);
   }
   if (turns_around(before_->grid_w, now.grid_w)) return on_contradiction(now, kTurnsAround);
-  // The second largest: what moved once may be the meter, just gone wrong.
+  // The second largest: a single change may be the start of a meter fault.
   const std::int64_t move_w = magnitude(house_step_w);
   noise_w_ = std::max(noise_w_, std::min(move_w, largest_move_w_));
   largest_move_w_ = std::max(largest_move_w_, move_w);
 }
 
-/// Under one order: its sign has changed, as a meter's does that is inverted now and then.
+/// Change of sign under one order, as of an intermittently inverted meter.
 bool MeterWitness::turns_around(std::int64_t from_w, std::int64_t to_w) const {
   return magnitude(to_w - from_w) >= settings_.power_w &&
          magnitude(to_w + from_w) <= magnitude(to_w - from_w) / 16 + kMeterErrorW;
@@ -122,13 +122,13 @@ void MeterWitness::judge_step(const WitnessReading& now) {
     return;
   }
   if (follows) trust_.doubt = std::max(trust_.doubt - kFollows, 0);
-  if (step.size_w < 2 * noise_w_) return;  // a ratio would be the house's
+  if (step.size_w < 2 * noise_w_) return;  // the ratio would be due to the house
   add_to_sums(step);
   if (is_wrong_ratio()) find(now.utc_s);
 }
 
-/// A meter that shows far too much makes limits cut each order before it has settled: it is judged
-/// as soon as the battery's power has come, for what lags shows less and not more.
+/// A meter that shows far too much cuts each order before it has settled. It is judged as soon as
+/// the battery's power has come, because a lag shows less, not more.
 void MeterWitness::judge_excess(const WitnessReading& now) {
   const Step step = step_to(now);
   if (step.size_w * 4 < settings_.power_w) return;
@@ -138,7 +138,7 @@ void MeterWitness::judge_excess(const WitnessReading& now) {
   on_contradiction(now, kContradicts);
 }
 
-/// Less than the least is a contradiction or the house, and says nothing of a ratio.
+/// Below the minimum it is a contradiction or the house, and gives no ratio.
 void MeterWitness::note_ratio(const Step& step, std::int64_t utc_s) {
   const std::int64_t error_w = magnitude(step.along_w - step.size_w);
   const bool follows = error_w <= step.size_w / 10 + kMeterErrorW;
@@ -170,7 +170,7 @@ bool MeterWitness::contradicts(const Step& step) const {
   const std::int64_t shortfall_w = step.size_w - step.along_w;
   const bool is_short =
       shortfall_w * 5 > step.size_w * 2 && shortfall_w > 2 * (noise_w_ + kMeterErrorW);
-  // Further back than an inverted meter goes: that was the house.
+  // More negative than an inverted meter: the house.
   return is_short && step.along_w >= -step.size_w * 3 / 2 - 2 * kMeterErrorW;
 }
 
@@ -181,8 +181,7 @@ void MeterWitness::on_contradiction(const WitnessReading& now, std::int32_t poin
   if (trust_.is_mismatch || trust_.doubt >= kFoundFrom) find(now.utc_s);
 }
 
-/// In sums over the last steps, in permille of the rating: x the battery's step, e the meter's
-/// error.
+/// Updates the sums over the last steps, in permille of the rating: x battery step, e meter error.
 void MeterWitness::add_to_sums(const Step& step) {
   const auto permille = [this](std::int64_t power_w, std::int64_t limit) {
     const std::int64_t within_w = std::clamp(power_w, -kBeyondAnyW, kBeyondAnyW);
@@ -202,7 +201,7 @@ void MeterWitness::add_to_sums(const Step& step) {
   trust_.error_squares += e * e;
 }
 
-/// Off 1 by more than a quarter, and the correlation of error and step above sqrt(1/2).
+/// Ratio off 1 by more than a quarter, and correlation of error and step above sqrt(1/2).
 bool MeterWitness::is_wrong_ratio() const {
   const MeterTrust& t = trust_;
   if (t.steps < kSumStepsMin) return false;
@@ -210,7 +209,7 @@ bool MeterWitness::is_wrong_ratio() const {
          2 * t.error_products * t.error_products > t.step_squares * t.error_squares;
 }
 
-/// After a pause: steps that agree end the finding if they also do in sum.
+/// After a pause, matching steps end the finding if the sums agree too.
 void MeterWitness::judge_test(const Step& step, std::int64_t utc_s) {
   if (state_at(utc_s) == State::kPaused) return;
   add_to_sums(step);
@@ -236,13 +235,13 @@ MeterWitness::State MeterWitness::state_at(std::int64_t now_utc_s) const {
   return left_s > 0 && left_s <= kLongestPauseS ? State::kPaused : State::kTested;
 }
 
-/// The step has been observed: 0 W until the next tick keeps the exposure short.
+/// The step was observed: 0 W until the next tick keeps the exposure short.
 void MeterWitness::end_test(std::int64_t utc_s) {
   if (trust_.is_mismatch) retreat_until_utc_s_ = next_tick_utc_s(utc_s);
 }
 
 std::int32_t MeterWitness::power_w_max(std::int64_t now_utc_s) const {
-  // A clock that was stepped back makes neither longer.
+  // A clock step backwards extends neither.
   const std::int64_t retreat_s = retreat_until_utc_s_ - now_utc_s;
   const bool retreats = retreat_s > 0 && retreat_s <= kSecondsPerStep;
   if (retreats) return 0;
@@ -257,7 +256,7 @@ std::int32_t MeterWitness::power_w_max(std::int64_t now_utc_s) const {
   return 0;
 }
 
-/// On in every other cycle, so that there are steps to judge by.
+/// On in every second cycle, so that there are steps to judge.
 std::int32_t MeterWitness::test_power_w(std::int64_t now_utc_s) const {
   const bool is_on = now_utc_s / kSecondsPerStep % 2 != 0;
   return is_on ? settings_.power_w / 8 : 0;

@@ -1,39 +1,37 @@
-// Does the meter at the connection see what the battery does? The controller steps its battery by
-// kilowatts every few cycles, and grid = house + battery: each such step must show on the meter.
-// One that is frozen, inverted, on another phase, late or of a wrong ratio would be believed
-// else. Pure integers, fed with every pair of readings.
+// Meter check: compares grid power with the steps of the battery. The controller steps its battery
+// by kilowatts every few cycles, and grid = house + battery: each step must show on the meter. It
+// detects a meter that is frozen, inverted, late, on another phase or of a wrong ratio. Pure
+// integers, updated with every pair of readings.
 //
-// Only what has settled is compared: the last readings under one order with the first ones under
-// the next, `settle_s` after it, so that neither a ramp nor a register that lags counts. The
-// house moves meanwhile, by kilowatts at times. Therefore
-//   - what is missing of a step must be more than 40 % of it, and more than twice what the house
-//     itself moves by lately, between readings under one order (its second largest move, fading);
-//   - one such step is a doubt and no finding. It is answered at once by 0 W until the next tick,
-//     which is the same experiment again, backwards, at an instant that the house did not choose;
-//   - contradictions weigh 3, what follows forgives 1, and so do ten minutes: four in a row are a
-//     finding, and a meter that lies at every other or third step is found as well;
-//   - ratios between 0.6 and 1, and above, are found by the sums over the last steps: the error
-//     is more than a quarter and goes with the step (correlation above 0.7), which the house's
-//     own moves do not do for long;
-//   - until that is known, limits have to hold by the ratio of each of the last three steps as well
-//     (`possible_ratios`, 0.45 to 2, for 20 minutes): no finding, and it costs only near a limit;
-//   - a step that shows on the meter later, with the battery standing still, is the meter's and
-//     not the house's, and so is a sign that turns around.
+// Only settled readings are compared: the last under one order with the first under the next,
+// `settle_s` after it, so that neither a ramp nor a lagging register counts. The house load varies
+// too, by kilowatts at times. Therefore
+//   - the shortfall of a step must exceed 40 % of it, and twice the recent variation of the house
+//     between readings under one order (its second largest change, fading);
+//   - one such step is a doubt, not a finding. The response is 0 W until the next tick: the same
+//     experiment in reverse, at an instant independent of the house;
+//   - a contradiction adds 3 points, a matching step or ten minutes remove 1: four in a row are a
+//     finding, and a meter that is wrong at every second or third step is found too;
+//   - ratios of 0.6 to 1, and above 1, are found by sums over the last steps: the error exceeds a
+//     quarter and correlates with the step (above 0.7), which the house does not do for long;
+//   - until then limits must also hold for the ratio of each of the last three steps
+//     (`possible_ratios`, 0.45 to 2, for 20 minutes): no finding, and a cost only near a limit;
+//   - a step that shows later, at constant battery power, is attributed to the meter, and so is a
+//     change of sign.
 //   trusted --four contradictions, or wrong in sum--> paused --pause over--> tested
 //      ^                                                ^                      |  |
 //      |                                                +---contradiction------+  |
 //      +-----------------------six steps that agree, alone and in sum-------------+
 //
-// A finding ends by itself, for no person can see from afar either whether a meter is right, and
-// a battery that rests gives no evidence: after a pause (10 min, doubling to 6 h) it is tested
-// with an eighth of the power, in every other cycle, as far as prices ask for any, and only until
-// each step has shown. Six steps that agree, alone and in sum, end it; a contradiction is the
-// next pause. The pause keeps its length until a day without a finding: it cannot flap.
+// A finding ends by itself, because a remote operator cannot verify a meter and a resting battery
+// gives no evidence. After a pause (10 min, doubling to 6 h) the meter is tested at an eighth of
+// the power, in every second cycle, as far as prices require power, and only until each step has
+// shown. Six steps that agree, alone and in sum, end the finding; a contradiction starts the next
+// pause. The length of the pause resets after a day without a finding.
 //
-// What it cannot see: an offset (steps are right: HouseWatch looks at the level), a meter that
-// lies while the battery rests. Something else that holds the grid at a value (a second battery,
-// curtailed sun) takes the steps away: `judged = false`. A battery whose measured power is not
-// true looks the same: one of the two is wrong, and neither may be relied on.
+// Not detected: an offset (see HouseWatch), and errors while the battery rests. A device that
+// regulates the grid power (a second battery, PV curtailment) hides the steps: `judged = false`. A
+// wrong battery power looks the same: one of the two is wrong, and neither is reliable.
 #pragma once
 
 #include <algorithm>
@@ -46,17 +44,16 @@
 
 namespace bess {
 
-// Is the load that meter and battery leave for the house one that a house can have? House = grid
-// - battery; below zero it generates, and no more than its panels can. An inverted meter or
-// battery, an offset, a meter on another phase show as "house -631 W". Told, not acted on:
-// whoever has panels and has not said so would lose his battery to the sun.
+// House watch: is the load computed from meter and battery possible? House = grid - battery; below
+// zero it generates, at most its PV power. An inverted meter or battery, an offset or another phase
+// show as "house -631 W". Reported only: with undeclared PV panels a stop would disable the battery
+// in sunshine.
 
-/// Of both meters together, with that much of the battery's power besides: it is read a moment
-/// earlier than the grid.
+/// Error of both meters, plus a share of the battery's power, which is read slightly earlier.
 inline constexpr std::int64_t kHouseErrorW = 200;
 inline constexpr std::int64_t kHouseErrorShare = 20;
 
-/// `pv_w_max`: what the panels behind the meter can give; kAnyPowerW: not known.
+/// `pv_w_max`: maximum power of the PV behind the meter; kAnyPowerW: unknown.
 constexpr bool is_plausible_house(std::int32_t grid_w, std::int32_t battery_w,
                                   std::int32_t pv_w_max) {
   if (pv_w_max == kAnyPowerW) return true;
@@ -68,7 +65,7 @@ constexpr bool is_plausible_house(std::int32_t grid_w, std::int32_t battery_w,
 
 class HouseWatch {
  public:
-  /// Readings in a row that begin and end it: one falls into a ramp.
+  /// Consecutive readings that begin and end it: one may fall into a ramp.
   static constexpr std::int32_t kReadings = 4;
 
   void observe(bool is_plausible) {
@@ -83,27 +80,27 @@ class HouseWatch {
 
  private:
   bool is_implausible_ = false;
-  std::int32_t readings_ = 0;  ///< in a row that say otherwise
+  std::int32_t readings_ = 0;  ///< consecutive readings to the contrary
 };
 
 struct MeterWitnessSettings {
   bool judges = true;
-  std::int32_t power_w = 4'000;  ///< rated, of the battery
-  std::int32_t settle_s = 20;    ///< from an order to the power that answers it
+  std::int32_t power_w = 4'000;  ///< rated power of the battery
+  std::int32_t settle_s = 20;    ///< from an order until the power has settled
 };
 
 inline constexpr std::int32_t kTrueRatio = 1'000;  ///< in permille
 
-/// Of what the meter shows to what flows, as its last steps have shown it, in permille.
+/// Ratio of meter to real power in permille, from the last steps.
 struct MeterRatios {
   std::int32_t least_permille = kTrueRatio;  ///< 1000 or less
   std::int32_t most_permille = kTrueRatio;   ///< 1000 or more
 };
 
-/// The order that the battery follows while meter and battery are read.
+/// Order that the battery follows while meter and battery are read.
 struct SeenOrder {
-  bool is_driven = false;  ///< false: its own mode, which goes any way
-  std::int32_t age_s = 0;  ///< since its power was ordered
+  bool is_driven = false;  ///< false: the battery is in its own mode
+  std::int32_t age_s = 0;  ///< since this power was ordered
 };
 
 struct WitnessReading {
@@ -119,29 +116,30 @@ class MeterWitness {
 
   void observe(const WitnessReading& now);
 
-  /// What an earlier run had found out.
+  /// Result of an earlier run.
   void restore(const MeterTrust& trust) { trust_ = trust; }
   [[nodiscard]] const MeterTrust& trust() const { return trust_; }
 
-  /// Limits must hold by these as well: a step that shows too little is as likely the meter's as
-  /// the house's, and long before either is known, a limit has been passed.
+  /// Limits must hold for these ratios too: a step that shows too little may be due to the meter as
+  /// well as the house, and a limit could be exceeded before this is known.
   [[nodiscard]] MeterRatios possible_ratios(std::int64_t now_utc_s) const;
 
-  /// Found: the meter's value must not decide.
+  /// Finding: the meter's value must not be used.
   [[nodiscard]] bool is_mismatch() const { return trust_.is_mismatch; }
-  /// Power, of either sign, that may be ordered as things stand; kAnyPowerW: nothing is wrong.
+  /// Maximum power to order, of either sign; kAnyPowerW: no finding.
   [[nodiscard]] std::int32_t power_w_max(std::int64_t now_utc_s) const;
 
  private:
-  /// Between two settled readings with an order's change between them; along the battery's step.
+  /// A step between two settled readings with different orders, in the direction of the battery's
+  /// step.
   struct Step {
     std::int64_t size_w;   ///< of the battery, above 0
-    std::int64_t along_w;  ///< of the meter, positive: the same way
+    std::int64_t along_w;  ///< of the meter, positive: same direction
   };
 
   enum class State : std::uint8_t { kTrusted, kPaused, kTested };
 
-  /// A step of the battery that did not show, with its sign.
+  /// A battery step that did not show, signed.
   struct MissedStep {
     std::int64_t power_w = 0;
     std::int64_t utc_s = 0;
@@ -171,13 +169,13 @@ class MeterWitness {
 
   MeterWitnessSettings settings_;
   MeterTrust trust_;
-  std::optional<WitnessReading> before_;  ///< the last settled one
-  std::int64_t noise_w_ = 0;              ///< the house's second largest move of late, fading
+  std::optional<WitnessReading> before_;  ///< last settled reading
+  std::int64_t noise_w_ = 0;              ///< second largest recent change of the house, fading
   std::int64_t largest_move_w_ = 0;
-  std::int64_t faded_utc_s_ = 0;  ///< when time last forgave
+  std::int64_t faded_utc_s_ = 0;  ///< last time-based decay
   std::optional<MissedStep> missed_;
   std::int64_t retreat_until_utc_s_ = 0;
-  std::array<ShownRatio, 3> shown_{};  ///< by the last steps
+  std::array<ShownRatio, 3> shown_{};  ///< ratios of the last steps
 };
 
 }  // namespace bess

@@ -1,14 +1,14 @@
-// The site around the battery, for the control loop: keeps the newest meter reading and the energy
-// of the quarter-hour, asks the outside limits, and says how far an order may go. A template over
-// both sources, so that the tests give it others; either may be absent. Nothing allocates.
+// Site limits for the control loop: newest meter reading, energy of the quarter-hour and outside
+// limits give the range of an order. A template over both sources, so that tests can replace them;
+// either may be absent. No allocation.
 //
-//   Meter          Status read(int32& grid_power_w)       must end by a deadline of its own
+//   Meter          Status read(int32& grid_power_w)       must end by its own deadline
 //   OutsideLimits  Status read(OutsideLimit&, bool& is_set)
 //
-// Between two ticks the loop looks again every `check_every_s` and cuts an order that has become
-// too large; it never gives back before the next tick, so that reading and order cannot chase each
-// other. A tick's order leaves `margin_w` free; one in force is cut when half of that is used up,
-// so that a refrigerator costs no write. A meter that does not step with the battery is as good as
+// Between two ticks the loop checks every `check_every_s` and cuts an order that has become too
+// large. It never restores power before the next tick, so that readings and orders cannot
+// oscillate. A tick's order keeps `margin_w` free; one in force is cut when half of that is used,
+// so that a refrigerator causes no write. A meter that does not step with the battery is treated as
 // lost (meter_witness.h).
 #pragma once
 
@@ -28,24 +28,24 @@ enum class MeterSource : std::uint8_t {
   kBattery  ///< the battery's own grid point
 };
 
-/// How much of the margin an order must leave free.
+/// Share of the margin that an order must keep free.
 enum class Margin : std::uint8_t { kWhole, kHalf };
 
-inline constexpr std::int32_t kMeterAgeMax_s = 30;  ///< an older reading is no reading
-/// Between two ticks the site is read this often; at most half of the above: one may be lost.
+inline constexpr std::int32_t kMeterAgeMax_s = 30;  ///< maximum age of a reading
+/// Interval of site readings between two ticks; at most half of the above: one may be lost.
 inline constexpr std::int32_t kSiteCheck_s = 10;
 
 struct SiteSettings {
   MeterSource meter = MeterSource::kNone;
-  bool idle_without_meter = true;  ///< false: a lost meter limits nothing
+  bool idle_without_meter = true;  ///< false: a lost meter sets no limit
   ConnectionSettings connection;
   MeterWitnessSettings witness;
-  std::int32_t pv_w_max = 0;  ///< of panels behind the meter; kAnyPowerW: not known
+  std::int32_t pv_w_max = 0;  ///< PV behind the meter; kAnyPowerW: unknown
   bool has_outside_limits = false;
-  bool idle_after_timeout = false;  ///< false: a limit that has lapsed, or none, limits nothing
+  bool idle_after_timeout = false;  ///< false: a lapsed or missing limit sets no limit
 };
 
-/// A control loop without a site: nothing is measured, nothing is limited.
+/// No site: nothing measured, no limits.
 struct NoSite {
   void take_over(std::int64_t, const SiteReport&) {}
   [[nodiscard]] std::int32_t check_every_s() const { return 0; }
@@ -58,7 +58,7 @@ struct NoSite {
 template <typename Meter, typename OutsideLimits>
 class SiteLimits {
  public:
-  /// Null: there is none. Both must outlive this object.
+  /// Null: absent. Both must outlive this object.
   SiteLimits(const SiteSettings& settings, Meter* meter, OutsideLimits* outside)
       : settings_(settings),
         meter_(meter),
@@ -67,21 +67,21 @@ class SiteLimits {
         energy_(settings.connection.peak_w_max == kAnyPowerW ? 0 : settings.connection.peak_w_max,
                 kMeterAgeMax_s) {}
 
-  /// What an earlier run had counted when it wrote its last record.
+  /// State of an earlier run, from its last record.
   void take_over(std::int64_t utc_s, const SiteReport& before) {
     energy_.restore(utc_s, before.quarter_hour_import_wh, before.quarter_hour_battery_wh);
     witness_.restore(before.trust);
   }
 
-  /// 0: there is nothing to look at between two ticks.
+  /// 0: nothing to check between two ticks.
   [[nodiscard]] std::int32_t check_every_s() const {
     return has_meter() || settings_.has_outside_limits ? kSiteCheck_s : 0;
   }
-  /// The house's load cannot be known without the battery's power of the same time.
+  /// The house load requires the battery's power of the same time.
   [[nodiscard]] bool needs_battery() const { return has_meter(); }
 
-  /// Reads meter and outside limits; `battery` was read just before, `is_read` says whether well,
-  /// `order` what it followed.
+  /// Reads meter and outside limits. `battery` was read just before; `is_read`: successfully;
+  /// `order`: the order that it followed.
   void observe(std::int64_t utc_s, bool is_read, const BatteryMeasurement& battery,
                const SeenOrder& order) {
     read_outside_limits();
@@ -97,7 +97,7 @@ class SiteLimits {
     witness_.observe({.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
   }
 
-  /// How far an order may go from `now_utc_s` on; `relief_w_max` is what the battery can discharge.
+  /// Range of an order from `now_utc_s` on; `relief_w_max`: maximum discharge of the battery.
   [[nodiscard]] SiteRange range(std::int64_t now_utc_s, std::int32_t relief_w_max,
                                 Margin margin) const {
     SiteRange range;
@@ -136,7 +136,7 @@ class SiteLimits {
     return static_cast<std::int32_t>(std::min<std::int64_t>(wh, INT32_MAX));
   }
 
-  /// To what may be ordered as far as the meter is believed; returns that.
+  /// Limits `range` by the trust in the meter; returns that limit.
   std::int32_t limit_by_trust(std::int64_t now_utc_s, SiteRange& range) const {
     const std::int32_t power_w =
         settings_.idle_without_meter ? witness_.power_w_max(now_utc_s) : kAnyPowerW;
@@ -145,8 +145,7 @@ class SiteLimits {
     return power_w;
   }
 
-  /// As the meter shows it, and as it would be if its last steps' ratio were the meter's and not
-  /// the house's.
+  /// Applies the meter's reading, and its corrections by the ratios of the last steps.
   void limit_at_connection_by_ratios(std::int64_t now_utc_s, std::int32_t relief_w_max,
                                      Margin margin, SiteRange& range) const {
     const std::int32_t margin_w = settings_.connection.margin_w;
@@ -156,7 +155,7 @@ class SiteLimits {
                           .relief_w_max = relief_w_max,
                           .quarter_hour = energy_.at(now_utc_s)};
     const MeterRatios ratios = witness_.possible_ratios(now_utc_s);
-    // 1 is the last: what is given back follows from what was measured.
+    // Ratio 1 is last: relief follows from the reading itself.
     for (const std::int32_t permille : {ratios.least_permille, ratios.most_permille, kTrueRatio}) {
       const std::int64_t grid_w = std::int64_t{grid_w_} * kTrueRatio / permille;
       state.grid_w =
@@ -165,7 +164,7 @@ class SiteLimits {
     }
   }
 
-  /// A clock that was stepped back makes readings of the future: those are no readings either.
+  /// After a clock step backwards readings are from the future: invalid too.
   [[nodiscard]] bool is_recent(std::int64_t now_utc_s) const {
     const std::int64_t age_s = now_utc_s - read_utc_s_;
     return age_s <= kMeterAgeMax_s && age_s >= -kMeterAgeMax_s;

@@ -1,5 +1,5 @@
-// What a register map says about ordering: commands as ordered lists of atomic block writes, how
-// each is read back, the device's watchdog, and how often its memory may be written.
+// Map commands: ordered lists of atomic block writes, with their read-back, the device's watchdog,
+// and the write limits of its memory.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace bess {
 
-/// What stands on the right of "point = ..." in a command.
+/// Right side of "point = ..." in a command.
 enum class Argument : std::uint8_t {
   kConstant,
   kPower,           ///< W, charge positive
-  kChargePower,     ///< its charging part, 0 when discharging
-  kDischargePower,  ///< its discharging part as a positive number
+  kChargePower,     ///< charging part, 0 when discharging
+  kDischargePower,  ///< discharging part as a positive number
   kSocLimit,        ///< ceiling when charging or idle, floor when discharging
   kSocMin,
   kSocMax,
   kDuration,         ///< s
   kDurationMinutes,  ///< rounded up
-  kHeartbeat,        ///< a counter that differs at every write
+  kHeartbeat,        ///< counter that changes at every write
   kRating,           ///< 100 % of a point with percent_of
-  kSaved             ///< what the register held before the first order
+  kSaved             ///< register value before the first order
 };
 
 struct WriteValue {
@@ -35,13 +35,13 @@ struct WriteValue {
 
 enum class ReadBack : std::uint8_t { kExact, kTolerance, kNone };
 
-/// Contiguous points that go out in one request: the device sees all of them or none.
+/// Contiguous points written in one request: the device receives all of them or none.
 struct BlockWrite {
   StaticVector<WriteValue, 12> values;
   std::uint16_t address = 0;  ///< of the first point (an offset when it belongs to a model)
   std::uint8_t function = 16;
   ReadBack read_back = ReadBack::kExact;
-  bool eeprom = false;         ///< at least one of its registers wears
+  bool eeprom = false;         ///< at least one of its registers has limited write endurance
   std::int32_t tolerance = 0;  ///< engineering units
 };
 
@@ -51,7 +51,7 @@ enum class Command : std::uint8_t {
   kDischarge,
   kRelease,
   kEnable,   ///< once before the first order
-  kRefresh,  ///< feeds the watchdog; empty = the order is written again
+  kRefresh,  ///< refreshes the watchdog; empty = the order is written again
 };
 inline constexpr int kCommandCount = 6;
 
@@ -62,39 +62,39 @@ struct CommandSequence {
 /// Read before the first order and written back by "point = saved".
 struct SavedPoint {
   std::int8_t point = -1;
-  /// When an earlier process's order is found in force, the register holds that process's value:
-  /// then this is written back.
+  /// If an earlier process's order is found in force, the register holds that process's value: then
+  /// this one is restored.
   std::int64_t fallback = 0;
 };
 
 struct Watchdog {
   enum class Kind : std::uint8_t {
-    kNone,         ///< an order stays for ever
+    kNone,         ///< an order never expires
     kDuration,     ///< the order carries its duration
-    kRevertTimer,  ///< a timer register of its own; 0 means: never
+    kRevertTimer,  ///< a separate timer register; 0 means: never
     kHeartbeat,    ///< a counter must change
     kRewrite       ///< the order itself must be written again
   };
   Kind kind = Kind::kNone;
-  std::int32_t duration_s = 0;  ///< from the last feeding to the end of the order; 0 = none
-  std::int32_t refresh_s = 0;   ///< longest time between two feedings
+  std::int32_t duration_s = 0;  ///< from the last refresh to the end of the order; 0 = none
+  std::int32_t refresh_s = 0;   ///< longest interval between two refreshes
   std::int8_t remaining = -1;   ///< point with the seconds left
-  bool expiry_visible = true;   ///< RegisterMap::active turns false when it expires
+  bool expiry_visible = true;   ///< RegisterMap::active turns false at expiry
 };
 
 struct WritePolicy {
-  std::int32_t eeprom_writes_per_day = 0;  ///< orders stop at this less the reserve; 0 = no limit
-  std::int32_t reserve = 0;                ///< kept for releases; then no flash is written that day
+  std::int32_t eeprom_writes_per_day = 0;  ///< orders stop at this minus the reserve; 0 = no limit
+  std::int32_t reserve = 0;  ///< kept for releases; then flash is not written on that day
 };
 
-/// What the Modbus exception codes mean on this device, beside those that every device uses
+/// Meaning of Modbus exception codes on this device, in addition to the standard ones
 /// (modbus_frame.h).
 struct ExceptionCodes {
   StaticVector<std::uint8_t, 6> retry;
   StaticVector<std::uint8_t, 6> not_permitted;
 };
 
-/// The sign test: ordered once, the measured power must follow with the same sign.
+/// Sign test: ordered once; the measured power must follow with the same sign.
 struct Commissioning {
   std::int32_t power_w = 500;
   std::int32_t duration_s = 30;

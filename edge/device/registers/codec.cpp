@@ -55,7 +55,7 @@ std::int64_t fallback_of(const RegisterMap& map, int point) {
   return 0;
 }
 
-/// The register's own words, untranslated: what was found is what is put back.
+/// The register's raw words: restored exactly as found.
 Status append_saved(const RegisterMap& map, int point, const LivePoints& saved,
                     RegisterBlock& out) {
   for (int i = 0; i < map.points[point].register_count(); ++i) {
@@ -64,7 +64,7 @@ Status append_saved(const RegisterMap& map, int point, const LivePoints& saved,
   return Status::kOk;
 }
 
-/// A heartbeat runs round within the range of its point.
+/// Wraps a heartbeat within the range of its point.
 std::int64_t wrapped(const RegisterPoint& point, std::int64_t counter) {
   return point.value_min + counter % (point.value_max - point.value_min + 1);
 }
@@ -98,7 +98,7 @@ Status encode_value(const RegisterMap& map, const WriteValue& write, const Power
     value = write.sign * value / write.divisor;
   }
   std::int64_t added = 0;
-  // Not in proofs: the device cuts what both together would be.
+  // Not in proofs: the device limits the sum.
   if (write.plus >= 0 && context.clamp && context.live != nullptr) {
     if (!live_value(map, live, write.plus, added)) return Status::kImplausible;
     value = std::clamp(value + added, point.value_min, point.value_max);

@@ -1,5 +1,5 @@
-// An order -> the registers to write. Pure integer functions over the map: what cannot be expressed
-// is refused, nothing wraps.
+// Order encoder: from an order to the registers to write. Pure integer functions over the map: an
+// order that cannot be expressed is refused, nothing wraps.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,23 @@
 
 namespace bess {
 
-/// What a write needs beside the order.
+/// Inputs of a write in addition to the order.
 struct WriteContext {
   const LivePoints* live = nullptr;  ///< null: the map's assumed scale factors, no live limits
-  bool clamp = true;  ///< cut to live limits; not in proofs: what fits uncut fits cut
-  const LivePoints* saved = nullptr;  ///< null or unknown there: the map's fallback
+  bool clamp =
+      true;  ///< limit to live limits; not in proofs: a value that fits unlimited fits limited
+  const LivePoints* saved = nullptr;  ///< null or unknown: the map's fallback
   std::int64_t heartbeat = 0;
 };
 
-/// charge, idle or discharge, by the sign of the power.
+/// Charge, idle or discharge, by the sign of the power.
 Command command_of(std::int32_t power_w);
 
 /// Registers of one block write for an order.
 Status encode_block(const RegisterMap& map, const BlockWrite& write, const PowerOrder& order,
                     RegisterBlock& out, const WriteContext& context = {});
 
-/// kOk when every command of the map can express an order of this power.
+/// kOk if every command of the map can express an order of this power.
 Status check_expressible(const RegisterMap& map, const PowerOrder& order);
 
 }  // namespace bess

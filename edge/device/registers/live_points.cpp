@@ -45,7 +45,7 @@ void PointPlaces::follow(const BusExchange& exchange) {
 
 int PointPlaces::offset_in(const BusExchange& exchange, int point) const {
   const RegisterPoint& p = map_.points[point];
-  // What is written is read back as a holding register, whatever table the point is measured from.
+  // Written points are read back as holding registers, independent of the table of their reading.
   const bool is_of_table = exchange.function == p.read_function ||
                            (is_written_[point] && (exchange.is_write() || exchange.function == 3));
   if (!is_of_table || !is_placed(point) || exchange.unit != unit_of(point)) return -1;
@@ -70,13 +70,14 @@ std::int32_t PointPlaces::unit_of(int point) const {
 
 void LivePoints::keep(const RegisterMap& map, int point, const std::uint16_t* registers) {
   const int count = map.points[point].register_count();
-  if (count > kPointRegistersMax) return;  // a text
+  if (count > kPointRegistersMax) return;  // text
   std::copy(registers, registers + count, raw[point]);
   known[point] = true;
   failed[point] = false;
 }
 
-// Bounded: the loader allows a scale factor no scale of its own, and a rating only a scale factor.
+// The recursion is bounded: a scale factor has no scale of its own, and a rating only a scale
+// factor.
 bool live_scaling(const RegisterMap& map, const LivePoints& live, int point, Scaling& scaling) {
   const RegisterPoint& p = map.points[point];
   std::int64_t exponent = 0;

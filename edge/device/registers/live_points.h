@@ -1,5 +1,5 @@
-// The registers of a map's points as they were last seen, and their values where the scale of one
-// point stands in another (scale factors, ratings): looked up here.
+// Live points: last read registers of a map's points, and their values with live scale factors and
+// ratings.
 #pragma once
 
 #include <array>
@@ -11,24 +11,23 @@
 
 namespace bess {
 
-// Where a map's points lie in a device that is only overheard: exchanges of somebody else's
-// connection, or of a recording. SunSpec models are found by following the walk that the master
-// makes over them.
+// Point locations in a device whose traffic is only observed: exchanges of another connection, or
+// of a recording. SunSpec models are located by following the master's model walk.
 
 class PointPlaces {
  public:
-  /// `unit` replaces the map's unit id when it is not negative. `map` must outlive this object.
+  /// `unit` replaces the map's unit id if not negative. `map` must outlive this object.
   PointPlaces(const RegisterMap& map, std::int32_t unit);
 
-  /// Every exchange, in its order: it may be a step of the walk.
+  /// Must receive every exchange in order: it may be a step of the model walk.
   void follow(const BusExchange& exchange);
 
-  /// The newest exchange was a step of the walk: id and length of a model, or "SunS".
+  /// The newest exchange was a step of the model walk: id and length of a model, or "SunS".
   [[nodiscard]] bool is_model_head() const { return is_model_head_; }
-  /// Offset of the point's first register among those of the exchange; -1 when it is not wholly
-  /// among them, or lies where nobody has looked yet.
+  /// Offset of the point's first register in the exchange; -1 if not entirely included, or not
+  /// located yet.
   [[nodiscard]] int offset_in(const BusExchange& exchange, int point) const;
-  /// False while the point's SunSpec model has not been found.
+  /// False until the point's SunSpec model is found.
   [[nodiscard]] bool is_placed(int point) const;
   [[nodiscard]] int address_of(int point) const;
   [[nodiscard]] std::int32_t unit_of(int point) const;
@@ -42,7 +41,7 @@ class PointPlaces {
   const RegisterMap& map_;
   std::int32_t unit_;
   bool is_model_head_ = false;
-  int next_head_ = -1;  ///< where the walk goes on; -1 = nobody walks
+  int next_head_ = -1;  ///< next address of the walk; -1 = no walk
   std::array<int, decltype(RegisterMap::models)::capacity()> model_start_;  ///< -1 = not found yet
   std::array<bool, kPointsMax> is_written_{};
 };
@@ -50,31 +49,31 @@ class PointPlaces {
 struct LivePoints {
   std::uint16_t raw[kPointsMax][kPointRegistersMax] = {};
   bool known[kPointsMax] = {};
-  bool failed[kPointsMax] = {};  ///< the newest reading of it did not come: what is known is older
-  bool absent[kPointsMax] = {};  ///< optional, and this device does not have it
+  bool failed[kPointsMax] = {};  ///< the newest reading failed: the known value is older
+  bool absent[kPointsMax] = {};  ///< optional, and not present on this device
 
   void keep(const RegisterMap& map, int point, const std::uint16_t* registers);
   void forget() { *this = LivePoints{}; }
 };
 
-/// False while a register that the scale needs is unknown or implausible.
+/// False while a register needed for the scale is unknown or implausible.
 [[nodiscard]] bool live_scaling(const RegisterMap& map, const LivePoints& live, int point,
                                 Scaling& scaling);
 [[nodiscard]] bool live_value(const RegisterMap& map, const LivePoints& live, int point,
                               std::int64_t& value);
 
-/// The first case that holds, of those whose points this device has: `cases` is the map's
-/// measured_power or order_power. False when there is none, or when a register that it needs is
-/// unknown or implausible.
+/// Power of the first case that applies, among those whose points this device has; `cases` is the
+/// map's measured_power or order_power. False if there is none, or a register is unknown or
+/// implausible.
 [[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                               const LivePoints& live, std::int64_t& power_w);
 
-/// Whether every condition holds; false as well when there is none.
+/// True if there are conditions and all of them hold.
 [[nodiscard]] bool live_all(const RegisterMap& map, const StaticVector<Condition, 4>& conditions,
                             const LivePoints& live);
 
-/// The scale factors and ratings that a map allows at one end of their ranges, for the proof at
-/// load and for printing orders before a device has been read.
+/// Scale factors and ratings at one end of their permitted ranges, for the proof at load and for
+/// previewing orders before a device has been read.
 LivePoints assumed_live_points(const RegisterMap& map, bool high);
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// The checks that need the whole map: roles present, references resolved, watchdog really fed by
-// the commands, and the proof that the stated power range goes into the registers.
+// Map checks that need the whole map: roles present, references resolved, watchdog refreshed by the
+// commands, and proof that the stated power range fits the registers.
 #include <algorithm>
 
 #include "edge/device/registers/codec.h"
@@ -13,7 +13,7 @@ bool contains(const auto& list, std::int8_t point) {
   return std::find(list.begin(), list.end(), point) != list.end();
 }
 
-/// A point of that name is the power unless the map says otherwise.
+/// A point of that name is the power, unless the map defines it otherwise.
 void complete_power(RegisterMap& map, std::string_view name, StaticVector<PowerCase, 4>& cases) {
   const int point = find_point(map, name);
   if (!cases.empty() || point < 0) return;
@@ -22,10 +22,10 @@ void complete_power(RegisterMap& map, std::string_view name, StaticVector<PowerC
   cases.push_back(always);
 }
 
-/// Everything that state and commands look at is read every cycle, whether listed or not.
+/// Points used by state and commands are read every cycle, whether listed or not.
 void measure_also(RegisterMap& map, std::int8_t point) {
   if (point < 0 || contains(map.measure, point)) return;
-  map.measure.push_back(point);  // fits: there is room for every point once
+  map.measure.push_back(point);  // fits: capacity for every point once
 }
 
 void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
@@ -54,8 +54,8 @@ bool is_power(const RegisterMap& map, std::int8_t point) {
   });
 }
 
-/// What the map lists, its power and its alarms decide what is ordered. The rest only tells what
-/// order is in force, or warns.
+/// Listed points, power and alarms determine orders. The others only show the order in force, or
+/// warn.
 void complete_measure(RegisterMap& map) {
   for (const Condition& c : map.alarms) measure_also(map, c.point);
   measure_also(map, map.off_grid.point);
@@ -114,17 +114,17 @@ bool is_fed_by(const RegisterMap& map, Command command) {
   return true;
 }
 
-/// A watchdog that no command feeds would end every order, or never end one.
+/// Without a refresh the watchdog would end every order, or never one.
 void check_watchdog(TomlTable& root, const RegisterMap& map) {
   for (const Command command : {Command::kCharge, Command::kIdle, Command::kDischarge}) {
     if (is_fed_by(map, command) || is_fed_by(map, Command::kEnable)) continue;
     root.fail("watchdog",
-              "is not fed: charge, idle and discharge (or enable) must write "
+              "is not refreshed: charge, idle and discharge (or enable) must write "
               "\"duration\", \"duration_minutes\" or \"heartbeat\"");
   }
   const bool refreshes = !map.sequence(Command::kRefresh).writes.empty();
   if (refreshes && !is_fed_by(map, Command::kRefresh)) {
-    root.fail("command", "refresh must feed the watchdog: write its duration or heartbeat");
+    root.fail("command", "refresh must refresh the watchdog: write its duration or heartbeat");
   }
 }
 
@@ -141,7 +141,7 @@ void check_roles(TomlTable& root, const RegisterMap& map) {
   for (const std::int8_t point : map.measure) {
     if (map.points[point].type != RegisterType::kText) continue;
     root.fail("state", "measures " + quoted(map.points[point].name.view()) +
-                           ", which is a text: use it in [[identity]] only");
+                           ", which is text: use it in [[identity]] only");
   }
 }
 
@@ -161,7 +161,7 @@ bool is_written(const RegisterMap& map, int point) {
   });
 }
 
-/// Nothing else may rely on a point that a device need not have.
+/// No other part may rely on a point that a device may lack.
 void check_optional(TomlTable& root, const RegisterMap& map) {
   for (int point = 0; point < map.points.size(); ++point) {
     const RegisterPoint& p = map.points[point];
@@ -169,7 +169,7 @@ void check_optional(TomlTable& root, const RegisterMap& map) {
     if (!p.optional || (is_used && !is_written(map, point))) continue;
     root.fail("point", quoted(p.name.view()) +
                            " is optional: only alarms, warnings, off_grid and "
-                           "measured_power may look at it");
+                           "measured_power may use it");
   }
   for (const RegisterPoint& p : map.points) {
     for (const std::int8_t other : {p.scale_from, p.percent_of, p.clamp_to}) {
@@ -180,7 +180,7 @@ void check_optional(TomlTable& root, const RegisterMap& map) {
   }
 }
 
-/// "saved" without a fallback would restore 0; a saved point that nobody restores is a mistake.
+/// "saved" without a fallback would restore 0; a saved point without a restore is an error.
 void check_saved(TomlTable& root, const RegisterMap& map) {
   for (const CommandSequence& sequence : map.command) {
     for (const BlockWrite& write : sequence.writes) {
@@ -190,13 +190,13 @@ void check_saved(TomlTable& root, const RegisterMap& map) {
                         [&](const SavedPoint& saved) { return saved.point == value.point; });
         if (value.argument != Argument::kSaved || listed) continue;
         root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
-                                 ", which is not in its list save");
+                                 ", which is not in the list save");
       }
     }
   }
   for (const SavedPoint& saved : map.saved) {
     if (map.points[saved.point].register_count() <= kPointRegistersMax) continue;
-    root.fail("command", "cannot save a text");
+    root.fail("command", "cannot save text");
   }
 }
 
@@ -204,20 +204,20 @@ void check_addresses(TomlTable& root, const RegisterMap& map) {
   for (int i = 0; i < map.points.size(); ++i) {
     const RegisterPoint& p = map.points[i];
     const std::int64_t end = std::int64_t{p.address} + p.register_count();
-    if (end > 65'536) root.fail("point", quoted(p.name.view()) + " lies beyond address 65535");
+    if (end > 65'536) root.fail("point", quoted(p.name.view()) + " is beyond address 65535");
   }
 }
 
-/// A meter is its grid power.
+/// A meter map needs grid power only.
 void check_meter(TomlTable& root, RegisterMap& map) {
   if (!measure_grid_power(map)) {
     root.fail("point",
-              "\"grid_power\" is missing: it is what a meter is for (or grid_power in [state])");
+              "\"grid_power\" is missing: a meter map needs it (or grid_power in [state])");
   }
   check_addresses(root, map);
 }
 
-/// Flash that has a budget must still be able to release when the budget is used up.
+/// A release must remain possible when the daily flash writes are used up.
 void check_reserve(TomlTable& root, const RegisterMap& map) {
   int worn = 0;
   for (const RegisterPoint& p : map.points) worn += p.eeprom ? 1 : 0;
@@ -230,12 +230,12 @@ void check_reserve(TomlTable& root, const RegisterMap& map) {
   }
   if (map.writes.eeprom_writes_per_day > 0 && map.writes.reserve < release) {
     root.fail("writes", "reserve must be at least " + std::to_string(release) +
-                            ": that many writes a release takes");
+                            ": the writes of one release");
   }
 }
 
-/// The time that goes out with every order: a power that the registers hold is not to be blamed for
-/// it.
+/// Checks the duration sent with every order on its own, so that the error does not blame the
+/// power.
 void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
   const std::string told = "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
   const LivePoints assumed = assumed_live_points(map, false);
@@ -259,7 +259,7 @@ void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
   }
 }
 
-/// Nothing may wrap later: both ends of the stated power range are encoded once here.
+/// Overflow is excluded: both ends of the stated power range are encoded once here.
 void prove_power_range(TomlTable& root, const RegisterMap& map) {
   for (const std::int32_t power_w : {map.charge_w_max, -map.discharge_w_max, 0}) {
     const PowerOrder order{.power_w = power_w, .duration_s = map.watchdog.duration_s};

@@ -1,4 +1,4 @@
-// [command]: every command as an ordered list of steps. A step is one request:
+// Map section [command]: every command as an ordered list of steps. A step is one request:
 //   "point = value"                     one write
 //   ["point = value", "point = value"]  one atomic write of neighbouring registers
 //   { write = ..., function = 6, read_back = "tolerance", tolerance = 50 }
@@ -33,7 +33,7 @@ std::string argument_names() {
   return names;
 }
 
-/// "[-] argument [/ whole number]", and behind it "+ point"
+/// "[-] argument [/ whole number]", followed by "+ point"
 bool parse_argument(std::string_view text, WriteValue& value) {
   if (text.starts_with('-')) {
     value.sign = -1;
@@ -60,7 +60,7 @@ bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view te
                       const RegisterMap& map, WriteValue& value) {
   const MapPhrase phrase = split_phrase(text);
   if (phrase.op != "=") {
-    table.fail_at(at, "a step must say \"point = value\"");
+    table.fail_at(at, "a step must be \"point = value\"");
     return false;
   }
   value.point = require_point(table, at, phrase.left, map);
@@ -75,8 +75,8 @@ bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view te
   if (parse_value(map, value.point, written, value.constant)) return true;
   value.constant = 0;
   if (!parse_argument(written, value)) {
-    table.fail_at(at, quoted(written) + " is no number, no name of " + quoted(phrase.left) +
-                          " and none of: " + argument_names());
+    table.fail_at(at, quoted(written) + " is neither a number, nor a name of " +
+                          quoted(phrase.left) + ", nor one of: " + argument_names());
     return false;
   }
   const RegisterPoint& point = map.points[value.point];
@@ -85,7 +85,7 @@ bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view te
   return false;
 }
 
-/// Points of one request must lie side by side, in the order given.
+/// Points of one request must be adjacent, in the order given.
 bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
                   const WriteValue& value, BlockWrite& write) {
   const RegisterPoint& point = map.points[value.point];
@@ -94,18 +94,18 @@ bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
     if (point.address != before.address + before.register_count() || point.model != before.model ||
         point.unit_group != before.unit_group) {
       table.fail_at(at, quoted(point.name.view()) +
-                            " does not follow the point before it: a block write needs "
+                            " does not follow the previous point: a block write needs "
                             "neighbouring registers");
       return false;
     }
   }
   if (point.mask != 0 || point.type == RegisterType::kText) {
-    table.fail_at(at,
-                  quoted(point.name.view()) + " cannot be written: it is a text or a bit field");
+    table.fail_at(
+        at, quoted(point.name.view()) + " cannot be written: text and bit fields are read-only");
     return false;
   }
   if (write.values.try_push_back(value)) return true;
-  table.fail_at(at, "these are too many points for one write");
+  table.fail_at(at, "too many points for one write");
   return false;
 }
 
@@ -118,7 +118,7 @@ void finish_write(TomlTable& table, const TomlValue& at, const RegisterMap& map,
     write.eeprom = write.eeprom || point.eeprom;
   }
   if (registers == 0) return table.fail_at(at, "a write needs at least one \"point = value\"");
-  if (registers > kBlockRegistersMax) table.fail_at(at, "these are too many registers for a write");
+  if (registers > kBlockRegistersMax) table.fail_at(at, "too many registers for one write");
   write.address = map.points[write.values[0].point].address;
   if (write.function == 6 && registers != 1) table.fail_at(at, "function 6 writes one register");
 }
@@ -129,7 +129,7 @@ void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map
     const auto* text = item.as<std::string>();
     WriteValue value;
     if (text == nullptr) {
-      table.fail_at(item, "a step must say \"point = value\"");
+      table.fail_at(item, "a step must be \"point = value\"");
     } else if (parse_assignment(table, item, *text, map, value)) {
       append_value(table, item, map, value, write);
     }
@@ -141,7 +141,7 @@ void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map
   }
 }
 
-/// 6 as a map's default means: single registers by function 6, blocks by 16.
+/// A default of 6 means: single registers by function 6, blocks by 16.
 std::uint8_t default_function(const RegisterMap& map, const BlockWrite& write,
                               const MapDefaults& defaults) {
   const bool single =
@@ -173,7 +173,7 @@ void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defa
     write.function = default_function(map, write, defaults);
   }
   finish_write(table, node, map, write);
-  if (!sequence.writes.try_push_back(write)) table.fail_at(node, "is one write too many");
+  if (!sequence.writes.try_push_back(write)) table.fail_at(node, "exceeds the limit of 8 writes");
 }
 
 void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& defaults,
@@ -194,7 +194,7 @@ void read_saved(TomlTable& table, RegisterMap& map) {
     SavedPoint saved{.point = require_point(table, at, phrase.left, map)};
     if (saved.point < 0) return;
     if (phrase.op != "=" || !parse_value(map, saved.point, phrase.right, saved.fallback)) {
-      return table.fail_at(at, "save must say \"point = value to restore when it is unknown\"");
+      return table.fail_at(at, "save must be \"point = value to restore if unknown\"");
     }
     if (!map.saved.try_push_back(saved)) table.fail("save", "holds too many points");
   });
@@ -208,7 +208,7 @@ void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap
   TomlTable table = map_child(root, "command");
   read_saved(table, map);
   read_conditions(table, "precondition", map, map.precondition);
-  if (table.has("order")) {  // the three differ only in their arguments
+  if (table.has("order")) {  // they differ only in their arguments
     read_sequence(table, "order", defaults, map, map.command[0]);
     map.command[1] = map.command[2] = map.command[0];
   }
@@ -218,10 +218,10 @@ void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap
       map.command[c] = CommandSequence{};
       read_sequence(table, kNames[c], defaults, map, map.command[c]);
     }
-    static_cast<void>(table.node(kNames[c]));  // a known key, whether given or not
+    static_cast<void>(table.node(kNames[c]));  // marks the key as known
     const bool required = c <= static_cast<int>(Command::kRelease);
     if (required && table.ok() && map.command[c].writes.empty()) {
-      table.fail(kNames[c], "is missing: a map commands charge, idle, discharge and release");
+      table.fail(kNames[c], "is missing: a map needs charge, idle, discharge and release");
     }
   }
   table.finish();

@@ -15,7 +15,7 @@ std::string name_in(const TomlValue& node) {
 
 void overlay(TomlMembers& base, TomlMembers& over);
 
-/// Points are overlaid by name: a variant changes some keys of one point and leaves the others.
+/// Points are merged by name: a variant changes some keys of a point and keeps the others.
 void overlay_points(TomlArray& base, TomlArray& over) {
   for (TomlValue& item : over) {
     TomlValue* same = nullptr;
@@ -30,7 +30,7 @@ void overlay_points(TomlArray& base, TomlArray& over) {
   }
 }
 
-/// Lays `over` upon `base`: tables key by key, points by name, everything else replaces.
+/// Merges `over` into `base`: tables by key, points by name; other values are replaced.
 void overlay(TomlMembers& base, TomlMembers& over) {
   for (auto& [key, value] : over) {
     TomlValue& old = base[key];
@@ -51,7 +51,7 @@ std::string file_beside(const std::string& path, const std::string& name) {
   return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
 }
 
-/// The file, upon the file that it includes.
+/// Parses the file, merged over the file that it includes.
 bool parse_map_file(const std::string& path, TomlValue& document, std::string& error) {
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
@@ -60,13 +60,13 @@ bool parse_map_file(const std::string& path, TomlValue& document, std::string& e
   if (!root.ok() || !root.has("include")) return root.ok();
   const std::string name(include.view());
   if (name.empty() || name.find('/') != std::string::npos) {
-    root.fail("include", "must name a file beside this one");
+    root.fail("include", "must name a file in the same folder");
     return false;
   }
   TomlValue base;
   if (!parse_toml_file(file_beside(path, name), base, error)) return false;
   if (base.find("include") != nullptr) {
-    root.fail("include", "names a file that includes another one: one level only");
+    root.fail("include", "names a file that itself has an include: only one level is allowed");
     return false;
   }
   document.as<TomlMembers>()->erase("include");
@@ -84,12 +84,12 @@ bool list_variants(const TomlValue& document, const std::string& path,
     names.push_back(name_in(item));
     if (names.back().empty()) root.fail_at(item, "[[variant]] name is missing: add it");
   }
-  if (names.empty()) root.fail("variant", "holds nothing: leave it out");
+  if (names.empty()) root.fail("variant", "is empty: remove it");
   if (names.size() > kVariantsMax) root.fail("variant", "holds more than 8 variants");
   return root.ok();
 }
 
-/// What only a battery has: to a meter these sections are unknown.
+/// Sections for batteries only.
 void read_map_control(TomlTable& root, const MapDefaults& defaults, RegisterMap& map) {
   for (const std::string_view key : {"power", "watchdog", "command"}) root.require(key);
   read_map_limits(root, map);
@@ -97,7 +97,7 @@ void read_map_control(TomlTable& root, const MapDefaults& defaults, RegisterMap&
   read_map_commands(root, defaults, map);
 }
 
-/// The map with one of its variants laid upon it; -1 = the file has none.
+/// Reads the map merged with one of its variants; -1 = the file has none.
 bool read_map(const std::string& path, TomlValue document, int variant, RegisterMap& map,
               std::string& error) {
   map = RegisterMap{};
@@ -148,11 +148,11 @@ bool load_register_map(const std::string& path, std::string_view variant, Regist
   }
   if (chosen == -2) {
     TomlTable root(&document, path, "", error);
-    root.fail("variant", quoted(variant) + " does not exist (there are: " + listed + ")");
+    root.fail("variant", quoted(variant) + " does not exist (available: " + listed + ")");
     return false;
   }
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-    if (i == chosen) continue;  // variants that are not chosen must be valid all the same
+    if (i == chosen) continue;  // other variants must be valid too
     if (!read_map(path, document, i, map, error)) return false;
   }
   return read_map(path, std::move(document), chosen, map, error);

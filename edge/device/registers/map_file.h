@@ -9,11 +9,11 @@
 
 namespace bess {
 
-/// `variant` selects one of the file's variants; empty = its first. False with one line in `error`.
+/// `variant` selects one of the file's variants; empty = the first. False with one line in `error`.
 bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
                        std::string& error);
 
-/// From now on the map's grid point is read with its measurements: false when it has none.
+/// Adds the map's grid point to its measurements; false if it has none.
 bool measure_grid_power(RegisterMap& map);
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-// [map], [unit_groups], [sunspec] and [[point]].
+// Map sections [map], [unit_groups], [sunspec] and [[point]].
 #include "edge/device/registers/map_reader.h"
 #include "shared/units_and_limits.h"
 
@@ -7,18 +7,18 @@ namespace {
 
 struct TypeFacts {
   std::string_view name;
-  std::uint8_t registers;  ///< 0: the map says it
+  std::uint8_t registers;  ///< 0: set by the map
   std::uint64_t sunspec_not_implemented;
-  std::uint64_t other_extreme;  ///< of signed numbers: the largest; 0 = none
+  std::uint64_t other_extreme;  ///< largest value of signed numbers; 0 = none
 };
 
-/// In the order of RegisterType; raw values by the SunSpec information model specification.
+/// In the order of RegisterType; raw values of the SunSpec information model specification.
 constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF, 0},      {"s16", 1, 0x8000, 0x7FFF},
                                 {"u32", 2, 0xFFFF'FFFF, 0}, {"s32", 2, 0x8000'0000, 0x7FFF'FFFF},
                                 {"u64", 4, UINT64_MAX, 0},  {"f32", 2, 0x7FC0'0000, 0},
                                 {"text", 0, 0, 0}};
 
-/// Numbers of a list such as models = [124, 704].
+/// Reads a list of numbers such as models = [124, 704].
 template <typename T, int kCapacity>
 void read_numbers(TomlTable& table, std::string_view key, std::int64_t max,
                   StaticVector<T, kCapacity>& out) {
@@ -42,8 +42,8 @@ void read_unit_groups(TomlTable& root, RegisterMap& map) {
   for (const auto& [key, node] : *groups.value()->as<TomlMembers>()) {
     UnitGroup group;
     groups.integer(key, group.unit, 0, 255);
-    if (!group.name.assign(key)) groups.fail(key, "is too long a name");
-    if (!map.unit_groups.try_push_back(group)) groups.fail(key, "is one group too many");
+    if (!group.name.assign(key)) groups.fail(key, "is a name of more than 31 characters");
+    if (!map.unit_groups.try_push_back(group)) groups.fail(key, "exceeds the limit of 4 groups");
   }
   groups.finish();
 }
@@ -134,8 +134,8 @@ void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& poi
   }
 }
 
-/// What becomes of a value beyond the range. A full battery may say 100.4 %; a limit that is
-/// larger than any order, or none, is no limit.
+/// Treatment of values beyond the range. A full battery may report 100.4 %; a power limit above any
+/// order, or none, is no limit.
 void read_policy(TomlTable& table, RegisterPoint& point) {
   const auto name = point.name.view();
   const bool is_limit = name == "charge_power_max" || name == "discharge_power_max";
@@ -182,14 +182,14 @@ void read_names(TomlTable& table, std::string_view key, bool bits, RegisterMap& 
     }
     if (bits && *number < 0) return table.fail_at(node, "a bit number is not negative");
     named.value = bits ? std::int64_t{1} << *number : *number;
-    if (!named.name.assign(name)) return table.fail_at(node, "this name is too long");
-    if (!map.names.try_push_back(named)) return table.fail(key, "holds more names than fit");
+    if (!named.name.assign(name)) return table.fail_at(node, "name is longer than 23 characters");
+    if (!map.names.try_push_back(named)) return table.fail(key, "exceeds the limit of 96 names");
   }
 }
 
 void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map) {
   RegisterPoint point;
-  FixedText<15> unit;  // for the reader of the map
+  FixedText<15> unit;  // documentation only
   int storage = 0;
   table.require("name");
   table.require("address");
@@ -212,8 +212,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   }
   if (find_point(map, point.name.view()) >= 0) table.fail("name", "is used twice");
   if (!map.points.try_push_back(point)) {
-    table.fail("name",
-               "is one point more than the " + std::to_string(map.points.capacity()) + " that fit");
+    table.fail("name", "exceeds the limit of " + std::to_string(map.points.capacity()) + " points");
   }
   read_names(table, "names", false, map);
   read_names(table, "bits", true, map);
@@ -224,7 +223,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
 void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   TomlTable table = map_child(root, "map");
   for (const std::string_view key : {"name", "unit"}) table.require(key);
-  FixedText<255> description;  // it and one_client tell the reader of a map, not the program
+  FixedText<255> description;  // description and one_client are documentation only
   bool one_client = false;
   int parity = 0;
   int kind = 0;

@@ -1,4 +1,4 @@
-// [writes], [exceptions], [response], [commissioning] and [simulator].
+// Map sections [writes], [exceptions], [response], [commissioning] and [simulator].
 #include "edge/device/registers/map_reader.h"
 
 namespace bess {
@@ -15,7 +15,7 @@ void read_codes(TomlTable& table, std::string_view key,
       return table.fail_at(item, std::string(key) + " must hold exception codes, 1 to 255");
     }
     if (!out.try_push_back(static_cast<std::uint8_t>(*number))) {
-      return table.fail(key, "holds more codes than fit");
+      return table.fail(key, "holds too many codes");
     }
   }
 }
@@ -38,7 +38,7 @@ void read_assignments(TomlTable& table, std::string_view key, const RegisterMap&
   });
 }
 
-/// What the SoC moves by when its register counts one up, unless the map knows it to be coarser.
+/// SoC change per register count, unless the map states a coarser step.
 std::int32_t soc_register_step_e4(const RegisterMap& map) {
   const int soc = find_point(map, "soc");
   if (soc < 0) return ResponseBand{}.soc_step_e4;

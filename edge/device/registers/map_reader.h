@@ -1,5 +1,5 @@
-// The parts of the register map loader, by topic, in the order in which load_register_map calls
-// them: later parts name points that earlier ones have read. Start-up only.
+// Map reader: parts of the register map loader in the order of load_register_map. Later parts refer
+// to points read by earlier ones. Start-up only.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace bess {
 
 inline constexpr std::int64_t kMapValueLimit = 5'000'000'000;
 
-/// What [map] says about all points and writes.
+/// Defaults of [map] for all points and writes.
 struct MapDefaults {
   std::int32_t read_function = 3;
   std::int32_t write_function = 16;
@@ -30,10 +30,8 @@ void read_map_identity(TomlTable& root, RegisterMap& map);
 void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap& map);
 void read_map_policies(TomlTable& root, RegisterMap& map);
 void read_map_simulator(TomlTable& root, RegisterMap& map);
-/// What no single part can see: everything that the controller relies on is there and provable.
+/// Checks of the whole map: everything the controller relies on is present and provable.
 void check_map(TomlTable& root, RegisterMap& map);
-
-// Shared by the parts.
 
 inline std::string quoted(std::string_view name) {
   return std::string("\"").append(name).append("\"");
@@ -44,7 +42,7 @@ inline TomlTable map_child(TomlTable& parent, std::string_view key) {
           parent.error()};
 }
 
-/// Calls `read` with each table of the list `key`, named e.g. [[point]].
+/// Calls `read` for each table of the list `key`, e.g. [[point]].
 template <typename Function>
 void for_each_table(TomlTable& parent, std::string_view key, Function read) {
   const TomlArray* list = parent.array(key);
@@ -59,7 +57,7 @@ void for_each_table(TomlTable& parent, std::string_view key, Function read) {
   }
 }
 
-/// Calls `read(text, node)` with each text of the list `key`, or with its one text.
+/// Calls `read(text, node)` for each text of the list `key`, or for its single text.
 template <typename Function>
 void for_each_text(TomlTable& table, std::string_view key, Function read) {
   const TomlValue* node = table.node(key);
@@ -74,13 +72,13 @@ void for_each_text(TomlTable& table, std::string_view key, Function read) {
   }
 }
 
-/// "left op right" with the op among =, != and has; op and right are empty when there is none.
+/// "left op right" with op one of =, != and has; op and right are empty without one.
 struct MapPhrase {
   std::string_view left, op, right;
 };
 MapPhrase split_phrase(std::string_view text);
 
-/// Index of a point; -1, with the error set, when there is none.
+/// Index of a point; -1 with the error set if it does not exist.
 std::int8_t require_point(TomlTable& table, const TomlValue& at, std::string_view name,
                           const RegisterMap& map);
 /// "point", or a list of { when = "condition", power = "point" or a list of points to add up }.

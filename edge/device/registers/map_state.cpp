@@ -1,4 +1,4 @@
-// [power], [watchdog], [state] and [[identity]].
+// Map sections [power], [watchdog], [state] and [[identity]].
 #include <algorithm>
 
 #include "edge/device/registers/map_reader.h"
@@ -12,13 +12,13 @@ void read_measured(TomlTable& table, RegisterMap& map) {
     const std::int8_t point = require_point(table, at, name, map);
     if (point < 0) return;
     if (std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end()) {
-      return table.fail_at(at, "measure holds " + quoted(name) + " twice");
+      return table.fail_at(at, "measure lists " + quoted(name) + " twice");
     }
     if (map.points[point].optional) {
       return table.fail_at(at,
                            quoted(name) + " is optional: name it in alarms, warnings or off_grid");
     }
-    map.measure.push_back(point);  // fits: there is room for every point once
+    map.measure.push_back(point);  // fits: capacity for every point once
   });
 }
 
@@ -33,7 +33,7 @@ bool read_term(TomlTable& table, const TomlValue& at, std::string_view text, con
   term.point = require_point(table, at, text, map);
   if (term.point < 0) return false;
   if (out.terms.try_push_back(term)) return true;
-  table.fail_at(at, "at most 6 points add up to the power of an order");
+  table.fail_at(at, "a power is the sum of at most 6 points");
   return false;
 }
 
@@ -48,7 +48,7 @@ void read_power_case(TomlTable& table, const RegisterMap& map, StaticVector<Powe
   for_each_text(table, "power", [&](std::string_view text, const TomlValue& at) {
     read_term(table, at, text, map, out);
   });
-  if (table.ok() && !cases.try_push_back(out)) table.fail("power", "is a case too many");
+  if (table.ok() && !cases.try_push_back(out)) table.fail("power", "exceeds the limit of 4 cases");
 }
 
 void read_alive(TomlTable& state, RegisterMap& map) {
@@ -85,7 +85,7 @@ void read_identity_check(TomlTable& table, RegisterMap& map) {
   }
   if (is_text) table.require("text");
   if (!is_text && table.has("text")) table.fail("text", "needs a point of type \"text\"");
-  if (!map.identity.try_push_back(check)) table.fail("point", "is one check too many");
+  if (!map.identity.try_push_back(check)) table.fail("point", "exceeds the limit of 8 checks");
 }
 
 }  // namespace
@@ -130,11 +130,11 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
     map.watchdog.remaining = require_point(table, *table.node("remaining"), remaining.view(), map);
   }
   if (map.watchdog.kind == Watchdog::Kind::kNone) {
-    map.watchdog.duration_s = map.watchdog.refresh_s = 0;  // a variant may have inherited them
+    map.watchdog.duration_s = map.watchdog.refresh_s = 0;  // a variant may inherit them
   }
   if (map.watchdog.kind != Watchdog::Kind::kNone &&
       map.watchdog.refresh_s * 2 > map.watchdog.duration_s) {
-    table.fail("refresh_s", "must be at most half of duration_s: one feeding may be lost");
+    table.fail("refresh_s", "must be at most half of duration_s: one refresh may be lost");
   }
   table.finish();
 }

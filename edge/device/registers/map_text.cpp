@@ -1,4 +1,4 @@
-// The small phrases inside a map: "point = value", "point has bit".
+// Phrases of a map: "point = value", "point has bit".
 #include <bit>
 #include <charconv>
 
@@ -54,18 +54,17 @@ bool parse_value(const RegisterMap& map, int point, std::string_view text, std::
 
 namespace {
 
-/// Bits that can be set in what the point reads as: beyond its mask, registers and range nothing is
-/// read.
+/// Bits that a reading of the point can contain, given its mask, registers and range.
 std::uint64_t readable_bits(const RegisterPoint& point) {
   const int width = 16 * point.register_count();
   const std::uint64_t all = point.mask != 0 ? point.mask >> std::countr_zero(point.mask)
                             : width >= 64   ? ~0ULL
                                             : (1ULL << width) - 1;
-  if (point.value_min < 0) return all;  // of a negative number the high ones are
+  if (point.value_min < 0) return all;  // negative numbers have the high bits set
   return all & (std::bit_ceil(static_cast<std::uint64_t>(point.value_max) + 1) - 1);
 }
 
-/// A condition that no reading can fulfil would look as if nothing were ever wrong.
+/// Rejects a condition that no reading can fulfil: a fault would never show.
 bool can_hold(TomlTable& table, const TomlValue& at, const RegisterMap& map,
               const Condition& condition, std::string_view text) {
   const RegisterPoint& point = map.points[condition.point];
@@ -76,12 +75,12 @@ bool can_hold(TomlTable& table, const TomlValue& at, const RegisterMap& map,
     const auto bits = static_cast<std::uint64_t>(condition.value);
     if (bits != 0 && (bits & ~readable_bits(point)) == 0) return true;
     table.fail_at(at, quoted(text) + " can never hold: " + name + ", " + range +
-                          (bits == 0 ? ", is asked for no bit" : ", has no such bit"));
+                          (bits == 0 ? ", no bit is given" : ", has no such bit"));
     return false;
   }
   const bool is_read = condition.value >= point.value_min && condition.value <= point.value_max;
   if (condition.test != Condition::Test::kEqual || is_read) return true;
-  table.fail_at(at, quoted(text) + " can never hold: " + name + " reads as " + range);
+  table.fail_at(at, quoted(text) + " can never hold: " + name + " is " + range);
   return false;
 }
 

@@ -7,7 +7,7 @@
 namespace bess {
 namespace {
 
-/// Numerator and denominator of the factor that turns raw counts into a value.
+/// Factor from raw counts to a value.
 struct Ratio {
   std::int64_t numerator = 1;
   std::int64_t denominator = 1;
@@ -22,7 +22,7 @@ struct Ratio {
 };
 
 Ratio ratio_of(const RegisterPoint& point, const Scaling& scaling) {
-  constexpr int kExponentMax = 10;  // SunSpec allows no more
+  constexpr int kExponentMax = 10;  // SunSpec maximum
   Ratio ratio{.numerator = point.scale, .denominator = point.scale_divisor};
   if (point.scale_from >= 0) {
     if (std::abs(scaling.exponent) > kExponentMax) ratio.valid = false;
@@ -51,7 +51,7 @@ std::int64_t divide(std::int64_t numerator, std::int64_t denominator, Rounding r
   return rest >= denominator - rest ? down + 1 : down;
 }
 
-/// A mirrored sign turns "down" of the value into "up" of the raw count.
+/// With an inverted sign, rounding the value down rounds the raw count up.
 Rounding mirrored(Rounding rounding) {
   if (rounding == Rounding::kDown) return Rounding::kUp;
   return rounding == Rounding::kUp ? Rounding::kDown : rounding;

@@ -1,7 +1,6 @@
-// A battery's Modbus register map as fixed-size data: link, named points, state, commands,
-// watchdog. Loaded once from edge/device/maps/*.toml (map_file.h; format:
-// edge/device/maps/README.md), then constant: the edge drives the battery with it and the battery
-// simulator answers with it.
+// Register map of a battery as fixed-size data: link, named points, state, commands, watchdog.
+// Loaded once from edge/device/maps/*.toml (map_file.h; format: edge/device/maps/README.md), then
+// constant. The edge drives the battery with it, and the battery simulator responds with it.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +11,13 @@
 
 namespace bess {
 
-/// Registers that answer under another unit id than the rest.
+/// Registers with a unit id of their own.
 struct UnitGroup {
   RegisterName name;
   std::int32_t unit = 1;
 };
 
-/// A word for a value, or for a bit mask.
+/// Name of a value or of a bit mask.
 struct NamedValue {
   std::int8_t point = -1;
   bool is_bit = false;
@@ -26,18 +25,18 @@ struct NamedValue {
   FixedText<23> name;
 };
 
-/// A point that proves, before anything is written, that this map belongs to this device.
+/// Point that proves, before any write, that the map belongs to this device.
 struct IdentityCheck {
   std::int8_t point = -1;
   std::int64_t value_min = 0;
   std::int64_t value_max = 0;
-  bool may_be_unknown = false;  ///< "not implemented" passes: the device has no value just now
-  FixedText<31> text;           ///< of a text point: what it must begin with
+  bool may_be_unknown = false;  ///< "not implemented" passes: the device has no value at present
+  FixedText<31> text;           ///< required start of a text point
   FixedText<95> hint;
 };
 
-/// A power = sum of the terms, when the condition holds: of the order in force, or as measured by a
-/// device that has one register for each direction. No term: 0 W.
+/// Power as a sum of terms if the condition holds: of the order in force, or of a device with one
+/// register per direction. No term: 0 W.
 struct PowerCase {
   struct Term {
     std::int8_t point = -1;
@@ -47,13 +46,13 @@ struct PowerCase {
   StaticVector<Term, 6> terms;
 };
 
-/// A counter of the device that must move; standing still means frozen values.
+/// A device counter that must advance; otherwise values are frozen.
 struct AliveCounter {
   std::int8_t point = -1;
   std::int32_t max_age_s = 0;
 };
 
-/// What a simulator must know beyond the map to act this device.
+/// Data that a simulator needs in addition to the map.
 struct SimulatorHints {
   struct Assignment {
     enum class Source : std::uint8_t { kConstant, kPowerMax, kCapacity };
@@ -61,33 +60,33 @@ struct SimulatorHints {
     Source source = Source::kConstant;
     std::int64_t constant = 0;
   };
-  StaticVector<Condition, 4> active;       ///< instead of the map's, where those cannot be read
-  StaticVector<PowerCase, 4> order_power;  ///< likewise
+  StaticVector<Condition, 4> active;       ///< instead of the map's, if those cannot be read
+  StaticVector<PowerCase, 4> order_power;  ///< as above
   StaticVector<Assignment, 16> initial;
-  StaticVector<Assignment, 6> at_expiry;  ///< how the device shows that its watchdog has run out
+  StaticVector<Assignment, 6> at_expiry;  ///< registers that show an expired watchdog
   StaticVector<std::int8_t, 4> apply_on;  ///< while an order runs, only writing these changes it
 };
 
 struct RegisterMap {
   RegisterName name;
   RegisterName variant;
-  bool is_meter = false;  ///< of the grid's power alone: nothing in it is ever written
+  bool is_meter = false;  ///< grid power only; never written
   std::int32_t unit = 1;
   StaticVector<UnitGroup, 4> unit_groups;
-  StaticVector<std::uint16_t, 6> models;       ///< SunSpec model ids that points refer to
-  StaticVector<std::uint16_t, 4> model_bases;  ///< where the "SunS" marker may lie
+  StaticVector<std::uint16_t, 6> models;       ///< SunSpec model ids of points
+  StaticVector<std::uint16_t, 4> model_bases;  ///< possible addresses of the "SunS" marker
 
   std::int32_t port = 502;
   std::int32_t baud = 9'600;
   Parity parity = Parity::kNone;
   std::int32_t stop_bits = 1;
-  std::int32_t connect_delay_ms = 0;  ///< from the connection to the first request
+  std::int32_t connect_delay_ms = 0;  ///< from connecting to the first request
   std::int32_t minimum_gap_ms = 0;    ///< from the end of one request to the start of the next
   std::int32_t response_timeout_ms = 1000;
-  std::int32_t read_gap_registers_max = 0;  ///< unused registers that one read may span
+  std::int32_t read_gap_registers_max = 0;  ///< unused registers within one read
   std::int32_t registers_per_read_max = 60;
 
-  std::int32_t charge_w_max = 0;  ///< what the registers can express, not what a battery can do
+  std::int32_t charge_w_max = 0;  ///< range of the registers, not of a battery
   std::int32_t discharge_w_max = 0;
   Watchdog watchdog;
   WritePolicy writes;
@@ -98,20 +97,20 @@ struct RegisterMap {
   StaticVector<RegisterPoint, kPointsMax> points;
   StaticVector<NamedValue, 96> names;
   StaticVector<std::int8_t, kPointsMax> measure;  ///< points read every cycle
-  /// Of these, those without which there is no measurement, and those that keep from harm: alarms,
-  /// off-grid, temperatures, limits. One of the latter that is not known stops the battery.
+  /// Points that a measurement requires, and protective points: alarms, off-grid, temperatures,
+  /// limits. An unknown protective value stops the battery.
   StaticVector<std::int8_t, kPointsMax> required;
   StaticVector<std::int8_t, kPointsMax> protective;
-  StaticVector<std::int8_t, kPointsMax> scales;  ///< what is written depends on these
+  StaticVector<std::int8_t, kPointsMax> scales;  ///< live values used in writes
   StaticVector<Condition, 4> active;             ///< all hold while the device follows an order
-  StaticVector<Condition, 40> alarms;            ///< any of them is an alarm: nothing is driven
+  StaticVector<Condition, 40> alarms;            ///< any of them is an alarm and stops the battery
   StaticVector<Condition, 40> warnings;          ///< any of them is reported and stops nothing
   Condition off_grid;
   AliveCounter alive;
-  /// The first case that holds counts, of those whose points the device has.
+  /// The first case that applies, among those whose points the device has.
   StaticVector<PowerCase, 4> measured_power;
   StaticVector<PowerCase, 4> order_power;
-  StaticVector<PowerCase, 4> grid_power;  ///< import is positive; a battery map's is read on demand
+  StaticVector<PowerCase, 4> grid_power;  ///< import is positive; read on demand in a battery map
   StaticVector<IdentityCheck, 8> identity;
   StaticVector<Condition, 4> precondition;  ///< must hold before the first order
   StaticVector<SavedPoint, 6> saved;
@@ -126,7 +125,7 @@ struct RegisterMap {
   }
 };
 
-/// Index of a point, -1 when the map has none of that name.
+/// Index of a point, -1 if the map has none of that name.
 constexpr int find_point(const RegisterMap& map, std::string_view name) {
   for (int i = 0; i < map.points.size(); ++i) {
     if (map.points[i].name == name) return i;

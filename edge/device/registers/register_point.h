@@ -1,10 +1,10 @@
-// One named value of a battery's register map: where it lies and how raw registers become whole
+// Register point: location of one named value of a register map, and its conversion to integer
 // engineering units. Fixed-size data, filled once from edge/device/maps/*.toml, then constant.
 //
 //   value = sign * (raw - offset) * scale / scale_divisor * 10^scale_from  [* percent_of / 100]
 //
-// Values are integers in the project's units (power: W, charge positive; SoC: 1e-4), so that
-// neither guard nor student meets floating point; only an f32 register is converted at its border.
+// Values are integers in project units (power: W, charge positive; SoC: 1e-4), so that neither
+// guard nor student uses floating point; only f32 registers are converted here.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace bess {
 
-// Parity of a serial line, as a register map states it and as an operator overrides it.
+// Parity of a serial line, set by a register map or the operator.
 
 enum class Parity : std::uint8_t { kNone, kEven, kOdd };
 
@@ -27,8 +27,8 @@ inline constexpr int kTextRegistersMax = 16;
 enum class RegisterType : std::uint8_t { kU16, kS16, kU32, kS32, kU64, kF32, kText };
 enum class WordOrder : std::uint8_t { kHighFirst, kLowFirst };
 
-/// How a value between two raw counts is rounded. kAuto: a SoC ceiling goes down, a SoC floor up,
-/// everything else to the nearest.
+/// Rounding of a value between two raw counts. kAuto: a SoC ceiling down, a SoC floor up, others to
+/// the nearest.
 enum class Rounding : std::uint8_t { kNearest, kDown, kUp };
 
 struct RegisterPoint {
@@ -40,33 +40,33 @@ struct RegisterPoint {
   std::uint8_t read_function = 3;
   RegisterType type = RegisterType::kU16;
   WordOrder word_order = WordOrder::kHighFirst;
-  bool eeprom = false;          ///< each write wears memory: only changes are written, and counted
-  bool optional = false;        ///< not every device has it: then it is left out, and told nowhere
-  bool is_private = false;      ///< somebody's own, such as a serial number: a recording hides it
+  bool eeprom = false;          ///< limited write endurance: only changes are written, and counted
+  bool optional = false;        ///< omitted silently on devices without it
+  bool is_private = false;      ///< personal data such as a serial number: hidden in a recording
   std::int8_t scale_from = -1;  ///< point that holds the decimal exponent
   std::int8_t percent_of = -1;  ///< the register counts per cent of this point
-  std::int8_t clamp_to = -1;    ///< written values are cut to +- this point's live value
+  std::int8_t clamp_to = -1;    ///< written values are limited to +- this point's live value
   std::uint64_t mask = 0;       ///< a bit field: masked, then shifted down; 0 = all bits
   std::int32_t scale = 1;
   std::int32_t scale_divisor = 1;
   std::int32_t offset = 0;
-  std::int32_t sign = 1;       ///< -1 flips the device's sign to ours (charge positive)
-  std::int32_t step = 1;       ///< written values are cut to multiples of this
+  std::int32_t sign = 1;       ///< -1 inverts the device's sign (ours: charge positive)
+  std::int32_t step = 1;       ///< written values are truncated to multiples of this
   std::int32_t max_age_s = 0;  ///< a younger value is not read again; 0 = always read
   std::int64_t value_min = 0;  ///< plausible range when read, permitted range when written
   std::int64_t value_max = 0;
-  std::int64_t slack = 0;       ///< a value that is read beyond the range by no more is cut to it
-  std::int32_t raw_at_max = 0;  ///< written in place of the largest value: no bound; 0 = none
-  bool unknown_is_max = false;  ///< "not implemented" is read as the largest value
-  StaticVector<std::uint64_t, 3> not_implemented;  ///< raw values that say: I do not have this
+  std::int64_t slack = 0;       ///< values read beyond the range by at most this are clamped
+  std::int32_t raw_at_max = 0;  ///< raw value written for the maximum: no limit; 0 = none
+  bool unknown_is_max = false;  ///< "not implemented" is read as the maximum
+  StaticVector<std::uint64_t, 3> not_implemented;  ///< raw values that mean: no value
 
   [[nodiscard]] constexpr int register_count() const { return registers; }
 };
 
-/// True when `point` reads as stated.
+/// Condition on the value of `point`.
 struct Condition {
   enum class Test : std::uint8_t { kEqual, kNotEqual, kHasBits };
-  std::int8_t point = -1;  ///< -1 = this map cannot tell
+  std::int8_t point = -1;  ///< -1 = not available in this map
   Test test = Test::kEqual;
   std::int64_t value = 0;
 
