@@ -1,7 +1,6 @@
-// A register map's points over a link: where they lie (unit groups, SunSpec models), which of the
-// optional ones this device has, reading those whose values are too old, writing blocks, and which
-// errors deserve a retry. A template over link and time, so that the same code drives Modbus, and
-// registers in memory in the tests.
+// Battery bus: points of a register map over a link. Locates them (unit groups, SunSpec models),
+// finds the optional ones, reads outdated values, writes blocks, and decides which errors deserve a
+// retry. A template over link and time: Modbus, or registers in memory in tests.
 //
 //   Link   Status read(const RegisterSpan&, uint16_t*); Status write(unit, function, address,
 //          const uint16_t*, count, send_until_ns); void close(); int last_exception() const
@@ -21,15 +20,15 @@
 
 namespace bess {
 
-inline constexpr int kBusAttempts = 2;  // a dropped connection is mended at once
-// Beyond those: how long a device that is busy, silent or gone is asked again, in its own time. A
-// reading begins some seconds before its tick; both end within the order's deadline.
+inline constexpr int kBusAttempts = 2;  // a dropped connection is restored immediately
+// Additional retry time for a busy, silent or disconnected device, in its own time. A reading
+// begins some seconds before its tick; both end within the order's deadline.
 inline constexpr std::int64_t kReadPatienceNs = 20 * kNanosecondsPerSecond;
 inline constexpr std::int64_t kOrderPatienceNs = 30 * kNanosecondsPerSecond;
 inline constexpr std::int64_t kPresencePatienceNs = 5 * kNanosecondsPerSecond;
 inline constexpr std::int32_t kRetryPauseMs = 1'000;
 
-/// Tries a request at least twice, and one whose trouble is temporary until `patience_ns` is over.
+/// Tries a request at least twice; after temporary failures until `patience_ns` is over.
 template <typename Time, typename Request>
 Status retried(const Time& time, std::int64_t patience_ns, Request request) {
   const std::int64_t end_ns = time.now_ns() + patience_ns;
@@ -45,7 +44,7 @@ Status retried(const Time& time, std::int64_t patience_ns, Request request) {
 template <typename Link, typename Time>
 class BatteryBus {
  public:
-  /// `unit` replaces the map's unit id when it is not negative. `map` must outlive this object.
+  /// `unit` replaces the map's unit id if not negative. `map` must outlive this object.
   template <typename... LinkArguments>
   BatteryBus(const RegisterMap& map, const Time& time, std::int32_t unit, LinkArguments&&... link)
       : map_(map),
@@ -57,15 +56,15 @@ class BatteryBus {
   [[nodiscard]] const Time& time() const { return time_; }
   [[nodiscard]] Link& link() { return link_; }
   [[nodiscard]] const Link& link() const { return link_; }
-  /// When everything was read last that a measurement and an order cannot do without; 0 = never.
+  /// Last complete reading of required and scaling values; 0 = never.
   [[nodiscard]] std::int64_t last_read_ns() const { return last_read_ns_; }
 
-  /// Finds the models that the map's points refer to: at every base in turn, whatever another one
-  /// answers. kImplausible: `missing_model` is not there. What was found before stays known.
+  /// Locates the models of the map's points: tries every base, whatever the others return.
+  /// kImplausible: `missing_model` does not exist. Earlier results are kept.
   Status locate_models(std::uint16_t& missing_model) {
     missing_model = 0;
     if (map_.models.empty()) return Status::kOk;
-    Status elsewhere = Status::kImplausible;  // of the bases without a marker
+    Status elsewhere = Status::kImplausible;  // status of bases without a marker
     for (const std::uint16_t base : map_.model_bases) {
       bool is_marked = false;
       const Status status = walk_models(base, is_marked, missing_model);
@@ -76,8 +75,8 @@ class BatteryBus {
     return elsewhere;
   }
 
-  /// Decides which optional points this device has. One that was there once is required from then
-  /// on; one that was not is asked for each time: the device may not have been ready.
+  /// Determines the optional points of this device. A point seen once is required from then on;
+  /// others are tried each time, because the device may not have been ready.
   Status find_optional_points() {
     PlacedPoints undecided;
     for (const std::int8_t point : map_.measure) {
@@ -93,16 +92,16 @@ class BatteryBus {
     }
     return Status::kOk;
   }
-  /// An optional point that an earlier run has seen on this device.
+  /// Optional point that an earlier run saw on this device.
   void require(std::int8_t point) { is_present_[point] = true; }
 
-  /// Reads every measured point whose value is older than the map allows.
+  /// Reads every measured point with an outdated value.
   Status read_due() {
     ++round_;
     return read_rest();
   }
 
-  /// Likewise, without what has come since the last `read_due`.
+  /// As `read_due`, without values received since the last `read_due`.
   Status read_rest() {
     PlacedPoints due;
     for (const std::int8_t point : map_.measure) {
@@ -128,8 +127,8 @@ class BatteryBus {
     return read_placed(due, live_);
   }
 
-  /// Reads `points` into `out`; what does not come is marked there as failed, and does not keep
-  /// from the others. Of several failures the one that may pass.
+  /// Reads `points` into `out`; failed ones are marked there and do not stop the others. Of several
+  /// failures a temporary one is returned.
   Status read_placed(PlacedPoints& points, LivePoints& out) {
     ReadPlan plan;
     plan_reads(map_, points, refused_, plan);
@@ -141,13 +140,13 @@ class BatteryBus {
       was_answered = was_answered || status == Status::kOk || link_.last_exception() != 0;
       if (status == Status::kBusException) status = read_apart(span, points, out);
       if (status != Status::kOk && !is_temporary(worst)) worst = status;
-      // The rest of a device that is silent would cost a time-out each.
+      // With a silent device the rest would cost a time-out each.
       if (status == Status::kNotConnected || !was_answered) break;
     }
     return worst;
   }
 
-  /// `function` 3 for what was written, whatever table the point is measured from.
+  /// `function` 3 for written points, independent of the table of their reading.
   [[nodiscard]] PlacedPoint placed(std::int8_t point, std::uint8_t function) const {
     const RegisterPoint& p = map_.points[point];
     const int start = p.model < 0 ? 0 : model_start_[p.model];
@@ -158,7 +157,7 @@ class BatteryBus {
             .point = point};
   }
 
-  /// False: it lies in a model that was never found.
+  /// False: its model was not found.
   [[nodiscard]] bool is_located(std::int8_t point) const {
     const int model = map_.points[point].model;
     return model < 0 || model_start_[model] != 0;
@@ -169,7 +168,7 @@ class BatteryBus {
     return read_span(placed(point, map_.points[point].read_function).place, registers);
   }
 
-  /// Not after `send_until_ns`, CLOCK_MONOTONIC.
+  /// Not after `send_until_ns` (CLOCK_MONOTONIC).
   Status write(const BlockWrite& write, const RegisterBlock& block, std::int64_t send_until_ns) {
     if (!is_located(write.values[0].point)) return Status::kImplausible;
     const PlacedPoint first = placed(write.values[0].point, 3);
@@ -178,7 +177,7 @@ class BatteryBus {
                                 block.size(), send_until_ns));
     };
     if (block.size() > 1) return send(write.function);
-    // Some firmware takes a single register by one of the two functions alone.
+    // Some firmware accepts only one of the two functions for a single register.
     const std::uint8_t other = write.function == 6 ? 16 : 6;
     const Status status = send(writes_by_other_ ? other : write.function);
     if (status != Status::kBusException || link_.last_exception() > kExceptionNoAddress) {
@@ -207,7 +206,7 @@ class BatteryBus {
     return Status::kOk;
   }
 
-  /// A span that is refused may hold one register that the device does not have: the others count.
+  /// A refused span may contain one missing register: the others still count.
   Status read_apart(const RegisterSpan& span, const PlacedPoints& points, LivePoints& out) {
     Status worst = Status::kOk;
     for (const PlacedPoint& point : points) {
@@ -218,7 +217,7 @@ class BatteryBus {
     return worst;
   }
 
-  /// A point is absent when it is refused (by a gateway: for some seconds) or not implemented.
+  /// A point is absent if refused (by a gateway: for some seconds) or not implemented.
   Status decide(const RegisterSpan& span, const PlacedPoints& undecided) {
     LivePoints now;
     const Status status =
@@ -245,7 +244,7 @@ class BatteryBus {
            age_ns < map_.points[point].max_age_s * kNanosecondsPerSecond;
   }
 
-  /// By the last answer: an illegal request; behind a gateway, a device that is not there.
+  /// From the last reply: an illegal request, or no device behind a gateway.
   [[nodiscard]] bool has_no_such_register() const {
     constexpr int kIllegalDataValue = 3;
     const int code = link_.last_exception();
@@ -257,7 +256,7 @@ class BatteryBus {
     return judged(link_.read(span, registers));
   }
 
-  /// What an exception code means, by the map's lists.
+  /// Status of an exception code, by the map's lists.
   Status judged(Status status) const {
     const int code = link_.last_exception();
     if (status == Status::kOk || code == 0) return status;
@@ -270,7 +269,7 @@ class BatteryBus {
 
   /// "SunS", then blocks of id, length, registers, until id 0xFFFF.
   Status walk_models(std::uint16_t base, bool& is_marked, std::uint16_t& missing_model) {
-    constexpr int kModelsMax = 64;  // a device that answers nonsense must not hold the loop
+    constexpr int kModelsMax = 64;  // bounds the loop for invalid replies
     std::uint16_t head[2] = {};
     if (const Status status = read_at(base, head); status != Status::kOk) return status;
     is_marked = head[0] == 0x5375 && head[1] == 0x6E53;
@@ -293,7 +292,7 @@ class BatteryBus {
     return Status::kOk;
   }
 
-  /// A model that holds nothing but optional points need not be there, unless one was seen.
+  /// A model with only optional points may be missing, unless one was seen.
   [[nodiscard]] bool is_needed(int model) const {
     bool is_used = false;
     for (int i = 0; i < map_.points.size(); ++i) {
@@ -315,12 +314,12 @@ class BatteryBus {
   Link link_;
   LivePoints live_;
   PlacedPoints refused_;              ///< optional points that no span may cover
-  bool is_present_[kPointsMax] = {};  ///< optional points that were there once
+  bool is_present_[kPointsMax] = {};  ///< optional points that were seen once
   std::int64_t read_ns_[kPointsMax] = {};
   std::uint32_t read_in_round_[kPointsMax] = {};
-  std::uint32_t round_ = 0;  ///< of readings, each with all its repetitions
+  std::uint32_t round_ = 0;  ///< number of the reading, with its retries
   std::int64_t last_read_ns_ = 0;
-  bool writes_by_other_ = false;  ///< single registers by the function that the map does not name
+  bool writes_by_other_ = false;  ///< single registers by the function not named in the map
   ModelStarts model_start_ = {};  ///< 0: not found
 };
 

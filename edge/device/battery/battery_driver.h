@@ -1,6 +1,6 @@
-// The battery as the controller sees it, driven through a register map: measure, order, keep the
-// watchdog fed, release. Costs as few writes as possible: an order that is in force already is not
-// written again until the watchdog is due. A template over link and time (see battery_bus.h).
+// Battery driver: measure, order, refresh the watchdog and release through a register map.
+// Minimises writes: an order already in force is not written again until the watchdog is due. A
+// template over link and time (battery_bus.h).
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace bess {
 template <typename Link, typename Time>
 class BatteryDriver {
  public:
-  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  /// `map` must outlive this object; `unit` replaces its unit id if not negative.
   template <typename... LinkArguments>
   BatteryDriver(const RegisterMap& map, const Time& time, std::int32_t unit,
                 LinkArguments&&... link)
@@ -34,8 +34,8 @@ class BatteryDriver {
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
-  /// Connects if needed and reads everything that the map measures. Where an identity check finds
-  /// another capacity, that is all there is of the measurement.
+  /// Connects if needed and reads all measured points. If an identity check finds another capacity,
+  /// the measurement has only that.
   Status read(BatteryMeasurement& measurement) {
     measurement = BatteryMeasurement{};
     IdentityFailure failure;
@@ -58,7 +58,7 @@ class BatteryDriver {
     return Status::kOk;
   }
 
-  /// Brings an order into force and reads it back. Costs nothing while it is in force already.
+  /// Brings an order into force and reads it back. No write if it is in force already.
   Status order(const PowerOrder& order) {
     if (const Status status = prepare(); status != Status::kOk) return refuse(status);
     const Command command = command_of(order.power_w);
@@ -72,11 +72,11 @@ class BatteryDriver {
     if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
       return refuse(Status::kNotExpressible);
     }
-    // Nothing is written before it is known that all of it may be.
+    // Nothing is written until all of it is known to be permitted.
     Status status = check(map_.sequence(command), order);
     if (status == Status::kOk && !ours_.is_enabled()) status = enable(order);
     if (status != Status::kOk) return refuse(status);
-    // 0 W that does not get through is not waited for as long: what follows is the release.
+    // A failing 0 W is retried for less time: the release follows.
     const bool drives = command != Command::kIdle;
     status =
         runner_.run(map_.sequence(command), order, drives ? kOrderPatienceNs : kReadPatienceNs);
@@ -88,18 +88,18 @@ class BatteryDriver {
     return status;
   }
 
-  /// Between orders, at least every `refresh_interval_s`: feeds the watchdog when it is due.
+  /// Between orders, at least every `refresh_interval_s`: refreshes the watchdog when due.
   Status refresh() { return ours_.is_due(now_ns()) ? feed() : Status::kOk; }
 
-  /// 0: one order per cycle is enough to keep the watchdog fed.
+  /// 0: one order per cycle is sufficient for the watchdog.
   [[nodiscard]] std::int32_t refresh_interval_s() const {
     const bool often = !ours_.lasts_for_ever() && map_.watchdog.refresh_s < kSecondsPerStep;
     return often ? map_.watchdog.refresh_s : 0;
   }
 
-  /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
-  /// itself, and is not refused because measurements fail: scale factors that were read once will
-  /// do. Nor because the device has changed since it was known, which an order would be.
+  /// Returns the battery to its own mode and reads back. It has a budget reserve, and does not
+  /// depend on fresh measurements: known scale factors suffice. Unlike an order, it is also
+  /// permitted if a known device has since failed its identity check.
   Status release() {
     const Status known = identify();
     if (known != Status::kOk && !(known == Status::kImplausible && was_known())) return known;
@@ -113,8 +113,8 @@ class BatteryDriver {
     return Status::kOk;
   }
 
-  /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
-  /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
+  /// Reads the map's identity checks; on kImplausible `failure` has the check and its value.
+  /// Nothing is read or ordered before the first success: an unknown device is not touched.
   Status check_identity(IdentityFailure& failure) {
     const Status status = check_identity_of(map_, bus_, failure);
     if (status == Status::kOk) {
@@ -127,14 +127,14 @@ class BatteryDriver {
     return status;
   }
 
-  /// Whether the map calls a point optional and this device has it.
+  /// True if the map calls the point optional and this device has it.
   [[nodiscard]] bool has_optional(std::int8_t point) const {
     return map_.points[point].optional && !bus_.live().absent[point];
   }
-  /// An optional point that this device was seen to have: it is required.
+  /// Optional point that this device is known to have: now required.
   void require(std::int8_t point) { bus_.require(point); }
 
-  /// A person insists: this device is to be given back whatever its identity checks say.
+  /// On an operator's request: release is permitted whatever the identity checks say.
   void permit_release() {
     if (identity_ == Identity::kUnknown) identity_ = Identity::kWasKnown;
   }
@@ -151,13 +151,13 @@ class BatteryDriver {
     return counters;
   }
 
-  /// At start, with what the log remembers: the budget of a day survives a restart.
+  /// At start, from the log: the daily flash budget survives a restart.
   void restore_flash_writes(std::int64_t day, std::int32_t writes) {
     runner_.budget().restore(day, writes);
   }
 
-  /// What a write of a command would be, without asking or telling the device anything.
-  /// kNotConnected while its scale or place is only known to a device that has not been read yet.
+  /// Encodes a write without accessing the device. kNotConnected while its scale or location needs
+  /// a reading of the device.
   Status preview(const BlockWrite& write, const PowerOrder& order, std::uint16_t& address,
                  RegisterBlock& block) const {
     const bool was_read = bus_.last_read_ns() != 0;
@@ -171,17 +171,17 @@ class BatteryDriver {
     return encode_block(map_, write, order, block, {.live = was_read ? &bus_.live() : nullptr});
   }
 
-  /// Gives the one connection free; the next request opens it again.
+  /// Closes the only connection; the next request opens it again.
   void close() { bus_.link().close(); }
   [[nodiscard]] Link& link() { return bus_.link(); }
   [[nodiscard]] const LivePoints& live() const { return bus_.live(); }
-  /// Where a point lies on this device.
+  /// Location of a point on this device.
   [[nodiscard]] PlacedPoint place_of(std::int8_t point) const {
     return bus_.placed(point, map_.points[point].read_function);
   }
 
  private:
-  /// Of the device: none is ordered anything unless it is known, nor released unless it was.
+  /// Identity of the device: orders need a known one, a release one that was known.
   enum class Identity : std::uint8_t { kUnknown, kWasKnown, kKnown };
 
   [[nodiscard]] bool was_known() const { return identity_ != Identity::kUnknown; }
@@ -202,7 +202,7 @@ class BatteryDriver {
     return identify(failure);
   }
 
-  /// Behind a new connection there may be another device, and one that stays may be changed.
+  /// A new connection may lead to another device, and a device may be reconfigured.
   Status identify(IdentityFailure& failure) {
     const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
     const bool is_recent = now_ns() - identified_ns_ < kIdentityAgeNs;
@@ -217,7 +217,7 @@ class BatteryDriver {
     measurement.capacity_wh = clamp_to_int32(failure.value);
   }
 
-  /// What is missing is asked for again, patiently; meanwhile the watchdog is fed.
+  /// Retries missing values, and refreshes the watchdog while retrying.
   Status read_registers() {
     int attempt = 0;
     return retried(bus_.time(), kReadPatienceNs, [&] {
@@ -226,13 +226,13 @@ class BatteryDriver {
     });
   }
 
-  /// Whether it may be written; flash is compared with the device first.
+  /// True if writing is permitted; flash is compared with the device first.
   Status check(const CommandSequence& sequence, const PowerOrder& order) {
     return retried(bus_.time(), kReadPatienceNs, [&] { return runner_.check(sequence, order); });
   }
 
-  /// Scale factors, ratings and limits that go into an order must not be old. A map without them
-  /// can order (0 W above all) even while the measurements fail.
+  /// Scale factors, ratings and limits of an order must be recent. A map without them can order (0
+  /// W above all) even while measurements fail.
   Status prepare() {
     if (const Status status = identify(); status != Status::kOk) return status;
     const bool needs_live = !map_.scales.empty() || (!ours_.is_enabled() && !map_.saved.empty());
@@ -243,12 +243,12 @@ class BatteryDriver {
     return bus_.last_read_ns() == read_ns ? status : Status::kOk;
   }
 
-  /// What order the device follows, whoever gave it: a restart takes over from here.
+  /// Order that the device follows, including one from an earlier run.
   void note_order_in_force(BatteryMeasurement& m) {
     const bool visible = shows_end();
     const bool active = live_all(map_, map_.active, bus_.live());
-    // An order of a process that was killed: whether it has run out cannot be seen, but what it
-    // switched over stays until it is given back.
+    // An order of a killed process: its expiry is not visible, but the external control that it
+    // enabled remains until the release.
     const bool left_behind = !visible && !ours_.was_ours() && active;
     m.dispatch_active = visible ? active : ours_.may_last(now_ns()) || left_behind;
     std::int64_t power_w = 0;
@@ -261,12 +261,12 @@ class BatteryDriver {
     ours_.note_seconds_left(is_shown ? left_s : INT64_MAX);
   }
 
-  /// An order in force is looked for where it was written. `active`: the device says that it
-  /// follows one, as far as it can say so.
+  /// Looks for the order in force where it was written. `active`: the device reports that it
+  /// follows an order, if it can.
   void watch_order(bool active) {
     if (!ours_.is_in_force()) return;
-    if (!active && !ours_.is_within_its_time(now_ns())) return lose_order();  // not fed: run out
-    OrderTrace trace = OrderTrace::kOurs;  // also where it cannot be read just now
+    if (!active && !ours_.is_within_its_time(now_ns())) return lose_order();  // expired
+    OrderTrace trace = OrderTrace::kOurs;  // also if it cannot be read now
     static_cast<void>(runner_.trace(ours_.command(), trace));
     if (trace == OrderTrace::kForeign || (active && trace == OrderTrace::kAtRest)) {
       note_loss(OrderLoss::kReplaced, trace);
@@ -276,12 +276,12 @@ class BatteryDriver {
     }
   }
 
-  /// Before it is fed: false when it is not there any more, which is remembered.
+  /// Before a refresh: false, and recorded, if the order is no longer there.
   [[nodiscard]] bool is_still_there() {
     OrderTrace trace = OrderTrace::kOurs;
     const Status status = runner_.trace(ours_.command(), trace);
     if (status != Status::kOk || trace == OrderTrace::kOurs) return true;
-    // Only a fresh reading tells that the device still follows an order.
+    // Only a fresh reading shows that the device still follows an order.
     const bool may_be_end = trace == OrderTrace::kAtRest && shows_end();
     const bool is_active =
         may_be_end && bus_.read_due() == Status::kOk && live_all(map_, map_.active, bus_.live());
@@ -289,14 +289,14 @@ class BatteryDriver {
     return false;
   }
 
-  /// All of it is written again with the next order, unless control yields. Not before: two masters
-  /// that outdo each other would swing the power.
+  /// The next order writes everything again, unless control yields. Not earlier: two competing
+  /// controllers would make the power oscillate.
   void note_loss(OrderLoss loss, OrderTrace trace) {
     ours_.on_lost(loss, trace == OrderTrace::kForeign, now_ns());
     runner_.forget();
   }
 
-  /// The device tells by its registers whether it follows an order.
+  /// True if registers show whether the device follows an order.
   [[nodiscard]] bool shows_end() const {
     return !map_.active.empty() && map_.watchdog.expiry_visible;
   }
@@ -308,7 +308,7 @@ class BatteryDriver {
         refresh.writes.empty() ? map_.sequence(ours_.command()) : refresh;
     PowerOrder order = ours_.order();
     order.write_until_ns = order.feed_until_ns;
-    // What is added to an order changes between two ticks.
+    // Live values added to an order change between two ticks.
     Status status = adds_live_ ? bus_.read_points(map_.scales) : Status::kOk;
     if (status == Status::kOk) status = check(sequence, order);
     if (status == Status::kOk) status = runner_.run(sequence, order, kReadPatienceNs);
@@ -320,7 +320,7 @@ class BatteryDriver {
     return status;
   }
 
-  /// Once before the first order: conditions, what must be restored later, external control.
+  /// Before the first order: preconditions, registers to restore later, external control.
   Status enable(const PowerOrder& order) {
     for (const Condition& condition : map_.precondition) {
       bool holds = false;
@@ -342,8 +342,8 @@ class BatteryDriver {
     return status;
   }
 
-  /// An order that is in force without us is an earlier process's: then the registers hold what
-  /// that process wrote, and the map's fallback is what is restored.
+  /// An active order that is not ours is an earlier process's: the registers hold its values, so
+  /// that the map's fallback will be restored.
   Status save_registers() {
     StaticVector<std::int8_t, kPointsMax> unsaved;
     for (const SavedPoint& saved : map_.saved) {
@@ -361,8 +361,8 @@ class BatteryDriver {
     return status;
   }
 
-  /// The order before the refused one is no longer wanted either: `refresh` must not keep it in
-  /// force. Its timer ends it; where the device has none, it is taken back here.
+  /// The order before a refused one is no longer valid either: `refresh` must not keep it in force.
+  /// Its timer ends it; without a timer it is released here.
   Status refuse(Status reason) {
     const bool stays = ours_.is_in_force() && ours_.lasts_for_ever();
     lose_order();
@@ -370,13 +370,13 @@ class BatteryDriver {
     return reason;
   }
 
-  /// Half of a command may have been taken: rather the battery's own mode than a mixture.
+  /// A command may be half applied: the battery's own mode is better than a mixture.
   void roll_back(Status reason, Command command, const PowerOrder& order) {
     const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
     const bool several = map_.sequence(command).writes.size() > 1 || ours_.is_enabled();
     lose_order();
     if (!sent || !(several || reason == Status::kNotApplied)) return;
-    PowerOrder unbound = order;  // taking back is never too late
+    PowerOrder unbound = order;  // a rollback is never too late
     unbound.write_until_ns = INT64_MAX;
     static_cast<void>(runner_.run(map_.sequence(Command::kRelease), unbound,
                                   0));  // the link may be gone: the watchdog ends it
@@ -392,7 +392,7 @@ class BatteryDriver {
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
   OrderState ours_;
-  bool adds_live_;  ///< a measured load is added to what is written
+  bool adds_live_;  ///< a measured load is added to orders
   Identity identity_ = Identity::kUnknown;
   std::int64_t identified_ns_ = 0;
   std::int64_t identified_connections_ = 0;

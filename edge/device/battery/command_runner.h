@@ -1,6 +1,5 @@
-// Runs one command of a register map: its writes in order, pauses and waits, then the read-back by
-// the map's rule. Remembers what is known to stand in the device's registers, so that flash is
-// only written when something changes, and counts what it costs.
+// Command runner: writes, pauses and read-back of one map command. It remembers known register
+// contents, so that flash is written only on changes, and counts the writes.
 #pragma once
 
 #include <algorithm>
@@ -13,25 +12,25 @@
 
 namespace bess {
 
-// How often registers in flash memory may still be written today. Flash endures some 100,000
-// writes: a controller that writes every two minutes would use that up within months.
+// Flash budget: remaining writes of flash registers today. Flash endures some 100,000 writes: one
+// every two minutes would wear it out within months.
 
 class FlashBudget {
  public:
   explicit FlashBudget(const WritePolicy& policy) : policy_(policy) {}
 
-  /// What an earlier process of the same day has used up.
+  /// Writes of an earlier process on that day.
   void restore(std::int64_t day, std::int32_t writes) {
     day_ = day;
     writes_ = writes;
   }
-  /// Orders leave the reserve untouched: one release is always possible.
+  /// Orders keep the reserve: one release is always possible.
   [[nodiscard]] bool allows(std::int64_t day, std::int32_t writes) const {
     if (policy_.eeprom_writes_per_day == 0 || writes == 0) return true;
     const std::int32_t used = day == day_ ? writes_ : 0;
     return used + writes <= policy_.eeprom_writes_per_day - policy_.reserve;
   }
-  /// Even the reserve is used up: by releases that a device does not take, tried every cycle.
+  /// The reserve is used up too: a device rejects releases that are retried every cycle.
   [[nodiscard]] bool is_spent(std::int64_t day) const {
     return policy_.eeprom_writes_per_day > 0 && writes_on(day) >= policy_.eeprom_writes_per_day;
   }
@@ -48,10 +47,10 @@ class FlashBudget {
   std::int32_t writes_ = 0;
 };
 
-/// What stands where an order was written.
+/// Register contents where an order was written.
 enum class OrderTrace : std::uint8_t {
   kOurs,
-  kAtRest,  ///< what shows an order's end is as after a release, the rest is ours
+  kAtRest,  ///< its end markers are as after a release, the rest is ours
   kForeign
 };
 
@@ -67,7 +66,7 @@ class CommandRunner {
   [[nodiscard]] LivePoints& saved() { return saved_; }
   void forget() { written_.forget(); }
 
-  /// kOk, or why the map, its live values or the flash budget do not allow this command.
+  /// kOk, or why the map, its live values or the flash budget do not permit this command.
   Status check(const CommandSequence& sequence, const PowerOrder& order) {
     int worn = 0;
     for (const BlockWrite& write : sequence.writes) {
@@ -83,7 +82,7 @@ class CommandRunner {
     return budget_.allows(bus_.time().utc_day(), worn) ? Status::kOk : Status::kWriteBudget;
   }
 
-  /// Whether the registers are known to hold what the command would write, its heartbeat apart.
+  /// True if the registers are known to hold the command's values, except its heartbeat.
   [[nodiscard]] bool is_written(const CommandSequence& sequence, const PowerOrder& order) {
     for (int i = 0; i < sequence.writes.size(); ++i) {
       RegisterBlock block;
@@ -99,8 +98,8 @@ class CommandRunner {
     return true;
   }
 
-  /// What stands in the registers of an order that was read back. What the device counts itself,
-  /// and what was not read back, proves nothing.
+  /// Register contents of a confirmed order. Values that the device counts itself, and unconfirmed
+  /// ones, are no evidence.
   Status trace(Command command, OrderTrace& found) {
     found = OrderTrace::kOurs;
     StaticVector<std::int8_t, kPointsMax> points;
@@ -124,7 +123,7 @@ class CommandRunner {
     return retried(bus_.time(), patience_ns, [&] { return run_once(sequence, order); });
   }
 
-  /// Asks the device whether a condition holds.
+  /// Reads from the device whether a condition holds.
   Status test(const Condition& condition, bool& holds_now) {
     LivePoints now = bus_.live();
     PlacedPoints points;
@@ -137,7 +136,7 @@ class CommandRunner {
     return status;
   }
 
-  /// Reads registers by function 3, as they are written, into `out`.
+  /// Reads written registers by function 3 into `out`.
   Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, LivePoints& out) {
     PlacedPoints points;
     for (const std::int8_t point : list) points.push_back(bus_.placed(point, 3));
@@ -152,7 +151,7 @@ class CommandRunner {
 
   Status run_once(const CommandSequence& sequence, const PowerOrder& order) {
     ++heartbeat_;
-    Status withheld = Status::kOk;  // flash that may not be written does not keep from the rest
+    Status withheld = Status::kOk;  // a blocked flash write does not block the others
     for (const BlockWrite& write : sequence.writes) {
       RegisterBlock block;
       Status status = encode(write, order, block);
@@ -174,7 +173,7 @@ class CommandRunner {
     const Status status = bus_.write(write, block, send_until_ns);
     int offset = 0;
     for (const WriteValue& value : write.values) {
-      // Not known before it is read back, unless the map says that it cannot be.
+      // Unknown until read back, unless the map says that it cannot be.
       written_.known[value.point] = false;
       if (status == Status::kOk && write.read_back == ReadBack::kNone) {
         written_.keep(map_, value.point, block.data() + offset);
@@ -184,7 +183,7 @@ class CommandRunner {
     return status;
   }
 
-  /// Flash is compared before it is written; what is not known is read first.
+  /// Flash is compared before it is written; unknown values are read first.
   Status is_in_device(const BlockWrite& write, const RegisterBlock& block, bool& same) {
     StaticVector<std::int8_t, kPointsMax> unknown;
     for (const WriteValue& value : write.values) {
@@ -218,8 +217,8 @@ class CommandRunner {
     return false;
   }
 
-  /// Calls `visit(write, value)` for every value that the sequence leaves in a register and that
-  /// can be read back: of several writes of one point, the last.
+  /// Calls `visit(write, value)` for the last written, readable value of each point of the
+  /// sequence.
   template <typename Visit>
   static void for_each_read_back(const CommandSequence& sequence, const Visit& visit) {
     for (int i = 0; i < sequence.writes.size(); ++i) {
@@ -230,8 +229,7 @@ class CommandRunner {
     }
   }
 
-  /// Calls `visit(write, point)` for what is known to have been left in the registers by an order
-  /// and by what enabled it.
+  /// Calls `visit(write, point)` for known registers of an order and of its enable command.
   template <typename Visit>
   void for_each_of_order(Command command, const Visit& visit) {
     const auto visit_known = [&](const BlockWrite& write, const WriteValue& value) {
@@ -248,7 +246,7 @@ class CommandRunner {
                        });
   }
 
-  /// A device that ends an order by itself writes here.
+  /// True for points that a device writes when it ends an order by itself.
   [[nodiscard]] bool shows_end(int point) const {
     const auto is_this = [point](const auto& shown) { return shown.point == point; };
     return std::any_of(map_.active.begin(), map_.active.end(), is_this) ||
@@ -268,7 +266,7 @@ class CommandRunner {
     return false;
   }
 
-  /// Everything that the sequence left in the registers, compared in as few reads as possible.
+  /// Compares all values of the sequence in as few reads as possible.
   Status read_back(const CommandSequence& sequence, const PowerOrder& order) {
     StaticVector<std::int8_t, kPointsMax> wanted;
     for_each_read_back(sequence, [&](const BlockWrite&, const WriteValue& value) {
@@ -307,7 +305,7 @@ class CommandRunner {
     Scaling scaling;
     std::int64_t wanted = 0;
     std::int64_t got = 0;
-    const bool is_open = map_.points[point].raw_at_max != 0;  // some devices cut it
+    const bool is_open = map_.points[point].raw_at_max != 0;  // some devices clamp it
     if ((write.read_back != ReadBack::kTolerance && !is_open) || !now.known[point] ||
         !live_scaling(map_, bus_.live(), point, scaling)) {
       return false;
@@ -320,7 +318,7 @@ class CommandRunner {
   const RegisterMap& map_;
   BatteryBus<Link, Time>& bus_;
   FlashBudget budget_;
-  LivePoints written_;  ///< confirmed by read-back, or written where reading back is not possible
+  LivePoints written_;  ///< confirmed by read-back, or written where it is not possible
   LivePoints saved_;    ///< registers as they were before the first order
   std::int64_t heartbeat_ = 0;
 };

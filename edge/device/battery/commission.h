@@ -1,17 +1,15 @@
-// The sign check that a new battery must pass before it may be controlled: small orders, and a
-// look at which way the power goes, how much of it, how soon, and whether the meter at the
-// connection sees it. A map's sign is documented both ways for some devices, and registers that
-// read back as written prove nothing about it.
+// Sign check of a new battery before it may be controlled: small orders, and the direction, size
+// and time of the resulting power, and whether the meter at the connection shows it. For some
+// devices a map's sign is documented both ways, and a register read-back proves nothing about it.
 //
 //   read -> rest: 0 W, power must be near 0 -> drive one way -> rest -> drive the other way -> rest
-//        -> where SoC and limits leave room: half the largest step one way -> from there the other
-//           way, which is the largest -> and back -> rest                              -> release
+//        -> if SoC and limits permit: half the largest step one way -> from there the other way,
+//           which is the largest -> and back -> rest                                   -> release
 //
-// The small steps say whether the way is right, and nothing larger is ordered before; the larger
-// ones, of a few seconds, tell a battery that lags from one that ramps (commission_types.h).
-// A direction that the SoC, or the battery's own limit, does not leave is not tested, and said.
-// Power beyond the order ends it at once. A template over battery, clock and meter like the
-// control loop (control_loop.h names what the first two offer).
+// The small steps verify the direction before any larger order; the larger ones, a few seconds
+// long, separate a lag from a ramp (commission_types.h). A direction that the SoC or the battery's
+// own limit excludes is not tested, and reported. Power beyond the order ends the test immediately.
+// A template over battery, clock and meter (first two: control_loop.h).
 //
 //   Meter   bool exists();  Status read(const BatteryMeasurement&, int32& grid_power_w)
 #pragma once
@@ -65,14 +63,15 @@ class SignCheck {
  private:
   static constexpr std::int32_t kRoomE4 = 100;
   static constexpr std::int64_t kReadingEveryNs = kNanosecondsPerSecond;
-  /// Of too much power, until it is given back.
+  /// Readings with too much power until release.
   static constexpr int kReadingsBeyond = 2;
-  /// For a larger step: up to a minute of the rating, and away from where a battery holds back.
+  /// For a larger step: up to a minute of the rating, and away from the ends where a battery
+  /// limits.
   static constexpr std::int32_t kFurtherRoomE4 = 500;
   static constexpr std::int32_t kFurtherS = 8;
-  /// What has come has to stay so long, and a third of its way.
+  /// Settled power must stay for this time, and a third of its rise time.
   static constexpr std::int64_t kStaysMs = 5'000;
-  /// A slow one takes its time to come to rest, too.
+  /// A slow battery also needs time to come to rest.
   static constexpr std::int32_t kRestPatienceS = 240;
   /// Longer than the link pauses between two connects.
   static constexpr std::int64_t kReleasePatienceNs = 65 * kNanosecondsPerSecond;
@@ -112,7 +111,7 @@ class SignCheck {
 
   bool rests(std::int32_t patience_s = 0) {
     AnswerCurve ignored(1, 0);
-    // A meter may show a second later what the battery does, or ten.
+    // A meter may lag the battery by one to ten seconds.
     const std::int32_t meter_s = reads_meter() ? settings_.response.settle_s + 5 : 0;
     const std::int32_t rest_s = std::max(settings_.rest_s, meter_s);
     if (!order_and_watch(0, rest_s, std::max(settings_.drive_s, patience_s), ignored)) return false;
@@ -127,7 +126,7 @@ class SignCheck {
 
   [[nodiscard]] bool reads_meter() const { return meter_.exists() && !is_further_; }
 
-  /// There and back again.
+  /// Drives in one direction and back to rest.
   void drives(int sign) {
     AnswerCurve& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
                                                   sign * last_power_w_);
@@ -140,7 +139,7 @@ class SignCheck {
     if (is_watched) judge_drive(sign * result_.measured_power_w, curve);
     if (passes()) rests_and_tells_of(direction(sign));
   }
-  /// The first time for as long as an order must last without being fed.
+  /// The first test lasts as long as an order must last without a refresh.
   std::int32_t drive_s(int sign) {
     const bool is_long = !was_unfed_ && room_e4(sign) >= kFurtherRoomE4;
     was_unfed_ = was_unfed_ || is_long;
@@ -152,8 +151,8 @@ class SignCheck {
     if (passes()) result_.measured_power_w = driven.measured_power_w;
   }
 
-  /// From rest half the largest step, and the largest from there to the other side and back; where
-  /// only one way is left, the largest that is.
+  /// From rest half the largest step, then the largest to the other side and back; if only one
+  /// direction is possible, its largest.
   void drives_further(int first) {
     is_further_ = true;
     const std::int32_t to_w = further_w(first);
@@ -172,7 +171,7 @@ class SignCheck {
     }
     if (passes()) rests_and_tells_of(direction(direction(-first).is_tested ? -first : first));
   }
-  /// 0: it is not to be tried.
+  /// 0: not tested.
   [[nodiscard]] std::int32_t further_w(int sign) {
     if (!direction(sign).is_tested || room_e4(sign) < kFurtherRoomE4) return 0;
     const std::int64_t house_w = result_.rest_house_w;
@@ -182,7 +181,7 @@ class SignCheck {
         std::min({grid_w, std::int64_t{settings_.rated_w}, std::int64_t{limit_w(sign)}});
     return static_cast<std::int32_t>(std::max<std::int64_t>(most_w, 0));
   }
-  /// Whether that came.
+  /// True if the power settled.
   bool drives_on(int sign, std::int32_t power_w) {
     AnswerCurve curve(power_w, band_w(power_w), sign * last_power_w_);
     const std::int32_t last_s = std::max(2 * settings_.drive_s, settings_.response.settle_s + 10);
@@ -196,7 +195,7 @@ class SignCheck {
     return curve.has_come();
   }
 
-  /// Orders, reads until the time is over, feeding the watchdog; false when that was not possible.
+  /// Orders, then reads and refreshes the watchdog until the time is over; false on failure.
   bool order_and_watch(std::int32_t power_w, std::int32_t seconds, std::int32_t patience_s,
                        AnswerCurve& curve) {
     const PowerOrder order{.power_w = power_w,
@@ -208,7 +207,7 @@ class SignCheck {
     if (!succeeded(battery_.order(order))) return false;
     const std::int64_t start_ns = clock_.now_utc_ns();
     const std::int64_t end_ns = start_ns + seconds * kNanosecondsPerSecond;
-    // One that is late is watched for longer, to say by how much.
+    // A late response is watched longer, to measure the delay.
     const std::int64_t last_ns = end_ns + patience_s * kNanosecondsPerSecond;
     fed_ns_ = start_ns;
     has_flowed_ = false;
@@ -241,7 +240,7 @@ class SignCheck {
     result_.measured_power_w = last_power_w_ = m.power_w;
     if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
     note_end(power_w, now_ns);
-    // Once it has come, the rest of a long order tells nothing of its speed.
+    // After settling, the rest of a long order has no information on the response time.
     const std::int64_t told_ns = start_ns + settings_.drive_s * kNanosecondsPerSecond;
     if (!curve.has_come() || begin_ns <= told_ns) {
       curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
@@ -250,12 +249,12 @@ class SignCheck {
     }
     if (!passes() || !reads_meter()) return passes();
     if (!succeeded(meter_.read(m, last_grid_w_), CommissionVerdict::kMeterLost)) return false;
-    // The last third: both meters have had time.
+    // Only the last third: both meters have settled.
     if (begin_ns - start_ns >= (end_ns - start_ns) / 3 * 2) proof_.add(m.power_w, last_grid_w_);
     return true;
   }
 
-  /// Two readings in a row of hardly any power, after most of it had come.
+  /// Two consecutive readings with almost no power, after most of it had come.
   void note_end(std::int32_t power_w, std::int64_t now_ns) {
     const std::int64_t along_w = std::int64_t{result_.measured_power_w} * (power_w < 0 ? -1 : 1);
     const std::int64_t ordered_w = std::abs(std::int64_t{power_w});
@@ -272,7 +271,7 @@ class SignCheck {
     fail(CommissionVerdict::kEndsEarly);
   }
 
-  /// Refreshes on the way; what fails there shows in the measurement.
+  /// Refreshes while waiting; failures show in the measurement.
   bool wait(std::int64_t until_ns) {
     const std::int64_t interval_ns = battery_.refresh_interval_s() * kNanosecondsPerSecond;
     if (interval_ns > 0 && fed_ns_ + interval_ns <= until_ns) {
@@ -288,12 +287,12 @@ class SignCheck {
     return false;
   }
 
-  /// What a power may miss, by the map; of a small step nothing is forgiven for a high rating.
+  /// Permitted error of a power, by the map; small steps get no tolerance from a high rating.
   [[nodiscard]] std::int32_t band_w(std::int32_t power_w) const {
     return settings_.response.tolerance_of_w(is_further_ ? settings_.rated_w : 0, power_w);
   }
   [[nodiscard]] bool is_beyond(std::int32_t power_w) const {
-    if (power_w == 0) return false;  // it may still be on its way
+    if (power_w == 0) return false;  // it may still be decaying
     const std::int64_t ordered_w = power_w < 0 ? -power_w : power_w;
     const std::int64_t most_w = ordered_w + band_w(static_cast<std::int32_t>(ordered_w));
     return result_.measured_power_w > most_w || result_.measured_power_w < -most_w;
@@ -313,7 +312,7 @@ class SignCheck {
     }
   }
 
-  /// A battery may be quicker one way than the other.
+  /// A battery may be faster in one direction.
   void judge_speeds() {
     const SpeedQuestion question{.response = settings_.response,
                                  .rated_w = settings_.rated_w,
@@ -349,8 +348,8 @@ class SignCheck {
     if (result_.meter == MeterVerdict::kRestless) fail(CommissionVerdict::kMeterRestless);
   }
 
-  /// On every way out, and tried until the link has had its chance to come back; a verdict that
-  /// failed earlier says more than the release's.
+  /// Called on every exit, and retried until the link could reconnect; an earlier failure takes
+  /// precedence over the release's.
   void release() {
     const std::int64_t last_ns = clock_.now_utc_ns() + kReleasePatienceNs;
     result_.release_status = battery_.release();
@@ -375,8 +374,8 @@ class SignCheck {
   std::int32_t last_power_w_ = 0;
   std::int32_t last_grid_w_ = 0;
   bool has_flowed_ = false;   ///< since the newest order
-  std::int64_t gone_ns_ = 0;  ///< when its power was first seen to be gone; 0 = it is not
-  std::int64_t fed_ns_ = 0;   ///< when the battery last got an order or a refresh
+  std::int64_t gone_ns_ = 0;  ///< first reading without its power; 0 = none
+  std::int64_t fed_ns_ = 0;   ///< last order or refresh
 };
 
 }  // namespace bess

@@ -10,13 +10,13 @@ namespace bess {
 
 namespace {
 
-constexpr double kSettleSMax = 100;  ///< that a map may say
-constexpr int kReadingsLate = 3;     ///< of noise there are fewer
-/// Proposed with that much to spare.
+constexpr double kSettleSMax = 100;  ///< maximum in a map
+constexpr int kReadingsLate = 3;     ///< noise causes fewer
+/// Margin of a proposed setting.
 constexpr double kSpare = 1.2;
 constexpr std::int32_t kStepToW = 100;
 
-/// When within its time a reading was true is not known, nor how old what its registers show.
+/// Time error of a reading: its duration, and the age of its registers.
 double unknown_s(const AnswerCurve& curve) {
   std::int64_t longest_ms = 0;
   for (const AnswerReading& r : curve.readings()) {
@@ -29,7 +29,7 @@ bool is_late(const AnswerCurve& curve, double settle_s) {
   return curve.readings_outside_after(std::lround(settle_s * 1e3)) >= kReadingsLate;
 }
 
-/// What was seen of the largest step itself outranks what a model makes of it.
+/// A measurement of the largest step itself overrides the model.
 void hold_to_what_was_seen(const AnswerCurve& curve, SecondsOfStep& seconds) {
   if (!curve.has_come()) return;
   const double came_s = static_cast<double>(curve.came_ms()) / 1e3;
@@ -38,7 +38,7 @@ void hold_to_what_was_seen(const AnswerCurve& curve, SecondsOfStep& seconds) {
   seconds.best = std::clamp(seconds.best, seconds.least, seconds.most);
 }
 
-/// The largest that surely is within what a map may say: with a ramp, smaller ones are quicker.
+/// The largest step certainly within the maximum of a map: with a ramp, smaller steps are faster.
 std::int32_t manageable_step_w(const StepFit& fit, const SpeedQuestion& question) {
   std::int32_t low_w = 0;
   std::int32_t high_w = question.step_w_max;
@@ -52,7 +52,7 @@ std::int32_t manageable_step_w(const StepFit& fit, const SpeedQuestion& question
   return low_w / kStepToW * kStepToW;
 }
 
-/// With what it took as far as it was watched, at least.
+/// Proposes at least the observed time.
 void propose(const AnswerCurve& small, const AnswerCurve& larger, const StepFit& fit,
              const SpeedQuestion& question, AnswerSpeed& speed) {
   const std::int64_t seen_ms = std::max(small.outside_until_ms(), larger.outside_until_ms());
@@ -92,7 +92,7 @@ AnswerSpeed judge_speed(const AnswerCurve& small, const AnswerCurve* large,
   if (!fit.has_ramp()) speed.dynamics.ramp_s_per_w = 0;
 
   const double settle_s = question.response.settle_s;
-  // Of one step nothing is sure but what it takes itself.
+  // A single step is evidence only of its own time.
   const double surely_s =
       speed.has_two ? speed.largest.least
                     : fit.seconds_until(small.step_w(), small.band_w()).least - unknown_s(small);

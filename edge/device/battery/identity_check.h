@@ -1,6 +1,6 @@
-// Is this the device that the register map describes? Its SunSpec models are looked for, then the
-// map's identity points are read. Before all of them fit, nothing is measured and nothing is
-// written. Then it is decided which optional points it has.
+// Identity check: the device matches the register map. Locates its SunSpec models and reads the
+// map's identity points. Nothing is measured or written until all of them match. Then it determines
+// the optional points of the device.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace bess {
 
 struct IdentityFailure {
   int check = 0;                    ///< index into RegisterMap::identity, if no model is missing
-  std::uint16_t missing_model = 0;  ///< of SunSpec; 0: all that the map needs were found
-  bool is_known = false;            ///< `value` could be made of the registers
+  std::uint16_t missing_model = 0;  ///< SunSpec model; 0: all required models found
+  bool is_known = false;            ///< `value` could be decoded
   std::int64_t value = 0;
   std::uint16_t raw[kTextRegistersMax] = {};
 
-  /// As a device answers that is still starting: nothing but zeros or ones, or no models yet.
+  /// True for a device that is still starting: all zeros or all ones, or no models yet.
   [[nodiscard]] bool is_blank(const RegisterMap& map) const {
     if (missing_model != 0) return true;
     const int count = map.points[map.identity[check].point].register_count();
@@ -51,7 +51,7 @@ Status check_identity_point(const RegisterMap& map, BatteryBus<Link, Time>& bus,
   return is_right ? Status::kOk : Status::kImplausible;
 }
 
-/// kImplausible: another device, or one that is not ready; `failure` says what was read.
+/// kImplausible: another device, or one that is not ready; `failure` has the value read.
 template <typename Link, typename Time>
 Status check_identity_of(const RegisterMap& map, BatteryBus<Link, Time>& bus,
                          IdentityFailure& failure) {

@@ -1,14 +1,14 @@
-// The states of the battery's connection, as a pure machine over CLOCK_MONOTONIC instants:
+// Link state of the battery's connection: a pure state machine over CLOCK_MONOTONIC instants.
 //
 //   disconnected --connected--> connected --answered--> connected      next request after the gap
 //        |  ^                     |   |
 //        |  +-------- lost -------+   +--no answer (RTU)--> draining --drained--> connected
 //        +--connect failed--> backing off --pause over--> disconnected
 //
-// disconnected  the next request connects            backing off  requests fail without trying
-// connected     the next request may go at ready_ns  draining     RTU: a late reply may still come
-// The pause after a failed connect doubles from 1 s to 60 s until something answers: a dead battery
-// is not hammered, and each cycle of 120 s tries at least once.
+//   disconnected  the next request connects            backing off  requests fail without trying
+//   connected     the next request may go at ready_ns  draining     RTU: a late reply may come
+// The pause after a failed connect doubles from 1 s to 60 s until a reply: a dead battery is not
+// flooded, and each control cycle of 120 s tries at least once.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct LinkPauses {
   std::int64_t back_off_max_ns = 0;
   std::int64_t connect_delay_ns = 0;  ///< from the connect to the first request
   std::int64_t gap_ns = 0;            ///< from the end of a request to the next
-  std::int64_t quiet_ns = 0;          ///< RTU: silence after a request that failed
+  std::int64_t quiet_ns = 0;          ///< RTU: silence after a failed request
 };
 
 class LinkStateMachine {
@@ -63,9 +63,9 @@ class LinkStateMachine {
     ready_ns_ = now_ns + std::max(pauses_.gap_ns, pauses_.quiet_ns);
   }
   void on_drained() { state_ = LinkState::kConnected; }
-  /// The connection is gone or was given up; the device's gap holds for the next one too.
+  /// The connection was lost or abandoned; the device's gap applies to the next one too.
   void on_lost(std::int64_t now_ns) {
-    if (state_ == LinkState::kBackingOff) return;  // there was none: the pause goes on
+    if (state_ == LinkState::kBackingOff) return;  // no connection: the pause continues
     state_ = LinkState::kDisconnected;
     ready_ns_ = now_ns + pauses_.gap_ns;
   }

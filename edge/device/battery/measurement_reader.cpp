@@ -7,7 +7,7 @@ namespace bess {
 
 namespace {
 
-/// A register that the device does not have lies in this span.
+/// True if the span includes a register that the device lacks.
 bool is_refused(const RegisterSpan& span, int end, const PlacedPoints& missing) {
   return std::any_of(missing.begin(), missing.end(), [&](const PlacedPoint& m) {
     return m.place.unit == span.unit && m.place.function == span.function &&
@@ -112,7 +112,7 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
     if (is_true(live, warning)) m.warning = true;
   }
   m.off_grid = map_.off_grid.point >= 0 && is_true(live, map_.off_grid);
-  // Most alarms are about the lost grid, and the 0 W of an alarm would darken the house.
+  // Most alarms concern the lost grid; the 0 W of an alarm would cut off the house.
   if (m.off_grid && m.alarm) {
     m.alarm = false;
     m.warning = true;

@@ -1,6 +1,5 @@
-// Registers as last read -> BatteryMeasurement: which points mean what to the controller, which of
-// them must be plausible, and whether the device still lives (its values change). Nothing
-// implausible passes.
+// Measurement reader: from last read registers to a BatteryMeasurement. Defines the role of points,
+// required plausibility, and whether the device is alive (its values change).
 #pragma once
 
 #include <cstdint>
@@ -15,14 +14,14 @@
 
 namespace bess {
 
-// A device whose counter stands still shows frozen values as if they were new: the map's `alive`.
+// Alive watch: a stalled counter means frozen values; the map's `alive`.
 
 class AliveWatch {
  public:
   /// `map` must outlive this object.
   explicit AliveWatch(const RegisterMap& map) : map_(map) {}
 
-  /// To be called after each reading; true as well where the map names no counter. `now_ns` is the
+  /// Must be called after each reading; true also if the map names no counter. `now_ns` is the
   /// device's time.
   bool is_alive(const LivePoints& live, std::int64_t now_ns) {
     if (map_.alive.point < 0) return true;
@@ -35,13 +34,13 @@ class AliveWatch {
 
  private:
   const RegisterMap& map_;
-  std::int64_t moved_ns_ = 0;  ///< when the counter last moved; 0 = it was never read
+  std::int64_t moved_ns_ = 0;  ///< last change of the counter; 0 = never read
   std::int64_t counter_ = 0;
 };
 
-// Which registers to ask for in one request: points that lie close together are read as one span.
+// Read plan: nearby points are read as one span.
 
-/// A point where it really lies: unit and address after unit groups, overrides and model walk.
+/// Location of a point after unit groups, overrides and model walk.
 struct PlacedPoint {
   RegisterSpan place;
   std::int8_t point = -1;
@@ -52,12 +51,12 @@ using ReadPlan = StaticVector<RegisterSpan, kPointsMax>;
 
 inline constexpr int kSpanRegistersMax = 120;
 
-/// Merges points into as few spans as the map's gap and size limits allow, over nothing that is
-/// `missing` in the device. Sorts `points`.
+/// Merges points into as few spans as the map's gap and size limits permit, avoiding points that
+/// are `missing` in the device. Sorts `points`.
 void plan_reads(const RegisterMap& map, PlacedPoints& points, const PlacedPoints& missing,
                 ReadPlan& plan);
 
-/// Offset of a point's first register in a span; -1 when it does not lie in it.
+/// Offset of a point's first register in a span; -1 if not included.
 int offset_in(const RegisterSpan& span, const PlacedPoint& point);
 
 std::int32_t clamp_to_int32(std::int64_t value);
@@ -67,26 +66,25 @@ class MeasurementReader {
   /// `map` must outlive this object.
   explicit MeasurementReader(const RegisterMap& map);
 
-  /// State of charge, power or another value without which there is no measurement did not come.
+  /// SoC, power or another required value was not received.
   [[nodiscard]] bool lacks_essentials(const LivePoints& live) const;
-  /// 1 + index of the first of these that did not come or is not plausible; 0 = none.
+  /// 1 + index of the first required value that is missing or implausible; 0 = none.
   [[nodiscard]] std::int16_t lost_essential(const LivePoints& live) const;
 
-  /// Fills what is measured; kImplausible when one required value is not plausible or the device's
-  /// counter stands still. A protective value that is not known is reported in `m`. `now_ns` is the
-  /// device's time.
+  /// Fills the measurement; kImplausible if a required value is implausible or the device's counter
+  /// has stalled. An unknown protective value is reported in `m`. `now_ns` is the device's time.
   Status translate(const LivePoints& live, std::int64_t now_ns, BatteryMeasurement& m);
 
  private:
   void store(const LivePoints& live, int point, std::int64_t wide, BatteryMeasurement& m) const;
-  /// Required, and not read this time, or not plausible.
+  /// Required, and not received or implausible.
   [[nodiscard]] bool is_unknown(const LivePoints& live, std::int8_t point) const;
   void read_protective(const LivePoints& live, BatteryMeasurement& m) const;
-  /// False as well while its register is not known.
+  /// False also while its register is unknown.
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
 
   const RegisterMap& map_;
-  // Points with a meaning for the controller, by name; -1 = not in this map.
+  // Points with a role in the controller, by name; -1 = not in this map.
   int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
   AliveWatch alive_;
 };

@@ -1,7 +1,6 @@
-// Does the meter at the connection follow the battery's steps of a sign check? Grid = house +
-// battery: between two plateaus of the battery (at rest, driven, at rest, ...) the grid must step
-// by as much. The house moves meanwhile, and how much it does within a plateau is what a step may
-// miss.
+// Meter check during commissioning: the meter follows the battery's steps. Grid = house + battery:
+// between two plateaus of the battery (at rest, driven, at rest, ...) the grid power must step by
+// the same amount. The permitted error is the house's variation within a plateau.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +9,15 @@
 namespace bess {
 
 enum class MeterVerdict : std::uint8_t {
-  kNotAsked,  ///< there is none
+  kNotAsked,  ///< no meter
   kFollows,
-  kMismatch,  ///< it does not step with the battery
-  kRestless,  ///< the house moves by more than the steps
+  kMismatch,  ///< the meter does not step with the battery
+  kRestless,  ///< the house load varies more than the steps
 };
 
 class MeterProof {
  public:
-  /// One settled reading of the plateau under way.
+  /// One settled reading of the current plateau.
   void add(std::int32_t battery_w, std::int32_t grid_w) {
     const std::int64_t house_w = std::int64_t{grid_w} - battery_w;
     if (now_.count > 0) {
@@ -31,7 +30,7 @@ class MeterProof {
     now_.grid_w += grid_w;
   }
 
-  /// The next order begins: what was added since the last one is a plateau.
+  /// The next order begins: the readings since the last one form a plateau.
   void end_plateau() {
     if (now_.count == 0) return;
     const Plateau plateau{
@@ -41,13 +40,13 @@ class MeterProof {
     now_ = Plateau{};
   }
 
-  /// More than half of the steps must agree: one may meet a kettle.
+  /// More than half of the steps must agree: one may coincide with a house load step.
   [[nodiscard]] MeterVerdict verdict() const {
     if (steps_ == 0) return MeterVerdict::kNotAsked;
     if (2 * agreeing_ > steps_) return MeterVerdict::kFollows;
     return restless_w_ * 2 > smallest_step_w_ ? MeterVerdict::kRestless : MeterVerdict::kMismatch;
   }
-  /// What the meter showed of the battery's steps.
+  /// Share of the battery's steps shown by the meter.
   [[nodiscard]] std::int32_t percent() const {
     return squares_ == 0 ? 0 : static_cast<std::int32_t>(products_ * 100 / squares_);
   }

@@ -1,5 +1,5 @@
-// Battery and meter behind a Modbus link: the drivers of battery_driver.h and of the grid meter
-// over libmodbus, in the time of the configured clock.
+// Modbus battery and meter: battery driver and grid meter over libmodbus, in the time of the
+// configured clock.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,20 @@
 
 namespace bess {
 
-// The meter at the connection to the grid, through a register map of its own (kind = "meter"): one
-// value, the power that flows in. Read by the same bus as the battery, with the same checks: the
-// device must be the map's, and a value that is not plausible is no value. A template over link and
-// time (battery_bus.h). Never writes.
+// Grid meter through a register map of its own (kind = "meter"): one value, the import power. It
+// uses the battery's bus and checks: the device must match the map, and an implausible value is
+// invalid. A template over link and time (battery_bus.h). Never writes.
 
 template <typename Link, typename Time>
 class GridMeter {
  public:
-  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  /// `map` must outlive this object; `unit` replaces its unit id if not negative.
   template <typename... LinkArguments>
   GridMeter(const RegisterMap& map, const Time& time, std::int32_t unit, LinkArguments&&... link)
       : map_(map), bus_(map, time, unit, std::forward<LinkArguments>(link)...), alive_(map) {}
 
-  /// Import is positive. One attempt: the next look is seconds away, and the battery waits.
-  /// kImplausible: another device, a value out of its range, or one that stands still.
+  /// Import is positive. One attempt only: the next check is seconds away, and the battery waits.
+  /// kImplausible: another device, a value out of range, or a frozen one.
   Status read(std::int32_t& grid_power_w) {
     if (!identified_) {
       IdentityFailure failure;
@@ -44,7 +43,7 @@ class GridMeter {
     return Status::kOk;
   }
 
-  /// On kImplausible `failure` says which check of the map failed and what was read.
+  /// On kImplausible `failure` has the failed check and its value.
   Status check_identity(IdentityFailure& failure) {
     const Status status = check_identity_of(map_, bus_, failure);
     identified_ = status == Status::kOk;
@@ -58,7 +57,7 @@ class GridMeter {
   bool identified_ = false;
 };
 
-/// The time that the device lives in: simulated seconds pass faster, and it never jumps.
+/// Time base of the device: in simulation seconds pass faster; it never jumps.
 class DeviceTime {
  public:
   explicit DeviceTime(const ScaledClock& clock)
@@ -82,7 +81,7 @@ class DeviceTime {
   std::int64_t start_ns_;
 };
 
-/// What the map says of the device's timing.
+/// The device's timing, from the map.
 inline LinkTiming timing_of(const RegisterMap& map) {
   return {.response_timeout_ms = map.response_timeout_ms,
           .minimum_gap_ms = map.minimum_gap_ms,
@@ -97,8 +96,7 @@ class ModbusBattery : public BatteryDriver<ModbusLink, DeviceTime> {
   ModbusBattery(const BatteryLinkSettings& link, const RegisterMap& map, const ScaledClock& clock);
 };
 
-// The meter behind a Modbus link of its own: modbus_battery.h over libmodbus, in the time of the
-// configured clock.
+// Modbus meter with a link of its own.
 
 extern template class GridMeter<ModbusLink, DeviceTime>;
 

@@ -3,7 +3,7 @@
 namespace bess {
 namespace {
 
-constexpr int kTcpHeaderBytes = 6;  ///< up to and with the length field; the length counts the rest
+constexpr int kTcpHeaderBytes = 6;  ///< including the length field, which counts the rest
 constexpr int kCrcBytes = 2;
 constexpr int kUnitBytes = 1;
 constexpr int kExceptionPduBytes = 2;
@@ -50,7 +50,7 @@ void put_pdu(const ModbusRequest& request, ModbusFrame& frame) {
   for (int i = 0; i < request.count; ++i) put_word(frame, request.values[i]);
 }
 
-/// Some gateways answer as themselves; the transaction tells whose answer it is all the same.
+/// Some gateways answer with their own unit id; the transaction id still identifies the reply.
 bool is_unit_of_gateway(int unit) { return unit == 0 || unit == 255; }
 
 ReplyCheck check_pdu(const ModbusRequest& request, const std::uint8_t* pdu, int size,

@@ -20,7 +20,7 @@ LinkTiming with_timeout(LinkTiming timing, const BatteryLinkSettings& settings) 
   return timing;
 }
 
-/// What the device or the network times runs in simulated time, what the bus itself takes does not.
+/// Device and network delays run in simulated time, the bus itself in wall time.
 LinkPauses pauses_of(const LinkTiming& timing, const ScaledClock& clock) {
   return {.back_off_first_ns = clock.wall_ns(kBackOffFirstS * kNanosecondsPerSecond),
           .back_off_max_ns = clock.wall_ns(kBackOffMaxS * kNanosecondsPerSecond),
@@ -103,7 +103,7 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
   return status;
 }
 
-/// Connected, rested, and nothing under way that could be taken for the reply to this request.
+/// Connects, waits for the gap, and excludes replies that could be mistaken for this request's.
 Status ModbusLink::make_ready(const ModbusRequest& request) {
   if (state_.state(now()) == LinkState::kConnected && wire_.is_lost()) close();
   switch (state_.state(now())) {
@@ -150,7 +150,7 @@ Status ModbusLink::ask(const ModbusRequest& request, std::uint16_t* registers,
   const std::int64_t deadline_ns = sent_ns_ + milliseconds(timing_.response_timeout_ms) +
                                    line_time_ns(frame.size + reply_bytes_max(framing_, request));
   ModbusFrame reply;
-  do {  // an answer that came too late is not this one's
+  do {  // a late reply belongs to an earlier request
     reply.size = 0;
     const Status status = receive_reply(request, deadline_ns, reply);
     if (status != Status::kOk) return status;
@@ -175,7 +175,7 @@ Status ModbusLink::receive_reply(const ModbusRequest& request, std::int64_t dead
 void ModbusLink::finish(const ModbusRequest& request, Status status) {
   const bool answered = status == Status::kOk || last_exception_ != 0;
   if (rtu_) {
-    // An exception looks the same for every count: while old replies may come, it proves nothing.
+    // An exception looks the same for every count: while old replies may come, it is no evidence.
     if (status == Status::kOk) unanswered_.on_answered(request, sent_ns_);
     if (!answered || (last_exception_ != 0 && !unanswered_.empty())) {
       unanswered_.add(request, sent_ns_);
@@ -205,7 +205,7 @@ void ModbusLink::tell(const ModbusRequest& request, const std::uint16_t* registe
   listener_.tell(listener_.owner, exchange);
 }
 
-/// Time that so many bytes take on a serial line: 11 bits each with parity or a second stop bit.
+/// Time of `bytes` on a serial line: 11 bits each with parity or a second stop bit.
 std::int64_t ModbusLink::line_time_ns(int bytes) const {
   return rtu_ ? bytes * 11 * kNanosecondsPerSecond / baud_ : 0;
 }

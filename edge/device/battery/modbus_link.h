@@ -1,14 +1,14 @@
-// One Modbus connection, TCP or RTU: a request with a deadline, the device's minimum gap, and what
-// is done after an error. Between the parts that know one thing each:
+// Modbus link: one connection, TCP or RTU, with request deadlines, the device's minimum gap, and
+// error recovery. Its parts:
 //   link_state (what may happen now)    modbus_frame (bytes of a request, is this its reply)
-//   modbus_wire (socket or serial line) unanswered_requests (RTU: whose reply may still come)
+//   modbus_wire (socket or serial line) unanswered_requests (RTU: which replies may still come)
 // After an error that is not an exception of the device:
-//   TCP: close; the next request connects again, so a late reply has no way to arrive
-//   RTU: wait until the line has been quiet, forget what came, and never ask what a late reply
-//        could be taken for the answer to
+//   TCP: close; the next request reconnects, so that a late reply cannot arrive
+//   RTU: wait for a silent line, discard the input, and send no request for which a late reply
+//        could be mistaken
 // A request ends within connect time-out + connect delay + quiet + gap + response time-out (RTU:
-// plus the frames' time on the line; plus `late_reply_ms_max` where a late reply could be
-// mistaken), whatever the device sends, byte by byte or not at all. Nothing here allocates after
+// plus the frames' time on the line; plus `late_reply_ms_max` if a late reply could be mistaken),
+// whatever the device sends. No allocation after the constructor.
 // the constructor.
 #pragma once
 
@@ -24,17 +24,17 @@
 
 namespace bess {
 
-/// What the device needs between requests, by its register map.
+/// Time that the device needs between requests, from its register map.
 struct LinkTiming {
-  std::int32_t response_timeout_ms = 1'000;  ///< wall time, also of connecting
+  std::int32_t response_timeout_ms = 1'000;  ///< wall time, also for connecting
   std::int32_t minimum_gap_ms = 0;           ///< from the end of a request to the next, in `clock`
   std::int32_t connect_delay_ms = 0;         ///< from connecting to the first request, in `clock`
-  // RTU, in `clock`, and at least 1 and 5 response time-outs:
+  // RTU, in `clock`, at least 1 and 5 response time-outs:
   std::int32_t quiet_ms = 1'000;            ///< after a failed request, before the next
-  std::int32_t late_reply_ms_max = 10'000;  ///< no reply comes later than this
+  std::int32_t late_reply_ms_max = 10'000;  ///< maximum delay of a reply
 };
 
-/// Contiguous registers of one unit that one request reads.
+/// Contiguous registers of one unit, read by one request.
 struct RegisterSpan {
   std::int32_t unit = 1;
   std::uint16_t address = 0;  ///< PDU address, 0-based
@@ -42,16 +42,16 @@ struct RegisterSpan {
   std::uint8_t function = 3;  ///< 3 holding, 4 input
 };
 
-/// Since start.
+/// Totals since start.
 struct LinkCounters {
-  std::int64_t requests = 0;         ///< sent, or not because nothing was connected
-  std::int64_t failed_requests = 0;  ///< of those, without a good reply
+  std::int64_t requests = 0;         ///< sent, or not sent for lack of a connection
+  std::int64_t failed_requests = 0;  ///< without a good reply
   std::int64_t reconnects = 0;       ///< connections after the first
-  std::int64_t register_writes = 0;  ///< write requests that left for the device
+  std::int64_t register_writes = 0;  ///< write requests that were sent
 };
 
-/// Is told every request and what came of it, on the thread that asked: it may neither wait nor
-/// allocate. The time of an exchange is left to it.
+/// Observer of every request and its result, on the requesting thread: it must neither wait nor
+/// allocate. It takes the time of an exchange itself.
 struct ExchangeListener {
   void (*tell)(void* owner, const BusExchange& exchange) = nullptr;
   void* owner = nullptr;
@@ -62,20 +62,19 @@ class ModbusLink {
   ModbusLink(const BatteryLinkSettings& settings, const LinkTiming& timing,
              const ScaledClock& clock);
 
-  /// Connects if needed. `registers` holds at least `span.count` and is filled only on kOk.
+  /// Connects if needed. `registers` holds at least `span.count`; filled only on kOk.
   Status read(const RegisterSpan& span, std::uint16_t* registers);
-  /// `function` 6 writes the first register alone, 16 writes `count` of them at once.
-  /// Nothing leaves after `send_until_ns` (CLOCK_MONOTONIC), which connecting and the device's gap
-  /// may take it past: kTooLate.
+  /// `function` 6 writes only the first register, 16 writes `count` in one request. Nothing is sent
+  /// after `send_until_ns` (CLOCK_MONOTONIC), e.g. after connecting and the device's gap: kTooLate.
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                const std::uint16_t* registers, int count, std::int64_t send_until_ns = INT64_MAX);
   void close();
   void tell_exchanges(const ExchangeListener& listener) { listener_ = listener; }
 
-  /// The exception code of the last request, 0 when the device answered none: for register maps
-  /// that give a vendor's code a meaning of their own.
+  /// Exception code of the last request, 0 without one: for register maps with vendor-specific
+  /// codes.
   [[nodiscard]] int last_exception() const { return last_exception_; }
-  /// The unit that answered the last request in place of the one that was asked; -1: none did.
+  /// Unit that answered the last request instead of the addressed one; -1: none.
   [[nodiscard]] int foreign_unit() const { return foreign_unit_; }
   [[nodiscard]] int asked_unit() const { return asked_unit_; }
   [[nodiscard]] const LinkCounters& counters() const { return counters_; }

@@ -16,7 +16,7 @@
 namespace bess {
 namespace {
 
-// An idle connection whose other end has lost power or its address ends within a minute.
+// Ends an idle connection within a minute if its peer lost power or address.
 constexpr int kKeepAliveIdleS = 30;
 constexpr int kKeepAliveIntervalS = 10;
 constexpr int kKeepAliveProbes = 3;
@@ -27,7 +27,7 @@ char parity_letter(Parity parity) {
 }
 
 void set_option(int fd, int level, int option, int value) {
-  // Best effort: without them a dead connection is found by the next request's time-out.
+  // Best effort: without them the next request's time-out detects a dead connection.
   static_cast<void>(setsockopt(fd, level, option, &value, sizeof value));
 }
 
@@ -39,9 +39,9 @@ void watch_connection(int fd) {
   set_option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, kUserTimeoutMs);
 }
 
-/// libmodbus connects with select(), which writes beyond its set for a descriptor of 1024 and more.
+/// libmodbus connects with select(), which overflows its set for descriptors from 1024.
 bool next_descriptor_fits_select() {
-  constexpr int kOthersMeanwhile = 32;  ///< the price thread may open some between here and there
+  constexpr int kOthersMeanwhile = 32;  ///< the price thread may open some in between
   const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (probe < 0) return false;
   ::close(probe);
@@ -49,7 +49,7 @@ bool next_descriptor_fits_select() {
 }
 
 Status status_of_connect_errno(int error) {
-  // EINPROGRESS is what libmodbus 3.1.6 leaves when connecting times out.
+  // libmodbus 3.1.6 leaves EINPROGRESS when connecting times out.
   return error == ETIMEDOUT || error == EINPROGRESS ? Status::kTimeout : Status::kNotConnected;
 }
 
@@ -74,7 +74,7 @@ Status ModbusWire::open() {
   if (!rtu_ && !next_descriptor_fits_select()) return Status::kNotConnected;
   if (modbus_connect(context_) != 0) {
     const Status status = status_of_connect_errno(errno);
-    modbus_close(context_);  // a failed connect may leave a socket behind
+    modbus_close(context_);  // a failed connect may leave a socket open
     return status;
   }
   fd_ = modbus_get_socket(context_);
@@ -122,7 +122,7 @@ Status ModbusWire::receive(int count, std::int64_t deadline_monotonic_ns, Modbus
                         .tv_nsec = static_cast<long>(left_ns % kNanosecondsPerSecond)};
     pollfd event{.fd = fd_, .events = POLLIN, .revents = 0};
     const int ready = ppoll(&event, 1, &left, nullptr);
-    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;  // the clock decides
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;  // the deadline decides
     if (ready < 0) return Status::kNotConnected;
     const ssize_t got = read(fd_, frame.bytes + frame.size, static_cast<std::size_t>(count));
     if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;

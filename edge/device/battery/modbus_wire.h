@@ -1,8 +1,8 @@
-// The bytes of one Modbus connection: libmodbus opens, configures and closes it (TCP socket or
-// serial line), and whole chunks are sent and received here with an absolute deadline, because
-// libmodbus' receive starts its time-out again for each group of bytes: a device that drips could
-// hold it for minutes. The only edge file pair that knows libmodbus. One context, created once;
-// afterwards nothing here allocates (modbus_new_* is the library's only malloc).
+// Modbus wire: bytes of one connection. libmodbus opens, configures and closes it (TCP socket or
+// serial line). Whole chunks are sent and received here with an absolute deadline, because
+// libmodbus restarts its receive time-out for each group of bytes: a slow device could block it for
+// minutes. The only edge file pair that uses libmodbus. One context, created once; no allocation
+// afterwards (modbus_new_* is the library's only malloc).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct _modbus;
 
 namespace bess {
 
-/// Where the battery is, by the operator's configuration.
+/// Address of the battery, from the operator's configuration.
 struct BatteryLinkSettings {
   bool rtu = false;
   FixedText<63> host = "127.0.0.1";  ///< numeric IPv4: names would need the resolver
@@ -29,7 +29,7 @@ struct BatteryLinkSettings {
   std::int32_t response_timeout_ms = -1;  ///< wall time; -1 = the map's
 };
 
-/// Speeds that libmodbus knows on Linux; of any other it would silently make 9600.
+/// Speeds that libmodbus supports on Linux; others silently become 9600.
 constexpr bool is_serial_speed(std::int32_t baud) {
   for (const std::int32_t known :
        {1'200, 2'400, 4'800, 9'600, 19'200, 38'400, 57'600, 115'200, 230'400}) {
@@ -47,13 +47,13 @@ class ModbusWire {
 
   Status open();
   void close();
-  /// The peer has closed. TCP: what has come unasked, an answer that was too late, is forgotten.
+  /// The peer has closed. TCP: unsolicited input (a late reply) is discarded.
   [[nodiscard]] bool is_lost() const;
-  /// Serial line: forgets what has arrived and was not read.
+  /// Serial line: discards unread input.
   void discard_input();
 
   Status send(const ModbusFrame& frame);
-  /// Appends 1 to `count` bytes, as soon as there are any.
+  /// Appends 1 to `count` bytes as soon as any are available.
   Status receive(int count, std::int64_t deadline_monotonic_ns, ModbusFrame& frame);
 
  private:

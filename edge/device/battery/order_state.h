@@ -1,13 +1,12 @@
-// The states of our order in the device, as a pure machine over CLOCK_MONOTONIC instants:
+// Order state in the device: a pure state machine over CLOCK_MONOTONIC instants.
 //
 //   none --enabled--> enabled --taken--> in force --fed, taken again--> in force
 //    ^                   |                  |
-//    +------ lost -------+------ lost ------+      replaced, ended, run out, refused or released
+//    +------ lost -------+------ lost ------+      replaced, ended, expired, refused or released
 //
-// none      the device is in its own mode, or follows an order that is not ours
-// enabled   external control is switched on, no order is there yet
-// in force  the order was read back and nothing has ended it since; its time runs from its last
-//           feeding
+//   none      the device is in its own mode, or follows another order
+//   enabled   external control is on, no order yet
+//   in force  confirmed by read-back and not ended since; its time runs from the last refresh
 #pragma once
 
 #include <cstdint>
@@ -18,11 +17,11 @@
 
 namespace bess {
 
-/// How an order went that was in force and ought to be.
+/// Loss of an order that should be in force.
 enum class OrderLoss : std::uint8_t {
   kNone,
-  kReplaced,  ///< another client has overwritten its registers
-  kEnded      ///< the device follows none, and nothing in the registers says who ended it
+  kReplaced,  ///< another client overwrote its registers
+  kEnded      ///< the device follows none, and no register shows who ended it
 };
 
 class OrderState {
@@ -32,15 +31,15 @@ class OrderState {
 
   [[nodiscard]] bool is_enabled() const { return state_ != State::kNone; }
   [[nodiscard]] bool is_in_force() const { return state_ == State::kInForce; }
-  /// What the device holds is ours, or was given back by us.
+  /// The device holds our state, or was released by us.
   [[nodiscard]] bool was_ours() const { return was_ours_; }
   [[nodiscard]] OrderLoss loss() const { return loss_; }
-  /// Of the order in force.
+  /// Command of the order in force.
   [[nodiscard]] Command command() const { return command_; }
   [[nodiscard]] const PowerOrder& order() const { return order_; }
 
   void on_enabled() { state_ = State::kEnabled; }
-  /// Written whole and read back.
+  /// Completely written and confirmed.
   void on_taken(Command command, const PowerOrder& order, std::int64_t now_ns) {
     state_ = State::kInForce;
     was_ours_ = true;
@@ -50,7 +49,7 @@ class OrderState {
     since_ns_ = fed_ns_ = now_ns;
     runs_out_ = false;
   }
-  /// The same registers, wanted for longer.
+  /// Same registers, longer validity.
   void on_prolonged(const PowerOrder& order) { order_ = order; }
   void on_fed(std::int64_t now_ns) {
     fed_ns_ = now_ns;
@@ -59,7 +58,7 @@ class OrderState {
   /// The device's own timer, as last read.
   void note_seconds_left(std::int64_t left_s) { runs_out_ = left_s < watchdog_.refresh_s; }
   void on_lost() { state_ = State::kNone; }
-  /// An order that has just run out is no loss, unless another client has overwritten it.
+  /// An order that has just expired is no loss, unless another client overwrote it.
   void on_lost(OrderLoss loss, bool is_foreign, std::int64_t now_ns) {
     if (is_foreign || is_within_its_time(now_ns)) loss_ = loss;
     on_lost();
@@ -74,17 +73,17 @@ class OrderState {
   [[nodiscard]] bool may_last(std::int64_t now_ns) const {
     return is_in_force() && (lasts_for_ever() || now_ns - fed_ns_ < duration_ns());
   }
-  /// Fed so recently that it cannot have run out; a tenth of its duration is left for the
-  /// difference of the clocks.
+  /// Refreshed so recently that it cannot have expired; a tenth of its duration is margin for clock
+  /// differences.
   [[nodiscard]] bool is_within_its_time(std::int64_t now_ns) const {
     return lasts_for_ever() || now_ns - fed_ns_ < duration_ns() - duration_ns() / 10;
   }
-  /// Fed at half the interval: nothing is lost when one feeding comes late.
+  /// Refreshed at half the interval, so that one late refresh does no harm.
   [[nodiscard]] bool is_due(std::int64_t now_ns) const {
     const std::int64_t half_ns = watchdog_.refresh_s * kNanosecondsPerSecond / 2;
     return is_in_force() && !lasts_for_ever() && (runs_out_ || now_ns - fed_ns_ >= half_ns);
   }
-  /// Some devices show an order later than they confirm it.
+  /// Some devices confirm an order before they show it.
   [[nodiscard]] bool has_settled(std::int64_t now_ns, std::int32_t settle_s) const {
     return now_ns - since_ns_ >= settle_s * kNanosecondsPerSecond;
   }
@@ -104,7 +103,7 @@ class OrderState {
   bool runs_out_ = false;              ///< the device's timer shows less than one refresh interval
   Command command_ = Command::kIdle;
   PowerOrder order_;
-  std::int64_t since_ns_ = 0;  ///< when it was written whole
+  std::int64_t since_ns_ = 0;  ///< when it was completely written
   std::int64_t fed_ns_ = 0;
 };
 

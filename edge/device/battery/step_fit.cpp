@@ -7,21 +7,21 @@
 namespace bess {
 namespace {
 
-/// From none over 20 kW/s to 2 W/s, each 15 % slower.
+/// From none, then from 20 kW/s to 2 W/s, each 15 % slower.
 constexpr double kQuickestSPerW = 1.0 / 20'000;
 constexpr double kSlowestSPerW = 1.0 / 2;
 constexpr double kSlowerBy = 1.15;
 constexpr double kFinerBy = 1.02;
-/// Of one reading, and of what a battery does otherwise than the model.
+/// Error of one reading, and of the model.
 constexpr double kErrorW = 8;
 constexpr double kErrorFrac = 0.01;
-/// By which the power that comes may differ from the order.
+/// Permitted difference between final power and order.
 constexpr double kGainErrorFrac = 0.05;
-/// Three standard deviations of one parameter; the shape of one step alone is trusted half as far.
+/// Three standard deviations of one parameter; a single step has twice the range.
 constexpr double kPossibleMisfit = 9;
 constexpr double kPossibleMisfitOfOne = 36;
 constexpr double kFinestS = 0.02;
-constexpr int kLookAroundEvery = 8;  ///< ramps: what fits one is near what fits the next
+constexpr int kLookAroundEvery = 8;  ///< ramps: a good fit is near that of the next ramp
 constexpr int kParameters = 3;
 
 }  // namespace
@@ -33,7 +33,7 @@ double risen_w(const StepDynamics& d, double step_w, double seconds) {
   const double on_ramp_s = std::min(t, ramp_s);
   const double ramped_w = ramp_s > 0 ? step_w * on_ramp_s / ramp_s : step_w;
   if (d.time_constant_s <= 0) return ramped_w;
-  const double share = d.time_constant_s / std::max(ramp_s, 1e-9);  // behind the ramp, of the step
+  const double share = d.time_constant_s / std::max(ramp_s, 1e-9);  // behind the ramp
   const double behind_w =
       ramp_s > 0 ? step_w * share * -std::expm1(-on_ramp_s / d.time_constant_s) : step_w;
   return ramped_w - behind_w * std::exp(-(t - on_ramp_s) / d.time_constant_s);
@@ -80,7 +80,7 @@ SecondsOfStep StepFit::seconds_until(double step_w, double left_w) const {
   return seconds;
 }
 
-/// Between two ramps of the profile.
+/// Refines between two ramps of the profile.
 void StepFit::refine(double& least) {
   const double ramp_s_per_w = best_.ramp_s_per_w;
   for (double by = 1 / kSlowerBy; by < kSlowerBy; by *= kFinerBy) {
@@ -94,7 +94,7 @@ void StepFit::refine(double& least) {
   }
 }
 
-/// Everything that is tried is shown to `see`: what lies around the least as well.
+/// Passes every candidate to `see`, including those around the minimum.
 template <typename See>
 void StepFit::profile(See see) const {
   StepDynamics from{};
@@ -106,9 +106,9 @@ void StepFit::profile(See see) const {
   }
 }
 
-/// From the ramp before's best and, now and then, some of everywhere, with ever finer steps. Dead
-/// time and time constant are hard to tell apart, their sum is not: one is moved with it, the other
-/// within. Without a time constant only the dead time is left to make the sum smaller.
+/// Starts at the previous ramp's best, and regularly at a coarse grid, with decreasing steps. Dead
+/// time and time constant are hard to separate, their sum is not: one step changes the sum, another
+/// keeps it. Without a time constant only the dead time can reduce the sum.
 template <typename See>
 void StepFit::descend(StepDynamics& from, bool looks_around, See see) const {
   double least = misfit(from);
@@ -140,7 +140,7 @@ void StepFit::descend(StepDynamics& from, bool looks_around, See see) const {
   }
 }
 
-/// With the best gain, which is held near 1 by what is expected of it.
+/// Uses the best gain, with a prior near 1.
 double StepFit::misfit(const StepDynamics& dynamics) const {
   double sum = 0;
   for (const AnswerCurve* curve : curves_) {

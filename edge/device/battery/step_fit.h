@@ -1,12 +1,12 @@
-// Dead time, time constant and ramp of a battery, told apart by steps of different size: a
-// first-order lag takes as long for any step, a ramp longer the larger it is. One step alone cannot
-// tell them; what it leaves open is the width of what follows.
+// Step fit: dead time, time constant and ramp of a battery from steps of different size. A
+// first-order lag takes the same time for any step, a ramp takes longer for a larger one. One step
+// alone cannot separate them; the ambiguity widens the result.
 //
 //   risen(t) = (1/T) (ramp of `ramp_w_per_s` * lag of time constant T)(t - dead time)
 //
-// Least squares over all steps at once, for each ramp from none to the slowest (a profile). All
-// that fits nearly as well as the best is held possible: how long a step takes is told as the
-// least, the best and the most of those.
+// Least squares over all steps, for each ramp from none to the slowest (a profile). Every fit
+// nearly as good as the best is possible: the time of a step is given as the minimum, best and
+// maximum of these.
 #pragma once
 
 #include <algorithm>
@@ -17,23 +17,22 @@
 
 namespace bess {
 
-// How a battery came to the power that it was ordered: readings since the order, of which follow
-// when it was there for good and until when it was not. A reading takes a while, and the program
-// may have been held up within it: what is said to be slow was slow however the reading lay within
-// its time.
+// Response curve: readings since the order, the time at which the power had settled, and the time
+// until which it had not. A reading takes time, and the program may be delayed within it; "slow"
+// must hold for any instant within the reading.
 
 struct AnswerReading {
-  std::int64_t begin_ms = 0;  ///< since the order was in force
+  std::int64_t begin_ms = 0;  ///< since the order came into force
   std::int64_t end_ms = 0;
-  std::int32_t along_w = 0;  ///< positive: the way it was ordered
+  std::int32_t along_w = 0;  ///< positive: in the ordered direction
 };
 
 class AnswerCurve {
  public:
   using Readings = StaticVector<AnswerReading, 256>;
 
-  /// `ordered_w` above 0 and above `from_w`, which flowed before (below 0: the other way); within
-  /// `band_w` of it the power has come.
+  /// `ordered_w` above 0 and above the initial `from_w` (below 0: other direction); within `band_w`
+  /// of it the power has settled.
   AnswerCurve(std::int32_t ordered_w, std::int32_t band_w, std::int32_t from_w = 0)
       : ordered_w_(ordered_w), band_w_(band_w), from_w_(from_w) {}
 
@@ -51,15 +50,15 @@ class AnswerCurve {
   [[nodiscard]] const Readings& readings() const { return readings_; }
   [[nodiscard]] std::int32_t step_w() const { return ordered_w_ - from_w_; }
   [[nodiscard]] std::int32_t band_w() const { return band_w_; }
-  /// Of the step.
+  /// Rise since the start of the step.
   [[nodiscard]] std::int32_t risen_w(const AnswerReading& r) const { return r.along_w - from_w_; }
   /// The last instant at which the power was certainly outside its band.
   [[nodiscard]] std::int64_t outside_until_ms() const { return outside_until_ms_; }
   [[nodiscard]] bool has_come() const { return came_ms_ >= 0; }
-  /// When it was first seen inside for good; -1: never.
+  /// First time of the final stay within the band; -1: never.
   [[nodiscard]] std::int64_t came_ms() const { return came_ms_; }
 
-  /// Its last quarter is nearer than the one before: it is slow, and not held back.
+  /// The last quarter of the readings still rises: slow, not limited.
   [[nodiscard]] bool is_rising() const {
     const int quarter = readings_.size() / 4;
     if (quarter == 0) return false;
@@ -69,7 +68,7 @@ class AnswerCurve {
     }
     return rise_w * 100 >= std::int64_t{step_w()} * quarter * kRisePercent;
   }
-  /// The longest that the same was shown on its way: registers that are seldom brought up to date.
+  /// Longest constant value during the rise: registers with a slow update.
   [[nodiscard]] std::int64_t stands_still_ms() const {
     std::int64_t longest_ms = 0;
     const AnswerReading* first = nullptr;
@@ -109,9 +108,9 @@ struct StepDynamics {
   double ramp_s_per_w = 0;  ///< 0: none
 };
 
-/// Of a step of `step_w` what has come after `seconds`.
+/// Rise of a step of `step_w` after `seconds`.
 double risen_w(const StepDynamics& dynamics, double step_w, double seconds);
-/// Until no more than `left_w` of it is missing.
+/// Time until at most `left_w` of it is missing.
 double seconds_until(const StepDynamics& dynamics, double step_w, double left_w);
 
 struct SecondsOfStep {
@@ -122,11 +121,11 @@ struct SecondsOfStep {
 
 class StepFit {
  public:
-  /// Of the same battery, in the same direction or not; one at least, and they outlive this.
+  /// Curves of one battery, in any direction; at least one; they must outlive this object.
   explicit StepFit(std::span<const AnswerCurve* const> curves);
 
   [[nodiscard]] const StepDynamics& best() const { return best_; }
-  /// What was read cannot be explained without one.
+  /// The readings cannot be explained without a ramp.
   [[nodiscard]] bool has_ramp() const { return has_ramp_; }
   [[nodiscard]] SecondsOfStep seconds_until(double step_w, double left_w) const;
 
@@ -140,7 +139,7 @@ class StepFit {
 
   std::span<const AnswerCurve* const> curves_;
   StepDynamics best_;
-  double misfit_max_ = 0;  ///< of what is held possible
+  double misfit_max_ = 0;  ///< maximum misfit of a possible fit
   bool has_ramp_ = false;
 };
 

@@ -1,9 +1,8 @@
-// RTU has no transaction id: the reply to an old request can be told from the reply to a new one
-// only by its shape (function and count). These are the requests that got no answer and may still
-// get one. A slave answers in order, so a good reply of another shape proves that the old ones have
-// come and gone. A read of the same shape at another address has to wait until no old answer can
-// come any more; at the same address an old answer is only that much older. (libmodbus alone
-// returns the previous question's registers here, as valid and for ever.)
+// Unanswered requests on RTU, which has no transaction id: replies to an old and a new request
+// differ only in shape (function and count). A slave answers in order, so a good reply of another
+// shape proves that old replies have passed. A read of the same shape at another address must wait
+// until no old reply can arrive; at the same address an old reply is only older. (libmodbus alone
+// would return the previous request's registers as valid, forever.)
 #pragma once
 
 #include <cstdint>
@@ -15,16 +14,16 @@ namespace bess {
 
 class UnansweredRequests {
  public:
-  /// No answer comes later than this after its request; a longer delay is beyond what can be told.
+  /// Maximum delay of a reply after its request; longer delays are not detected.
   explicit UnansweredRequests(std::int64_t late_reply_ns_max) : late_ns_max_(late_reply_ns_max) {}
 
-  /// Sent at `sent_ns`, and no answer came, or none that can be trusted.
+  /// Sent at `sent_ns`, without a reliable reply.
   void add(ModbusRequest request, std::int64_t sent_ns) {
-    request.values = nullptr;  // the caller's
+    request.values = nullptr;  // owned by the caller
     if (!requests_.try_push_back(request)) crowded_ = true;
     last_sent_ns_ = sent_ns;
   }
-  /// A good reply has come: the proof that the line is in step, or perhaps an old answer.
+  /// A good reply: proof of synchronisation, or possibly an old reply.
   void on_answered(const ModbusRequest& request, std::int64_t sent_ns) {
     bool perhaps_old = crowded_;
     for (const ModbusRequest& old : requests_) perhaps_old |= same_shape(old, request);
@@ -34,7 +33,7 @@ class UnansweredRequests {
       clear();
     }
   }
-  /// Earliest instant at which the reply to this read can mean nothing else.
+  /// Earliest instant at which the reply to this read is unambiguous.
   [[nodiscard]] std::int64_t earliest_ns(const ModbusRequest& request) const {
     bool mistakable = crowded_;
     for (const ModbusRequest& old : requests_) {
@@ -59,7 +58,7 @@ class UnansweredRequests {
 
   std::int64_t late_ns_max_;
   std::int64_t last_sent_ns_ = 0;
-  bool crowded_ = false;  ///< more than the list holds: every read has to wait
+  bool crowded_ = false;  ///< list overflow: every read has to wait
   StaticVector<ModbusRequest, 8> requests_;
 };
 

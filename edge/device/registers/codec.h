@@ -14,9 +14,8 @@ namespace bess {
 
 /// Inputs of a write in addition to the order.
 struct WriteContext {
-  const LivePoints* live = nullptr;  ///< null: the map's assumed scale factors, no live limits
-  bool clamp =
-      true;  ///< limit to live limits; not in proofs: a value that fits unlimited fits limited
+  const LivePoints* live = nullptr;   ///< null: the map's assumed scale factors, no live limits
+  bool clamp = true;                  ///< to live limits; not in proofs, which cover all values
   const LivePoints* saved = nullptr;  ///< null or unknown: the map's fallback
   std::int64_t heartbeat = 0;
 };

@@ -76,8 +76,7 @@ void LivePoints::keep(const RegisterMap& map, int point, const std::uint16_t* re
   failed[point] = false;
 }
 
-// The recursion is bounded: a scale factor has no scale of its own, and a rating only a scale
-// factor.
+// Bounded recursion: a scale factor has no scale of its own, a rating only a scale factor.
 bool live_scaling(const RegisterMap& map, const LivePoints& live, int point, Scaling& scaling) {
   const RegisterPoint& p = map.points[point];
   std::int64_t exponent = 0;

@@ -25,8 +25,7 @@ struct Scaling {
 /// plausible range by more than the slack.
 [[nodiscard]] bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value,
                           const Scaling& scaling = {});
-/// True if the value differs from the registers: clamped to the range, or the maximum instead of
-/// none.
+/// True if the value differs from the registers: clamped, or the maximum instead of none.
 [[nodiscard]] bool is_cut(const RegisterPoint& point, const std::uint16_t* raw,
                           const Scaling& scaling);
 
