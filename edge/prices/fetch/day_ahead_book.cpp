@@ -11,7 +11,7 @@ namespace {
 constexpr int kDays = 3;               ///< yesterday, today, tomorrow
 constexpr int kDisagreeingShare = 10;  ///< one in this many
 constexpr int kPublicationHour = 13;
-constexpr std::int64_t kBelievedAfterS = 3 * 3'600;  ///< what an answer still says
+constexpr std::int64_t kBelievedAfterS = 3 * 3'600;  ///< an unchanged assumed price
 
 std::int64_t begin_of(const OutlookDays& days, int day) {
   const std::int64_t midnights[] = {days.yesterday_utc_s, days.today_utc_s, days.tomorrow_utc_s,
@@ -19,7 +19,7 @@ std::int64_t begin_of(const OutlookDays& days, int day) {
   return midnights[day];
 }
 
-/// `take(time of a quarter-hour, its price in `days`)`, of one of the days.
+/// Calls `take(time of a quarter-hour, its price in `days`)` for one of the days.
 template <typename Take>
 void for_each_quarter_hour(const OutlookDays& days, int day, const Take& take) {
   const std::int64_t end = begin_of(days, day + 1);
@@ -28,7 +28,7 @@ void for_each_quarter_hour(const OutlookDays& days, int day, const Take& take) {
   }
 }
 
-/// As of EUR/kWh: no auction's day stays within this.
+/// Prices as in EUR/kWh: no auction day stays within this.
 bool is_in_another_unit(const OutlookDays& days) {
   constexpr std::int32_t kNoDayStaysWithinCenti = 500;
   constexpr int kDayOfPrices = 92;
@@ -52,7 +52,7 @@ std::int64_t publication_utc_s(std::int64_t today_midnight_utc_s) {
   return utc_from_local({day.year, day.month, day.day, kPublicationHour, 0, 0});
 }
 
-/// What came later than now came by a clock that was wrong: nothing is known of it.
+/// A receipt time in the future means a wrong clock: unknown.
 const KnownPrice* DayAheadBook::find(std::int64_t utc_s, std::int64_t now_utc_s) const {
   const KnownPrice& price = prices_[place_of(utc_s)];
   return price.utc_s == utc_s && price.received_utc_s <= now_utc_s ? &price : nullptr;
@@ -81,7 +81,7 @@ bool DayAheadBook::disagrees(const Answer& answer, std::int64_t now_utc_s) const
   return different * kDisagreeingShare > shared;
 }
 
-/// Of days of one length alone.
+/// Compares only days of equal length.
 bool DayAheadBook::repeats_day_before(const OutlookDays& answer, int day,
                                       std::int64_t now_utc_s) const {
   const std::int64_t before = begin_of(answer, day - 1);
@@ -99,7 +99,7 @@ bool DayAheadBook::repeats_day_before(const OutlookDays& answer, int day,
   return is_same;
 }
 
-/// Of a whole day what came first stays.
+/// The first complete version of a day is kept.
 void DayAheadBook::keep_day(const Answer& answer, int day, std::int64_t now_utc_s) {
   if (has_all(begin_of(answer, day), begin_of(answer, day + 1), now_utc_s)) return;
   for_each_quarter_hour(answer, day, [&](std::int64_t t, std::int32_t centi) {

@@ -1,14 +1,14 @@
-// The day-ahead prices that this machine has been told, by quarter-hour, and when it was told them:
-// what is known at an instant is what had come by then, and of tomorrow nothing before 13:00 local
-// time, as on the workstation (market/series/day_ahead.h). An earlier price is not
-// believed there, and would be another plan here.
+// Day-ahead prices received so far, by quarter-hour, with their time of receipt. Known at an
+// instant is what was received by then; tomorrow's prices not before 13:00 local time, as on the
+// workstation (market/series/day_ahead.h), which rejects earlier prices.
 //
-// Answers are judged against what is kept, of a whole day the first that came:
-//   disagrees   with more than a tenth of it: shifted by an hour or a day, or another market's
-//   repeats     the day before, price by price: an old answer
-//   constant    one price all day: zeros that stand there until the auction
-// Such an answer, or such a day of it, is refused; what is kept counts until its day is over.
-// Prices that the layout assumes (day_ahead_rows.h) are planned on, but their day is not whole: it
+// Of a whole day the first answer is kept. Refused is an answer, or a day of it, that
+//   disagrees   with more than a tenth of the stored prices: shifted by an hour or a day, or another market
+//   repeats     the previous day, price by price: an old answer
+//   is constant all day: zeros published until the auction
+// Stored prices then stay valid until the end of their day. Prices assumed by the layout
+// (day_ahead_rows.h) are planned on, but their day is incomplete: it is requested again, and a
+// later answer replaces them; if unchanged after hours, they are accepted.
 // is asked for again, and a later answer replaces them; said again after hours, they are believed.
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace bess {
 
-/// One that is kept.
+/// A stored price.
 struct KnownPrice {
   std::int64_t utc_s = 0;  ///< start of its quarter-hour; 0 = none
   std::int64_t received_utc_s = 0;
@@ -34,21 +34,21 @@ class DayAheadBook {
  public:
   static constexpr int kPricesMax = 512;  ///< more than five days
 
-  /// An answer. kOk: something of yesterday, today or tomorrow is kept of it; kNoRow: nothing of
-  /// these days; kImplausible: refused as above, in whole or in a day; kDoubtfulUnit: no price of a
-  /// day reaches 5 EUR/MWh.
+  /// Stores an answer. kOk: a price of yesterday, today or tomorrow is stored; kNoRow: none of
+  /// these days; kImplausible: refused as above, entirely or for a day; kDoubtfulUnit: all prices
+  /// of a day are below 5 EUR/MWh.
   Status take(std::span<const DayAheadDay> days, std::int64_t now_utc_s);
-  /// As an earlier run kept it. False for what no run keeps.
+  /// Restores a price stored by an earlier run. False if no run would store it.
   bool restore(const KnownPrice& price);
 
-  /// The days around an instant with what was known of them then.
+  /// The days around an instant, with the prices known at that time.
   [[nodiscard]] OutlookDays days_at(std::int64_t utc_s) const;
-  /// Whether every quarter-hour of [from, until) had come by `now_utc_s`, none of them assumed.
+  /// True if every quarter-hour of [from, until) was received by `now_utc_s`, none of them assumed.
   [[nodiscard]] bool has_all(std::int64_t from_utc_s, std::int64_t until_utc_s,
                              std::int64_t now_utc_s) const;
-  /// How many prices were kept since the start: the same, and the file still holds all of them.
+  /// Number of prices stored since the start; unchanged means that the file is up to date.
   [[nodiscard]] std::uint32_t changes() const { return changes_; }
-  /// For the file: those with utc_s == 0 are none, those that are assumed are asked for again.
+  /// For the file: utc_s == 0 is an empty entry; assumed prices are requested again.
   [[nodiscard]] std::span<const KnownPrice> prices() const { return prices_; }
 
  private:
@@ -62,10 +62,10 @@ class DayAheadBook {
   void keep_day(const Answer& answer, int day, std::int64_t now_utc_s);
 
   std::uint32_t changes_ = 0;
-  KnownPrice prices_[kPricesMax] = {};  ///< at the quarter-hour's number modulo the size
+  KnownPrice prices_[kPricesMax] = {};  ///< index: number of the quarter-hour modulo the size
 };
 
-/// From when on tomorrow's prices count as known: 13:00 local time of the day that begins then.
+/// Time at which tomorrow's prices count as known: 13:00 local time of the day starting then.
 std::int64_t publication_utc_s(std::int64_t today_midnight_utc_s);
 
 }  // namespace bess

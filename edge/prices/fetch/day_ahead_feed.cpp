@@ -20,13 +20,13 @@ constexpr std::size_t kLineBytesMax = 2 * kUtcBytes + 12;
 constexpr std::size_t kFileBytesMax =
     kHead.size() + DayAheadBook::kPricesMax * kLineBytesMax + sizeof "# crc32=01234567\n";
 
-/// One reader and one writer, at different times: before the loop, and the fetching thread.
+/// Shared by reader and writer at different times: before the loop, and the fetching thread.
 char* file_text() {
   static char text[kFileBytesMax];
   return text;
 }
 
-/// False for a line that none of ours is.
+/// False for a line in another format.
 bool parse_line(std::string_view line, KnownPrice& price) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
@@ -76,7 +76,7 @@ int restore_day_ahead(const char* path, DayAheadBook& book) {
 namespace {
 
 constexpr std::int64_t kShortestPauseS = 60;
-constexpr int kDoublingsMax = 5;  // to half an hour
+constexpr int kDoublingsMax = 5;  // up to half an hour
 constexpr std::int64_t kLongestPauseS = 1'800;
 constexpr std::int64_t kBeforePublicationS = 600;
 
@@ -93,16 +93,16 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
   switch (status) {
     case Status::kNotConnected:
       if (settings.file.empty()) break;
-      return "the file is not there or cannot be read (is [outlook] file right, who writes it?)";
+      return "the file is missing or unreadable (check [outlook] file and its writing program)";
     case Status::kMalformed:
-      return "not the JSON that [outlook] describes, or times that do not rise by quarter-hours "
-             "(are rows_field, time_field and price_field right?)";
+      return "not the JSON that [outlook] describes, or times not in steps of quarter-hours "
+             "(check rows_field, time_field and price_field)";
     case Status::kNoRow:
-      return "no price of yesterday, today or tomorrow (are time_field, price_field and the dates "
-             "of url right?)";
+      return "no price for yesterday, today or tomorrow (check time_field, price_field and the "
+             "dates of url)";
     case Status::kImplausible:
-      return "contradicts what was published before, repeats the day before, or is one price all "
-             "day: refused";
+      return "refused: contradicts published prices, repeats the previous day, or is constant all "
+             "day";
     default:
       break;
   }
@@ -143,7 +143,7 @@ DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields)
     return {
         .status = Status::kMalformed,
         .reason = layout.trouble.empty()
-                      ? "two prices of " + std::string(utc_text(layout.contradiction_utc_s).view())
+                      ? "two prices for " + std::string(utc_text(layout.contradiction_utc_s).view())
                       : layout.trouble};
   }
   return {.status = Status::kOk, .days = std::move(layout.days)};
@@ -181,7 +181,7 @@ std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& set
   const std::int64_t due = due_utc_s(book, settings, now_utc_s);
   const std::int64_t pause_s =
       std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax));
-  // A clock that was stepped back must not keep it from asking.
+  // A clock step backwards must not block requests.
   const bool may_ask_at_once = last_utc_s == 0 || last_utc_s > now_utc_s;
   return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
 }

@@ -1,5 +1,5 @@
-// Where day-ahead prices come from: a server or a file that somebody else writes, asked for today
-// and tomorrow, and when to ask. The one who asks is a thread of bess-prices (outlook_fetcher.h).
+// Day-ahead feed: reads a server or a file that another program writes, for today and tomorrow, and
+// schedules the requests. A thread of bess-prices uses it (outlook_fetcher.h).
 #pragma once
 
 #include <cstdint>
@@ -15,49 +15,47 @@
 
 namespace bess {
 
-// What is kept of day-ahead prices over a restart: one file in the state folder, a line a
-// quarter-hour, replaced at once and checked as a whole.
+// State file of day-ahead prices: one file in the state folder, one line per quarter-hour, replaced
+// atomically and checked as a whole.
 //   # bess day-ahead 1: quarter-hour, hundredths of EUR/MWh, received
 //   2026-11-23T23:00:00Z 4150 2026-11-23T11:57:12Z
 //   # crc32=0123abcd
-// Nothing here allocates.
+// No allocation.
 
 inline constexpr const char* kDayAheadFileName = "day_ahead";
 
 /// False with errno set.
 bool keep_day_ahead(const char* path, const DayAheadBook& book);
 
-/// How many prices came back; 0 where there is no file, or none that is whole: they are fetched
-/// again.
+/// Number of restored prices; 0 without an intact file: they are fetched again.
 int restore_day_ahead(const char* path, DayAheadBook& book);
 
-/// What a status means when it comes from there, and what mends it.
+/// Meaning and remedy of a status of this feed.
 std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings);
 
 using DayAheadUrl = FixedText<639>;
 DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days);
 
-/// What came of asking; `days` of kOk alone.
+/// Result of a request; `days` only for kOk.
 struct DayAheadAsked {
   Status status = Status::kNotConnected;
-  std::string reason{};  ///< of anything else: one line, where there is more to say than the status
+  std::string reason{};  ///< for other statuses: one line, if there is more to say
   std::vector<DayAheadDay> days{};
 };
 DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields);
-/// Asks for the days around now, within the time-out.
+/// Requests the days around now, within the time-out.
 DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
                             const StopRequested& stop_requested);
 
-/// From when on there is something to ask for: now where something of today is missing, for
-/// tomorrow 12:50 local time.
+/// Time of the next useful request: now if part of today is missing, 12:50 local time for tomorrow.
 std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
                        std::int64_t now_utc_s);
-/// When to ask next: when it is due, and while nothing whole comes after a minute, two, four, to
-/// half an hour. `last_utc_s`: 0 = not asked yet; `tries`: in vain, after which it was still due.
+/// Time of the next request: when due; after an incomplete answer one minute, two, up to half an
+/// hour later. `last_utc_s`: 0 = no request yet; `tries`: incomplete requests so far.
 std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
                             std::int64_t now_utc_s, std::int64_t last_utc_s, int tries);
 
-/// What was asked for, and what came of it.
+/// State of the requests.
 struct DayAheadInquiry {
   DayAheadBook book{};
   Status status = Status::kNoRow;  ///< of the last answer
@@ -67,7 +65,7 @@ struct DayAheadInquiry {
   [[nodiscard]] bool is_due(const OutlookSettings& settings, std::int64_t now_utc_s) const {
     return next_ask_utc_s(book, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
   }
-  /// An answer, or why there is none. True when the book holds something new.
+  /// Takes an answer or its failure. True if the book has changed.
   bool take(const DayAheadAsked& asked, const OutlookSettings& settings, std::int64_t now_utc_s);
 };
 

@@ -13,7 +13,7 @@ namespace {
 Status status_of(const HttpOutcome& outcome) {
   if (outcome.kind == HttpOutcome::Kind::kDone) return Status::kOk;
   if (outcome.kind == HttpOutcome::Kind::kBusy) return Status::kServerBusy;
-  if (outcome.status == 200) return Status::kNotConnected;  // cut short
+  if (outcome.status == 200) return Status::kNotConnected;  // truncated
   if (outcome.status != 0) return Status::kHttpError;
   switch (outcome.transfer_code) {
     case CURLE_COULDNT_RESOLVE_HOST:
@@ -46,13 +46,13 @@ FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int
                                  .bytes_max = kAnswerBytesMax},
                       .user_agent = "bess-prices",
                       .ca_file = settings.ca_file.c_str(),
-                      .authorities = "install ca-certificates, or name another file, ca_file"};
+                      .authorities = "install ca-certificates, or set ca_file"};
   std::string_view lines = settings.headers.view();
   while (!lines.empty()) request.headers.emplace_back(take_line(lines));
   HttpOutcome outcome = http_request(request, stop_requested);
   const Status status = status_of(outcome);
   if (status == Status::kHttpError) {
-    outcome.reason += " (are url and the key in header_file right?)";
+    outcome.reason += " (check url and the key in header_file)";
   }
   return {.status = status,
           .body = std::move(outcome.body),

@@ -1,4 +1,4 @@
-// One answer of a price server, and how that ended in the edge's own terms.
+// Fetch: one request to a price server, with its result in the edge's own terms.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,7 @@
 
 namespace bess {
 
-// Waiting in a thread of bess-prices.
-
-/// So long by the wall, or until a stop is requested, a tenth of a second later at most.
+/// Waits for a wall time, or up to a tenth of a second beyond a stop request.
 inline void pause(std::int64_t wall_ns, const std::stop_token& stop) {
   constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
   for (; wall_ns > 0 && !stop.stop_requested(); wall_ns -= kSliceNs) {
@@ -24,17 +22,17 @@ inline void pause(std::int64_t wall_ns, const std::stop_token& stop) {
   }
 }
 
-// When to ask for the row of a minute: as soon as the source usually has it, and no more often than
-// it allows. Pure; seconds of the edge's clock behind the tick.
+// Request timing of a minute's row: as soon as the source usually has it, within its rate limit.
+// Pure; seconds of the edge's clock after the tick.
 
 class AskTiming {
  public:
-  /// Of the first request of a cycle.
+  /// Delay of the first request of a cycle.
   [[nodiscard]] std::int32_t first_s() const { return delay_s_; }
   [[nodiscard]] static std::int32_t spacing_s() { return kPriceWait_s / kPriceRequests; }
 
-  /// How a cycle went: whether its first request found the row, whether one was refused as too
-  /// many. A source that refuses is not tried earlier again.
+  /// Result of a cycle: whether the first request found the row, and whether one was refused as too
+  /// many. A source that refuses is not asked earlier again.
   void learn(bool is_found_at_once, bool is_refused) {
     constexpr int kCyclesBeforeEarlier = 30;
     constexpr std::int32_t kLaterS = 3, kLeastLeftS = 2;
@@ -56,12 +54,12 @@ class AskTiming {
 
 struct FetchResult {
   Status status = Status::kNotConnected;
-  std::string body{};    ///< of kOk
-  std::string reason{};  ///< of anything else, one line with the remedy
-  double wait_s = 0;     ///< what the server asked for
+  std::string body{};    ///< for kOk
+  std::string reason{};  ///< for other statuses, one line with the remedy
+  double wait_s = 0;     ///< requested by the server
 };
 
-/// A GET of `url` with the settings' secrets, authorities and, where it is less, time-out.
+/// GET of `url` with the settings' headers and CA file, and the smaller of both time-outs.
 FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
                   const StopRequested& stop_requested);
 

@@ -8,7 +8,7 @@ bool HistoryPages::goes_on(Status status, int items, std::int64_t oldest_before_
   const bool has_row = status != Status::kNoRow;
   status_ = has_row ? status : Status::kOk;
   offset_ += items;
-  const bool is_older = oldest_utc_s_ < oldest_before_utc_s;  // else the server knows no pages
+  const bool is_older = oldest_utc_s_ < oldest_before_utc_s;  // else the server has no pages
   return status_ == Status::kOk && items > 0 && (is_older || !has_row) && !has_all_hours() &&
          offset_ + kRowsPerPage <= kRowsMax;
 }

@@ -1,7 +1,6 @@
-// The rows of the last days, page by page from the price server, before the loop starts: what the
-// price level of a first start is made from. Pages as Opendatasoft v2.1 has them (limit, offset),
-// newest rows first: what came in before a failure or the deadline is then the part that weighs
-// most.
+// History pages: rows of the last days from the price server, before the loop starts, for the price
+// level of a first start. Pages as in Opendatasoft v2.1 (limit, offset), newest rows first, so that
+// rows received before a failure or the deadline have the largest weight.
 #pragma once
 
 #include <algorithm>
@@ -16,20 +15,20 @@
 
 namespace bess {
 
-/// `url` with a limit of 100 rows and an offset, in place of its own.
+/// `url` with a limit of 100 rows and an offset, replacing its own.
 FixedText<639> page_url(std::string_view url, int offset);
 
 class HistoryPages {
  public:
-  static constexpr int kRowsPerPage = 100;  ///< the API's own limits
+  static constexpr int kRowsPerPage = 100;  ///< limits of the API
   static constexpr int kRowsMax = 10'000;
-  static constexpr int kFailuresMax = 3;  ///< requests that may fail before the rest is given up
+  static constexpr int kFailuresMax = 3;  ///< failed requests before giving up
 
   /// `url` as for the newest rows; its own limit and offset are replaced.
   HistoryPages(PriceHistory& history, std::string_view url) : history_(history), url_(url) {}
 
-  /// Asks for the page behind the last one. False when there is none to ask for: the hours are
-  /// full, the server has nothing older, or the request failed.
+  /// Requests the next page. False if there is none: the hours are covered, the server has no older
+  /// rows, or the request failed.
   template <typename Prices>
   bool fetch_next(Prices& prices, std::int32_t timeout_ms) {
     const std::int64_t oldest_before_utc_s = oldest_utc_s_;
@@ -37,7 +36,7 @@ class HistoryPages {
     for (const PriceRow& row : page.rows) take(row);
     return goes_on(page.status, page.items, oldest_before_utc_s);
   }
-  /// Of the last request; a page behind the last row is no failure.
+  /// Status of the last request; a page beyond the last row is no failure.
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] bool has_all_hours() const {
     return oldest_utc_s_ <= history_.first_minute_utc_s();
@@ -54,8 +53,8 @@ class HistoryPages {
   Status status_ = Status::kOk;
 };
 
-/// Fills the history within kHistoryWait_s of the clock. Anything but kOk: it ended before its
-/// time, what came in is there. On the caller's thread.
+/// Fills the history within kHistoryWait_s of the clock. Other than kOk: ended early; rows received
+/// so far are kept. Runs on the caller's thread.
 ///   Prices  PriceAnswer fetch_page(const char* url, int32 timeout_ms)
 ///   Clock   monotonic_ns(), scaled(), stop_requested()
 template <typename Prices, typename Clock>

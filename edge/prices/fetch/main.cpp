@@ -1,6 +1,6 @@
-// bess-prices: fetches what the controller decides on, and publishes it. A program of its own,
-// beside the control process, where heap and libraries may do as they like: killed, stuck or
-// absent, it costs a price and never a cycle.
+// bess-prices: fetches and publishes the prices on which the controller decides. A separate
+// process, free to use heap and libraries: if it is killed, blocked or absent, prices are missing,
+// but no control cycle.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -28,16 +28,15 @@ namespace bess {
 namespace {
 
 constexpr const char* kFooter =
-    R"(The newest price, the price level of the last hours and, for a student by outlook, the plan
-on day-ahead prices go to one file in [state] run_folder (or folder), which bess-edge reads. It may
-be started before or after bess-edge and restarted at any time. One bess-prices to one file. Once a
-day it fetches the settled prices of past quarter-hours for bess-edge earned, where [settled] url is
-given.
+    R"(Writes the newest price, the price level of the last hours and, for a student by outlook, the
+plan on day-ahead prices to one file in [state] run_folder (or folder), which bess-edge reads. Can
+be started before or after bess-edge and restarted at any time. One bess-prices per file. Once a day
+it fetches the settled prices of past quarter-hours for bess-edge earned, if [settled] url is set.
 Exit codes:
   0 done
-  1 the settings are wrong, another bess-prices runs; with --check also: no usable price came; with
-    --settle: no settled price came
-  2 the command line is wrong)";
+  1 invalid settings, or another bess-prices is running; with --check also: no usable price; with
+    --settle: no settled price
+  2 invalid command line)";
 
 struct Options {
   std::string config_path = "/etc/bess/edge.toml";
@@ -46,7 +45,7 @@ struct Options {
   const char* started_as = "";
 };
 
-/// The exit code.
+/// Prints the error; returns the exit code.
 int complain(const std::string& text) {
   std::fprintf(stderr, "bess-prices: %s\n", text.c_str());
   return 1;
@@ -66,12 +65,12 @@ bool check_price(const EdgeConfig& config) {
               answer.newest.price_centi_eur_per_mwh / 100.0,
               utc_text(answer.newest.minute_utc_s).c_str());
   if (answer.passed_over > 0) {
-    std::printf("rows       %d without a price that is known by now\n", answer.passed_over);
+    std::printf("rows       %d skipped: no valid price\n", answer.passed_over);
   }
   return true;
 }
 
-/// What is missing stops nothing.
+/// Missing day-ahead prices stop nothing.
 void check_day_ahead(const EdgeConfig& config) {
   const OutlookSettings& outlook = config.outlook;
   const std::string source =
@@ -84,24 +83,24 @@ void check_day_ahead(const EdgeConfig& config) {
     complain("day-ahead prices from " + source + ": " +
              (asked.reason.empty() ? std::string(day_ahead_status_text(inquiry.status, outlook))
                                    : asked.reason) +
-             "; planned on what is usual");
+             "; planning on usual prices");
     return;
   }
   std::printf("day-ahead  %u quarter-hours from %s\n", inquiry.book.changes(), source.c_str());
 }
 
 int settle_now(const EdgeConfig& config, const SettledSource& source) {
-  if (source.url.empty()) return complain("[settled] url is not set: nothing to fetch");
+  if (source.url.empty()) return complain("nothing to fetch: set [settled] url");
   const SettledResult result =
       fetch_settled(source, config.clock.now_utc_ns() / kNanosecondsPerSecond, {});
   if (!result.trouble.empty()) return complain("settled prices: " + result.trouble);
   std::printf("%d quarter-hours, %s, kept in %s\n", result.fetched,
-              result.is_whole ? "up to yesterday's last" : "yesterday is not whole yet",
+              result.is_whole ? "complete up to yesterday" : "yesterday incomplete",
               source.file.c_str());
   return 0;
 }
 
-/// Whether a controller that starts now would know the level by its log.
+/// True if a controller that starts now would find the level in its log.
 bool knows_level(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
@@ -111,7 +110,7 @@ bool knows_level(const EdgeConfig& config) {
          level_from_log(newest.price_level, now_utc_s).is_known();
 }
 
-/// The level of a first start, then the plans.
+/// Determines the level of a first start, then plans.
 void run_beside(const EdgeConfig& config, PricePublisher& publisher, const std::stop_token& stop) {
   const bool needs_level = student_context().kind != ContextKind::kMonth;
   PublishedHistory history{.is_done = true};
@@ -130,8 +129,8 @@ void run_beside(const EdgeConfig& config, PricePublisher& publisher, const std::
   outlook.fetch_for_ever();
 }
 
-/// Another version was installed under the name that this one was started by: systemd starts that
-/// one when this one ends.
+/// True if another version was installed under the name of this program: systemd starts it when
+/// this process ends.
 bool is_replaced(const char* started_as) {
   struct stat now {};
   struct stat self {};
@@ -145,7 +144,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   InstanceLock lock;
   FileMessage error;
   const bool is_folder = make_folder(folder_of(path.c_str()).c_str());
-  if (!is_folder) return complain(path + ": its folder cannot be made");
+  if (!is_folder) return complain(path + ": cannot create its folder");
   if (!lock.take((path + ".lock").c_str(), "bess-prices", error)) {
     return complain(error.c_str());
   }
@@ -162,7 +161,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   stop.request_stop();
   beside.join();
   if (settling.joinable()) settling.join();
-  static_cast<void>(unlink(path.c_str()));  // it would only grow old
+  static_cast<void>(unlink(path.c_str()));  // it would become outdated
   write_journal_line(JournalLevel::kNotice, "bess-prices: stopped");
   return 0;
 }
@@ -175,7 +174,7 @@ int run(const Options& options) {
   set_market_time_zone();
   SettledSource settled;
   if (!load_settled_source(options.config_path, settled, error)) {
-    complain(error);  // it must not stop the prices that are traded on
+    complain(error);  // must not stop the prices for trading
     if (options.check || options.settle) return 1;
     settled.url.clear();
   }
@@ -193,16 +192,16 @@ int run(const Options& options) {
 }  // namespace bess
 
 int main(int argc, char** argv) {
-  bess::CommandLine line("bess-prices", "fetches imbalance and day-ahead prices for bess-edge",
+  bess::CommandLine line("bess-prices", "imbalance and day-ahead price fetcher for bess-edge",
                          "bess-prices " BESS_VERSION);
   bess::Options options;
   if (argc > 0) options.started_as = argv[0];
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path,
-              "the controller's settings; sections [price], [outlook] and [settled]")
+              "controller settings; sections [price], [outlook] and [settled]")
       .with_default()
       .value_name("FILE");
-  root.flag("--check", options.check, "ask each server once and report the answers");
+  root.flag("--check", options.check, "ask each server once and print the answers");
   root.flag("--settle", options.settle, "fetch the settled prices of past days now")
       .excludes("--check");
   root.footer(bess::kFooter);

@@ -14,12 +14,12 @@ namespace bess {
 
 namespace {
 
-/// What one decision can move the trailing level by, and a cent for rounding.
+/// Largest change of the trailing level by one decision, plus a cent for rounding.
 constexpr std::int32_t kLevelMoveMaxCenti =
     (PriceLevel::kMaxCenti - PriceLevel::kMinCenti) / static_cast<int>(PriceLevel::kDecisions) + 2;
 static_assert(kLevelMoveMaxCenti < kPlannedLevelCenti, "two plans would not suffice");
 
-/// What is published from the tick's quarter-hour on.
+/// Describes the published prices from the tick's quarter-hour on.
 void describe(const OutlookDays& days, std::int64_t tick_utc_s, OutlookOffer& offer) {
   const std::int64_t now = tick_utc_s - tick_utc_s % kSecondsPerQuarterHour;
   offer.is_published = days.day_ahead_centi[days.index_of(now)] != kDayAheadUnknown;
@@ -41,7 +41,7 @@ OutlookPlanner::OutlookPlanner(const OutlookModel& model, OutlookBoard& board)
   board.model = &model;
 }
 
-/// An hour that the clock leaves out has the row of the one before it.
+/// An hour skipped by daylight saving time gets the row of the previous one.
 void OutlookPlanner::plan_usual_day(std::int64_t utc_s, std::int32_t level_centi) {
   const OutlookDays days = outlook_days_around(utc_s);
   const Made& made = plan_of(days, planned_level_centi(level_centi), nullptr);
@@ -82,7 +82,7 @@ int OutlookPlanner::plan(const Wanted& wanted, const OutlookDays& days) {
   const std::int32_t low_centi = planned_level_centi(wanted.level_centi - kLevelMoveMaxCenti);
   const std::int32_t high_centi = planned_level_centi(wanted.level_centi + kLevelMoveMaxCenti);
   const Made* needed = nullptr;
-  for (const Made& made : made_) {  // of two that are needed, none may go for the other
+  for (const Made& made : made_) {  // of two needed plans, neither may replace the other
     if (made.is_of(days, high_centi)) needed = &made;
   }
   offer.levels = low_centi == high_centi ? 1 : 2;
@@ -105,7 +105,7 @@ void say(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: outlook: " + text);
 }
 
-/// The first tick at or after an instant.
+/// First tick at or after an instant.
 std::int64_t tick_from(std::int64_t utc_s) {
   return (utc_s + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep;
 }
@@ -126,7 +126,7 @@ void OutlookFetcher::start(std::int32_t start_centi) {
   const int kept = restore_day_ahead(kept_path_.c_str(), inquiry_.book);
   fetch(now);
   say(JournalLevel::kNotice,
-      std::to_string(kept) + " day-ahead prices kept; asked for more: " +
+      std::to_string(kept) + " stored day-ahead prices; request for more: " +
           std::string(day_ahead_status_text(inquiry_.status, config_.outlook)));
   const Decision decision = next_decision();
   planner_.plan_usual_day(now, decision.level_centi);
@@ -141,7 +141,7 @@ OutlookFetcher::Decision OutlookFetcher::next_decision() const {
   if (!log.open(config_.log, ignored) || !log.newest(newest)) return next;
   const PriceLevel level = level_from_log(newest.price_level, now_utc_s());
   if (level.is_known()) next.level_centi = level.centi_eur_per_mwh();
-  // A controller that runs decides some seconds behind its tick: until then its plan stays.
+  // A running controller decides some seconds after its tick: until then its plan stays.
   constexpr std::int64_t kLateSMax = 90;
   const std::int64_t after_newest_s = newest.utc_s + kSecondsPerStep;
   const std::int64_t now = now_utc_s();
@@ -183,13 +183,13 @@ void OutlookFetcher::plan(const Decision& decision) {
   publisher_.publish_outlook(board_);
 }
 
-/// Looks up often: the clock may be stepped.
+/// Checks often, because the clock may be stepped.
 void OutlookFetcher::fetch_for_ever() {
   constexpr std::int64_t kLookNs = 10 * kNanosecondsPerSecond;
   while (!stop_.stop_requested()) {
     wait(kLookNs);
     const std::int64_t now = now_utc_s();
-    // Only this thread writes the inquiry from here on: it reads it without the lock.
+    // From here on only this thread writes the inquiry, so it reads without the lock.
     if (!inquiry_.is_due(config_.outlook, now)) continue;
     const Status before = inquiry_.status;
     fetch(now);

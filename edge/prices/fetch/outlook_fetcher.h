@@ -1,7 +1,7 @@
-// What bess-prices does for a student by outlook: one thread fetches day-ahead prices, one plans on
-// them for the tick after the newest decision, whose level it reads from the decision log.
+// Outlook threads of bess-prices, for a student by outlook: one fetches day-ahead prices, one plans
+// for the tick after the newest decision, whose level it reads from the decision log.
 //   server or file -> day_ahead_feed -> DayAheadBook -> OutlookPlanner -> the published record
-//                                     kept on disk
+//                                     stored on disk
 #pragma once
 
 #include <cstdint>
@@ -17,25 +17,24 @@
 
 namespace bess {
 
-// Plans for the ticks ahead, from what is known of day-ahead prices at the next of them, and offers
-// their rows to the control thread (../core/control/outlook.h). Never in a hurry: the next
-// decision's level lies within one decision's move of the last one's, so that the plans of at most
-// two levels are needed, and those of the tick before mostly serve. Nothing is allocated; one
-// thread at a time.
+// Outlook planner: plans for the next ticks with the day-ahead prices known at the first of them,
+// and offers the rows to the control thread (../core/control/outlook.h). The next level is within
+// one decision's change of the last one, so at most two plans are needed, and mostly those of the
+// previous tick serve. No allocation; one thread at a time.
 
 class OutlookPlanner {
  public:
   OutlookPlanner(const OutlookModel& model, OutlookBoard& board);
 
-  /// The day without day-ahead prices, for when nothing else is there. Before the loop starts.
+  /// Plans the day without day-ahead prices, as fallback. Must run before the loop starts.
   void plan_usual_day(std::int64_t utc_s, std::int32_t level_centi);
   struct Wanted {
     std::int64_t tick_utc_s = 0;
-    std::int32_t level_centi = 0;  ///< of the decision before it
-    Status feed = Status::kOk;     ///< how day-ahead prices were last answered
+    std::int32_t level_centi = 0;  ///< level of the previous decision
+    Status feed = Status::kOk;     ///< status of the last day-ahead request
   };
-  /// Offers the rows from a tick on. `days`: what is known at it. Returns how many plans had to be
-  /// made for it.
+  /// Offers the rows from a tick on. `days`: prices known at that tick. Returns the number of new
+  /// plans.
   int plan(const Wanted& wanted, const OutlookDays& days);
 
  private:
@@ -49,7 +48,7 @@ class OutlookPlanner {
     }
   };
 
-  /// The plan of a level; one that is not `needed` gives its place to a new one.
+  /// The plan of a level; a plan that is not `needed` is replaced.
   const Made& plan_of(const OutlookDays& days, std::int32_t level_centi, const Made* needed);
 
   const OutlookModel& model_;
@@ -63,10 +62,10 @@ class OutlookFetcher {
   OutlookFetcher(const EdgeConfig& config, const OutlookModel& model, PricePublisher& publisher,
                  const std::stop_token& stop);
 
-  /// Takes what an earlier run kept, asks once, and plans for the first tick; `start_centi`: the
-  /// level where the log has none.
+  /// Restores the stored prices, fetches once, and plans for the first tick; `start_centi`: level
+  /// if the log has none.
   void start(std::int32_t start_centi);
-  /// The two threads, until a stop is requested.
+  /// The two threads, until a stop request.
   void fetch_for_ever();
   void plan_for_ever();
 
@@ -76,12 +75,12 @@ class OutlookFetcher {
     std::int32_t level_centi = 0;
     friend bool operator==(const Decision&, const Decision&) = default;
   };
-  /// Of the tick to come, at the level of the newest record.
+  /// The next tick, at the level of the newest record.
   [[nodiscard]] Decision next_decision() const;
   void fetch(std::int64_t now_utc_s);
   void plan(const Decision& decision);
   void wait(std::int64_t simulated_ns) const;
-  /// In simulated time not before the instant that it begins at.
+  /// In simulated time not before the start of the simulation.
   [[nodiscard]] std::int64_t now_utc_s() const {
     return config_.clock.start_utc_ns() / kNanosecondsPerSecond;
   }
@@ -93,10 +92,10 @@ class OutlookFetcher {
   OutlookBoard board_;
   OutlookPlanner planner_;
   std::int32_t start_centi_ = 0;
-  std::mutex mutex_;  ///< of the inquiry, between the two threads
+  std::mutex mutex_;  ///< protects the inquiry between the two threads
   DayAheadInquiry inquiry_;
-  std::uint64_t answers_ = 0;  ///< so many changes of the inquiry
-  bool is_kept_ = true;        ///< false: the file lacks something, and is tried again
+  std::uint64_t answers_ = 0;  ///< number of changes of the inquiry
+  bool is_kept_ = true;        ///< false: the file is out of date, and is retried
 };
 
 }  // namespace bess

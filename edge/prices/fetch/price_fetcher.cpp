@@ -31,7 +31,7 @@ void PricePublisher::write() {
     write_journal_line(
         is_written ? JournalLevel::kNotice : JournalLevel::kError,
         "bess-prices: " + path_ +
-            (is_written ? " is written again"
+            (is_written ? " can be written again"
                         : std::string(" cannot be written: ") + std::strerror(errno)));
   }
   is_failing_ = !is_written;
@@ -40,7 +40,7 @@ void PricePublisher::write() {
 namespace {
 
 constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
-constexpr double kPauseOfTheBusyS = 60;  ///< where a server refuses and does not say for how long
+constexpr double kPauseOfTheBusyS = 60;  ///< if a busy server gives no time
 
 std::string text_of(const std::string& reason, Status status) {
   return reason.empty() ? std::string(status_text(status)) : reason;
@@ -50,7 +50,7 @@ std::string text_of(const std::string& reason, Status status) {
 
 PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
   Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0).c_str());
-  // A server that knows no pages may refuse them; one that is busy or gone is not asked twice.
+  // A server without pages may refuse them; a busy or unreachable one is not asked twice.
   const bool may_know_no_pages =
       answer.status == Status::kHttpError || answer.status == Status::kMalformed;
   return may_know_no_pages ? ask(watch) : answer;
@@ -98,7 +98,7 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
   while (!stop_.stop_requested()) {
     const std::int64_t tick_utc_s = std::max(
         source_.now_utc_s() / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
-    // Begun long after a tick: what it waited for was asked for at the start.
+    // If started long after a tick, the initial request covered it.
     const bool is_waited_for = served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + kPriceWait_s;
     const bool is_new = tick_utc_s > served_utc_s && is_waited_for;
     if (is_new) serve(tick_utc_s);

@@ -1,5 +1,5 @@
-// What bess-prices does for the imbalance price: asks for the row of each minute before a tick,
-// judges the unit, finds the level of a first start, and publishes it. Blocking; threads of main.
+// Imbalance price fetcher of bess-prices: one row per minute before a tick. Checks the unit,
+// determines the level of a first start, and publishes. Blocking; on threads of main.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,20 @@
 
 namespace bess {
 
-// The record of published_prices.h, changed by several threads of bess-prices and rewritten after
-// each change.
+// Price publisher: the record of published_prices.h, changed by several threads of bess-prices and
+// rewritten after each change.
 
 class PricePublisher {
  public:
   explicit PricePublisher(std::string path) : path_(std::move(path)) {}
 
-  /// `change(prices)`, then the file. A failure to write is logged once.
+  /// Applies `change(prices)`, then writes the file. A write failure is logged once.
   template <typename Change>
   void publish(const Change& change) {
     const std::lock_guard lock(mutex_);
     change(prices_);
     write();
   }
-  /// A new plan.
   void publish_outlook(OutlookBoard& board);
 
  private:
@@ -44,7 +43,7 @@ class PricePublisher {
   bool is_failing_ = false;
 };
 
-/// The price server: one request at a time, on the caller's thread.
+/// Price source: one request to the server at a time, on the caller's thread.
 class PriceSource {
  public:
   PriceSource(const EdgeConfig& config, std::stop_token stop)
@@ -54,20 +53,20 @@ class PriceSource {
     Status status = Status::kNotConnected;
     PriceRow newest{};
     int passed_over = 0;   ///< rows without a usable price
-    std::string reason{};  ///< of anything but kOk
-    double wait_s = 0;     ///< what the server asked for
+    std::string reason{};  ///< for statuses other than kOk
+    double wait_s = 0;     ///< requested by the server
   };
-  /// Each usable row is shown to `watch`, oldest first.
+  /// Passes each usable row to `watch`, oldest first.
   Answer ask(UnitWatch& watch) const { return ask(watch, config_.price.feed.http.url.c_str()); }
-  /// The first: of more rows, where the server knows pages, so that a wrong unit shows at once.
+  /// First request, with more rows if the server has pages, so that a wrong unit shows early.
   Answer ask_first(UnitWatch& watch) const;
-  /// As history_pages.h asks.
+  /// Interface of history_pages.h.
   [[nodiscard]] PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms) const;
 
   [[nodiscard]] std::int64_t now_utc_s() const {
     return config_.clock.now_utc_ns() / kNanosecondsPerSecond;
   }
-  // As fetch_history asks of a clock.
+  // Clock interface of fetch_history.
   [[nodiscard]] static std::int64_t monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
   [[nodiscard]] const ScaledClock& scaled() const { return config_.clock; }
   [[nodiscard]] bool stop_requested() const { return stop_.stop_requested(); }
@@ -85,14 +84,14 @@ class PriceFetcher {
   PriceFetcher(const EdgeConfig& config, PricePublisher& publisher, std::stop_token stop)
       : config_(config), publisher_(publisher), stop_(stop), source_(config, std::move(stop)) {}
 
-  /// Until a stop is requested, or `is_over` after a cycle: one request at once, then those of each
+  /// Runs until a stop request, or `is_over` after a cycle: one initial request, then those of each
   /// cycle.
   void run(const std::function<bool()>& is_over);
 
  private:
   void serve(std::int64_t tick_utc_s);
   PriceSource::Answer publish(PriceSource::Answer answer, std::int64_t begin_ns);
-  /// In slices; false when it is to stop. A clock that is stepped back ends the wait.
+  /// Sleeps in slices; false on a stop request. A clock step backwards ends the wait.
   bool sleep_until(std::int64_t utc_s) const;
 
   const EdgeConfig& config_;
@@ -101,11 +100,11 @@ class PriceFetcher {
   PriceSource source_;
   AskTiming timing_;
   UnitWatch unit_;
-  Status told_ = Status::kOk;          ///< of the last line in the journal
-  std::int64_t not_before_utc_s_ = 0;  ///< as the server asked
+  Status told_ = Status::kOk;          ///< status of the last line in the journal
+  std::int64_t not_before_utc_s_ = 0;  ///< requested by the server
 };
 
-/// What the hours before now say of the price level; for a first start.
+/// Price level of the hours before now; for a first start.
 PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source);
 
 }  // namespace bess

@@ -9,10 +9,10 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kClockToleranceS = 5;  // of the server's clock against ours
+constexpr std::int64_t kClockToleranceS = 5;  // difference of the server's clock to ours
 
 bool parse_price(JsonValue price, const PriceFields& fields, PriceRow& row) {
-  constexpr double kExact = 1e-6;  // of doubles that were cents
+  constexpr double kExact = 1e-6;  // rounding error of cents in doubles
   const std::optional<double> number = price.number();
   if (!number || std::ranges::count(fields.no_price, *number) > 0) return false;
   const double centi = *number * kCentiPerEur * fields.eur_per_mwh_e1 / 10;
@@ -25,7 +25,7 @@ bool parse_price(JsonValue price, const PriceFields& fields, PriceRow& row) {
 bool parse_row(JsonValue item, const PriceFields& fields, std::int64_t now_utc_s, PriceRow& row) {
   row.minute_utc_s = time_in(value_at(item, fields.time.view())).value_or(-1);
   return row.minute_utc_s >= 0 && parse_price(value_at(item, fields.price.view()), fields, row) &&
-         row.minute_utc_s % 60 == 0 &&                           // the start of a minute
+         row.minute_utc_s % 60 == 0 &&                           // start of a minute
          row.minute_utc_s + 60 <= now_utc_s + kClockToleranceS;  // that has ended
 }
 

@@ -1,4 +1,4 @@
-// A price server's JSON as rows of minutes. Prices leave here as integer hundredths of EUR/MWh.
+// Price JSON of a server, parsed to rows of minutes. Prices are integers in 0.01 EUR/MWh.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,16 @@ namespace bess {
 
 struct PriceAnswer {
   Status status = Status::kNoRow;  ///< kOk: there is a row
-  std::vector<PriceRow> rows{};    ///< the usable ones, in the answer's order
+  std::vector<PriceRow> rows{};    ///< usable rows, in the answer's order
   int items = 0;                   ///< rows in the answer, usable or not
 };
 
-/// A list at `fields.rows`, or a bare list, in any order. Rows without a price that is a number,
-/// later than now, beyond +-100,000 EUR/MWh, or with time or price twice, are passed over.
-/// Malformed is also an answer with anything behind its end, and one whose field of rows stands
-/// twice.
+/// Parses a list at `fields.rows`, or a bare list, in any order. Skips rows without a numeric
+/// price, from the future, beyond +-100,000 EUR/MWh, or with a duplicate time or price member.
+/// Malformed: also data after the end, or a duplicate member of rows.
 PriceAnswer parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s);
 
-/// The newest usable row of an answer.
+/// Newest usable row of an answer.
 Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                           PriceRow& row);
 

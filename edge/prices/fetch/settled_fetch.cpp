@@ -36,12 +36,12 @@ std::string ask(const SettledSource& source, const std::string& url, std::string
        .limits = {.deadline_s = source.timeout_ms / 1'000.0, .bytes_max = kAnswerBytesMax},
        .user_agent = "bess-prices",
        .ca_file = source.ca_file,
-       .authorities = "install ca-certificates, or name the file of its own authority, ca_file"},
+       .authorities = "install ca-certificates, or set ca_file to the file of its authority"},
       [&] { return stop.stop_requested(); });
   if (outcome.kind == HttpOutcome::Kind::kDone) return std::move(outcome.body);
   trouble = outcome.status == 0 || outcome.status == 200
                 ? outcome.reason
-                : "answered with HTTP " + std::to_string(outcome.status);
+                : "HTTP error " + std::to_string(outcome.status);
   return "";
 }
 
@@ -51,7 +51,7 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
   }
 }
 
-/// "Validated" in any case; "Not Validated", "NV", "DataIssue" and whatever else comes are not.
+/// True for "Validated" in any case, not for "Not Validated", "NV", "DataIssue" and others.
 bool is_validated(std::string_view quality) {
   constexpr std::string_view kValidated = "validated";
   return std::ranges::equal(quality, kValidated, [](char a, char b) {
@@ -59,7 +59,7 @@ bool is_validated(std::string_view quality) {
   });
 }
 
-/// What it gives is public, and plain http would let it be forged.
+/// The prices are public, but plain http would allow forgery.
 bool is_safe_url(const std::string& url) {
   const UrlTransport transport = transport_of(url);
   return transport == UrlTransport::kSecure || transport == UrlTransport::kLoopback;
@@ -71,13 +71,13 @@ void read_settled(TomlTable table, SettledSource& source) {
   table.finish();
   if (source.url.empty() || !table.ok()) return;
   if (!is_safe_url(settled_url(source, 0, 0))) {
-    return table.fail("url", "must start with https://, or lead to this machine: http://127.0.0.1");
+    return table.fail("url", "must start with https://, or address this machine: http://127.0.0.1");
   }
   const bool has_from = source.url.find("{from}") != std::string::npos;
   const bool has_until = source.url.find("{until}") != std::string::npos;
   const bool has_query = source.url.find('?') != std::string::npos;
   if (has_from != has_until || (has_query && !has_from)) {
-    return table.fail("url", "must hold {from} and {until}, or be without any query: Elia's");
+    return table.fail("url", "must contain {from} and {until}, or be Elia's without a query");
   }
   if (source.ca_file.empty()) return;
   source.ca_file = table.resolved(source.ca_file);
@@ -91,7 +91,7 @@ bool parse_row(JsonValue row, SettledQuarter& quarter) {
   if (start == nullptr || !parse_utc(start, quarter.start_utc_s)) return false;
   if (quarter.start_utc_s % kQuarterHourS != 0) return false;
   const auto price = row["imbalanceprice"].number();
-  // Until May 2024 there were two, of one value.
+  // Until May 2024 there were two prices of equal value.
   const auto found = price ? price : row["positiveimbalanceprice"].number();
   if (!found || !(std::fabs(*found) <= kPlausiblePriceMaxEurPerMwh)) return false;
   quarter.eur_per_mwh = *found;
@@ -141,7 +141,7 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
   const Json json = Json::parse(text);
   const JsonValue rows = json.value().is_list() ? json.value() : json.value()["results"];
   if (!rows.is_list()) {
-    trouble = "the answer is no list of quarter-hours: is [settled] url right?";
+    trouble = "the answer is not a list of quarter-hours: check [settled] url";
     return quarters;
   }
   SettledQuarter quarter;
@@ -149,7 +149,7 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
     if (parse_row(row, quarter)) quarters.push_back(quarter);
   }
   if (quarters.empty() && rows.size() > 0) {
-    trouble = "no row of the answer has datetime and imbalanceprice of a quarter-hour";
+    trouble = "no row of the answer has the datetime and imbalanceprice of a quarter-hour";
   }
   return quarters;
 }
@@ -157,7 +157,7 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
 void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole) {
   constexpr std::int64_t kFirstPauseS = 900, kLongestPauseS = 4 * 3'600;
   pause_s_ = is_whole ? 0 : std::clamp(2 * pause_s_, kFirstPauseS, kLongestPauseS);
-  // Behind the next midnight, when a day more may be there; and not at midnight, as everybody.
+  // After the next midnight, when another day may be available; not at the peak load of midnight.
   constexpr std::int64_t kBehindMidnightS = 2 * 3'600;
   const std::int64_t tomorrow_utc_s =
       midnight_before(midnight_before(now_utc_s) + kSecondsPerDay + kSecondsPerDay / 4) +
@@ -197,9 +197,9 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
       const SettledResult result = fetch_settled(source, now_utc_s, stop);
       schedule.tried(now_utc_s, result.is_whole && result.trouble.empty());
       if (!result.trouble.empty() && result.trouble != trouble_before) {
-        say(JournalLevel::kWarning, result.trouble + "; tried again");
+        say(JournalLevel::kWarning, result.trouble + "; retrying");
       } else if (result.trouble.empty() && !trouble_before.empty()) {
-        say(JournalLevel::kNotice, "fetched again");
+        say(JournalLevel::kNotice, "fetched successfully again");
       }
       trouble_before = result.trouble;
     }

@@ -1,10 +1,9 @@
-// Fetches the settled prices of past quarter-hours once a day, and keeps them in the state folder
-// for `bess-edge earned` (settled_prices.h).
+// Settled price fetcher: once a day, into the state folder, for `bess-edge earned`
+// (settled_prices.h).
 //
-// Asked for is what is not validated yet, since the oldest day that is kept, up to today's local
-// midnight: the day before, and what has become of the days before that. A day that is not there
-// yet, or a server that fails, is tried again after a quarter of an hour, then half an hour, up to
-// every four hours.
+// It requests the prices not yet validated, from the oldest stored day up to today's local
+// midnight: the previous day, and updates of earlier days. A missing day or a failed request is
+// retried after 15 minutes, then 30, up to every four hours.
 #pragma once
 
 #include <cstdint>
@@ -19,29 +18,29 @@ namespace bess {
 
 /// Section [settled].
 struct SettledSource {
-  std::string url;  ///< with {from} and {until}, or Elia's without a query; empty: none is fetched
+  std::string url;  ///< with {from} and {until}, or Elia's without a query; empty: no fetch
   std::string ca_file;
-  std::string file;  ///< in which they are kept
+  std::string file;  ///< state file
   std::int32_t days = 62;
   std::int32_t timeout_ms = 60'000;
 };
 
-/// Of a whole configuration. False with one line: file, key, and what to do.
+/// Reads the section from a configuration. False with one line: file, key and remedy.
 bool load_settled_source(const std::string& path, SettledSource& source, std::string& error);
 
-/// The url for those instants.
+/// The url for these instants.
 std::string settled_url(const SettledSource& source, std::int64_t from_utc_s,
                         std::int64_t until_utc_s);
 
-/// Rows of an answer: a list, or an object with a list `results`, as Elia's portal has both. A row
-/// without a price is left out. Empty with one line in `trouble` when it is something else.
+/// Rows of an answer: a list, or an object with a list `results`, as Elia's portal provides. Rows
+/// without a price are skipped. Empty with one line in `trouble` for another format.
 std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& trouble);
 
-/// When the next try is due.
+/// Schedule of the requests.
 class SettledSchedule {
  public:
   [[nodiscard]] bool is_due(std::int64_t now_utc_s) const { return now_utc_s >= next_utc_s_; }
-  /// `is_whole`: yesterday is there to its last quarter-hour.
+  /// `is_whole`: yesterday is complete.
   void tried(std::int64_t now_utc_s, bool is_whole);
 
  private:
@@ -51,14 +50,14 @@ class SettledSchedule {
 
 struct SettledResult {
   int fetched = 0;        ///< quarter-hours in the answer
-  bool is_whole = false;  ///< up to the last of yesterday
-  std::string trouble;    ///< empty: fetched and kept
+  bool is_whole = false;  ///< up to the last quarter-hour of yesterday
+  std::string trouble;    ///< empty: fetched and stored
 };
-/// Now, at once; waits as long as the settings say.
+/// Fetches now; waits as long as the settings say.
 SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
                             const std::stop_token& stop);
 
-/// Tries whenever it is due, until a stop is requested.
+/// Fetches whenever due, until a stop request.
 void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
                          const std::stop_token& stop);
 

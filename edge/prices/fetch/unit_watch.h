@@ -1,6 +1,6 @@
-// Are the prices in the unit that is configured? Pure, over the rows as they come. Thresholds from
-// data: no honest minutes of 2023 to 2025 stay within 2 EUR/MWh for 15 minutes, no settled
-// quarter-hours for two and a half hours; in EUR/kWh every hour does, with three decimals and more.
+// Price unit check, pure, over the incoming rows. Thresholds from data: correct minutes of 2023 to
+// 2025 never stay within 2 EUR/MWh for 15 minutes, settled quarter-hours never for 2.5 hours; in
+// EUR/kWh every hour does, with three or more decimals.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace bess {
 
 class UnitWatch {
  public:
-  /// A newer row than the one before; others change nothing.
+  /// Takes a newer row; older ones are ignored.
   void observe(const PriceRow& row) {
     if (row.minute_utc_s <= newest_utc_s_) return;
     newest_utc_s_ = row.minute_utc_s;
@@ -24,7 +24,7 @@ class UnitWatch {
     has_jumped_ = small_.rows >= kJumpRows && (has_jumped_ || is_jump(row));
     if (small_.rows == 0) usual_centi_ = size_centi;
   }
-  /// They are certainly, or most likely, in another unit: not to be traded on.
+  /// Certainly or most likely another unit: must not be traded on.
   [[nodiscard]] bool is_doubtful() const {
     const bool is_fine = small_.finer * 4 >= small_.rows;
     return has_jumped_ || (small_.varies && small_.lasts_s() >= (is_fine ? kHourS : 3 * kHourS)) ||
@@ -62,7 +62,7 @@ class UnitWatch {
 
   std::int64_t newest_utc_s_ = 0;
   Run small_, large_;
-  std::int32_t usual_centi_ = 0;  ///< size of the last row that was not small
+  std::int32_t usual_centi_ = 0;  ///< magnitude of the last row that was not small
   bool has_jumped_ = false;
 };
 

@@ -18,11 +18,11 @@ namespace bess {
 namespace {
 
 struct Place {
-  std::string host;  ///< without the brackets of IPv6
-  std::string port;  ///< empty: the scheme's
+  std::string host;  ///< without IPv6 brackets
+  std::string port;  ///< empty: the scheme's default
 };
 
-/// False where the URL names no host, or a port that is no number.
+/// False if the URL has no host or a non-numeric port.
 bool find_place(std::string_view url, Place& place) {
   const UrlParts parts = url_parts(url);
   const std::size_t begin = parts.authority_at + parts.login_bytes;
@@ -37,7 +37,7 @@ bool find_place(std::string_view url, Place& place) {
          place.port.find_first_not_of("0123456789") == place.port.npos;
 }
 
-/// 127.0.0.0/8 and [::1], as numbers.
+/// Numeric 127.0.0.0/8 and [::1].
 bool is_loopback(const std::string& host) {
   in_addr v4{};
   in6_addr v6{};
@@ -75,7 +75,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// "Name: value" with a name of letters, digits and dashes, and no control character.
+/// "Name: value" with a name of letters, digits, - and _, and no control character.
 bool is_header(std::string_view line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos || colon == 0) return false;
@@ -89,7 +89,7 @@ bool is_header(std::string_view line) {
   return true;
 }
 
-/// Keeps the header lines of a file's text. False with the number of the first line that is none.
+/// Stores the header lines of a file's text. False with the number of the first invalid line.
 bool keep_headers(std::string_view text, FixedText<2047>& headers, int& line_number) {
   std::string kept;
   for (line_number = 1; !text.empty(); ++line_number) {
@@ -103,8 +103,8 @@ bool keep_headers(std::string_view text, FixedText<2047>& headers, int& line_num
   return headers.assign(kept);
 }
 
-/// Parameter names of Elia's Opendatasoft, versions 1 and 2. Any other name may hold a secret:
-/// code, sig and appid do, as well as apikey and token.
+/// Parameter names of Elia's Opendatasoft, versions 1 and 2. Any other name may be secret, such as
+/// code, sig, appid, apikey and token.
 bool is_harmless(std::string_view name) {
   constexpr std::string_view kNames[] = {"dataset", "exclude", "format",   "group_by", "lang",
                                          "limit",   "offset",  "order_by", "refine",   "rows",
@@ -112,12 +112,12 @@ bool is_harmless(std::string_view name) {
   return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
-/// "name=value" of a query: with the value hidden, or all of it where there is no name to show.
+/// "name=value" of a query with the value hidden; all of it hidden without a name.
 std::string shown_piece(std::string_view piece) {
   const std::size_t equals = std::min(piece.find('='), piece.size());
   const std::string_view name = piece.substr(0, equals);
   if (piece.empty() || is_harmless(name)) return std::string(piece);
-  // The = at the end of a bare token is its padding.
+  // Trailing = of a bare token is padding.
   const bool has_value = piece.find_first_not_of('=', equals) != std::string_view::npos;
   return has_value ? std::string(name) + "=..." : "...";
 }
@@ -132,20 +132,20 @@ bool load_http_headers(const char* path, FixedText<2047>& headers, std::string& 
     return false;
   }
   if ((info.st_mode & S_IRWXO) != 0) {
-    error = std::string(path).append(": others may read this file of secrets: chmod o-rwx it");
+    error = std::string(path).append(": secret, but readable by other users: chmod o-rwx it");
     return false;
   }
   char text[2048];
   const ssize_t size = read(file.get(), text, sizeof text);
   if (size < 0 || size == sizeof text) {
-    error = std::string(path).append(size < 0 ? ": cannot be read: is it a file?"
-                                              : ": is too long (at most 2047 bytes)");
+    error = std::string(path).append(size < 0 ? ": cannot be read (is it a file?)"
+                                              : ": too long (at most 2047 bytes)");
     return false;
   }
   int line_number = 0;
   if (keep_headers({text, static_cast<std::size_t>(size)}, headers, line_number)) return true;
   error = std::string(path) + ":" + std::to_string(line_number) +
-          ": is no header; write one \"Name: value\" a line";
+          ": not a header; write one \"Name: value\" per line";
   return false;
 }
 
@@ -166,7 +166,7 @@ FixedText<511> loggable_url(std::string_view url) {
   std::size_t query_at = std::min(url.find_first_of("?&;#", parts.path_at), url.size());
   std::string shown(url.substr(0, parts.authority_at));
   shown.append(url.substr(host_at, query_at - host_at));
-  while (query_at < url.size()) {  // piece by piece, each behind its separator
+  while (query_at < url.size()) {  // piece by piece, each after its separator
     shown.push_back(url[query_at++]);
     const std::size_t end = std::min(url.find_first_of("?&;#", query_at), url.size());
     shown.append(shown_piece(url.substr(query_at, end - query_at)));

@@ -1,5 +1,5 @@
-// The newest usable price row of all requests, as the control loop gets it, and the check that
-// holds a row after a large price step until the next row confirms it. No I/O, no clock.
+// Newest usable price row of all requests for the control loop, with the check that holds a row
+// after a large price step until the next row confirms it. No I/O, no clock.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace bess {
 
-// One row alone does not move the battery: a price that lies further from the one before than
-// 2300 EUR/MWh is held until the next row tells whether it was real. Pure integers.
+// Step check: a single row does not move the battery. A price that differs from the previous one by
+// more than 2300 EUR/MWh waits until the next row confirms it. Pure integers.
 
 class StepHold {
  public:
@@ -18,13 +18,12 @@ class StepHold {
 
   struct Verdict {
     bool is_taken = false;
-    bool is_large_step = false;  ///< further from the price before than that
+    bool is_large_step = false;  ///< differs by more than that
   };
 
-  /// Of a row that is not older than `before`, the newest one taken so far. What is held is
-  /// confirmed by a later row within the step of it, and given up for a row within the step of
-  /// `before`; a row far from both is held in its place. A row older than what is held is a stale
-  /// cache's.
+  /// Judges a row that is not older than `before`, the newest accepted one. A later row within the
+  /// step of the pending row confirms it; a row within the step of `before` discards it; a row far
+  /// from both replaces it. A row older than the pending one is from a stale cache.
   constexpr Verdict judge(const PriceRow& before, const PriceRow& row) {
     if (has_held_ && row.minute_utc_s < held_.minute_utc_s) return {};
     if (!is_large(before, row)) return take(false);
@@ -37,7 +36,7 @@ class StepHold {
   }
 
   [[nodiscard]] constexpr bool has_held() const { return has_held_; }
-  /// Only while something is held.
+  /// Valid only while a row is pending.
   [[nodiscard]] constexpr const PriceRow& held() const { return held_; }
 
  private:
@@ -56,12 +55,12 @@ class StepHold {
 
 class NewestRow {
  public:
-  /// How a request ended, and its row when that is kOk.
+  /// Result of a request, with its row for kOk.
   void publish(Status status, const PriceRow& row, std::int64_t received_monotonic_ns,
                std::int32_t fetch_us) {
     report_.status = status;
     if (status != Status::kOk) return;
-    // An older row than the one known is a stale cache talking.
+    // A row older than the known one is from a stale cache.
     if (report_.has_row && row.minute_utc_s < report_.minute_utc_s) return;
     const bool is_newer = !report_.has_row || row.minute_utc_s > report_.minute_utc_s;
     if (!accept(row) || !is_newer) return;
@@ -71,8 +70,8 @@ class NewestRow {
   [[nodiscard]] const PriceReport& report() const { return report_; }
 
  private:
-  /// A newer minute, or the same one: a duplicate changes nothing, a correction replaces the price.
-  /// False when the row before stays: this one is a duplicate, or is held.
+  /// Takes a newer minute, or the same one: a duplicate changes nothing, a correction replaces the
+  /// price. False if the previous row stays: duplicate, or pending.
   [[nodiscard]] bool accept(const PriceRow& row) {
     const PriceRow before{.minute_utc_s = report_.minute_utc_s,
                           .price_centi_eur_per_mwh = report_.price_centi_eur_per_mwh};

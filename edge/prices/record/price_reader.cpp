@@ -93,7 +93,7 @@ void PriceReader::await_change(std::int64_t until_monotonic_ns) {
   constexpr int kUnwatchedMs = 10, kWatchedMs = 1'000;
   if (notices_ >= 0 && watch_ < 0) {
     watch_ = inotify_add_watch(notices_, folder_of(settings_.path.c_str()).c_str(), IN_MOVED_TO);
-    if (watch_ >= 0) return;  // it may have come before the watch
+    if (watch_ >= 0) return;  // the file may have changed before the watch
   }
   pollfd waiting{.fd = watch_ < 0 ? -1 : notices_, .events = POLLIN, .revents = 0};
   const int most_ms = watch_ < 0 ? kUnwatchedMs : kWatchedMs;
@@ -125,7 +125,7 @@ void PriceReader::read() {
   board_.offers.post();
 }
 
-/// What a sound bess-prices never says of a row.
+/// Rejects rows that a healthy bess-prices never publishes.
 Status PriceReader::refusal_of(const PublishedPrices& published) const {
   if (published.status != Status::kOk) return published.status;
   const PriceRow& row = published.row;
@@ -141,7 +141,7 @@ void PriceReader::take(const PublishedPrices& published) {
   published_ = published;
   if (published.answers == 0 || published.answers == taken_answers_) return;
   taken_answers_ = published.answers;
-  // A later instant than now is another machine's, or a lie: what came is new at most.
+  // A receipt time in the future is wrong: it counts as now at most.
   const std::int64_t received_ns =
       std::min(published.received_monotonic_ns, clock_ns(CLOCK_MONOTONIC));
   newest_.publish(refusal_of(published), published.row, received_ns, published.fetch_us);

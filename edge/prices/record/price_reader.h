@@ -1,5 +1,5 @@
-// The prices that bess-prices publishes, as the control loop takes them: read on the control thread
-// with a deadline, nothing allocated. Whatever happens to bess-prices, the newest row ages here.
+// Price reader: prices published by bess-prices, read on the control thread with a deadline and
+// without allocation. Whatever happens to bess-prices, the newest row ages here.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,24 @@ class PriceReader {
  public:
   struct Settings {
     FixedText<639> path;
-    const OutlookModel* model = nullptr;  ///< of a student by outlook
+    const OutlookModel* model = nullptr;  ///< for a student by outlook
   };
   PriceReader(const Settings& settings, const ScaledClock& clock);
   PriceReader(const PriceReader&) = delete;
   PriceReader& operator=(const PriceReader&) = delete;
   ~PriceReader();
 
-  // As ControlLoop asks (control_loop.h); bess-prices begins at the tick by itself.
+  // Interface of ControlLoop (control_loop.h); bess-prices starts at the tick by itself.
   void request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
                std::int64_t deadline_monotonic_ns);
   bool wait(std::int64_t until_monotonic_ns);
   PriceReport latest();
 
-  /// Waits for a first answer, at most so long on the wall; its status.
+  /// Waits up to a wall time for a first answer; returns its status.
   Status first_answer(std::int64_t patience_ns);
-  /// Waits for what the last hours say of the price level.
+  /// Waits for the price level of the last hours.
   PublishedHistory await_history(std::int64_t patience_ns);
-  /// Waits for a plan; null where the student's context is another.
+  /// Waits for a plan; null for other contexts of the student.
   OutlookBoard* await_outlook(std::int64_t patience_ns);
 
  private:
@@ -51,7 +51,7 @@ class PriceReader {
   OutlookBoard board_;
   PublishedPrices published_;
   PublishedOutlook outlook_;
-  Status reading_ = Status::kNoFetcher;  ///< kOk: there is a sound record
+  Status reading_ = Status::kNoFetcher;  ///< kOk: there is a valid record
   std::int64_t wanted_minute_utc_s_ = 0;
   std::int64_t taken_answers_ = -1;
   std::int64_t taken_outlook_ = 0;

@@ -1,4 +1,4 @@
-// A price and its minute; where a source has them.
+// Price row: a price and its minute, and the fields of a source.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace bess {
 
-/// Where the rows are, what their fields are called, and what their prices mean; a dot leads into
-/// an inner object.
+/// Location of the rows, names of their fields, and meaning of their prices; a dot leads into an
+/// inner object.
 struct PriceFields {
   FixedText<63> rows = "results";
   FixedText<63> time = "datetime";
   FixedText<63> price = "imbalanceprice";
-  std::int32_t eur_per_mwh_e1 = 10;    ///< ten times what 1 in the source's unit is in EUR/MWh
-  StaticVector<double, 8> no_price{};  ///< numbers that stand for none, in the source's unit
+  std::int32_t eur_per_mwh_e1 = 10;    ///< EUR/MWh of one source unit, times ten
+  StaticVector<double, 8> no_price{};  ///< numbers that mean "no price", in the source's unit
 };
 
 struct PriceRow {

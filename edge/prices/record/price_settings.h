@@ -1,4 +1,4 @@
-// [price] and the like, as read: whom bess-prices asks, and what the controller makes of it.
+// Price settings as read from [price], [outlook] and related sections.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ struct HttpSettings {
   FixedText<511> url;
   FixedText<255> ca_file = "/etc/ssl/certs/ca-certificates.crt";
   FixedText<2047> headers;          ///< lines of the header file; secret
-  std::int32_t timeout_ms = 5'000;  ///< of one request with its redirects, wall time
+  std::int32_t timeout_ms = 5'000;  ///< one request with its redirects, wall time
 };
 
-/// The requests of a cycle, and the time over which they are spread.
+/// Requests of a cycle, and the time over which they are distributed.
 inline constexpr int kPriceRequests = 4;
 inline constexpr std::int32_t kPriceWait_s = 20;
-/// For all pages of the history together; then what has come must do.
+/// Time for all pages of the history; later pages are ignored.
 inline constexpr std::int32_t kHistoryWait_s = 20;
 
 struct PriceFeedSettings {
@@ -30,14 +30,14 @@ struct PriceFeedSettings {
 
 struct HistorySettings {
   std::int32_t hours = 72;  ///< 0 = none
-  FixedText<511> url;       ///< asked for what the price URL no longer has; empty = nothing
+  FixedText<511> url;       ///< source of rows older than the price URL has; empty = none
 };
 
-/// What a status means when it comes from the price server, and what mends it.
+/// Meaning and remedy of a status of the price server.
 constexpr std::string_view price_status_text(Status status) {
   switch (status) {
     case Status::kNotConnected:
-      return "no connection, or it was cut (are host and port of url right, is the network up?)";
+      return "no connection, or lost (are host and port of url right, is the network up?)";
     case Status::kTimeout:
       return "no complete answer in time";
     default:
@@ -45,9 +45,9 @@ constexpr std::string_view price_status_text(Status status) {
   }
 }
 
-// [outlook]: where day-ahead prices come from.
+// [outlook]: source of day-ahead prices.
 
-/// energy-charts, of Belgium; {today} and {tomorrow} in a url stand for local dates.
+/// energy-charts, for Belgium; {today} and {tomorrow} in a url are replaced by local dates.
 inline HttpSettings usual_day_ahead_server() {
   HttpSettings http;
   http.url = "https://api.energy-charts.info/price?bzn=BE&start={today}&end={tomorrow}";
@@ -58,8 +58,8 @@ inline HttpSettings usual_day_ahead_server() {
 struct OutlookSettings {
   HttpSettings http = usual_day_ahead_server();
   PriceFields fields{.rows = "", .time = "unix_seconds", .price = "price"};
-  FixedText<639> file;            ///< with the answer of such a server; empty: the url is asked
-  std::int32_t ask_offset_s = 0;  ///< so that many machines do not ask at one instant
+  FixedText<639> file;            ///< an answer in the server's format; empty: the url is used
+  std::int32_t ask_offset_s = 0;  ///< distributes the requests of many machines in time
 };
 
 }  // namespace bess

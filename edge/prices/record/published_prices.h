@@ -1,5 +1,5 @@
-// What bess-prices publishes and bess-edge reads: one file of fixed size, replaced at once, of two
-// parts, each with a checksum. A file of another format, or a damaged one, is no prices.
+// Published price file: fixed size, two checked parts, replaced atomically. Written by bess-prices,
+// read by bess-edge. Another format or a damaged file counts as no prices.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace bess {
 
 inline constexpr const char* kPricesFileName = "prices";
 
-/// What the prices of the last hours say of the level that a first start begins with.
+/// Price level of the last hours, for a first start.
 struct PublishedHistory {
-  bool is_done = false;  ///< false: still being fetched, or not wanted
+  bool is_done = false;  ///< false: still being fetched, or not needed
   std::int32_t hours = 0;
   std::int32_t rows = 0;
-  Status status = Status::kOk;  ///< what ended the fetching
+  Status status = Status::kOk;  ///< status at the end of the fetch
   PriceLevel level{};
 };
 
@@ -28,16 +28,16 @@ struct PublishedPrices {
 
   std::uint32_t format = kFormat;
   std::int64_t written_monotonic_ns = 0;
-  std::int64_t answers = 0;        ///< requests that have ended so far
+  std::int64_t answers = 0;        ///< requests completed so far
   Status status = Status::kNoRow;  ///< of the last of them
   PriceRow row{};  ///< newest usable one of the last good answer; minute 0: none yet
   std::int64_t received_monotonic_ns = 0;  ///< of that answer
   std::int32_t fetch_us = 0;
-  std::int32_t rows_passed_over = 0;  ///< of the last answer: without a price that is a number
-  std::int64_t served_minute_utc_s =
-      0;  ///< newest minute whose row is in, or is not asked for more
+  std::int32_t rows_passed_over = 0;  ///< rows of the last answer without a numeric price
+  /// Newest minute whose row was received, or is no longer requested.
+  std::int64_t served_minute_utc_s = 0;
   PublishedHistory history{};
-  std::int64_t outlook_number = 0;  ///< of the second part; 0: there is none
+  std::int64_t outlook_number = 0;  ///< of the second part; 0: none
 };
 
 /// For a student by outlook.
@@ -51,13 +51,13 @@ inline constexpr std::size_t kPublishedPricesBytes =
 inline constexpr std::size_t kPublishedBytesMax =
     kPublishedPricesBytes + sizeof(PublishedOutlook) + sizeof(std::uint32_t);
 
-/// Returns the bytes used of `file`, which holds at least kPublishedBytesMax; `outlook`: null =
-/// none.
+/// Returns the bytes used of `file`, which holds at least kPublishedBytesMax; `outlook` may be
+/// null.
 std::size_t encode_published(const PublishedPrices& prices, const PublishedOutlook* outlook,
                              std::span<char> file);
 /// kMalformed: damaged, or values out of range; kOtherVersion: another format.
 Status decode_published(std::span<const char> file, PublishedPrices& prices);
-/// The second part, of a file that has one.
+/// The second part of a file that has one.
 Status decode_outlook(std::span<const char> file, PublishedOutlook& outlook);
 
 }  // namespace bess
