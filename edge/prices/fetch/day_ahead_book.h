@@ -2,10 +2,10 @@
 // instant is what was received by then; tomorrow's prices not before 13:00 local time, as on the
 // workstation (market/series/day_ahead.h), which rejects earlier prices.
 //
-// Of a whole day the first answer is kept. Refused is an answer, or a day of it, that
-//   disagrees   with more than a tenth of the stored prices: shifted by an hour or a day, or another market
-//   repeats     the previous day, price by price: an old answer
-//   is constant all day: zeros published until the auction
+// Of a whole day the first answer is kept. Refused is an answer, or a day of it, that is
+//   different   from a tenth of the stored prices: shifted by an hour or a day, or another market
+//   repeated    from the previous day, price by price: an old answer
+//   constant    all day: zeros published until the auction
 // Stored prices then stay valid until the end of their day. Prices assumed by the layout
 // (day_ahead_rows.h) are planned on, but their day is incomplete: it is requested again, and a
 // later answer replaces them; if unchanged after hours, they are accepted.

@@ -118,7 +118,7 @@ void check_findings(const CycleRecord& last, std::vector<std::string>& reasons) 
 
 std::string meaning_of(Reason reason) {
   const ReasonInfo& info = info_of(reason);
-  return std::string(": ") + info.meaning + "; check: " + info.look_at;
+  return std::string(": ") + info.meaning + "; look at " + info.look_at;
 }
 
 /// `number`: 1 + index, 0 = none.
