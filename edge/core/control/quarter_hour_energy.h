@@ -6,7 +6,6 @@
 // Unmeasured time (a gap longer than `gap_s_max`, or before the first reading) counts as the cap,
 // or as a higher neighbouring reading. After a restart the rest of the quarter-hour keeps its own
 // share of the cap and no more.
-// quarter-hour has its own share of the cap left and nothing that may not be there.
 #pragma once
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 // A request ends within connect time-out + connect delay + quiet + gap + response time-out (RTU:
 // plus the frames' time on the line; plus `late_reply_ms_max` if a late reply could be mistaken),
 // whatever the device sends. No allocation after the constructor.
-// the constructor.
 #pragma once
 
 #include <cstdint>

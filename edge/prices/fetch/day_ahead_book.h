@@ -9,7 +9,6 @@
 // Stored prices then stay valid until the end of their day. Prices assumed by the layout
 // (day_ahead_rows.h) are planned on, but their day is incomplete: it is requested again, and a
 // later answer replaces them; if unchanged after hours, they are accepted.
-// is asked for again, and a later answer replaces them; said again after hours, they are believed.
 #pragma once
 
 #include <cstdint>
