@@ -1,5 +1,5 @@
-// edge/device/maps/points.md: of every point of every map, what becomes of a value that is missing
-// or beyond its range. Held against the maps here; BESS_UPDATE_GOLDEN renews it.
+// Point policies: edge/device/maps/points.md lists the treatment of missing and out-of-range values
+// of every point. Compared with the maps here; BESS_UPDATE_GOLDEN updates it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,10 +30,10 @@ std::string beyond(const RegisterPoint& p) {
 TEST(PointPolicies, StandInTheTable) {
   std::ostringstream table;
   table << "# Points of the register maps\n\n"
-           "What becomes of a value that cannot be read, or lies beyond its range. *required*: "
-           "nothing is\nmeasured without it; *protective*: the battery is stopped without it; "
-           "*read*: told or compared; the\nrest is written, or looked at for identity. *optional*: "
-           "required as soon as the device has shown it.\n";
+           "Treatment of values that cannot be read or are out of range. *required*: no "
+           "measurement without it;\n*protective*: the battery is stopped without it; *read*: "
+           "reported or compared; the rest is written,\nor checked for identity. *optional*: "
+           "required once the device has shown it.\n";
   for (const MapVariant& variant : kShippedMapVariants) {
     const RegisterMap map = load_shipped_map(variant);
     table << "\n## " << variant.map << (*variant.variant == '\0' ? "" : " ") << variant.variant
@@ -45,7 +45,7 @@ TEST(PointPolicies, StandInTheTable) {
       if (p.model >= 0) table << "model " << map.models[p.model] << " + ";
       table << p.address << " | " << p.value_min << " to " << p.value_max << " | "
             << role_of(map, i) << (p.optional ? ", optional" : "") << " | " << beyond(p) << " | "
-            << (p.unknown_is_max ? "taken for the largest" : "no value") << " |\n";
+            << (p.unknown_is_max ? "read as the maximum" : "no value") << " |\n";
     }
   }
   expect_golden(BESS_SOURCE_DIR "/edge/device/maps/points.md", table.str());
