@@ -23,7 +23,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kNameUnresolved,  ///< the price server's name has no address, or no name server answers
     kTlsRefused,      ///< no trusted TLS connection to the price server
     kHttpError,       ///< the price server answered, but not with 200
-    kMalformed,       ///< the price server's answer is not what the configuration describes
+    kMalformed,       ///< the price server's answer does not match the configuration
     kNoRow,           ///< a valid answer without a usable price
     kTooLarge,        ///< more bytes than the fixed buffer holds
     kNoMemory,        ///< written by earlier versions only
@@ -58,19 +58,19 @@ constexpr std::string_view status_name(Status status) {
 constexpr std::string_view status_text(Status status) {
   constexpr std::string_view kTexts[] = {
       "ok",
-      "no connection (are host and port right, is it running, does it serve one client only?)",
+      "no connection (check host and port; is it running? does it serve only one client?)",
       "timeout (check the unit id)",
-      "Modbus exception (does the register map fit this model?)",
+      "Modbus exception (check that the register map fits this model)",
       "device busy",
-      "not permitted (is external control enabled on the device?)",
+      "not permitted (enable external control on the device)",
       "invalid reply (does not match the request)",
       "value outside its plausible range",
       "order acknowledged but not applied (read-back differs)",
       "the register map cannot express this order",
       "daily write limit of flash registers reached (see the map's write budget)",
-      "cannot resolve the name of the price server (is the name server reachable?)",
-      "no trusted TLS connection to the price server (are ca_file and the clock right?)",
-      "HTTP error from the price server (are url and the key in header_file right?)",
+      "cannot resolve the name of the price server (check the name server)",
+      "no trusted TLS connection to the price server (check ca_file and the clock)",
+      "HTTP error from the price server (check url and the key in header_file)",
       "answer of the price server is not the JSON that [price] describes (check rows_field)",
       "no usable price in the answer of the price server (check time_field and price_field)",
       "answer larger than the buffer",

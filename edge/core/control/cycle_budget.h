@@ -33,7 +33,7 @@ class ReversalCap {
     step_ = utc_s / kSecondsPerStep;
   }
 
-  /// Called once per cycle, before its decision. A clock step backwards keeps the history.
+  /// Called once per control cycle, before its decision. A clock step backwards keeps the history.
   constexpr void advance(std::int64_t utc_s) {
     const std::int64_t step = utc_s / kSecondsPerStep;
     const std::int64_t passed = step > step_ ? step - step_ : 0;

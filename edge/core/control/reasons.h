@@ -31,7 +31,7 @@ namespace bess {
       "until all cells are between {temperature_min_c} and {temperature_max_c} °C")                \
   ROW(kOffGrid, 5, "off_grid", kReleases,                                                          \
       "off-grid: released at once, so that the battery can supply the house",                      \
-      "grid failure; no action", "until the battery is back on the grid")                          \
+      "the grid; no action needed", "until the battery is back on the grid")                       \
   ROW(kGridUnknown, 41, "grid_unknown", kReleases,                                                 \
       "grid state unknown: released at once, as if off-grid",                                      \
       "`status` names the register; gateway, cable, the device's own display",                     \
@@ -79,7 +79,7 @@ namespace bess {
   ROW(kCapacity, 24, "capacity", kReleases,                                                        \
       "capacity differs from the configured one; `battery=` may say implausible: the identity "    \
       "check fails too",                                                                           \
-      "the right battery?; `capacity_wh`", "until it reports the configured capacity")             \
+      "identity of the battery; `capacity_wh`", "until it reports the configured capacity")        \
   ROW(kSocJump, 25, "soc_jump", kRests,                                                            \
       "SoC changed by more than power explains; 0 W until three readings agree",                   \
       "the battery's display", "until three readings of the SoC agree")                            \
@@ -134,7 +134,7 @@ namespace bess {
       "is returned",                                                                               \
       "none; `[meter]`", "until the quarter-hour is over at {quarter_hour_end}")                   \
   ROW(kRamp, 18, "ramp", kGoesOn, "the order was cut to `ramp_w_max`", "none",                     \
-      "{ramp_w_max} W more each cycle")                                                            \
+      "{ramp_w_max} W more each control cycle")                                                    \
   ROW(kHeld, 27, "held", kGoesOn, "operator's `bess-edge hold`", "`status`: power and end time",   \
       "until {hold_end}; `bess-edge hold --release` ends it earlier")                              \
   ROW(kRule, 35, "rule", kGoesOn, "operator's rule exported with the student",                     \

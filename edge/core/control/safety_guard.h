@@ -45,7 +45,7 @@ struct GuardInputs {
   bool has_price = false;
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
-  bool price_is_frozen = false;  ///< for so long that it is no price
+  bool price_is_frozen = false;  ///< long enough to count as no price
   bool price_stands_in = false;  ///< estimate, because the newest price is too old
   Action student_action = Action::kIdle;
   bool held = false;                ///< an operator's hold is in force

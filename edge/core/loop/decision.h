@@ -1,4 +1,4 @@
-// Decision inputs besides those of the cycle parts: the record's reading and price, and the
+// Decision inputs in addition to those of the cycle parts: the record's reading and price, and the
 // student.
 #pragma once
 

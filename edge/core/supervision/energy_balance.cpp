@@ -94,7 +94,7 @@ constexpr int kIntervalsOfDrift = 10;
 constexpr std::int64_t kHalfSigmasToTell = 4;
 constexpr std::int64_t kHalfSigmasToContradict = 5;
 constexpr std::int64_t kPercent = 100;
-/// Error of any SoC besides its resolution, in 1e-4 of the capacity.
+/// Error of any SoC in addition to its resolution, in 1e-4 of the capacity.
 constexpr std::int64_t kSocErrorE4 = 15;
 /// A slow SoC recalibration at rest may move this much; more is no counting error.
 constexpr std::int64_t kRestContradictedE4 = 2'000;

@@ -6,7 +6,7 @@
 //   every other one         3 2 5              found by the 2nd, after 3
 //   every third one         3 2 1 4 3 2 5      found by the 3rd, after 7
 //   every fourth or rarer   3 2 1 0 3 ...      never: three good readings forgive a bad one,
-//                                              unless by what it moves (energy_balance.h)
+//                                              but found by its energy (energy_balance.h)
 #pragma once
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 //   0 W that ended, and no power flows                     the battery rests, as ordered
 //   charging that ended near full, discharging near empty  nothing left to do
 //   alarm, off-grid, charging in the cold                  the device's own safety
-//   expired, link lost, released                           the driver tells these apart
+//   expired, link lost, released                           distinguished by the driver
 #pragma once
 
 #include <algorithm>

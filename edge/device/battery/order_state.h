@@ -1,6 +1,6 @@
 // Order state in the device: a pure state machine over CLOCK_MONOTONIC instants.
 //
-//   none --enabled--> enabled --taken--> in force --fed, taken again--> in force
+//   none --enabled--> enabled --taken--> in force --refreshed, retaken--> in force
 //    ^                   |                  |
 //    +------ lost -------+------ lost ------+      replaced, ended, expired, refused or released
 //

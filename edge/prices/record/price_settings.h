@@ -37,7 +37,7 @@ struct HistorySettings {
 constexpr std::string_view price_status_text(Status status) {
   switch (status) {
     case Status::kNotConnected:
-      return "no connection, or lost (are host and port of url right, is the network up?)";
+      return "no connection, or lost (check host and port of url, and the network)";
     case Status::kTimeout:
       return "no complete answer in time";
     default:
