@@ -110,8 +110,8 @@ class EnergyPath {
 //
 //   a = 2.5 % per day   apparent wrong energy of a healthy battery
 //
-// A fault of r per day is found before it moves h r / (r - a) plus one reading: less than 2 h for
-// any r from 5 % per day. A fault below a is never found.
+// A fault of r per day is found before it moves h r / (r - a) plus one reading: less than
+// twice h for any r from 5 % per day. A fault below a is never found.
 
 class WrongEnergy {
  public:

@@ -4,9 +4,9 @@
 //   changes suddenly by more than power explains                            jump: recalibrated
 //   shows another share of the energy, or loses some at rest                warning
 //                                                                           (energy_balance.h)
-// Near the ends the SoC may stick and be recalibrated: charging above 95 % and discharging below 10
-// % explain a constant SoC or a larger change than power. Only these: discharging at 97 %, it must
-// fall. And only for as much energy as a correct SoC can be wrong by.
+// Near the ends the SoC may stick and be recalibrated: charging above 95 % and discharging below
+// 10 % explain a constant SoC or a larger change than power. Only these: discharging at 97 %, it
+// must fall. And only for as much energy as a correct SoC can be wrong by.
 #pragma once
 
 #include <cstdint>
