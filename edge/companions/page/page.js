@@ -4,9 +4,13 @@
 const kEveryMs = 10000;
 const kStepMs = 120000;
 const kHourMs = 3600000;
+const kDayMs = 24 * kHourMs;
+/** Reasons whose cycle had no price, or not a current one: it is not drawn as a price. */
+const kWithoutPrice = new Set(["no_price", "price_age", "price_qh", "frozen_price", "stand_in"]);
 const charts = {};  // by canvas: {chart, draw}
 let shownCycle = null;
 let state = null;  // newest answer of api/status
+let shownDay = null;  // "2026-11-23", or null: the last 24 hours
 let isAsking = false;  // one request at a time, also when it hangs
 
 const byId = (id) => document.getElementById(id);
@@ -24,6 +28,9 @@ function say(value, decimals = 0, unit = "") {
   return value.toLocaleString("en", digits).replace("-", "\u2212") + (unit && "\u00a0" + unit);
 }
 const price = (value) => say(value, 2, "EUR/MWh");
+/** "180.20 EUR/MWh at 2026-11-23 18:00"; a dash without day-ahead prices. */
+const ahead = (at) =>
+  at ? `${price(at.eur_per_mwh)} at ${moment(at.utc)}` : "\u2013";
 const percent = (value) => say(value, 1, "%");
 const eur = (value) => say(value, 2, "EUR");
 
@@ -44,38 +51,57 @@ async function ask(path) {
   return answer.headers.get("Content-Type").startsWith("text/csv") ? text : JSON.parse(text);
 }
 
-const doing = (watts) => watts > 0 ? `charge at ${say(watts, 0, "W")}`
-  : watts < 0 ? `discharge at ${say(-watts, 0, "W")}` : "stay idle";
+const does = (watts) => watts > 0 ? `charges at ${say(watts, 0, "W")}`
+  : watts < 0 ? `discharges at ${say(-watts, 0, "W")}` : "is idle";
 const isRunning = () => state.health !== "not running";
 
 function showStatus(status) {
   const last = status.last || {};
-  const measured = (value) => last.has_measurement ? value : undefined;
   const kind = {ok: "good", degraded: "fair"}[status.health] || "bad";
   document.title = byId("name").textContent = status.name || "Battery";
   byId("health").textContent = status.health;
   byId("health").className = "badge " + kind;
-  lines("alarms", [...status.health_reasons, status.unknown,
-                   status.contact && "Call: " + status.contact], "li");
-  const tiles = [
-    ["State of charge", percent(measured(last.soc_e4 / 100))],
-    ["Ordered", say(last.ordered_power_w, 0, "W"), `by ${last.reason}`],
-    ["Measured", say(measured(last.battery_power_w), 0, "W"), "charging is positive"],
-    ["Price", say(last.has_price ? last.price_centi_eur_per_mwh / 100 : undefined, 2), "EUR/MWh"],
-    ["Mode", last.mode || "\u2013"]];
-  if (last.outlook && last.outlook !== "none") {
-    tiles.push(["Break-even", say(last.break_even_centi / 100, 2), `EUR/MWh, ${last.outlook}`]);
-  }
-  fill("numbers", tiles.map(([name, value, note]) =>
-    element("div", "", element("dt", name),
-            element("dd", value, ...(note ? [element("br"), element("small", note)] : [])))));
+  lines("problems", [...status.health_reasons, status.unknown,
+                     status.contact && "Call: " + status.contact], "li");
+  showFlow(last);
   const facts = {
-    version: status.version, student: status.student, "trained on": status.provenance,
-    retrain: status.retrain, battery: status.battery, map: status.map,
-    since: status.start_utc && moment(status.start_utc), update: status.update?.phase};
+    mode: last.mode, version: status.version, battery: status.battery, map: status.map,
+    since: status.start_utc && moment(status.start_utc), update: status.update?.phase,
+    student: status.student, "trained on": status.provenance, retrain: status.retrain};
   fill("facts", Object.entries(facts).filter(([, value]) => value).flatMap(
     ([name, value]) => [element("dt", name), element("dd", value)]));
   showNext(status.next, status.no_effect);
+}
+
+function drawn(name, attributes, text = "") {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.textContent = text;
+  return made;
+}
+
+/** Power between grid, house and battery, W: house = grid - battery, where a meter knows it. */
+function showFlow(last) {
+  const battery = last.has_measurement ? last.battery_power_w : undefined;
+  const grid = last.has_grid_power ? last.grid_power_w : undefined;
+  const isPriced = last.has_price && !kWithoutPrice.has(last.reason);
+  const nodes = [
+    {x: 60, name: "Grid", watts: grid ?? battery, value: say(grid ?? undefined, 0, "W"),
+     note: isPriced ? price(last.price_centi_eur_per_mwh / 100) : "no current price"},
+    {x: 180, name: "Battery", watts: battery, value: say(battery, 0, "W"),
+     note: last.has_measurement ? percent(last.soc_e4 / 100) : "not measured"}];
+  if (grid !== undefined && battery !== undefined) {
+    nodes.push({x: 300, name: "House", watts: grid - battery, value: say(grid - battery, 0, "W"),
+                note: grid < battery ? "feeds in" : "load"});
+  }
+  fill("flow", nodes.flatMap(({x, name, watts, value, note}) => {
+    const isBack = name === "Grid" ? watts < 0 : watts > 0;  // the line starts at the node
+    const flows = Math.abs(watts) >= 1 ? "flows" + (isBack ? " back" : "") : "";
+    return [drawn("line", {x1: x, y1: 88, x2: x, y2: 158, class: flows}),
+            drawn("circle", {cx: x, cy: 50, r: 38}),
+            drawn("text", {x, y: 42}, name), drawn("text", {x, y: 60, class: "value"}, value),
+            drawn("text", {x: x + 5, y: 112, class: "note"}, note)];
+  }).concat(drawn("line", {x1: 60, y1: 158, x2: nodes.at(-1).x, y2: 158})));
 }
 
 function showNext(next, noEffect) {
@@ -83,10 +109,10 @@ function showNext(next, noEffect) {
   if (!next) {
     told.push("No next decision.");
   } else if (next.action === null) {
-    told.push(`At ${next.local} no control without price and measurement.`);
+    told.push(`At ${next.local}: no control without price and measurement.`);
   } else {
     told.push(
-      `At ${next.local} it will ${doing(next.power_w)} if price and state of charge stay.`);
+      `At ${next.local} it ${does(next.power_w)} if price and state of charge stay.`);
   }
   if (next?.reason) told.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
   for (const change of next?.reserve_changes || []) {
@@ -95,27 +121,35 @@ function showNext(next, noEffect) {
   if (typeof next?.full_charge_in_days === "number") {
     told.push(`Days to the next full charge: ${next.full_charge_in_days}.`);
   }
-  lines("next", [...told, ...noEffect.map((key) => `Unused setting: ${key}`)], "li");
+  lines("next", [...told, ...noEffect.map((key) => `Set, but without effect: ${key}`)], "li");
 }
 
 function showWhy(why) {
-  const ends = why.ends ? `; ${why.ends}` : "";
-  byId("sentence").textContent =
-    `At ${why.local} the order was to ${doing(why.ordered_power_w)}, decided by ${why.reason}, ` +
-    `for ${say(why.cycles_with_reason)} control cycles${ends}.`;
-  const told = [`Price ${price(why.price_eur_per_mwh)}, state of charge ` +
-                `${percent(why.soc_percent)}. Student: ${why.student || "no decision"}.`];
   const at = why.margins;
+  const cause = why.reason !== "student" ? `${why.meaning || why.reason} (${why.reason})`
+    : `the price of ${price(why.price_eur_per_mwh)} is ` +
+      (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
+  byId("sentence").textContent =
+    `The battery ${does(why.ordered_power_w)}: ${cause}, since ${clock(why.since_utc)}` +
+    `${why.ends ? ", " + why.ends : ""}.`;
+  const told = [
+    `${why.local}: price ${price(why.price_eur_per_mwh)}, state of charge ` +
+    `${percent(why.soc_percent)}. ` +
+    (why.student ? `Student: ${why.student}.` : "No student decision.")];
   if (at) {
     told.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
-              `${price(at.discharge_from_eur_per_mwh)}; between them it is idle.`);
+              `${price(at.discharge_from_eur_per_mwh)}; in between it is idle.`);
   }
   if (at?.charge_up_to_soc_percent != null) {
-    told.push(`At this price it would charge up to ${percent(at.charge_up_to_soc_percent)}.`);
+    told.push(`At this price it charges up to ${percent(at.charge_up_to_soc_percent)}.`);
   }
   if (at?.discharge_from_soc_percent != null) {
-    told.push(
-      `At this price it would discharge from ${percent(at.discharge_from_soc_percent)}.`);
+    told.push(`At this price it discharges from ${percent(at.discharge_from_soc_percent)}.`);
+  }
+  const outlook = why.outlook;
+  if (outlook) {
+    told.push(`Plan: break-even ${price(outlook.break_even_eur_per_mwh)}; highest price ` +
+              `${ahead(outlook.dearest)}, lowest ${ahead(outlook.cheapest)}.`);
   }
   lines("why", told, "p");
 }
@@ -137,7 +171,11 @@ function showMonth(month) {
     `In control ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
   fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
-    ...kColumns.map(([, key, decimals]) => element("td", say(day[key], decimals))))));
+    ...kColumns.map(([head, key, decimals]) => {
+      const cell = element("td", say(day[key], decimals));
+      cell.dataset.label = head;
+      return cell;
+    }))));
 }
 
 /** Draws a chart; kept for redrawing in another colour scheme. */
@@ -169,19 +207,34 @@ function steps(cycles, value) {
   });
 }
 
-function drawDay(csv) {
+function cyclesOf(csv) {
   const [head, ...rows] = csv.trim().split("\n").map((row) => row.split(","));
   const column = (name) => head.indexOf(name);
   const number = (row, name, divisor) => Number(row[column(name)]) / divisor;
-  const cycles = rows.filter((row) => row[column("mode")] !== "stopping").map((row) => ({
+  const priced = (row) => row[column("price_minute_utc")] !== "none" &&
+    !kWithoutPrice.has(row[column("reason")]);
+  return rows.filter((row) => row[column("mode")] !== "stopping").map((row) => ({
     time: Date.parse(row[column("utc")]),
-    price: row[column("price_minute_utc")] === "none" ? NaN
-      : number(row, "price_centi_eur_per_mwh", 100),
-    // A missing measurement is 0.
+    price: priced(row) ? number(row, "price_centi_eur_per_mwh", 100) : NaN,
+    breakEven: row[column("outlook")] === "none" ? NaN : number(row, "break_even_centi", 100),
+    // Without a measurement the column is 0.
     soc: number(row, "soc_e4", 100) || NaN,
     measured: number(row, "soc_e4", 1) ? number(row, "battery_power_w", 1000) : NaN,
     ordered: row[column("written")] === "1" ? number(row, "ordered_power_w", 1000) : NaN,
   })).sort((a, b) => a.time - b.time);
+}
+
+/** Highest and lowest price of the plan, which may be tomorrow's; none on an earlier day. */
+function planned() {
+  const last = state.last;
+  if (shownDay || !last?.outlook_quarter_hours) return [];
+  return ["cheapest", "dearest"].map((name) => ({
+    x: Date.parse(last[name + "_utc"]), y: last[name + "_centi"] / 100})).sort((a, b) => a.x - b.x);
+}
+
+function drawDay(csv) {
+  const cycles = cyclesOf(csv);
+  const plan = planned();
   const stepped = {stepped: true};
   const hours = (scale) => {
     const all = [];
@@ -190,12 +243,17 @@ function drawDay(csv) {
     }
     scale.ticks = all;
   };
+  const isPlanned = cycles.some(({breakEven}) => !Number.isNaN(breakEven));
   drawChart("day", () => ({
     type: "line",
     data: {datasets: [
       line("price", "ink", steps(cycles, (c) => c.price), {...stepped, yAxisID: "price"}),
-      line("state of charge", "soc", steps(cycles, (c) => c.soc), {yAxisID: "soc"}),
-      line("power measured", "measured", steps(cycles, (c) => c.measured),
+      ...(isPlanned ? [line("break-even price", "mark", steps(cycles, (c) => c.breakEven),
+                            {...stepped, yAxisID: "price", borderDash: [5, 4]})] : []),
+      ...(plan.length ? [line("planned lowest and highest price", "mark", plan,
+                              {yAxisID: "price", showLine: false, pointRadius: 5})] : []),
+      line("state of charge", "good", steps(cycles, (c) => c.soc), {yAxisID: "soc"}),
+      line("power measured", "muted", steps(cycles, (c) => c.measured),
            {...stepped, yAxisID: "power"}),
       line("power ordered: charging", "charge", steps(cycles, (c) => c.ordered),
            {...stepped, yAxisID: "power", borderWidth: 0,
@@ -212,6 +270,19 @@ function drawDay(csv) {
   }));
 }
 
+const dayPath = () => shownDay ? `api/day?date=${shownDay}` : "api/log";
+
+/** Shows the local day that is `days` later than the one shown, today's as the last 24 hours. */
+async function turnTo(days) {
+  const today = moment(state?.last?.utc ?? Date.now()).slice(0, 10);
+  const noon = Date.parse((shownDay ?? today) + "T12:00:00Z") + days * kDayMs;
+  const day = new Date(noon).toISOString().slice(0, 10);
+  shownDay = day < today ? day : null;
+  byId("day-title").textContent = shownDay ?? "Last 24 hours";
+  byId("day-after").disabled = !shownDay;
+  await show(dayPath(), "log-trouble", drawDay);
+}
+
 function drawMap({columns}) {
   if (columns.length === 0) return "No student decision in this control cycle.";
   const last = state.last;
@@ -226,9 +297,9 @@ function drawMap({columns}) {
     data: {datasets: [
       line("now", "ink", [now], {pointRadius: 6, showLine: false}),
       line("charges below", "charge", points("charge_up_to_eur_per_mwh"),
-           {fill: "start", stepped: "middle"}),
+           {fill: "start", stepped: "middle", backgroundColor: colour("charge") + "55"}),
       line("discharges above", "discharge", points("discharge_from_eur_per_mwh"),
-           {fill: "end", stepped: "middle"})]},
+           {fill: "end", stepped: "middle", backgroundColor: colour("discharge") + "55"})]},
     options: {
       interaction: {mode: "nearest", axis: "x", intersect: false},
       scales: {x: axis("state of charge, %", {min: 0, max: 100}),
@@ -266,8 +337,8 @@ async function renew() {
     const cycle = `${state.health} ${state.last?.utc}`;
     if (cycle !== shownCycle) {
       const shown = await Promise.all([
-        show("api/why", "why-trouble", showWhy), show("api/log", "log-trouble", drawDay),
-        show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
+        show("api/why", "why-trouble", showWhy),
+        shownDay || show("api/log", "log-trouble", drawDay), show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
       shownCycle = shown.every(Boolean) ? cycle : null;
     }
     markOld(isRunning() ? "" : "No controller is running.");
@@ -282,6 +353,8 @@ async function renew() {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   for (const [id, {draw}] of Object.entries(charts)) drawChart(id, draw);
 });
+byId("day-before").addEventListener("click", () => turnTo(-1));
+byId("day-after").addEventListener("click", () => turnTo(1));
 document.addEventListener("visibilitychange", renew);
 setInterval(renew, kEveryMs);
 renew();

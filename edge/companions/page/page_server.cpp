@@ -55,6 +55,7 @@ constexpr time_t kReadS = 5;  ///< without a byte
 constexpr time_t kWriteS = 5;
 constexpr std::size_t kBodyBytesMax = 4'096;
 constexpr const char* kJson = "application/json";
+constexpr const char* kCsv = "text/csv; charset=utf-8";
 
 /// Forbids content from other hosts, requests to other hosts, and embedding in other pages.
 void set_headers(httplib::Server& server) {
@@ -126,20 +127,38 @@ void PageServer::add_files() {
     });
   };
   add("/", "page.html", "text/html; charset=utf-8");
+  add("/document.css", "document.css", "text/css; charset=utf-8");
   add("/page.css", "page.css", "text/css; charset=utf-8");
   add("/page.js", "page.js", "text/javascript; charset=utf-8");
   add("/chart.min.js", "chart.min.js", "text/javascript; charset=utf-8");
 }
 
+namespace {
+
+void send(const Answer& answer, const char* type, httplib::Response& response) {
+  response.set_header("Age", std::to_string(answer.age_ns() / kNanosecondsPerSecond));
+  if (answer.trouble.empty()) return response.set_content(answer.text, type);
+  response.status = 503;
+  response.set_content(Json::object({{"trouble", answer.trouble}}).text(), kJson);
+}
+
+/// "2026-11-23"; bess-edge checks that there is such a day.
+bool looks_like_date(std::string_view text) {
+  if (text.size() != 10) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool fits = i == 4 || i == 7 ? text[i] == '-' : text[i] >= '0' && text[i] <= '9';
+    if (!fits) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 KeptAnswer& PageServer::add_answer(const char* path, const char* type, KeptAnswer::Make make) {
   answers_.push_back(std::make_unique<KeptAnswer>(settings_.refresh_s, std::move(make)));
   KeptAnswer& kept = *answers_.back();
   server_->Get(path, [&kept, type](const httplib::Request&, httplib::Response& response) {
-    const std::shared_ptr<const Answer> answer = kept.newest();
-    response.set_header("Age", std::to_string(answer->age_ns() / kNanosecondsPerSecond));
-    if (answer->trouble.empty()) return response.set_content(answer->text, type);
-    response.status = 503;
-    response.set_content(Json::object({{"trouble", answer->trouble}}).text(), kJson);
+    send(*kept.newest(), type, response);
   });
   return kept;
 }
@@ -153,8 +172,7 @@ void PageServer::add_answers() {
   };
   add("/api/status", kJson, {"status", "--json", "--no-lock"});
   add("/api/month", kJson, {"earned", "month", "--json"});
-  add("/api/log", "text/csv; charset=utf-8",
-      {"log", "--csv", "--last", std::to_string(kStepsPerDay)});
+  add("/api/log", kCsv, {"log", "--csv", "--last", std::to_string(kStepsPerDay)});
   add("/metrics", "text/plain; version=0.0.4; charset=utf-8",
       {"status", "--prometheus", "--no-lock"});
   KeptAnswer& why = add("/api/why", kJson, {"why", "--json"});
@@ -164,6 +182,16 @@ void PageServer::add_answers() {
       answer.text = decision_map_of(Json::parse(answer.text).value()).text();
     }
     return answer;
+  });
+  server_->Get("/api/day", [this](const httplib::Request& request, httplib::Response& response) {
+    const std::string date = request.get_param_value("date");
+    if (!looks_like_date(date))
+      return refuse(response, 400, "no day: use /api/day?date=2026-11-23");
+    const std::scoped_lock one_at_a_time(day_lock_);
+    send(ask_controller(settings_,
+                        {"log", "--csv", "--since", date + " 00:00", "--until", date + " 23:59"},
+                        false),
+         kCsv, response);
   });
 }
 

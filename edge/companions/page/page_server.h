@@ -11,6 +11,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,7 @@ class Server;
 
 namespace bess {
 
-/// Embedded static file: "page.html", "page.css", "page.js" or "chart.min.js".
+/// Embedded static file: "page.html", "document.css", "chart.min.js" and the like.
 std::string_view page_file(std::string_view name);
 
 /// Check of the Host header, with or without a port: this server's address, localhost on loopback,
@@ -52,6 +53,7 @@ class PageServer {
 
   const PageSettings& settings_;
   std::vector<std::unique_ptr<KeptAnswer>> answers_;
+  std::mutex day_lock_;  ///< one log of an earlier day at a time
   std::unique_ptr<httplib::Server> server_;
   int listening_socket_ = -1;
   int port_ = 0;

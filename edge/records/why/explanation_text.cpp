@@ -202,6 +202,8 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
                             {"mode", mode_name(record.mode)},
                             {"ordered_power_w", record.ordered_power_w},
                             {"reason", reason_name(record.reason)},
+                            {"meaning", info_of(record.reason).meaning},
+                            {"remedy", info_of(record.reason).look_at},
                             {"since_utc", utc_text(explanation.since_utc_s).view()},
                             {"cycles_with_reason", explanation.cycles},
                             {"ends", what_ends(record, settings)}});

@@ -33,7 +33,8 @@ class PageInABrowser(unittest.TestCase):
                 page.call("Page.navigate", {"url": url})
                 page.wait("document.documentElement?.dataset.ready === 'true'")
                 sentence = page.run("document.getElementById('sentence').textContent")
-                self.assertRegex(sentence, r"[0-9]:[0-9][0-9].*\sW.*student")
+                self.assertRegex(sentence, r"The battery .*, since [0-9]{2}:[0-9]{2}")
+                self.assertEqual(page.run("document.querySelectorAll('#flow .value').length"), 2)
                 self.assertTrue(page.run(
                     "document.querySelector('#old:not([hidden])')?.textContent"))
                 self.assertEqual(page.run("""[...document.querySelectorAll("canvas")].map((c) =>
@@ -45,6 +46,10 @@ class PageInABrowser(unittest.TestCase):
                 self.assertEqual(page.run("""[...document.querySelectorAll(".trouble")]
                   .map((e) => e.textContent).join("")"""), "")
                 self.assertLessEqual(page.run("document.documentElement.scrollWidth"), width_px)
+                page.run("document.getElementById('day-before').click()")
+                page.wait("!document.getElementById('day-after').disabled")
+                self.assertEqual(page.run("document.getElementById('day-title').textContent"),
+                                 "2023-03-25")
                 self.assertEqual(page.complaints(), [])
                 page.close()
 

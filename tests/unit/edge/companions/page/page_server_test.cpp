@@ -112,6 +112,7 @@ TEST_F(PageServerTest, FilesAreThereAndNothingElseIs) {
   serve();
   const std::pair<const char*, const char*> files[] = {
       {"/", "text/html; charset=utf-8"},
+      {"/document.css", "text/css; charset=utf-8"},
       {"/page.css", "text/css; charset=utf-8"},
       {"/page.js", "text/javascript; charset=utf-8"},
       {"/chart.min.js", "text/javascript; charset=utf-8"}};
@@ -137,6 +138,10 @@ TEST_F(PageServerTest, AnswersAreWhatBessEdgePrints) {
   const Got log = get("/api/log");
   EXPECT_EQ(log.body, printed({"log", "--csv", "--last", "720"}));
   EXPECT_EQ(std::count(log.body.begin(), log.body.end(), '\n'), 401);  // and the header
+  EXPECT_EQ(get("/api/day?date=2023-03-26").body, log.body);
+  for (const char* const date : {"", "?date=", "?date=2023-3-26", "?date=--since=0000"}) {
+    EXPECT_EQ(get(std::string("/api/day") + date).status, 400) << date;
+  }
   // No controller runs here: its exit code says so, and there is an answer all the same.
   const Got status = get("/api/status");
   EXPECT_EQ(status.status, 200);
