@@ -1,6 +1,6 @@
 #!/bin/sh
-# last_test_log.sh CTEST FOLDER: a test that fails leaves its words in LastTest.log and its name in
-# LastTestsFailed.log, also where time_outs.sh asks the same build for its tests during that run.
+# last_test_log.sh CTEST FOLDER: a failing test leaves its output in LastTest.log and its name in
+# LastTestsFailed.log, also when time_outs.sh queries the same build for its tests during that run.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$2"

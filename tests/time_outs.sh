@@ -1,12 +1,12 @@
 #!/bin/sh
-# time_outs.sh CTEST BUILD FOLDER: fails, naming it, when a test of BUILD has no time-out, and when
-# it would not notice. Asked from FOLDER: ctest writes LastTest.log where it is asked, even for a
-# list, and that of BUILD is of the run that this is part of.
+# time_outs.sh CTEST BUILD FOLDER: fails, naming the test, if a test of BUILD has no time-out;
+# checks also that it would notice. Runs in FOLDER, because ctest writes LastTest.log in its folder,
+# even for a list, and that of BUILD belongs to the current run.
 set -eu
 mkdir -p "$3"
 echo "subdirs(\"$2\")" >"$3/CTestTestfile.cmake"
 list=$("$1" --test-dir "$3" --show-only=json-v1)
-check() {  # a list of tests on stdin; one that was not built has no properties yet
+check() {  # a list of tests on stdin; one that is not built has no properties
   python3 -c '
 import json, sys
 tests = json.load(sys.stdin)["tests"]

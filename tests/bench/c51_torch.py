@@ -1,7 +1,7 @@
-# The peer of the c51-step benchmarks: the same gradient step in PyTorch, vectorised, in the style
-# of CleanRL's c51.py. Serves steps on request, so that they alternate with ours in one run: each
-# line on standard input is answered with the milliseconds of one step. First line out: "ready" and
-# what multiplies its matrices, or the reason why not.
+# Peer of the c51-step benchmarks: the same gradient step in PyTorch, vectorised, in the style of
+# CleanRL's c51.py. It serves steps on request, so that they alternate with ours in one run: for
+# each line on standard input it prints the milliseconds of one step. First line out: "ready" and
+# the matrix library, or the reason why it does not run.
 #   python3 c51_torch.py THREADS
 import ctypes
 import os
@@ -21,7 +21,7 @@ STEP = (V_MAX - V_MIN) / (ATOMS - 1)
 
 
 def blas():
-    """The library that this process multiplies matrices with, and OpenBLAS's kernel."""
+    """Matrix library of this process, and the kernel of OpenBLAS."""
     with open("/proc/self/maps") as maps:
         paths = {line.split()[-1] for line in maps if ".so" in line}
     for path in sorted(paths):

@@ -1,6 +1,6 @@
-// The projection: exact isotonic regression with bounds, and NLopt or the general program on the
-// same problem where that is bearable; the general program on an order of so many variables and on
-// rows of any kind, and cvxopt on the same.
+// Projection benchmarks: exact isotonic regression with bounds against NLopt and the general
+// program where feasible; the general program on an order of so many variables and on general rows,
+// against cvxopt.
 #include <fmt/core.h>
 #include <nlopt.hpp>
 
@@ -19,8 +19,8 @@ namespace bess {
 namespace {
 
 constexpr int kRepetitions = 5;
-/// Short turns beside a peer in a process of its own: the pace of a shared machine changes by the
-/// second.
+/// Short turns, alternating with a peer process, because the pace of a shared machine changes
+/// within seconds.
 constexpr int kTurns = 11;
 constexpr double kTurnS = 0.1;
 constexpr std::size_t kGeneralSolutions = 15;
@@ -101,8 +101,8 @@ void nlopt_projection(benchmark::State& state, unsigned rows, unsigned columns) 
   }
 }
 
-/// The same projection as rows for the general program: no cell exceeds the one before it in its
-/// row or column, the first row is at least the lower bound, the last at most the upper.
+/// The same projection as rows of the general program: no cell exceeds its predecessor in row or
+/// column, the first row is at least the lower bound, the last at most the upper.
 LinearConstraints order_with_bounds(int rows, int columns, const RowBounds& bounds) {
   const int cells = rows * columns;
   RowBuilder builder(Eigen::VectorXd::Zero(cells));
@@ -115,7 +115,7 @@ LinearConstraints order_with_bounds(int rows, int columns, const RowBounds& boun
   return builder.build(0);
 }
 
-/// The isotonic projection; the general program on the same problem, turn by turn.
+/// The isotonic projection and the general program on the same problem, alternating.
 void isotonic_and_general(benchmark::State& state, int rows, int columns) {
   const std::vector<double> y = noisy_slope(rows, columns);
   const Eigen::VectorXd g =
@@ -150,8 +150,8 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// A program solved, by cvxopt too; its derivative, which cvxopt has not, stands beside it as
-/// `gradient_us`. CPU time of one thread each, which a busy machine disturbs least.
+/// A program solved by ours and by cvxopt; `gradient_us` is the derivative, which cvxopt lacks. CPU
+/// time of one thread, which is least sensitive to other load.
 void quadratic_program(benchmark::State& state, ProgramKind kind, int variables) {
   Random random(4);
   const std::vector<TestProgram> programs{random_program(kind, variables, random)};

@@ -1,6 +1,6 @@
-// The edge's cycle as an operator gets it: bess-edge itself between bess-sim battery and market, by
-// its own log. Simulated time runs faster than the wall, but a device's minimum gap between
-// requests is kept in wall time here, because it is what the cycle mostly consists of.
+// Control cycle benchmark: bess-edge between bess-sim battery and market, measured by its own log.
+// Simulated time is scaled, but a device's minimum gap between requests stays in wall time, because
+// it dominates the control cycle.
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -42,8 +42,8 @@ std::string map_with_wall_gap(const CycleSetup& setup) {
   return text.str();
 }
 
-/// One column of the log, ascending; of the cycles that wrote registers: an order that is in force
-/// already costs no write, and counts for nothing here.
+/// One column of the log, ascending, only of cycles that wrote registers: an order already in force
+/// costs no write.
 std::vector<double> sorted_column(const std::vector<CsvRow>& log, const std::string& name) {
   std::vector<double> values;
   std::string writes_before = "0";
@@ -58,8 +58,8 @@ std::vector<double> sorted_column(const std::vector<CsvRow>& log, const std::str
   return values;
 }
 
-/// Runs bess-edge for `cycles`; the time is the median from the price row's arrival to the order
-/// read back.
+/// Runs bess-edge for `cycles`; the time is the median from arrival of the price row to the
+/// read-back of the order.
 void edge_cycle(benchmark::State& state, const CycleSetup& setup) {
   SimulatedSite site(setup.time_scale);
   const std::string map = site.folder.write("map.toml", map_with_wall_gap(setup));
@@ -105,7 +105,7 @@ double pymodbus_order_us(int port, int orders) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// An order of eleven registers written and read back, against a battery that answers at once.
+/// An order of eleven registers written and read back, against a battery that answers immediately.
 void modbus_order(benchmark::State& state) {
   SimulatedSite site(kFastScale);
   site.start_battery();
@@ -137,7 +137,7 @@ void register_edge_benchmarks() {
                                      .cycles = 1'000,
                                      .time_scale = kFastScale,
                                      .gap_ms = 0});
-  // At the device's own pace the battery is read before the tick, within 3 s of simulated time.
+  // At the device's real pace the battery is read before the tick, within 3 s of simulated time.
   add_cycle_benchmark(
       "edge-cycle-alphaess-block",
       {.map = "alphaess.toml", .variant = "block", .cycles = 5, .time_scale = 2, .gap_ms = 400});

@@ -1,11 +1,11 @@
-// What the machine could do at this moment: multiply-adds on registers alone, without memory.
+// Peak rate of the machine now: multiply-adds in registers, without memory.
 #pragma once
 
 #include "workstation/policy/nn/thread_team.h"
 
 namespace bess {
 
-/// GFLOP/s in float over all of the team's threads at once; takes some milliseconds.
+/// GFLOP/s in float over all threads of the team; takes some milliseconds.
 double fma_peak_gflops(ThreadTeam& team);
 
 }  // namespace bess

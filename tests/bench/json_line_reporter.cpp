@@ -18,9 +18,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// How much better than its peer: a rate by its size, a time by its shortness. The median of the
-/// repetitions' own ratios: where the two take turns, a machine that changes its pace disturbs both
-/// of a pair.
+/// Ratio to the peer, above 1 if ours is better. Median of the ratios of each repetition: where the
+/// two alternate, a change of the machine's pace affects both.
 double median_ratio(const std::vector<double>& values, const std::vector<double>& peers,
                     bool is_rate) {
   std::vector<double> ratios;
@@ -51,7 +50,7 @@ void JsonLineReporter::ReportRuns(const std::vector<Run>& runs) {
     if (run.error_occurred || run.run_type == Run::RT_Aggregate) continue;
     const std::string name = plain_name(run.benchmark_name());
     const std::string time_unit = benchmark::GetTimeUnitString(run.time_unit);
-    // A benchmark that counts items is about their rate; any other about its time.
+    // A benchmark that counts items is compared by rate, any other by time.
     const auto rate = run.counters.find(kRate);
     if (rate != run.counters.end()) {
       add(name, rate->second / 1e6, "million/s");
@@ -84,7 +83,7 @@ void JsonLineReporter::Finalize() {
       const std::vector<double>& peers = results_[*peer].values;
       const double peer_value = median(peers);
       const bool is_rate = results_[name].unit == "million/s";
-      // A peer that was run after it, by itself, may have been run less often.
+      // A peer that runs separately may have fewer repetitions.
       const double ratio = peers.size() == results_[name].values.size()
                                ? median_ratio(results_[name].values, peers, is_rate)
                                : median_ratio({value}, {peer_value}, is_rate);

@@ -1,7 +1,7 @@
-// Prints one JSON object a line and benchmark: name, value, unit, its counters, and peer and ratio
-// where a peer was measured beside it in the same run; all are medians over the repetitions. A peer
-// of benchmark "x" is registered as "x@peer-name", or is the counter "@peer-name" of x, whose label
-// then says what the peer works with.
+// Reporter that prints one JSON object per line and benchmark: name, value, unit, counters, and
+// peer and ratio if a peer was measured in the same run. All are medians over the repetitions. The
+// peer of benchmark "x" is registered as "x@peer-name", or is the counter "@peer-name" of x, whose
+// label then names the peer's library.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -20,9 +20,9 @@ class JsonLineReporter final : public benchmark::BenchmarkReporter {
 
  private:
   struct Result {
-    std::vector<double> values;  ///< one a repetition
+    std::vector<double> values;  ///< one per repetition
     std::string unit;
-    std::string label;  ///< what the peer works with
+    std::string label;  ///< library of the peer
     std::map<std::string, std::vector<double>> counters;
   };
   void add(const std::string& name, double value, const std::string& unit);

@@ -1,6 +1,5 @@
-// One gradient step as the paper takes it: minibatch 16,384 drawn from a replay of a million,
-// 5-256-128, C51 with 51 atoms or DQN, Adam, target blend. And what handing out a minibatch costs
-// by itself.
+// Gradient step benchmarks as in the paper: minibatch 16,384 from a replay of a million, 5-256-128,
+// C51 with 51 atoms or DQN, Adam, target blend; and the cost of drawing a minibatch.
 #include <chrono>
 #include <ctime>
 #include <limits>
@@ -21,8 +20,8 @@ namespace {
 constexpr std::size_t kMinibatch = 16'384;
 constexpr std::size_t kReplay = 1'000'000;
 constexpr int kRepetitions = 15;
-/// Each side takes a few steps in a row, as in training; the first finds the caches full of the
-/// other.
+/// Each side takes a few consecutive steps, as in training; the first finds the caches full of the
+/// other's data.
 constexpr int kStepsInTurn = 4;
 constexpr double kGamma = 0.999;
 const Support kSupport{-10, 10, 51};
@@ -58,9 +57,9 @@ RandomReplay& random_replay() {
   return replay;
 }
 
-/// Multiply-adds of a step that no exact method can leave out, times two: the target network
-/// forward with all outputs; online forward, and back to weights and activations, with one
-/// action's.
+/// Operations (twice the multiply-adds) that no exact method can omit: the target network forward
+/// with all outputs; the online network forward, and backward to weights and activations for one
+/// action.
 double flops_of_step(const MlpShape& s) {
   const double hidden = s.inputs * s.hidden1 + s.hidden1 * s.hidden2;
   const double head = s.hidden2 * s.outputs;
@@ -80,9 +79,9 @@ struct StepBenchmark {
   void step() { benchmark::DoNotOptimize(learner.step(random_replay().draw(), 5e-4, 0.1).loss); }
 };
 
-/// One repetition: steps of ours, the machine's peak, steps of the peer.
-/// `on_cpu` is the share of the time in which the team's threads ran: what is missing at one thread
-/// was taken by other programs, at two also by what a single thread does.
+/// One repetition: our steps, the machine's peak, the peer's steps. `on_cpu` is the share of time
+/// in which the team's threads ran; the rest was taken by other programs, or with two threads also
+/// by serial work.
 void run_step(benchmark::State& state, StepBenchmark& bench) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu_start = std::clock();
@@ -101,7 +100,7 @@ void run_step(benchmark::State& state, StepBenchmark& bench) {
   }
   report_peer(state, "pytorch", peer_ms / kStepsInTurn);
   state.SetLabel(bench.peer->blas());
-  // The peer's threads spin for a while after a step; let them go to sleep.
+  // The peer's threads spin for a while after a step: wait until they sleep.
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 

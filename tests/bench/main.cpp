@@ -1,5 +1,5 @@
-// bess-bench [NAME...]: runs the benchmarks of these names, or all. --list prints the names.
-// "ratio" says how many times better than the peer ours is: above 1 is ours.
+// Benchmark program bess-bench [NAME...]: runs these benchmarks, or all. --list prints the names.
+// "ratio" above 1: ours is better than the peer.
 #include <algorithm>
 #include <cstdio>
 #include <string>

@@ -1,4 +1,4 @@
-// Import, environment and baselines on a year of the simulated market.
+// Benchmarks of import, environment and baselines on a year of the simulated market.
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "workstation/data/env/evaluate.h"
@@ -17,7 +17,7 @@ double evaluate_year(Policy& policy) {
   return evaluate(market, market.days, policy, {}).profit_eur_per_day_per_mwh();
 }
 
-/// The year with the day-ahead prices of its own settled ones.
+/// The year with day-ahead prices derived from its own settled prices.
 MarketSteps year_with_outlook() {
   const MinuteSeries& minutes = year_of_minutes();
   std::vector<QuarterHour> quarter_hours;
@@ -54,8 +54,7 @@ void register_market_benchmarks() {
     ForesightPolicy policy{BatteryParameters{}};
     for (auto _ : state) benchmark::DoNotOptimize(evaluate_year(policy));
   });
-  // Midnight's plan and the first decision on it: a day's plan for the two levels that it lies
-  // between.
+  // Midnight's plan and its first decision: a day's plan for the two adjacent levels.
   add_benchmark("outlook-day-plan", benchmark::kMillisecond, 5, [](benchmark::State& state) {
     const MarketSteps market = year_with_outlook();
     const std::vector<MarketDay> training(market.days.begin(), market.days.begin() + 60);
@@ -68,7 +67,7 @@ void register_market_benchmarks() {
       day = day + 1 < market.days.size() ? day + 1 : 60;
     }
   });
-  // The plan that a student by outlook decides with, in the integers of the edge.
+  // Plan of a student by outlook, in the integers of the edge.
   add_benchmark("outlook-integer-plan", benchmark::kMillisecond, 5, [](benchmark::State& state) {
     const MarketSteps market = year_with_outlook();
     const std::vector<MarketDay> training(market.days.begin(), market.days.begin() + 60);

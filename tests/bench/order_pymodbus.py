@@ -1,4 +1,4 @@
-# The peer of modbus-order: the same eleven registers written and read back through pymodbus.
+# Peer of modbus-order: the same eleven registers written and read back through pymodbus.
 #   /usr/bin/python3 order_pymodbus.py PORT COUNT     prints the median in microseconds
 import statistics
 import sys

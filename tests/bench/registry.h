@@ -1,5 +1,6 @@
-// The benchmarks by name: each file registers its own; a peer is registered beside the benchmark it
-// is measured against and runs after it, or reports its time from within, when the two take turns.
+// Benchmark registry: each file registers its own benchmarks by name. A peer is registered with the
+// benchmark it is compared with and runs after it, or reports its time from within it when the two
+// alternate.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -15,7 +16,7 @@ void register_student_benchmarks();
 void register_correction_benchmarks();
 void register_edge_benchmarks();
 
-/// Names registered so far, peers left out.
+/// Names registered so far, without peers.
 std::vector<std::string>& benchmark_names();
 
 /// Registers `body(state)` under `name`, `repetitions` times.
@@ -29,8 +30,8 @@ benchmark::internal::Benchmark* add_benchmark(const std::string& name, benchmark
       ->Repetitions(repetitions);
 }
 
-/// For a peer that takes turns with the benchmark: its time in this repetition, in the benchmark's
-/// unit; NaN where the peer is missing.
+/// For a peer that alternates with the benchmark: its time in this repetition, in the benchmark's
+/// unit; NaN if the peer is missing.
 inline void report_peer(benchmark::State& state, const std::string& peer, double time) {
   state.counters["@" + peer] = time;
 }

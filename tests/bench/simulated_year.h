@@ -1,4 +1,4 @@
-// A year of the simulated market, made once for all benchmarks.
+// Simulated market year, made once for all benchmarks.
 #pragma once
 
 #include "workstation/data/env/market_steps.h"

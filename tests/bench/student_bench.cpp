@@ -1,4 +1,4 @@
-// The integer student: one decision, and the proof over the whole lattice.
+// Benchmarks of the integer student: one decision, and the proof over the whole lattice.
 #include "shared/nn/exported_student.h"
 #include "tests/bench/registry.h"
 #include "workstation/base/random.h"

@@ -21,13 +21,13 @@ constexpr const char* kScript = BESS_SOURCE_DIR "/tests/bench/c51_torch.py";
 constexpr std::string_view kReady = "ready ";
 constexpr int kTrials = 5;
 
-/// Kernels of OpenBLAS for processors with AVX, by their names in OPENBLAS_CORETYPE; "" is its own
-/// choice. One that this processor cannot run ends the process.
+/// OpenBLAS kernels for processors with AVX, by their names in OPENBLAS_CORETYPE; "" is its own
+/// choice. A kernel that this processor cannot run ends the process.
 constexpr const char* kKernels[] = {"",         "Sandybridge", "Haswell",       "Zen",
                                     "SkylakeX", "Cooperlake",  "SapphireRapids"};
 
-/// What makes PyTorch on Debian fastest: the malloc settings keep its memory between steps; with
-/// libopenblas0-openmp BLAS and PyTorch share one pool, with the pthread build two pools spin
+/// Fastest settings of PyTorch on Debian: the malloc settings keep its memory between steps; with
+/// libopenblas0-openmp, BLAS and PyTorch share one pool, with the pthread build two pools spin
 /// against each other.
 std::vector<std::string> command(int threads, const std::string& kernel) {
   const std::string count = std::to_string(threads);
@@ -48,7 +48,7 @@ class TorchPeer::Process {
   Process(int threads, const std::string& kernel) {
     int request[2];
     int answer[2];
-    // Closed on exec, or a second peer would hold the first one's requests open for ever.
+    // Closed on exec, or a second peer would keep the first one's request pipe open.
     if (pipe2(request, O_CLOEXEC) != 0 || pipe2(answer, O_CLOEXEC) != 0) return;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -77,7 +77,7 @@ class TorchPeer::Process {
   }
 
   [[nodiscard]] bool is_ready() const { return said_.starts_with(kReady); }
-  /// The first line: what it multiplies with, or why it does not work; empty when it died.
+  /// The first line: its matrix library, or the reason why it does not work; empty if it died.
   [[nodiscard]] std::string said() const {
     return is_ready() ? said_.substr(kReady.size()) : said_;
   }
@@ -103,13 +103,13 @@ TorchPeer::TorchPeer(int threads) {
   for (const char* kernel : kKernels) {
     auto process = std::make_unique<Process>(threads, kernel);
     if (!process->is_ready()) {
-      if (*kernel != '\0') continue;  // this processor has not what the kernel needs
+      if (*kernel != '\0') continue;  // this processor lacks the kernel's instructions
       const std::string why = process->said();
       fmt::print(stderr, "bess-bench: no PyTorch to compare with: {}\n",
                  why.empty() ? "python3 does not start" : why);
       return;
     }
-    // Two names may mean one kernel, and a BLAS without kernels has one: once is enough.
+    // Two names may mean one kernel, and a BLAS without kernels has only one: run it once.
     if (std::ranges::find(tried, process->said()) != tried.end()) continue;
     tried.push_back(process->said());
     double fastest_ms = std::numeric_limits<double>::infinity();

@@ -1,7 +1,6 @@
-// PyTorch's gradient step (c51_torch.py) as a process beside the benchmark, set up for its best:
-// its memory not given back to the system between steps, one pool of threads, and of the matrix
-// kernels that its OpenBLAS has the one that is fastest here. On some processors the one that
-// OpenBLAS picks by itself costs it a factor of two and more.
+// PyTorch peer process (c51_torch.py) in its fastest configuration: memory kept between steps, one
+// thread pool, and the OpenBLAS kernel that is fastest here. On some processors the default kernel
+// costs a factor of two or more.
 #pragma once
 
 #include <sys/types.h>
@@ -15,15 +14,15 @@ namespace bess {
 
 class TorchPeer {
  public:
-  /// Starts PyTorch with each kernel in turn and keeps the fastest; says on standard error what
-  /// each took, or why there is nothing to compare with.
+  /// Starts PyTorch with each kernel and keeps the fastest; prints each time, or why there is no
+  /// comparison, to standard error.
   explicit TorchPeer(int threads);
   ~TorchPeer();
 
-  /// Milliseconds of one step, or nothing where PyTorch is missing.
+  /// Milliseconds of one step, or nothing if PyTorch is missing.
   std::optional<double> step_ms();
-  /// The library that multiplies its matrices, with its kernel: "OpenBLAS 0.3.21, kernel Zen".
-  /// Without an optimised one it says so. Empty where PyTorch is missing.
+  /// The matrix library with its kernel: "OpenBLAS 0.3.21, kernel Zen", or a note that it is not
+  /// optimised. Empty if PyTorch is missing.
   [[nodiscard]] const std::string& blas() const { return blas_; }
 
  private:

@@ -1,5 +1,4 @@
-// For a while, a user who may not read what the test has made for itself alone: root reads
-// everything.
+// Temporary user without access to the files that the test made for itself: root reads everything.
 #pragma once
 
 #include <gtest/gtest.h>

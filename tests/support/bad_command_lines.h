@@ -1,5 +1,5 @@
-// Command lines that a program refuses: each with its exit code and what the one line that says why
-// names (tokens.h).
+// Command lines that a program refuses, each with its exit code and the codes that its one-line
+// error names (tokens.h).
 #pragma once
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ struct BadCommandLine {
   const char* complaint;  ///< as of Names
 };
 
-/// The words, with what stands for a file replaced by its path.
+/// The words, with file placeholders replaced by paths.
 inline std::vector<std::string> words_of(const BadCommandLine& line,
                                          const std::map<std::string, std::string>& files) {
   std::vector<std::string> words;
@@ -37,7 +37,7 @@ inline std::vector<std::string> words_of(const BadCommandLine& line,
   return words;
 }
 
-/// Numbers that nobody reads: what a range of any double would print.
+/// Unreadable bounds: what a range of any double would print.
 inline bool has_many_digits(const std::string& text) {
   int digits = 0;
   return std::ranges::any_of(text, [&digits](unsigned char c) {
@@ -46,7 +46,7 @@ inline bool has_many_digits(const std::string& text) {
   });
 }
 
-/// A bare command shows its help before that line; every other one that line alone.
+/// A bare command prints its help before that line; any other prints only that line.
 inline void expect_refused(const std::string& program, const BadCommandLine& line,
                            const std::map<std::string, std::string>& files) {
   SCOPED_TRACE(line.words);

@@ -1,4 +1,4 @@
-// Policies on days that are chained, each from the charge that the one before left.
+// Policies on chained days, each starting with the charge that the previous day left.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace bess {
 
 inline constexpr EvaluationOptions kCarriedOver{.battery = {}, .carry_soc = true};
 
-/// What is done on the days before an instant.
+/// Actions of the days before an instant.
 inline std::vector<Action> actions_before(const MarketSteps& market,
                                           const std::vector<MarketDay>& days, Policy& policy,
                                           std::int64_t until_utc_s,

@@ -1,4 +1,4 @@
-// Lattices, logits and options that every correction layer is tried on.
+// Lattices, logits and options for tests of every correction layer.
 #pragma once
 
 #include <Eigen/Core>

@@ -7,7 +7,7 @@ namespace {
 std::atomic<long> allocations{0};
 }  // namespace
 
-// The linker's --wrap sends what the objects of this program ask of malloc and operator new here.
+// The linker's --wrap redirects calls of malloc and operator new in this program here.
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __wrap_malloc(std::size_t size) {

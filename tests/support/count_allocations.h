@@ -1,4 +1,4 @@
-// How often the program's own code has asked for memory so far. Such a test program is linked with
+// Allocation count of the program's own code. Such a test program is linked with
 // count_allocations.cpp and -Wl,--wrap=malloc -Wl,--wrap=_Znwm.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A CSV file with a header line and no quoting, as bess-edge and bess-sim write it: one map a row.
+// CSV file with a header line and no quoting, as bess-edge and bess-sim write it: one map per row.
 #pragma once
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// cvxopt on the same quadratic programs (qp_cvxopt.py), where python3-cvxopt is installed.
+// Peer solver cvxopt on the same quadratic programs (qp_cvxopt.py), if python3-cvxopt is installed.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ class CvxoptPeer {
     }
   }
 
-  /// One solution a program; nothing where cvxopt is missing.
+  /// One solution per program; nothing if cvxopt is missing.
   [[nodiscard]] std::optional<std::vector<Eigen::VectorXd>> solve() const {
     if (!run(folder_.file("answers"), {})) return {};
     std::ifstream file(folder_.file("answers"), std::ios::binary);
@@ -63,7 +63,7 @@ class CvxoptPeer {
     return answers;
   }
 
-  /// Median CPU microseconds of each program; nothing where cvxopt is missing.
+  /// Median CPU microseconds of each program; nothing if cvxopt is missing.
   [[nodiscard]] std::optional<std::vector<double>> median_us(int repetitions) const {
     const std::optional<std::string> printed = run("--time", std::to_string(repetitions));
     if (!printed) return {};
@@ -75,7 +75,7 @@ class CvxoptPeer {
   }
 
  private:
-  /// What the script printed; throws when it fails.
+  /// Output of the script; throws when it fails.
   [[nodiscard]] std::optional<std::string> run(const std::string& what,
                                                const std::string& count) const {
     std::vector<std::string> words{"/usr/bin/python3",

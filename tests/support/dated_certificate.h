@@ -1,5 +1,5 @@
-// A certificate authority and a server's certificate with dates of any kind, made in memory and
-// written as PEM.
+// Certificate authority and server certificate with arbitrary dates, made in memory and written as
+// PEM.
 #pragma once
 
 #include <openssl/pem.h>

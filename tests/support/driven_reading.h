@@ -1,4 +1,4 @@
-// A reading of a battery that follows our orders, in the middle of its charge.
+// Reading of a battery that follows our orders, at medium charge.
 #pragma once
 
 #include "edge/core/supervision/response.h"

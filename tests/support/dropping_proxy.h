@@ -1,4 +1,4 @@
-// A TCP proxy on loopback that can cut its one connection at any moment: a cable that is pulled.
+// TCP proxy on loopback that can cut its one connection at any moment, like a pulled cable.
 #pragma once
 
 #include <poll.h>
@@ -13,7 +13,7 @@ namespace bess {
 
 class DroppingProxy {
  public:
-  /// `target_port` is on 127.0.0.1 and may come and go.
+  /// `target_port` is on 127.0.0.1 and may close and reopen.
   explicit DroppingProxy(std::uint16_t target_port) : target_port_(target_port) {
     sockaddr_in place = loopback_address();
     listen_fd_ = bind_socket(place);
@@ -31,7 +31,7 @@ class DroppingProxy {
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] int connections() const { return connections_; }
-  /// Cuts the connection of this moment.
+  /// Cuts the current connection.
   void drop() { drop_ = true; }
 
  private:

@@ -1,9 +1,8 @@
-// A disk that dies under a running program, for LD_PRELOAD: while the file that BESS_DYING_DISK
-// names holds "EROFS FOLDER" or "EIO FOLDER", calls that touch what is in FOLDER fail as on a card
-// that the kernel has remounted read-only, or that no longer answers. A real remount is refused as
-// long as a log is open for writing; what the kernel does by itself after an error is tried where a
-// test may mount (dying_disk_test). Straight to the kernel: nothing here allocates, or looks up
-// other libraries.
+// Failing disk under a running program, for LD_PRELOAD: while the file that BESS_DYING_DISK names
+// holds "EROFS FOLDER" or "EIO FOLDER", calls on files in FOLDER fail as on a card that the kernel
+// has remounted read-only, or that no longer answers. A real remount is refused while a log is open
+// for writing; the kernel's own remount after an error is tested where a test may mount
+// (dying_disk_test). Direct system calls: nothing here allocates or loads other libraries.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/statfs.h>
@@ -21,7 +20,7 @@ namespace {
 
 enum class Fault { kNone, kReadOnly, kBroken };
 
-/// A call that succeeds leaves errno alone, here too.
+/// A successful call leaves errno unchanged, here too.
 class KeptErrno {
  public:
   KeptErrno() = default;
@@ -33,7 +32,7 @@ class KeptErrno {
   int kept_ = errno;
 };
 
-/// What ails the disk that holds `path`, which is absolute.
+/// Fault of the disk that holds `path`, which is absolute.
 Fault fault_at(const char* path) {
   const KeptErrno kept;
   const char* const control = std::getenv("BESS_DYING_DISK");
@@ -63,7 +62,7 @@ Fault fault_of(int fd) {
 
 int errno_of(Fault fault) { return fault == Fault::kReadOnly ? EROFS : EIO; }
 
-/// Fails as the disk does, or does the call.
+/// Fails as the disk does, or makes the call.
 template <typename... Arguments>
 long unless(Fault fault, long number, Arguments... arguments) {
   if (fault == Fault::kNone) return syscall(number, arguments...);
@@ -108,7 +107,7 @@ int open64(const char* path, int flags, ...) {
   va_end(arguments);
   return open_or_fail(path, flags, mode);
 }
-/// What streams are read through. Nothing under test writes through one.
+/// Streams for reading. Nothing under test writes through one.
 FILE* fopen(const char* path, const char* mode) {
   const bool writes = *mode != 'r';
   const int flags = *mode == 'r'   ? O_RDONLY

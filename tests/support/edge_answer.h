@@ -1,4 +1,4 @@
-// What bess-edge answers to one command line, once it has ended, and what it says as it runs.
+// Output of one bess-edge command after it has ended, and of a running bess-edge.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,25 +16,25 @@
 
 namespace bess {
 
-/// bess-edge's. `arguments`: without the program.
+/// Runs bess-edge. `arguments`: without the program.
 inline Said edge(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), edge_program());
   return answer_of(std::move(arguments));
 }
 
-/// `status --json`; does not exist where that is no JSON.
+/// `status --json`; absent if it is no JSON.
 inline Json status_of(const std::string& config) {
   return Json::parse(edge({"status", "--json", "--config", config}).text);
 }
 
-/// The next line of output with this piece; empty when the program ended before.
+/// The next line of output that contains this piece; empty if the program ended before.
 inline std::string await_line(ChildProcess& child, const std::string& piece) {
   std::string line = child.read_line();
   while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
   return line;
 }
 
-/// A simulated site, and the configuration with which bess-edge drives it.
+/// A simulated site, and its configuration of bess-edge.
 class SiteTest : public ::testing::Test {
  protected:
   explicit SiteTest(std::int32_t time_scale) : site_(time_scale) {}
@@ -44,11 +44,11 @@ class SiteTest : public ::testing::Test {
     site_.start_both(minutes);
     config_ = site_.commission();
   }
-  /// bess-edge's answer, by that configuration.
+  /// Output of bess-edge with that configuration.
   [[nodiscard]] Said ask(std::vector<std::string> words) const {
     return edge(joined(std::move(words), {"--config", config_}));
   }
-  /// A controller that runs by it.
+  /// A controller with that configuration.
   [[nodiscard]] ChildProcess controller(const std::vector<std::string>& options = {}) const {
     return ChildProcess(joined({edge_program(), "--config", config_}, options));
   }
@@ -63,7 +63,7 @@ class SiteTest : public ::testing::Test {
   std::string config_;
 };
 
-/// A moment as `status` and `why` show it to a person.
+/// A moment as `status` and `why` show it.
 inline std::string local_text_of(const std::string& utc) {
   std::int64_t utc_s = 0;
   parse_utc(utc, utc_s);

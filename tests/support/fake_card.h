@@ -1,5 +1,5 @@
-// A /sys of its own for one folder, below BESS_ROOT: what an eMMC and its ext4 tell of their wear,
-// laid out as Linux does (the folder's device number leads to a partition, beside it the card).
+// Fake /sys for one folder, below BESS_ROOT: the wear of an eMMC and its ext4, in the layout of
+// Linux (the folder's device number leads to a partition, next to it the card).
 #pragma once
 
 #include <sys/stat.h>

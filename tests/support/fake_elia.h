@@ -1,5 +1,5 @@
-// A server on loopback that answers like Elia's API but for what a test changes: what it says is
-// put together byte by byte, so that it can be cut, packed, counted wrongly or sent by another.
+// Fake Elia API on loopback: a test can change its answers byte by byte, to truncate, compress,
+// miscount or redirect them.
 #pragma once
 
 #include <fmt/core.h>
@@ -19,7 +19,7 @@
 
 namespace bess {
 
-/// What the program asked for.
+/// Request of the program.
 struct EliaAsk {
   std::string dataset;
   std::int64_t from_utc_s = 0, until_utc_s = 0;
@@ -57,7 +57,7 @@ inline std::string elia_csv(const EliaAsk& ask, const std::vector<EliaRow>& rows
   return text;
 }
 
-/// The rows of [from, until): settled prices wave, minutes fall towards them.
+/// The rows of [from, until): settled prices oscillate, minute prices converge to them.
 inline std::vector<EliaRow> elia_rows(const EliaAsk& ask, std::int64_t from_utc_s,
                                       std::int64_t until_utc_s) {
   std::vector<EliaRow> rows;
@@ -136,7 +136,7 @@ class FakeElia {
   Quirk quirk_;
   std::mutex mutex_;
   std::map<std::string, int> requests_;
-  TestServer server_;  ///< the last: it stops before what its thread uses
+  TestServer server_;  ///< last, so that it stops before the members its thread uses
 };
 
 }  // namespace bess

@@ -1,6 +1,6 @@
-// The control loop, and the three things around it without any io: a clock that jumps from deadline
-// to deadline, the simulator's physics behind the battery interface, and a price source. Faults are
-// switched by public fields.
+// Fake plant: the control loop with a clock that jumps from deadline to deadline, the simulator's
+// physics behind the battery interface, and a price source, without I/O. Public fields switch
+// faults.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct FakeClock {
   std::int64_t now_ns = kDayStartS * kNanosecondsPerSecond;
   bool stop = false;
   bool synchronised = true;
-  std::int64_t step_back_ns = 0;  ///< taken off during the next sleep, which it ends
+  std::int64_t step_back_ns = 0;  ///< subtracted during the next sleep, which it ends
 
   [[nodiscard]] std::int64_t now_utc_ns() const { return now_ns; }
   [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns; }
@@ -90,13 +90,13 @@ struct FakeBattery {
   FakeClock& clock;
   SimulatedBattery physics;
   bool link = true;
-  bool is_implausible = false;  ///< its readings; orders reach it
+  bool is_implausible = false;  ///< its readings; receives the orders
   bool alarm = false;
   bool off_grid = false;
-  std::int32_t offset_w = 0;  ///< what its meter shows too much
-  bool inverted = false;      ///< its meter shows the wrong sign
+  std::int32_t offset_w = 0;  ///< offset of its meter
+  bool inverted = false;      ///< its meter has the wrong sign
   bool refuses_orders = false;
-  int failing_releases = 0;  ///< that many of the next releases are not answered
+  int failing_releases = 0;  ///< number of next releases that fail
   std::int64_t read_takes_ns = 0;
   std::int32_t refresh_s = 0;
   std::vector<std::int64_t> refreshed_ns;
@@ -104,7 +104,7 @@ struct FakeBattery {
   std::vector<PowerOrder> orders;
 };
 
-/// Publishes `price(minute)` for every minute unless the outage swallows it.
+/// Publishes `price(minute)` for every minute except during an outage.
 struct FakePrices {
   explicit FakePrices(FakeClock& c) : clock(c) {}
 
@@ -129,7 +129,7 @@ struct FakePrices {
   FakeClock& clock;
   std::int64_t wanted = 0;
   bool outage = false;
-  std::int64_t arrives_after_ns = 0;  ///< with the newest row of then
+  std::int64_t arrives_after_ns = 0;  ///< with the newest row at that time
   PriceReport report;
   std::function<std::int32_t(std::int64_t)> price = [](std::int64_t minute_utc_s) {
     const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
@@ -155,7 +155,7 @@ CycleRecord run_cycle(Loop& loop) {
   return record;
 }
 
-/// In control, unless the settings say otherwise.
+/// In control, unless the settings differ.
 struct FakePlant {
   using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
 

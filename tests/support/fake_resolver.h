@@ -1,5 +1,5 @@
-// Stands in for the C library's name lookup in a test program (fake_resolver.cpp defines
-// getaddrinfo, which libcurl would call as well): the test says what a name means.
+// Replacement of the C library's name lookup in a test program (fake_resolver.cpp defines
+// getaddrinfo, also for libcurl): the test sets the addresses of a name.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace bess::fake_resolver {
 
-/// From now on `name` has these numeric addresses; none = it cannot be resolved.
+/// Sets the numeric addresses of `name`; none = it cannot be resolved.
 void set(const std::string& name, const std::vector<std::string>& addresses);
 
 }  // namespace bess::fake_resolver

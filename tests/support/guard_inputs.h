@@ -1,4 +1,4 @@
-// What the guard sees when all is well.
+// Guard inputs of a healthy state.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A simulated battery of any map behind the driver, without sockets: the register image of bess-sim
-// in memory, in time that the test moves.
+// Simulated battery of any map behind the driver, without sockets: the register image of bess-sim
+// in memory, in time set by the test.
 #pragma once
 
 #include <string>

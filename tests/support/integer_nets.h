@@ -55,7 +55,7 @@ inline StudentNet random_integer_net(std::uint64_t seed) {
   return net;
 }
 
-/// Which input a hand-made net looks at.
+/// Input of a hand-made net.
 enum class NetInput { kSoc = 3, kPrice = 4 };
 
 /// Logits: discharge = slope * (low - x), idle = 0, charge = slope * (x - high) with x the

@@ -1,4 +1,4 @@
-// Lines of bess-edge about a cycle: "... cycle=3 mode=running ordered_power_w=-4000 ...".
+// Journal lines of a control cycle: "... cycle=3 mode=running ordered_power_w=-4000 ...".
 #pragma once
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ struct JournalCycle {
   std::string mode, reason, prices;
   double ordered_w = 0, measured_w = 0;
   bool written = false;
-  /// Whether or not the device took it.
+  /// Whether or not the device accepted it.
   [[nodiscard]] bool wants() const { return mode == "running" && ordered_w != 0; }
   [[nodiscard]] bool drives() const { return wants() && written; }
 };

@@ -1,5 +1,5 @@
-// An HTTP server on a free port of this machine, with a thread of its own: what the fakes of price
-// sources stand on. Handlers are set before it is started, and whoever they belong to lives longer.
+// HTTP server on a free port of this machine, with its own thread: base of the fake price sources.
+// Handlers are set before the start, and their owners outlive the server.
 #pragma once
 
 #include <httplib.h>

@@ -1,4 +1,4 @@
-// TCP sockets on this machine alone, bound to a free port.
+// TCP sockets on loopback, bound to a free port.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@ inline sockaddr_in loopback_address(std::uint16_t port = 0, const char* host = "
   return address;
 }
 
-/// A socket bound to `address`, which gets its port if that was 0; -1 when it is taken.
+/// A socket bound to `address`, which receives its port if that was 0; -1 if the port is in use.
 inline int bind_socket(sockaddr_in& address) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const int yes = 1;

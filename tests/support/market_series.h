@@ -1,4 +1,4 @@
-// Minute series for tests: flat, drawn from a seed, or the yardstick.
+// Minute series for tests: flat, drawn from a seed, or the benchmark.
 #pragma once
 
 #include "shared/host/minute_file.h"
@@ -33,7 +33,7 @@ inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::
   return series;
 }
 
-/// The yardstick [SPEC 8]: real settled quarter-hours of January to May 2023, see
+/// The benchmark [SPEC 8]: real settled quarter-hours of January to May 2023, see
 /// tests/data/README.md.
 inline MinuteSeries read_yardstick() {
   return read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");

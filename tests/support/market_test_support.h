@@ -1,4 +1,4 @@
-// What the market tests share: real samples, a scratch folder, the text of an error.
+// Shared support of the market tests: real samples, a scratch folder, the text of an error.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,8 +16,7 @@ inline std::filesystem::path real_sample(const std::string& name) {
   return std::filesystem::path(BESS_SOURCE_DIR) / "tests/data" / name;
 }
 
-/// Real prices that are kept beside the checkout; a test that needs them skips where they are
-/// absent.
+/// Real prices outside the checkout; a test that needs them is skipped if they are absent.
 inline std::filesystem::path outside_sample(const std::string& name) {
   return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
 }

@@ -1,4 +1,4 @@
-// A base of tests whose members are instants of local time: it sets the zone before they are made.
+// Base of tests whose members are instants of local time: it sets the zone before they are made.
 #pragma once
 
 #include "shared/local_time.h"

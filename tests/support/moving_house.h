@@ -1,5 +1,5 @@
-// Houses whose load moves within seconds, drawn from a seed: what a meter at the connection sees
-// besides the battery. One sample every two seconds, for days.
+// Houses with fast load changes, drawn from a seed: the other load that a meter at the connection
+// sees. One sample every 2 s, for days.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class MovingHouse {
   static constexpr int kSampleS = 2;
   static constexpr int kSamplesOfHour = 3'600 / kSampleS;
 
-  /// What the house has; all have a refrigerator and noise.
+  /// Appliances of the house; all have a refrigerator and noise.
   struct Habits {
     const char* name;
     bool kitchen = false;    ///< kettle, oven by thermostat, washing machine, dishwasher

@@ -1,4 +1,4 @@
-// A real MQTT broker, Debian's mosquitto, and somebody who listens to all that is published.
+// MQTT broker (Debian's mosquitto), and a subscriber to everything that is published.
 #pragma once
 
 #include <mosquitto.h>
@@ -38,7 +38,7 @@ class Broker {
     close(bind_socket(address));
     return ntohs(address.sin_port);
   }
-  /// Returns once it listens, which takes a busy machine seconds.
+  /// Returns when it listens, which takes seconds on a busy machine.
   void start() {
     process_ = std::make_unique<ChildProcess>(std::vector<std::string>{kProgram, "-c", config_});
     for (int tries = 0; tries < 500 && !listens(); ++tries) {
@@ -46,7 +46,7 @@ class Broker {
     }
   }
   void stop() { process_.reset(); }
-  /// Accepts, and answers nothing, until it is asked to go on.
+  /// Accepts connections without answering until resumed.
   void freeze() const { process_->signal(SIGSTOP); }
   void thaw() const { process_->signal(SIGCONT); }
   [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -84,7 +84,7 @@ class Listener {
                                    });
     mosquitto_loop_start(client_);
     mosquitto_connect_async(client_, "127.0.0.1", port, 60);
-    // What is not retained reaches only who listens already.
+    // Unretained messages only reach existing subscribers.
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::seconds(30), [&] { return is_listening_; });
   }
@@ -97,7 +97,7 @@ class Listener {
     mosquitto_lib_cleanup();
   }
 
-  /// Waits for a payload with this piece on a topic that ends so; empty after half a minute.
+  /// Waits for a payload with this piece on a topic with this end; empty after 30 s.
   std::string await(const std::string& topic_end, const std::string& piece) {
     std::unique_lock lock(mutex_);
     std::string found;

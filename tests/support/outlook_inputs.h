@@ -1,7 +1,7 @@
-// Weeks of prices drawn in integers, so that every machine draws the same: a row a minute with
-// outages, day-ahead prices that come in time, late, by half or never, and a SoC for each decision.
-// What workstation and edge make of them is held against one golden file, so that their equality is
-// shown on machines that the workstation is not built for as well.
+// Weeks of prices drawn in integers, identical on every machine: one row per minute with outages,
+// day-ahead prices that arrive in time, late, partly or never, and a SoC for each decision.
+// Workstation and edge are compared with one golden file, which shows their equality also on
+// machines without the workstation.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct OutlookInputs {
   static constexpr std::int32_t kNoRow = INT32_MIN;
   std::int64_t start_utc_s, end_utc_s;  ///< local midnights
   std::vector<std::int32_t> minute_centi{};
-  std::vector<DrawnAnswer> answers{};  ///< by the time that they came; each once
+  std::vector<DrawnAnswer> answers{};  ///< by time of arrival; each once
 
   [[nodiscard]] static std::int32_t soc_e4(std::int64_t tick_utc_s) {
     return static_cast<std::int32_t>(tick_utc_s / kSecondsPerStep * 2'654'435'761 % 9'001) + 1'000;
@@ -52,7 +52,7 @@ class OutlookDraw {
     state_ = state_ * 6'364'136'223'846'793'005 + 1'442'695'040'888'963'407;
     return static_cast<int>((state_ >> 33) % static_cast<unsigned>(bound));
   }
-  /// Of the day before, at so many minutes of its clock.
+  /// Of the day before, at this minute of its clock.
   static std::int64_t day_before_at(std::int64_t midnight, int minute) {
     const LocalMinute before = local_minute_of(midnight - 3 * 3'600);
     return utc_from_local({before.year, before.month, before.day, minute / 60, minute % 60, 0});
@@ -82,7 +82,7 @@ class OutlookDraw {
       inputs_.answers.push_back({received, midnight, ahead});
       return;
     }
-    // By half, and whole some hours later.
+    // Partly, and complete some hours later.
     inputs_.answers.push_back({received, midnight, {ahead.begin(), ahead.begin() + 40}});
     inputs_.answers.push_back({received + 14'400, midnight, ahead});
   }
@@ -104,8 +104,8 @@ class OutlookDraw {
   int outage_min_ = 0;
 };
 
-/// A checksum of each local day's decisions, and how many they are. The very first is left out: its
-/// price sets the level, for which nobody can have planned.
+/// A checksum of each local day's decisions, and their number. The first is left out: its price
+/// sets the level, so no plan can exist.
 class DecisionDigest {
  public:
   void add(std::int64_t utc_s, std::int32_t break_even_centi, int context_class, Action action) {
@@ -141,7 +141,7 @@ class DecisionDigest {
 inline std::string outlook_golden_path() {
   return BESS_SOURCE_DIR "/tests/data/golden/outlook_decisions.txt";
 }
-/// Its lines but the first, which says how they were made.
+/// Its lines except the first, which describes the generator.
 inline std::vector<std::string> outlook_golden_lines() {
   std::ifstream file(outlook_golden_path());
   std::vector<std::string> lines;
@@ -159,7 +159,7 @@ inline OutlookInputs drawn_months() {
   return OutlookDraw({2025, 9, 1, 0, 0, 0}, {2025, 12, 1, 0, 0, 0}).inputs();
 }
 
-/// Those lines of the golden file that are of the days of the inputs.
+/// The lines of the golden file for the days of the inputs.
 inline std::vector<std::string> golden_lines_of(const std::vector<std::string>& found) {
   std::vector<std::string> lines;
   for (const std::string& line : outlook_golden_lines()) {

@@ -1,4 +1,4 @@
-// A simulated market with the day-ahead prices that were published of it.
+// Simulated market with its published day-ahead prices.
 #pragma once
 
 #include <memory>

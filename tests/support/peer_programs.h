@@ -1,5 +1,4 @@
-// Programs that share nothing with bess: where they are, whether they are there, and what a test
-// asks of them.
+// Independent programs: paths, availability, and their use by tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ inline constexpr const char* kPython = "/usr/bin/python3";
 inline constexpr const char* kMbpoll = "/usr/bin/mbpoll";
 inline constexpr const char* kSocat = "/usr/bin/socat";
 
-/// "X is not installed" for the first that is not, Python and its `modules` ("a, b") included; else
+/// "X is not installed" for the first missing one, Python and its `modules` ("a, b") included; else
 /// nothing.
 inline std::string missing_peer(const std::string& modules,
                                 std::initializer_list<const char*> programs = {}) {
@@ -29,7 +28,7 @@ inline std::string missing_peer(const std::string& modules,
   return probe.wait() == 0 ? "" : "not all of " + modules + " is installed";
 }
 
-/// A test that is skipped where one of them is missing.
+/// A test that is skipped if one of them is missing.
 class PeerTest : public ::testing::Test {
  protected:
   explicit PeerTest(const std::string& modules, std::initializer_list<const char*> programs = {})

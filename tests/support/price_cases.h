@@ -1,5 +1,5 @@
-// Price files as users bring them, and worse: each a text, what becomes of it, and what the one
-// line that says so names.
+// Price files of users, valid and invalid: each a text, its result, and the codes that its one-line
+// error names.
 #pragma once
 
 #include <fmt/core.h>
@@ -19,13 +19,13 @@ struct PriceCase {
   const char* names;  ///< what the error names
 };
 
-/// One row of the file that all cases are made from: an ordinary minute.
+/// One row of the file that all cases start from: an ordinary minute.
 struct OrdinaryRow {
   std::int64_t utc_s;
   double indicative, settled;
 };
 
-/// Three local days of January 2023 that raise nothing.
+/// Three local days of January 2023 without findings.
 inline std::vector<OrdinaryRow> ordinary_rows() {
   constexpr std::int64_t kStart_s = 1'672'527'600;  // 2022-12-31T23:00:00Z
   std::vector<OrdinaryRow> rows;
@@ -44,7 +44,7 @@ inline std::string row_text(const OrdinaryRow& row, const std::string& indicativ
   return fmt::format("{},{},{}\n", utc_text(row.utc_s).view(), indicative, settled);
 }
 
-/// The rows with what `price` makes of them: a text of both price fields, or empty to leave it out.
+/// The rows changed by `price`: a text of both price fields, or empty to omit the row.
 inline std::string ordinary_text(
     const std::function<std::string(std::size_t, const OrdinaryRow&)>& line = {}) {
   std::string text = kMinuteHeader;
@@ -64,7 +64,7 @@ inline std::string scaled_text(double factor) {
   });
 }
 
-/// Minute `at` has these price fields instead; a settled one in its whole quarter-hour.
+/// Minute `at` has these price fields instead; a settled price applies to its whole quarter-hour.
 inline std::string with_prices(std::size_t at, const std::string& indicative,
                                const std::string& settled) {
   return ordinary_text([&](std::size_t m, const OrdinaryRow& r) {
@@ -75,7 +75,7 @@ inline std::string with_prices(std::size_t at, const std::string& indicative,
   });
 }
 
-/// Row `at` of the file, the header counting as none, is this line.
+/// Row `at` of the file, without the header, is this line.
 inline std::string with_line(std::size_t at, const std::string& wanted) {
   return ordinary_text([&](std::size_t m, const OrdinaryRow& r) {
     return m == at ? wanted + "\n"
@@ -83,7 +83,7 @@ inline std::string with_line(std::size_t at, const std::string& wanted) {
   });
 }
 
-/// Files that no command may use.
+/// Files that every command must refuse.
 inline std::vector<PriceCase> bad_price_files() {
   std::vector<PriceCase> cases;
   const auto add = [&cases](const std::string& name, std::string text, const char* names) {
@@ -96,7 +96,7 @@ inline std::vector<PriceCase> bad_price_files() {
     });
   };
   const std::string whole = ordinary_text();
-  // A price that is none, in either column, early and late.
+  // Invalid prices, in either column, early and late.
   for (const std::size_t at : {std::size_t{0}, std::size_t{2000}, std::size_t{4319}}) {
     for (const char* price :
          {"1e300", "-1e300", "1e200", "1e100", "1e10", "100000.01", "-100001"}) {
@@ -134,7 +134,7 @@ inline std::vector<PriceCase> bad_price_files() {
   add("indicative is constant", columns(settled, same), "indicative 42.5 constant");
   add("one settled price of a minute", with_line(1003, "2023-01-01T15:43:00Z,5,17"),
       "settled-changes");
-  // Rows that are none, or others.
+  // Invalid rows.
   add("quarter-hours", keep([](std::size_t m) { return m % 15 == 0; }), "15 row-step");
   add("hours", keep([](std::size_t m) { return m % 60 == 0; }), "60 row-step");
   add("every other minute", keep([](std::size_t m) { return m % 2 == 0; }), "2 row-step");
@@ -164,7 +164,7 @@ inline std::vector<PriceCase> bad_price_files() {
   for (std::size_t at = 0; (at = late.find("\n20", at)) != late.npos;) late[at += 2] = '1';
   add("the year 1973", early, "dates");
   add("the year 2123", late, "dates");
-  // The text itself.
+  // Invalid text.
   add("empty", "", "prices.csv");
   add("a line end", "\n", "prices.csv");
   add("no header", whole.substr(whole.find('\n') + 1),

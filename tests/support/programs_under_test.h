@@ -1,6 +1,5 @@
-// The programs that the tests of processes start: those of this build, or those of another one,
-// whose compiler or sanitizer looks at the programs alone (BESS_EDGE_UNDER_TEST,
-// BESS_SIM_UNDER_TEST: paths).
+// Paths of the programs that process tests start: those of this build, or of another one with its
+// own compiler or sanitizer (BESS_EDGE_UNDER_TEST, BESS_SIM_UNDER_TEST).
 #pragma once
 
 #include <cstdlib>
@@ -9,7 +8,7 @@
 namespace bess {
 
 inline std::string edge_program() {
-  return BESS_EDGE_PROGRAM;  // which itself looks at BESS_EDGE_UNDER_TEST
+  return BESS_EDGE_PROGRAM;  // which itself reads BESS_EDGE_UNDER_TEST
 }
 inline std::string sim_program() {
   const char* other = std::getenv("BESS_SIM_UNDER_TEST");

@@ -1,4 +1,4 @@
-// Students that are proved in a moment, and the claim of one that was not.
+// Students with a short proof, and the claim of an unproved one.
 #pragma once
 
 #include "tests/support/student_nets.h"
@@ -6,13 +6,13 @@
 
 namespace bess {
 
-/// What a file may say about itself.
+/// Claims of a file about itself.
 inline Certificate flawless_claim() {
   return {.states_checked = kLatticeStateCount, .states_evaluated = 1};
 }
 
-/// A LinearNet among hidden units that hold numbers but move no difference of logits: every array
-/// can be told from every other, and bounds still prove it in few boxes.
+/// A LinearNet among hidden units that hold numbers but do not change a difference of logits: every
+/// array is distinguishable from every other, and bounds still prove it in few boxes.
 inline StudentNet crowded_net() {
   StudentNet n = LinearNet{.price_weight = 2}.net();
   n.relu1.shift = 1;
@@ -43,8 +43,8 @@ inline StudentFile crowded_file(Certificate claim) {
   return student;
 }
 
-/// Proved once for all tests of a program: the whole lattice takes seconds. It claims nothing good
-/// before.
+/// Proved once for all tests of a program: the whole lattice takes seconds. It claims nothing
+/// beforehand.
 inline const ProvedStudent& crowded_student() {
   static const Verdict verdict = prove(crowded_file({.thresholds = kCrowdedThresholds,
                                                      .states_evaluated = 99,

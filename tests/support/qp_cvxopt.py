@@ -1,4 +1,4 @@
-# Quadratic programs through cvxopt, an interior-point solver that shares nothing with ours.
+# Quadratic programs through cvxopt, an independent interior-point solver.
 #   /usr/bin/python3 qp_cvxopt.py PROGRAMS ANSWERS      the solutions, as accurate as it gets them
 #   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median CPU microseconds of N solutions of
 #                                                       each, on one thread, at cvxopt's own

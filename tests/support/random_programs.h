@@ -1,4 +1,4 @@
-// Seeded quadratic programs that have a solution, of the kinds that a solver must stand.
+// Feasible quadratic programs from seeds, of the kinds that a solver must handle.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,9 +27,9 @@ struct TestProgram {
 enum class ProgramKind {
   kSparseRows,    ///< projection onto rows of two to four terms
   kDenseHessian,  ///< some Hessian, rows of all variables
-  kOrder,         ///< a lattice that must not rise along rows and columns
-  kDegenerate,    ///< rows repeated, scaled, added up; many of them tight at one point
-  kEqualities,    ///< a quarter of the rows hold with equality
+  kOrder,         ///< a lattice that must not increase along rows and columns
+  kDegenerate,    ///< rows repeated, scaled, summed; many of them active at one point
+  kEqualities,    ///< a quarter of the rows are equalities
 };
 inline constexpr int kProgramKinds = 5;
 
@@ -39,7 +39,7 @@ inline Eigen::VectorXd normal_vector(Eigen::Index size, Random& random) {
   return v;
 }
 
-/// Rows by terms; their bounds leave `inside` as a point with the slacks given.
+/// Rows by terms; their bounds give the point `inside` these slacks.
 class RowBuilder {
  public:
   explicit RowBuilder(const Eigen::VectorXd& inside) : inside_(inside) {}

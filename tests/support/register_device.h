@@ -1,5 +1,5 @@
-// A device of registers in memory, and the link and the time with which the battery driver reaches
-// it without sockets: every write is recorded, faults are set by hand, time is moved by hand.
+// Register device in memory, with the link and the time through which the battery driver reaches it
+// without sockets: every write is recorded; the test sets faults and time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,34 +25,34 @@ struct WriteRecord {
   }
 };
 
-/// A write by function 16 or 6, as it is expected.
+/// An expected write by function 16 or 6.
 inline WriteRecord fc16(int address, std::vector<int> values, int unit = 1) {
   return {unit, 16, address, std::move(values)};
 }
 inline WriteRecord fc6(int address, int value) { return {1, 6, address, {value}}; }
 
-/// A register that the device does not have: a read that covers it is refused.
+/// A register that the device lacks: a read that includes it is refused.
 struct MissingRegister {
   int function = 3;
   int address = 0;
-  int exception = 2;  ///< with which it is refused; -1 = no answer at all
+  int exception = 2;  ///< exception code of the refusal; -1 = no answer
 };
 
 struct RegisterDevice {
   std::vector<std::uint16_t> holding = std::vector<std::uint16_t>(0x1'0000);
   std::vector<std::uint16_t> input = std::vector<std::uint16_t>(0x1'0000);
-  std::vector<WriteRecord> writes;  ///< everything that was asked for, obeyed or not
+  std::vector<WriteRecord> writes;  ///< every request, executed or not
   int reads = 0;
   int reconnects = 0;
-  std::int64_t now_ns = 1;  ///< the device's time, moved by hand
+  std::int64_t now_ns = 1;  ///< the device's time, set by the test
   std::int64_t day = 20'000;
   bool ignores_writes = false;  ///< acknowledges, does nothing
-  int exception = 0;            ///< answer to every request; -1 = no answer at all
-  int unreadable_address = -1;  ///< a read that covers it is not answered
+  int exception = 0;            ///< exception code of every request; -1 = no answer
+  int unreadable_address = -1;  ///< a read that includes it is not answered
   std::vector<MissingRegister> missing;
   int refused_reads = 0;
-  int refused_single = 0;  ///< function by which no single register is written: exception 2
-  int failing_writes = 0;  ///< that many of the next writes are not answered
+  int refused_single = 0;  ///< function that writes no single register: exception 2
+  int failing_writes = 0;  ///< number of next writes that are not answered
   std::function<void(std::int64_t ns)> sleep = [this](std::int64_t ns) { now_ns += ns; };
   std::function<void()> before_request = [] {};
   std::function<void(int address, int count)> after_write = [](int, int) {};
@@ -67,14 +67,14 @@ struct RegisterDevice {
   std::vector<WriteRecord> take_writes() { return std::exchange(writes, {}); }
 };
 
-/// What a device of alphaess.toml shows at 43.5 % of 8 kWh, on the grid.
+/// Registers of alphaess.toml at 43.5 % of 8 kWh, on grid.
 inline void fill_alphaess(RegisterDevice& device) {
   device.set(0x0102, {435});
   device.set(0x0119, {80});
   device.set(0x012C, {4'000, 3'500});
   device.set(0x0440, {1});
 }
-/// And one of victron_ess3.toml at 62 %, charging.
+/// Registers of victron_ess3.toml at 62 %, charging.
 inline void fill_victron(RegisterDevice& device) {
   device.set(842, {1'500, 62});
   device.set(2'902, {1});
@@ -205,12 +205,12 @@ struct MapUnderTest {
                           .duration_s = map.watchdog.duration_s});
   }
   Status read() { return driver->read(measured); }
-  /// What a reading that must succeed has found.
+  /// Findings of a reading that must succeed.
   const BatteryMeasurement& reading() {
     EXPECT_EQ(read(), Status::kOk);
     return measured;
   }
-  /// What is written for an order, a release, a refresh that must succeed.
+  /// Writes of an order, a release, a refresh that must succeed.
   std::vector<WriteRecord> writes_of(std::int32_t power_w) { return writes_after(order(power_w)); }
   std::vector<WriteRecord> release_writes() { return writes_after(driver->release()); }
   std::vector<WriteRecord> refresh_writes() { return writes_after(driver->refresh()); }

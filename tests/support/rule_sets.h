@@ -1,4 +1,4 @@
-// Rules for tests, written as an operator writes them.
+// Rules for tests, in the operator's format.
 #pragma once
 
 #include <string>
@@ -15,14 +15,14 @@ inline std::string example_rule_path(const std::string& name) {
   return std::string(BESS_SOURCE_DIR) + "/workstation/config/rules/" + name + ".toml";
 }
 
-/// All examples that are shipped, in one set.
+/// All shipped examples, in one set.
 inline RuleSet example_rules() {
   std::vector<std::string> paths;
   for (const char* name : kExampleRules) paths.push_back(example_rule_path(name));
   return load_rules(paths);
 }
 
-/// Of one rule: its lines without the name.
+/// One rule: its lines without the name.
 inline RuleSet one_rule(const std::string& lines, const std::string& name = "it") {
   return parse_rules("[[rule]]\nname = \"" + name + "\"\n" + lines, "test.toml");
 }

@@ -1,4 +1,4 @@
-// What a program answers to one command line, once it has ended.
+// Output of a program for one command line, after it has ended.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace bess {
 
-/// The words, and more behind them.
+/// The words, followed by more.
 inline std::vector<std::string> joined(std::vector<std::string> words,
                                        const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());

@@ -1,4 +1,4 @@
-// What a command of bess-train says, run in this process.
+// Output of a bess-train command, run in this process.
 #pragma once
 
 #include <gtest/gtest.h>

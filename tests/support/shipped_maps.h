@@ -1,4 +1,4 @@
-// The register maps of edge/device/maps by name, and all of them with all of their variants.
+// Register maps of edge/device/maps by name, and all of their variants.
 #pragma once
 
 #include <gtest/gtest.h>

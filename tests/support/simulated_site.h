@@ -1,6 +1,6 @@
-// A simulated site (tools/simulators/site) in a folder of its own, the prices of its market, and
-// the configuration with which bess-edge drives the one on the prices of the other. Where
-// closed_loop/, soak/ and peers/ start the real programs.
+// Simulated site (tools/simulators/site) in its own folder, its market prices, and the
+// configuration with which bess-edge drives it. closed_loop/, soak/ and peers/ start the real
+// programs here.
 #pragma once
 
 #include <cmath>
@@ -34,7 +34,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     start_clock();
   }
 
-  /// Sets the simulated clock back to its start, for simulators that are started anew.
+  /// Resets the simulated clock to its start, for simulators that are restarted.
   void start_clock() { SitePrograms::start_clock(0.5); }
   [[nodiscard]] std::int64_t anchor_ns() const { return clock.anchor_monotonic_ns; }
 
@@ -58,7 +58,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     return minute_prices(minutes, {.mean_eur_per_mwh = eur_per_mwh, .amplitude_eur_per_mwh = 0});
   }
 
-  /// `port` 0: any free one. A simulator that comes back is given the port that it had.
+  /// `port` 0: any free one. A restarted simulator receives its previous port.
   void start_battery(const std::vector<std::string>& options = {}, int port = 0) {
     SitePrograms::start_battery(at(port, options));
   }
@@ -73,7 +73,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
     start_market({}, minute_prices(minutes));
   }
 
-  /// Lines of TOML for [battery]: the device, and how long it may take to answer.
+  /// Lines of TOML for [battery]: the device, and its time-outs.
   static std::string alphaess_keys(int response_timeout_ms = 100) {
     return "map = \"" BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml\"\nresponse_timeout_ms = " +
            std::to_string(response_timeout_ms) + "\n";
@@ -82,7 +82,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
   struct ConfigOptions {
     std::string battery_keys = alphaess_keys() + "start_timeout_s = 1\n";  ///< all but the port
     std::string price_server = "http://127.0.0.1";                         ///< without its port
-    std::string price_keys = "";  ///< lines of TOML for [price], beside the URL
+    std::string price_keys = "";  ///< lines of TOML for [price], in addition to the URL
     std::string guard_keys = "";  ///< lines of TOML
     std::string state = "state";  ///< folder; the file is named after it
     std::string state_keys = "";  ///< lines of TOML for [state]
@@ -100,7 +100,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
   }
   [[nodiscard]] std::string write_config() const { return write_config(ConfigOptions{}); }
 
-  /// The configuration after the sign check that control needs.
+  /// The configuration after the required sign check.
   [[nodiscard]] std::string commission(const ConfigOptions& options) const {
     const std::string config = write_config(options);
     ChildProcess check({edge_program(), "commission", "--config", config, "--yes"});

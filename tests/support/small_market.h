@@ -1,5 +1,5 @@
-// Two months of minutes made from a seed: quarter-hour prices that persist and spike, minutes that
-// converge on them. Small enough for every test, with training, validation and test days.
+// Two months of minutes from a seed: quarter-hour prices that persist and spike, minutes that
+// converge to them. Small enough for every test, with training, validation and test days.
 #pragma once
 
 #include <cmath>

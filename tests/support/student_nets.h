@@ -34,7 +34,7 @@ struct LinearNet {
   int charge_below = 4000;
   int discharge_from = 12'000;
 
-  /// What the net must answer, without the net.
+  /// The expected answer, without the net.
   [[nodiscard]] Action action(const LatticeState& s) const {
     const int price = 8 * (s.price_eur_per_mwh - kLatticePriceMinEurPerMwh);
     const int soc = 81 * s.soc_index;
@@ -57,7 +57,7 @@ struct LinearNet {
   }
 };
 
-/// Large weights of alternating sign in every layer: interval bounds learn almost nothing from it.
+/// Large weights of alternating sign in every layer: interval bounds gain almost nothing.
 inline StudentNet adversarial_net(std::uint64_t seed) {
   Random random(seed);
   StudentNet n{};

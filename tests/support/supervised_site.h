@@ -1,5 +1,5 @@
-// The real control loop and driver around the simulated battery of any shipped map, in moved time:
-// what it does otherwise than it is told is switched between two cycles, or while the loop sleeps.
+// Supervised site: the real control loop and driver around the simulated battery of any shipped
+// map, in moved time. Faults are switched between two control cycles, or while the loop sleeps.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct MovedClock {
   [[nodiscard]] static bool is_synchronised() { return true; }
 
   SimulatedDevice& device;
-  std::int64_t step_ns = 0;  ///< by which the machine's UTC is wrong
+  std::int64_t step_ns = 0;  ///< error of the machine's UTC
   std::function<void()> every_half_minute = [] {};
 };
 
@@ -98,7 +98,7 @@ class SupervisedSite {
     start();
   }
 
-  /// A process without a memory: what the battery follows is all that is left of the one before.
+  /// A process without memory: only the order that the battery follows remains of the previous one.
   void start() {
     loop.reset();
     device.test.driver = std::make_unique<DeviceDriver>(
@@ -124,7 +124,7 @@ class SupervisedSite {
   SiteSettings site_;
 };
 
-/// Two cycles of charging, two of discharging, beyond the thresholds.
+/// Two control cycles of charging, two of discharging, beyond the thresholds.
 inline void trade_both_ways(SupervisedSite& site) {
   site.prices.price = [](std::int64_t minute_utc_s) {
     return minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000;

@@ -1,4 +1,4 @@
-// Teachers for tests: networks that have learnt nothing, and programs.
+// Teachers for tests: untrained networks, and programs.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// A server on loopback that says exactly what a test wants, byte by byte, in clear or over TLS.
+// Test server on loopback with byte-exact answers, plain or over TLS.
 #pragma once
 
 #include <openssl/ssl.h>
@@ -20,7 +20,7 @@ class TestConnection {
  public:
   TestConnection(int fd, SSL* tls) : fd_(fd), tls_(tls) {}
 
-  /// Bytes up to the empty line; false when the client has gone.
+  /// Bytes up to the empty line; false if the client has gone.
   bool read_request(std::string& request) {
     request.clear();
     char c = 0;
@@ -85,7 +85,7 @@ class TestServer {
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] int requests() const { return requests_; }
-  /// For handlers that say nothing: waits until the client or the server gives up.
+  /// For handlers without an answer: waits until the client or the server gives up.
   void wait_for_end() const {
     pollfd waiting{.fd = client_fd_, .events = POLLRDHUP, .revents = 0};
     poll(&waiting, 1, 20'000);

@@ -1,5 +1,5 @@
-// Tests that draw, kill or live through many cases take a few of them every day, and all where
-// BESS_THOROUGH is set, which tools/test --full does.
+// Tests with many drawn cases take a few of them every day, and all if BESS_THOROUGH is set, as
+// tools/test --full does.
 #pragma once
 
 #include <cstdlib>

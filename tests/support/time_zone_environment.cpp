@@ -1,4 +1,4 @@
-// Every test of this binary runs in the market's local time, as bess-train does.
+// Time zone of this test binary: the market's local time, as in bess-train.
 #include <gtest/gtest.h>
 
 #include "shared/local_time.h"

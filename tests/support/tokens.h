@@ -1,5 +1,5 @@
-// Codes in a message: files, lines, keys, options, commands, values. A test names these, and the
-// sentence around them is free.
+// Codes in a message: files, lines, keys, options, commands, values. A test checks these, and the
+// wording around them is free.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace bess {
 
 inline bool is_of_a_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Whether `code` stands in the text by itself: power_w is not in power_w_max, nor x:3 in x:31.
+/// Whether `code` occurs in the text as a whole: power_w is not in power_w_max, nor x:3 in x:31.
 inline bool has_code(std::string_view text, std::string_view code) {
   for (std::size_t at = text.find(code); at != text.npos; at = text.find(code, at + 1)) {
     const std::size_t end = at + code.size();
@@ -24,7 +24,8 @@ inline bool has_code(std::string_view text, std::string_view code) {
   return false;
 }
 
-/// Each of these codes, which spaces divide, stands in the text: Names("edge.toml:3 power_w 4000").
+/// Whether each of these codes, separated by spaces, occurs in the text: Names("edge.toml:3 power_w
+/// 4000").
 MATCHER_P(Names, codes, "names " + ::testing::PrintToString(std::string(codes))) {
   std::istringstream words{std::string(codes)};
   bool has_all = true;

@@ -1,4 +1,4 @@
-// Mistakes in TOML, as users write them and fuzzing found them. toml++ as it comes crashes on many.
+// TOML mistakes of users and from fuzzing. Unpatched toml++ crashes on many.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@ namespace bess {
 
 struct TomlMistake {
   std::string text;
-  int line;                ///< that the complaint names
-  const char* names = "";  ///< what else it names, where the words are ours and not the parser's
+  int line;                ///< named in the error
+  const char* names = "";  ///< also named, where the text is ours and not the parser's
 };
 
 inline std::vector<TomlMistake> toml_mistakes() {
   std::string long_key = "a";
   for (int i = 0; i < 20'000; ++i) long_key += ".a";
-  std::string many_tables;  // fourteen in one another, and few lines
+  std::string many_tables;  // fourteen nested, and few lines
   for (int i = 0; i < 1'000; ++i)
     many_tables += "a" + std::to_string(i) + ".b.b.b.b.b.b.b.b.b.b.b.b.b = 1\n";
   std::string many_values = "a = [0";

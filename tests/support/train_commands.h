@@ -1,4 +1,4 @@
-// bess-train as a user runs it, in a folder of the test's own. For targets that define
+// bess-train as a user runs it, in a folder of the test. For targets that define
 // BESS_TRAIN_PROGRAM.
 #pragma once
 
@@ -31,7 +31,7 @@ class TrainCommands : public testing::Test {
   using Result = CommandResult;
 
   static Result run(std::vector<std::string> arguments) { return run_train(std::move(arguments)); }
-  /// What a command says that ends with this code.
+  /// Output of a command that ends with this code.
   static std::string said(std::vector<std::string> arguments, int exit_code = 0) {
     const Result result = run(std::move(arguments));
     EXPECT_EQ(result.exit_code, exit_code) << result.output;

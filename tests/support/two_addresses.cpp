@@ -1,5 +1,5 @@
-// Preloaded into a program that runs as it is: the name two-addresses.test has ::1 and 127.0.0.1,
-// in this order, as a host with IPv6 and IPv4 has. Every other name is the C library's affair.
+// Preloaded name lookup: two-addresses.test has ::1 and 127.0.0.1, in this order, like a host with
+// IPv6 and IPv4. The C library resolves every other name.
 #include <dlfcn.h>
 #include <netdb.h>
 

@@ -1,4 +1,4 @@
-// What a UserError says.
+// Text of a UserError.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace bess {
 
-/// Of that which `action` throws; nothing where it throws none.
+/// Of the error that `action` throws; nothing if it throws none.
 template <typename Action>
 std::string refusal_of(const Action& action) {
   try {
@@ -20,7 +20,7 @@ std::string refusal_of(const Action& action) {
   return "";
 }
 
-/// Fails the test where `action` throws none.
+/// Fails the test if `action` throws none.
 template <typename Action>
 std::string user_error_of(const Action& action) {
   const std::string said = refusal_of(action);

@@ -1,4 +1,4 @@
-// A recording of a device: refused with one line that names file and line, or read to its end.
+// Device recordings: refused with one line that names file and line, or read to the end.
 #include "shared/host/bus_recording.h"
 #include "tests/checks/fuzz/fuzz_target.h"
 #include "tests/checks/fuzz/scratch_file.h"

@@ -1,6 +1,6 @@
-// Day-ahead prices in all their forms: ENTSO-E's A44, energy-charts' JSON, CSV, and the file that
-// is made of them. What is accepted reads back to the same, and nothing of it is known before its
-// day's noon.
+// Day-ahead prices in all formats: ENTSO-E A44, energy-charts JSON, CSV, and the file made from
+// them. Accepted input reads back identically, and no price is known before noon of the previous
+// day.
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "tests/checks/fuzz/fuzz_target.h"
@@ -25,7 +25,7 @@ void check_day_ahead(std::string_view text) {
   must(series.resolution_min.size() == series.size() &&
            series.published_utc_s.size() == series.size(),
        "every price has its resolution and time");
-  constexpr std::size_t kQuarterHoursMax = 20'000;  // years between two rows cost time alone
+  constexpr std::size_t kQuarterHoursMax = 20'000;  // years between two rows only cost time
   if (series.size() > kQuarterHoursMax) return;
   const std::string written = format_day_ahead_csv(series, "");
   must(format_day_ahead_csv(parse_day_ahead_csv(written, "written"), "") == written,

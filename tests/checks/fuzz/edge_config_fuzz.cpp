@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A configuration's folder, with the shipped maps where configurations expect them.
+/// Folder of a configuration, with the shipped maps where configurations expect them.
 struct ConfigFolder {
   bess::ScratchFile file{"bess-edge.toml"};
   ConfigFolder() {

@@ -1,5 +1,5 @@
-// What a fuzz target is: a function that may refuse an input in its reader's own way, and must not
-// do anything else: no crash, no other exception, no sanitizer's complaint, no broken promise.
+// Interface of a fuzz target: a function that may refuse an input as its reader does, and nothing
+// else: no crash, no other exception, no sanitizer finding, no broken invariant.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A promise that holds for every input; assert() is silent in release builds.
+/// An invariant of every input; assert() is inactive in release builds.
 inline void must(bool promise, const char* what) {
   if (promise) return;
   std::fprintf(stderr, "broken promise: %s\n", what);

@@ -1,4 +1,4 @@
-// Elia's CSV downloads, of any portal's and year's spelling, and CSV of one's own by local clocks.
+// Elia's CSV downloads in the spelling of any portal and year, and own CSV with local clocks.
 #include "tests/checks/fuzz/market_promises.h"
 #include "workstation/data/market/feed/market_files.h"
 

@@ -1,4 +1,4 @@
-// What every reader of market files promises of the rows it accepts.
+// Invariants of the rows that a reader of market files accepts.
 #pragma once
 
 #include <string_view>
@@ -13,14 +13,14 @@ namespace bess {
 inline void check_series(const MinuteSeries& series) {
   must(series.start_utc_s % 60 == 0, "a series starts on a whole minute");
   must(series.indicative.size() == series.settled.size(), "both prices for each minute");
-  constexpr std::size_t kMinutesMax = 100'000;  // years between two rows cost time and show nothing
+  constexpr std::size_t kMinutesMax = 100'000;  // years between two rows only cost time
   if (series.size() > kMinutesMax) return;
   const std::string written = format_minute_csv(series, "");
   must(format_minute_csv(parse_minute_csv(written, "written"), "") == written,
        "what is written reads back to the same");
 }
 
-/// A UserError is a fair answer of reader and join; whatever they accept keeps its promises.
+/// Reader and join may throw a UserError; accepted rows satisfy the invariants.
 template <typename Parse>
 void check_market_reader(Parse parse, std::string_view text) {
   static const bool time_zone_set = (set_market_time_zone(), true);

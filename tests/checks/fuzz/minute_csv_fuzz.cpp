@@ -1,4 +1,4 @@
-// The exchange format between markets and everything that learns: minute files.
+// Minute files: the exchange format between market import and training.
 #include "tests/checks/fuzz/market_promises.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
-// Whatever a Modbus server sends: the frame check for TCP and RTU, then the whole link against a
-// server on loopback that sends these bytes. Good is only what an independent reading of the
-// standard finds good.
+// Modbus replies: the frame check for TCP and RTU, then the whole link against a server on loopback
+// that sends these bytes. A reply is good only if an independent decoder of the standard accepts
+// it.
 //   input: framing and function, count, address (2), bytes at a time, then the reply; the top bit
 //   of the first byte puts the right transaction id or checksum into the reply, so that the rest is
 //   reached
@@ -70,7 +70,7 @@ void mend(const Question& q, int transaction, Bytes& reply) {
   reply[reply.size() - 1] = static_cast<std::uint8_t>(right >> 8);
 }
 
-/// The one reply that means success, with the registers found in `reply`.
+/// The only reply that means success, with the registers found in `reply`.
 Bytes good_reply(const Question& q, int transaction, const Bytes& reply) {
   const ModbusRequest& r = q.request;
   const std::size_t header = q.framing == Framing::kTcp ? 6 : 0;
@@ -97,7 +97,7 @@ Bytes good_reply(const Question& q, int transaction, const Bytes& reply) {
   return good;
 }
 
-/// A reply taken for good must begin with the good bytes: what follows belongs to no reply.
+/// An accepted reply must begin with the good bytes; the bytes after it belong to no reply.
 void judge(const Question& q, int transaction, const Bytes& reply, Status status,
            const std::uint16_t* registers) {
   const Bytes good = good_reply(q, transaction, reply);
@@ -154,9 +154,9 @@ class Server {
     const std::lock_guard lock(mutex_);
     question_ = question;
     reply_ = reply;
-    sent_.clear();  // a request that never arrives is answered by nothing
+    sent_.clear();  // a request that never arrives gets no reply
   }
-  /// The transaction of the last request, and the bytes that it was answered with.
+  /// Transaction id and reply bytes of the last request.
   Bytes last(int& transaction) {
     const std::lock_guard lock(mutex_);
     transaction = transaction_;

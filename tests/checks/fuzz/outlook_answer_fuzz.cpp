@@ -1,4 +1,4 @@
-// Day-ahead answers as the edge takes them, and the file that it keeps of them over a restart.
+// Day-ahead answers as the edge accepts them, and the file that preserves them over a restart.
 #include "edge/prices/fetch/day_ahead_feed.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kNow_utc_s = 1'749'639'480;  // 11 June 2025, 12:58 in Brussels
 
-/// What may be planned on.
+/// Checks prices that may be used for planning.
 void check_known(const DayAheadBook& book) {
   const OutlookDays days = book.days_at(kNow_utc_s);
   for (std::int64_t t = days.today_utc_s; t < days.end_utc_s; t += kSecondsPerQuarterHour) {
@@ -34,7 +34,7 @@ void check_answer(std::string_view text, const PriceFields& fields) {
   must(book.changes() == changes, "the same again is nothing new");
 }
 
-/// Without a checksum that holds nothing comes back; with one, what no run keeps does not.
+/// Without a valid checksum nothing is restored; with one, nothing that no run writes.
 void check_kept(std::string_view text) {
   static const ScratchFile file("day_ahead");
   DayAheadBook book;

@@ -1,4 +1,4 @@
-// The line of an outside limit: refused, or whole and within its range.
+// Line of an outside limit: refused, or complete and within its range.
 #include "edge/core/site/connection_guard.h"
 #include "tests/checks/fuzz/fuzz_target.h"
 

@@ -1,5 +1,5 @@
-// Register maps: whatever is accepted keeps its promises about the power it can express, and the
-// driver can run it against a device that answers anything.
+// Register maps: an accepted map keeps its promises about the power it can express, and the driver
+// can run it against a device that gives arbitrary answers.
 #include "edge/device/battery/battery_driver.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/device/registers/codec.h"
@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-/// Answers every read with one value, repeated, and takes every write.
+/// Answers every read with one repeated value, and accepts every write.
 class AnyDevice {
  public:
   explicit AnyDevice(std::uint16_t answer) : answer_(answer) {}

@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     } catch (const UserError&) {
       continue;
     }
-    // What can be obeyed leaves something to do everywhere.
+    // A rule set that can be satisfied allows some action in every state.
     const ImpliedRanges implied(rules, kind);
     for (int n = 0; n < 200; ++n) {
       const int price = kLatticePriceMinEurPerMwh + n * 37 % kPriceCount;

@@ -1,4 +1,4 @@
-// A file in memory for readers that take a path; the folder beside it can hold links.
+// File in memory for readers that take a path; the folder next to it can hold links.
 #pragma once
 
 #include <fcntl.h>

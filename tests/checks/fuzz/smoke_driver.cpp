@@ -1,5 +1,5 @@
-// Stands in for libFuzzer in everyday builds: runs a target on every seed and on seeded mutations
-// of it, so that each commit sees the readers survive some thousand damaged inputs.
+// Replacement for libFuzzer in everyday builds: runs a target on every seed and on seeded mutations
+// of it, so that each commit is tested against some thousand damaged inputs.
 //   TARGET SEED...      files, or folders of them
 #include <cstdio>
 #include <filesystem>
@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::uint64_t kSeed = 1;
-constexpr std::size_t kMutationBytesMax = 1'000'000;  ///< a target's work, whatever its seeds' size
+constexpr std::size_t kMutationBytesMax = 1'000'000;  ///< work of a target
 
 using Rng = std::mt19937_64;
 
 std::size_t draw(Rng& rng, std::size_t count) { return static_cast<std::size_t>(rng() % count); }
 
-/// Bytes that readers treat in their own way, rather than any.
+/// Bytes with a special meaning for readers, preferred to arbitrary ones.
 char interesting_byte(Rng& rng) {
   static constexpr char kBytes[] = "0123456789-+.,;:eE\"'[]{}<>/=#& \t\r\nTZnaN";
   return draw(rng, 4) == 0 ? static_cast<char>(rng()) : kBytes[draw(rng, sizeof kBytes - 1)];

@@ -1,5 +1,4 @@
-// Student files: whatever is accepted has sane thresholds and evaluates without overflow on any
-// state.
+// Student files: an accepted file has valid thresholds and evaluates without overflow in any state.
 #include "shared/host/user_error.h"
 #include "tests/checks/fuzz/fuzz_target.h"
 #include "tests/support/integer_nets.h"

@@ -1,5 +1,4 @@
-// The one TOML reader, under every program's configurations and maps: each value is asked for as
-// everything.
+// TOML reader of all configurations and maps: each value is read as every type.
 #include "shared/host/toml_reader.h"
 #include "tests/checks/fuzz/fuzz_target.h"
 
@@ -12,7 +11,7 @@ void check_error(const std::string& error) {
   must(error.find('\n') == std::string::npos, "in one line");
 }
 
-/// Of one kind each: the readers of the other kinds complain.
+/// One value of each type: the readers of the other types complain.
 void read_as_everything(const TomlValue& table, const std::string& key) {
   const auto ask = [&](auto read) {
     std::string error;

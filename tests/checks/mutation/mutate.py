@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Hundreds of small defects of the edge, each of which a scenario or a unit test must find.
+"""Mutation test of the edge: a scenario or a unit test must find each of hundreds of small defects.
 
-  mutate.py make         the mutated copy of the tree, built (tests/checks/mutation/README.md)
-  mutate.py run [--sample N --seed S] [--only TEXT]   each, against scenarios and unit tests
-  mutate.py run --each N --rooms core/control         so many of each of these rooms
-  mutate.py report       the score by folder, and who survived
-  mutate.py draw         the keys of those that run would try, one a line, for run --keys FILE
-  mutate.py compare --than FOLDER   of what both trees tried, which tree's tests found what
+  mutate.py make         builds the mutated copy of the tree (tests/checks/mutation/README.md)
+  mutate.py run [--sample N --seed S] [--only TEXT]   runs scenarios and unit tests on each
+  mutate.py run --each N --rooms core/control         N of each of these rooms
+  mutate.py report       the score by folder, and the survivors
+  mutate.py draw         the keys that run would try, one per line, for run --keys FILE
+  mutate.py compare --than FOLDER   mutants that the tests of only one tree find
 
-survivors.txt says of those that are known to survive why. Exit codes: 0 done; 1 fewer than
---at-least are caught of those that are not equivalent, or something could not be built; 2 the
+survivors.txt gives the reason of each known survivor. Exit codes: 0 done; 1 fewer than
+--at-least of the non-equivalent mutants are found, or a build fails; 2 the
 command line.
 """
 import argparse
@@ -28,14 +28,14 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 ROOMS = ["core/control", "device/registers", "device/battery", "prices/record", "core/site",
          "core/supervision", "core/loop"]
-# Quickest first: a mutant is tried by what is dear only where nothing before has found it.
+# Cheapest tests first: expensive tests only run on mutants that no other test has found.
 UNIT_TESTS = ["edge_test", "edge_commands_unit_test", "hil_test", "fetch_test", "tools_test",
               "control_loop_test", "site_test", "trial_test"]
 TARGETS = ["bess-hil"] + UNIT_TESTS
 NUMBERS_PER_FILE = 1000
 LIMIT_S = 120  # of one run without a mutant
 
-RUN_TIME = """// Which of the mutants is awake, and which were passed by (tests/checks/mutation).
+RUN_TIME = """// The active mutant, and the mutants that were executed (tests/checks/mutation).
 #pragma once
 #include <cstdio>
 #include <cstdlib>
@@ -137,7 +137,7 @@ def copy_tree(out):
             data = f.read()
         if wanted.match(path):
             data = mutated(path, first, mutants, left_out).encode()
-            first += NUMBERS_PER_FILE  # a change in one file leaves the others' numbers alone
+            first += NUMBERS_PER_FILE  # independent of changes in other files
         write_if_new(os.path.join(source, path), data, os.stat(os.path.join(ROOT, path)).st_mode)
     write_if_new(os.path.join(source, "bess_mutant.h"), RUN_TIME.format(count=first).encode())
     with open(os.path.join(out, "mutants.json"), "w") as f:
@@ -199,7 +199,7 @@ class Runner:
             return False
 
     def tests(self, kind):
-        """Of all scenarios, or of one program, the names."""
+        """The names of all scenarios, or of the tests of one program."""
         if kind == "scenario":
             folder = os.path.join(self.source, "tests/scenarios")
             return [f[:-5] for f in sorted(os.listdir(folder)) if f.endswith(".toml")]
@@ -224,7 +224,7 @@ class Runner:
                 "--gtest_filter=" + ":".join(names)]
 
     def coverage(self):
-        """Which tests pass which mutant; found once for a build and kept."""
+        """The tests that execute each mutant; determined once per build and cached."""
         covered = collections.defaultdict(list)
         for kind in self.kinds:
             program = os.path.join(self.build, "bess-hil" if kind == "scenario" else kind)
@@ -247,7 +247,7 @@ class Runner:
         return covered
 
     def passed_by(self, kind, name):
-        """Of one test: its seconds, and the mutants it passes; none where it fails without any."""
+        """Seconds of one test and the mutants it executes; none if it fails without a mutant."""
         if os.path.exists(self.passed):
             os.unlink(self.passed)
         started = time.time()
@@ -266,7 +266,7 @@ class Runner:
         for kind, name, took_s in self.covered.get(number, []):
             by_kind[kind].append((name, took_s))
         for kind in self.kinds:
-            # What has found many goes first and alone, so that it is known which one it was.
+            # Tests with many finds run first and one at a time, so that the finder is known.
             tests = sorted(by_kind[kind], key=lambda t: (-self.kills[kind, t[0]], t[1]))
             at, size = 0, 1
             while at < len(tests):
@@ -309,7 +309,7 @@ def chosen(mutants, options):
     numbers = sorted(sum(by_room.values(), []))
     if options.sample:
         numbers = drawn(numbers, options.sample, options.seed)
-    random.Random(options.seed).shuffle(numbers)  # a run that is cut short is a sample
+    random.Random(options.seed).shuffle(numbers)  # an interrupted run is a sample
     return numbers
 
 
@@ -338,7 +338,7 @@ def rooms_of(text):
 
 
 def seconds_of(text):
-    """Above the first, up to the second; from 0 on those of no time too."""
+    """Above the first, up to the second; 0 includes an unknown time."""
     bounds = re.fullmatch(r"(\d+)-(\d*)", text)
     if not bounds:
         raise argparse.ArgumentTypeError(f'"{text}" is not as 0-4 or 4-')
@@ -376,13 +376,13 @@ def run(options):
 
 # --- report ---
 def results_of(folder, options):
-    """What was found last of each mutant, by its key."""
+    """The latest result of each mutant, by its key."""
     with open(os.path.join(folder, options.results)) as f:
         return {r["key"]: r for r in map(json.loads, f)}
 
 
 def compare(options):
-    """Nothing that the tests of another tree find may be lost: exit code 1 where it is."""
+    """Exit code 1 if these tests miss a mutant that the tests of another tree find."""
     old, new = results_of(options.than, options), results_of(options.out, options)
     known = survivors_known()
     rooms = collections.defaultdict(collections.Counter)
@@ -444,7 +444,7 @@ def report(options):
 
 
 def caught_percent(counts):
-    """Of those that are not equivalent."""
+    """Share of the non-equivalent mutants that are found."""
     return 100 * (counts["scenario"] + counts["unit"]) / max(1,
             counts["all"] - counts["equivalent"])
 

@@ -1,6 +1,7 @@
 #!/bin/sh
-# sample.sh FOLDER: mutate.py draws so many of each room by its seed, lists survivors and compares
-# two trees, of ten made-up mutants in each of two rooms, of which a test finds the even ones.
+# sample.sh FOLDER: mutate.py draws a number of mutants of each room by its seed, lists survivors
+# and compares two trees, on ten invented mutants in each of two rooms, of which a test finds the
+# even ones.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$1"
@@ -36,8 +37,8 @@ grep -q '^| all | 10 | 0 | 5 | 0 | 5 | 50.0 % |' "$1/said" || fail "$(cat "$1/sa
 ! run "$1" --rooms core/lop >/dev/null 2>"$1/said" || fail "a room that is none is taken"
 grep -q '"core/lop" is none of core/control' "$1/said" || fail "$(cat "$1/said")"
 
-# Of another tree, which has core/loop alone and whose test finds the odd numbers: what is drawn
-# is in both, and what that test alone finds is told as lost.
+# Another tree, which only has core/loop and whose test finds the odd numbers: the mutants drawn are
+# in both trees, and those that only its test finds are reported as lost.
 rm -rf "$1-there"
 mkdir -p "$1-there/build"
 python3 - "$1/mutants.json" >"$1-there/mutants.json" <<'PY'

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Writes every mutant of a file into one copy of it: each is chosen at run time, by its number.
+"""Mutant schemata: one copy of a file with all of its mutants, selected by number at run time.
 
-A mutant is one change that a slip of the hand could make: a comparison off by one, an operand left
+A mutant is one change that a typing error could make: a comparison off by one, an operand left
 out, a sign, a number, a condition that is always or never true, a statement left out. `a < b && c`
 becomes
 
@@ -9,8 +9,8 @@ becomes
                             : ((::bess_mutant(3) ? (a <= b) : (a < b)) && c))
 
 so that hundreds of mutants are one compilation (mutant schemata: Untch, Offutt, Harrold 1993).
-libclang says where an expression begins and ends; the text stays the file's own. What is computed
-while compiling is left as it is: constants, default values, template arguments, static_assert.
+libclang gives the extent of an expression. Expressions that are evaluated at compile time are left
+unchanged: constants, default values, template arguments, static_assert.
 """
 import bisect
 import re
@@ -38,12 +38,12 @@ FUNCTIONS = {CursorKind.FUNCTION_DECL, CursorKind.CXX_METHOD, CursorKind.CONSTRU
 
 @dataclass
 class Node:
-    """A piece of the text, and what stands in its place in each mutant."""
+    """A piece of the text, and its replacement in each mutant."""
     start: int
     end: int
     function: str
-    alternatives: list  # (what was, what is, text)
-    cast: str = ""      # to one type, where the pieces that may stand here are of several
+    alternatives: list  # (old, new, text)
+    cast: str = ""      # cast to one type, where the alternatives have several
     children: list = field(default_factory=list)
 
 
@@ -123,7 +123,7 @@ class File:
             self.statement(cursor, kind, start, end, parents[-1], function)
 
     def is_made_by_macro(self, children, start, end):
-        """libclang then says where the macro stands, or only half of what belongs to it."""
+        """libclang then reports the position of the macro, or only half of the expression."""
         at = [self.at(c) for c in children]
         return any(s < start or e > end for s, e in at) or self.source(start,
                 end).startswith("cJSON_ArrayForEach")
@@ -195,7 +195,7 @@ class File:
         s, e = self.at(first)
         text = self.source(s, e)
         if self.text[e:].lstrip()[:1] != ")":
-            return  # libclang lost the end of it
+            return  # libclang lost its end
         alternatives = [(f"if ({one_line(text)})", "false", "false")]
         if kind == CursorKind.IF_STMT:
             alternatives.append((f"if ({one_line(text)})", "true", "true"))
@@ -240,7 +240,7 @@ class File:
         if parent.kind in (CursorKind.IF_STMT, CursorKind.FOR_STMT, CursorKind.WHILE_STMT,
                            CursorKind.CXX_FOR_RANGE_STMT):
             children = list(parent.get_children())
-            # The parts of the head are told by the text: a statement ends in a semicolon, and the
+            # The parts of the head are identified by text: a statement ends in a semicolon, and the
             # first child of `if` and `while` is the condition.
             if parent.kind in (CursorKind.FOR_STMT, CursorKind.CXX_FOR_RANGE_STMT):
                 return cursor == children[-1]
@@ -249,7 +249,7 @@ class File:
 
     # --- one tree, one text ---
     def tree(self):
-        """Pieces inside each other; one that crosses another's border is left out."""
+        """Nested pieces; a piece that overlaps another is left out."""
         self.nodes.sort(key=lambda n: (n.start, -n.end))
         roots, stack = [], []
         for node in self.nodes:

@@ -1,6 +1,5 @@
 #!/bin/sh
-# held.sh FOLDER: list_skips.py accepts the known reasons, and no other: not another, and not
-# silence.
+# held.sh FOLDER: list_skips.py accepts only the known reasons, and no skip without a reason.
 set -eu
 folder=$1
 mkdir -p "$folder"

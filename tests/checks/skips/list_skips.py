@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""list_skips.py KNOWN JUNIT...: which tests of these runs of ctest were skipped, and why.
+"""list_skips.py KNOWN JUNIT...: lists the skipped tests of these runs of ctest, with reasons.
 
-KNOWN holds the reasons that are accepted (known.txt beside this file says how); JUNIT is what
-`ctest --output-junit` wrote. Exit code 1 where a test was skipped for another reason, or gave none.
+KNOWN lists the accepted reasons (see known.txt in this folder); JUNIT is the output of
+`ctest --output-junit`. Exit code 1 if a test was skipped for another reason, or without one.
 """
 
 import pathlib
@@ -17,7 +17,7 @@ def known_reasons(path):
 
 
 def reason_of(case):
-    """The line in which GoogleTest or a script says why; empty where neither does."""
+    """The line in which GoogleTest or a script gives the reason; empty if there is none."""
     lines = [line.strip() for line in (case.findtext("system-out") or "").splitlines()]
     after = [lines[i + 1] for i, line in enumerate(lines[:-1]) if line.endswith(": Skipped")]
     scripts = [line for line in lines

@@ -59,7 +59,7 @@ class Readmes:
 
     @functools.cache
     def script_text(self, script):
-        """What a script says of its options, and what it hands them on to."""
+        """Options in the head of a script, and the programs that it passes options to."""
         text = (self.tree / script).read_text(encoding="utf-8")
         if script.startswith("tools/") and "python" not in text.partition("\n")[0]:
             text = re.match(r"(?:#.*\n)*", text)[0]
@@ -119,7 +119,7 @@ class Readmes:
             self.check_command(words)
 
     def check_inline(self, code):
-        """Also of a command that is named without its program: `run --resume`."""
+        """Also a command without its program: `run --resume`."""
         words = re.sub(r"[][…,|]|\\", " ", code).split()
         if not words:
             return
@@ -195,7 +195,7 @@ def is_script(path):
 
 
 def end_group(run):
-    """Ends what the block has left in the background."""
+    """Ends background processes of the block."""
     for number in [signal.SIGTERM] + [0] * 100 + [signal.SIGKILL]:
         try:
             os.killpg(run.pid, number)
@@ -206,7 +206,7 @@ def end_group(run):
 
 
 def typed_and_shown(lines):
-    """Of a block with "$ " and "> ", or of commands alone."""
+    """Commands of a block with "$ " and "> ", or of commands only."""
     typed, shown = [], []
     for line in lines:
         if line.startswith(("$ ", "> ")):
@@ -219,12 +219,12 @@ def typed_and_shown(lines):
 
 
 def commands_of(line):
-    """The words of each command of a line of shell."""
+    """Words of each command on a shell line."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars="();<>|&")
     lexer.whitespace_split = True
     try:
         words = list(lexer)
-    except ValueError:  # a quotation that goes on in the next line
+    except ValueError:  # a quotation that continues on the next line
         words = line.replace("'", " ").replace('"', " ").split()
     command = []
     for word in words + [";"]:

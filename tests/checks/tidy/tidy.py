@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""tidy.py TREE: the house keeps itself. Fails, naming file and line, on
+"""tidy.py TREE: tidy check of the tree. Fails, naming file and line, on
 
-- a line of more than 100 columns, but in what is generated or data, tables and printed text of
-  READMEs, and what is one word (a URL); files that are longer yet stand in long_lines.txt with how
-  many such lines they have: none may get more
+- a line of more than 100 columns, except in generated files, data, tables and printed text of
+  READMEs, and single words (URLs); other files with long lines are in long_lines.txt with the
+  number of such lines, which may not grow
 - a file of a kind that is not known, or at the top of the tree and not named in README.md
 - a README or a page of the manual that has no heading, or names a file that is not there, in full
   or by the end of its path; a README of more words than allowed, and all of them together
@@ -48,7 +48,7 @@ def text_of(path):
 
 
 def prose_only(lines):
-    """Line by line: is it prose? Not a table's row, not printed text or a command."""
+    """For each line: is it prose, that is no table row, printed text or command?"""
     fenced = False
     for line in lines:
         fence = line.startswith("```")
@@ -127,7 +127,7 @@ def check_documents(tree, names, complain):
 
 
 def figures(tree):
-    """Patterns that a README may repeat a figure in, and the figure."""
+    """Patterns in which a README repeats a figure, and the figure."""
     signature = (tree / "edge/generated/decision_signature.txt").read_text(encoding="utf-8")
     header = (tree / "edge/generated/student_weights.h").read_text(encoding="utf-8")
     states = re.search(r"STATES_CHECKED\s+\w*\(?(\d+)|(\d+) states", header)

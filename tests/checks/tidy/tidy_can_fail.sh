@@ -1,5 +1,5 @@
 #!/bin/sh
-# tidy_can_fail.sh SOURCE FOLDER: tidy.py passes a small tree, and none that is untidy in one way.
+# tidy_can_fail.sh SOURCE FOLDER: tidy.py passes a small tree, and none with one defect.
 set -eu
 source=$1 tree=$2
 rm -rf "$tree"

@@ -1,8 +1,8 @@
-// Commission over batteries of every dead time, time constant, ramp, noise and way of being read,
-// in moved time: accepted when their largest step is within settle_s, refused when not, and what is
-// printed passes when it is set. Prints the table of edge/device/battery/README.md.
+// Commissioning of batteries with every dead time, time constant, ramp, noise and read-out, in
+// moved time: accepted if their largest step is within settle_s, refused if not, and the printed
+// value passes when it is set. Prints the table of edge/device/battery/README.md.
 //
-// The batteries share nothing with bess-sim, nor with the model that is fitted.
+// The batteries are independent of bess-sim and of the fitted model.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -20,21 +20,21 @@
 namespace bess {
 namespace {
 
-enum class Ramped { kSetpoint, kPower };  ///< what of it cannot change faster
+enum class Ramped { kSetpoint, kPower };  ///< upper limit of its rate of change
 
 struct Nature {
   double dead_time_s = 0;
   double time_constant_s = 0;
   double ramp_w_per_s = 1e9;
-  double noise_frac = 0;  ///< standard deviation, besides 10 W
-  double read_s = 0.05;   ///< that a reading takes; it is true at any instant within
-  double refresh_s = 0;   ///< its registers are brought up to date so seldom; 0 = always
+  double noise_frac = 0;  ///< standard deviation, in addition to 10 W
+  double read_s = 0.05;   ///< duration of a reading; it is true at any instant within
+  double refresh_s = 0;   ///< update period of its registers; 0 = always
   Ramped ramped = Ramped::kSetpoint;
 };
 
 constexpr double kStepS = 0.02;
 
-/// What flows, stepped by 20 ms.
+/// Real power, in steps of 20 ms.
 struct Plant {
   Nature nature;
   double ordered_w = 0;
@@ -63,7 +63,7 @@ struct Plant {
   }
 };
 
-/// Until a step is in its band, of a battery at rest at its begin: the truth.
+/// Time until a step is in its band, from rest: the truth.
 double seconds_of(const Nature& nature, double step_w, double band_w) {
   Plant plant{.nature = nature, .ordered_w = -step_w / 2};
   plant.setpoint_w = plant.power_w = -step_w / 2;
@@ -130,7 +130,7 @@ CommissionResult commission(const Nature& nature, std::uint64_t seed,
   return SignCheck<GridBattery, FakeClock>(settings, battery, clock).run();
 }
 
-/// What hides the truth: an instant that nobody knows, and registers as old as that.
+/// Uncertainty of the truth: an unknown instant, and registers of that age.
 double unseen_s(const Nature& nature) { return nature.read_s + nature.refresh_s + 0.1; }
 
 std::vector<Nature> natures() {
@@ -167,14 +167,14 @@ bool is_doubtful(const CommissionResult& r) {
   return r.charge.speed.is_doubtful || r.discharge.speed.is_doubtful;
 }
 
-/// What was printed, set: it must pass.
+/// The printed value, configured: it must pass.
 CommissionSettings with_what_was_printed(CommissionSettings settings, const CommissionResult& r) {
   if (r.wanted_settle_s > 0) settings.response.settle_s = r.wanted_settle_s;
   if (r.wanted_ramp_w_max > 0) settings.step_w_max = r.wanted_ramp_w_max;
   return settings;
 }
 
-/// Of the largest step, less what noise and readings hide of it.
+/// Of the largest step, less the part hidden by noise and readings.
 struct Truth {
   bool is_within = false;
   bool is_beyond = false;
@@ -189,7 +189,8 @@ Truth truth_of(const Nature& nature, const CommissionSettings& settings) {
           .is_beyond = soonest_s > settings.response.settle_s + unseen_s(nature)};
 }
 
-/// Where a larger step fits both ways, who is beyond is refused; else it may be a warning.
+/// Where a larger step fits both ways, a battery beyond the limit is refused; otherwise it may be a
+/// warning.
 bool is_right(const CommissionResult& r, const Truth& truth, bool has_room) {
   const bool is_known = passes(r) || r.verdict == CommissionVerdict::kSlow;
   if (!is_known || (truth.is_within && !passes(r))) return false;
@@ -203,7 +204,7 @@ void count(const CommissionResult& r, const Truth& truth, Row& row) {
 
 std::size_t every_of(int few, int all) { return static_cast<std::size_t>(few_or_all(few, all)); }
 
-/// Of every so manieth battery.
+/// Of every Nth battery.
 void expect_none_wrong(const char* title, const CommissionSettings& settings, double soc_frac,
                        std::size_t every) {
   const bool has_room = soc_frac == 0.5;

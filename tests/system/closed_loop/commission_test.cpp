@@ -1,5 +1,5 @@
-// The sign check against the simulator's physics: what passes, what is refused, and that the
-// battery is free again on every way out.
+// Sign check against the simulator's physics: what passes, what is refused, and that the battery is
+// released on every exit.
 #include "edge/device/battery/commission.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-/// A meter at the connection, and a house that may move.
+/// A meter at the connection, and a house with a moving load.
 struct CommissionMeter {
   [[nodiscard]] static bool exists() { return true; }
   Status read(const BatteryMeasurement&, std::int32_t& grid_power_w) {
@@ -159,7 +159,7 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   EXPECT_EQ(seen.wanted_ramp_w_max, 0);
 }
 
-/// At 11 % nothing larger than 500 W is discharged, and charged only up to what the room leaves.
+/// At 11 % at most 500 W are discharged, and charged only up to the remaining room.
 TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
   CommissionSite site(0.12);
   site.battery.physics.set_time_constant(5);
@@ -187,7 +187,7 @@ TEST(Commission, TheConnectionBoundsTheLargerSteps) {
   EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 1'300, -1'300, 1'300, 0}));
 }
 
-/// Near its limits it holds back: that is no ramp, and says nothing of its speed.
+/// Near its limits it reduces power: that is no ramp, and does not show its speed.
 TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
   CommissionSite site(0.5);
   site.battery.physics.set_derating(0.4);
@@ -227,7 +227,7 @@ TEST(Commission, AMeterThatFollowsPasses) {
   EXPECT_EQ(result.rest_house_w, 400);
   CommissionSite full(1.0);
   EXPECT_EQ(full.commission_with({.battery = full.battery}).meter, MeterVerdict::kFollows);
-  CommissionSite kettle;  // goes on in one of the four steps
+  CommissionSite kettle;  // switched on in one of the four steps
   CommissionMeter meter{.battery = kettle.battery};
   const std::int64_t on_s = kettle.clock.now_ns / kNanosecondsPerSecond + 60;
   meter.house_w = [on_s](std::int64_t utc_s) { return utc_s < on_s ? 400.0 : 2'400.0; };
@@ -281,14 +281,14 @@ TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
   site.battery.physics.start_dispatch(1'000, 1.0, 3'600);
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kForeignOrder);
   EXPECT_TRUE(site.battery.orders.empty());
-  EXPECT_EQ(site.battery.releases, 0);  // it is not ours to release
+  EXPECT_EQ(site.battery.releases, 0);  // an order of another controller is not released
 }
 
 TEST(Commission, RefusesPowerAtRest) {
   CommissionSite site;
   site.battery.offset_w = 400;
   site.expect_refused(CommissionVerdict::kNotAtRest);
-  EXPECT_EQ(site.battery.orders.size(), 1U);  // only the 0 W
+  EXPECT_EQ(site.battery.orders.size(), 1U);  // only 0 W
 }
 
 TEST(Commission, SaysWhyTheLinkFailed) {

@@ -1,5 +1,5 @@
-// The real control loop against the battery model and a fake clock: whole days in milliseconds,
-// with faults from one named seed, and invariants that hold whatever bus, market and clock do.
+// Real control loop against the battery model and a fake clock: whole days in milliseconds, with
+// faults from a named seed, and invariants under any fault of bus, market and clock.
 #include "edge/core/loop/control_loop.h"
 
 #include <gtest/gtest.h>
@@ -44,14 +44,14 @@ TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
     modes.push_back(record.mode);
     powers.push_back(record.ordered_power_w);
   }
-  // The row of the last good minute is 2, then 4 minutes old: still usable; then the safe state.
+  // The row of the last good minute is 2, then 4 minutes old: still valid; then the safe state.
   EXPECT_EQ(powers[1], 4'000);
   EXPECT_EQ(modes[2], Mode::kHolding);
   EXPECT_EQ(powers[2], 0);
   EXPECT_EQ(modes[4], Mode::kHolding);  // 240 s held
   EXPECT_EQ(modes[5], Mode::kSafe);     // 360 s: released
   EXPECT_EQ(modes.back(), Mode::kSafe);
-  EXPECT_EQ(plant.battery.releases, 1);  // once, not every cycle
+  EXPECT_EQ(plant.battery.releases, 1);  // once, not every control cycle
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
   plant.prices.outage = false;
   const CycleRecord record = plant.cycle();
@@ -101,7 +101,7 @@ TEST(ClosedLoop, CountsTheTicksThatAnOverrunSkipped) {
 TEST(ClosedLoop, ARestartTakesOverWhatTheBatteryIsDoing) {
   Plant plant;
   plant.set_price(kCheapCenti);
-  plant.battery.physics.start_dispatch(4'000, 1.0, 300);  // the order of the run before
+  plant.battery.physics.start_dispatch(4'000, 1.0, 300);  // the order of the previous run
   const CycleRecord record = plant.cycle();
   EXPECT_EQ(record.measurement.order_power_w, 4'000);
   EXPECT_EQ(record.mode, Mode::kRunning);
@@ -144,7 +144,7 @@ TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
   plant.battery.failing_releases = 3;
   EXPECT_EQ(plant.stop().battery_status, Status::kOk);
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
-  Plant unreachable;  // gives up in the end
+  Plant unreachable;  // stops eventually
   unreachable.cycle();
   unreachable.battery.link = false;
   const std::int64_t start_ns = unreachable.clock.now_ns;
@@ -194,7 +194,7 @@ TEST(ClosedLoop, NothingIsFedWithoutAnOrderOrInReadOnly) {
 TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
   set_market_time_zone();
   ControlSettings settings = in_control();
-  settings.cycles_per_day_max_e4 = 5'000;  // half a cycle: 100 % of charge moved
+  settings.cycles_per_day_max_e4 = 5'000;  // half a full cycle: 100 % of charge moved
   Plant plant(0.5, settings);
   plant.prices.price = [&](std::int64_t minute_utc_s) {
     return minute_utc_s / 7'200 % 2 == 0 ? kCheapCenti : kDearCenti;  // two hours each way
@@ -213,7 +213,7 @@ TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
   EXPECT_TRUE(spent);
   EXPECT_TRUE(reopened);
   EXPECT_GE(moved_e4_max, 10'000);
-  EXPECT_LE(moved_e4_max, 10'000 + 350);  // one 2-minute step of 4 kW at the most
+  EXPECT_LE(moved_e4_max, 10'000 + 350);  // at most one 2-minute step of 4 kW
 }
 
 TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
@@ -226,8 +226,8 @@ TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
   EXPECT_EQ(plant.cycle().reason, Reason::kCycleBudget);
 }
 
-/// Cycles from one run to the next, killed after each, until one finds what `fault` did to the
-/// battery.
+/// Control cycles from one run to the next, killed after each, until one finds the effect of
+/// `fault` on the battery.
 int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
   Plant plant;
   plant.set_price(kCheapCenti);
@@ -255,7 +255,7 @@ TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
     battery.inverted = cycle % 2 == 1;
   };
   EXPECT_EQ(runs_until_trip(20, inverted), 3);
-  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order that it finds is as old as the log says
+  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order found is as old as the log says
   EXPECT_EQ(runs_until_trip(2, inverted), 3);
   EXPECT_LE(runs_until_trip(1, every_other), 6);
 }
@@ -266,7 +266,7 @@ TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
   plant.battery.inverted = true;
   std::vector<CycleRecord> log;
   for (int i = 0; i < 2; ++i) log.push_back(plant.cycle());
-  ASSERT_FALSE(log.back().is_tripped);  // short of it by one reading
+  ASSERT_FALSE(log.back().is_tripped);  // one reading short of it
   Plant::Loop next(in_control(), plant.battery, plant.prices, plant.clock);
   Plant::Loop forgetful(in_control(), plant.battery, plant.prices, plant.clock);
   for (const CycleRecord& record : log) next.recall(record);
@@ -317,7 +317,7 @@ TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
   plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
   plant.set_price(kCheapCenti);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
-  EXPECT_EQ(plant.cycle().reason, Reason::kOrdersFail);  // tried again after a pause
+  EXPECT_EQ(plant.cycle().reason, Reason::kOrdersFail);  // retried after a pause
   plant.battery.refuses_orders = false;
   plant.battery.offset_w = 0;
   CycleRecord record;

@@ -1,6 +1,6 @@
-// A disk that dies under the real programs: full, read-only, without answer, gone, with flipped
-// bytes. Whatever it does, status, metrics and alarms never say the opposite of what the controller
-// has just decided, and a trip stays until a person clears it.
+// Failing disk under the real programs: full, read-only, without answer, gone, with flipped bytes.
+// Status, metrics and alarms never contradict the controller's last decision, and a trip stays
+// until a person clears it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -25,9 +25,9 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::int32_t kScale = 300;
-constexpr int kCyclesToTrip = 12;  ///< at most, with the change of the battery in between
+constexpr int kCyclesToTrip = 12;  ///< at most, including the change of the battery
 
-/// As the metrics have it.
+/// As in the metrics.
 std::string utc_number(const std::string& utc) { return std::to_string(utc_of(utc)); }
 
 /// As a boot does; bess-prices may just be leaving it.
@@ -37,7 +37,7 @@ void lose_folder(const std::string& folder) {
   while (error || fs::exists(folder));
 }
 
-/// The state folder as a disk of its own, and what can happen to it.
+/// The state folder as a separate disk, and its faults.
 class StateDisk {
  public:
   explicit StateDisk(const SimulatedSite& site)
@@ -71,12 +71,12 @@ class StateDisk {
   void go_read_only() const { std::ofstream(control_) << "EROFS " << folder_; }
   void go_silent() const { std::ofstream(control_) << "EIO " << folder_; }
   void come_back() const { fs::remove(control_); }
-  /// What is mounted goes, under whatever has files open; the folder below it stays, empty.
+  /// The mount disappears under any open files; the folder below it stays, empty.
   void unmount() {
     EXPECT_EQ(umount2(folder_.c_str(), MNT_DETACH), 0);
     is_mounted_ = false;
   }
-  /// Another folder is seen there from now on, as a disk that comes late.
+  /// Another folder is visible there from now on, like a disk that is mounted late.
   void mount_late(const std::string& other) {
     EXPECT_EQ(mount(other.c_str(), folder_.c_str(), nullptr, MS_BIND, nullptr), 0);
     is_mounted_ = true;
@@ -94,7 +94,7 @@ class StateDisk {
   }
 
  private:
-  /// What is mounted here goes with this process, however it ends.
+  /// Mounts made here end with this process, on any exit.
   static bool has_own_mounts() {
     static const bool is_done =
         unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
@@ -125,7 +125,7 @@ class DyingDisk : public SiteTest {
   void commission(bool has_run_folder, const std::string& keys = "") {
     const std::string run = "run_folder = \"" + site_.folder.file("run") + "\"\n";
     config_ =
-        site_.commission({.guard_keys = "price_age_s_max = 1800\n",  // it is stopped to be asked
+        site_.commission({.guard_keys = "price_age_s_max = 1800\n",  // stopped during queries
                           .state_keys = (has_run_folder ? run : "") + keys});
   }
   void start() {
@@ -138,7 +138,7 @@ class DyingDisk : public SiteTest {
     start();
     await_running();
   }
-  /// The first line of a cycle that has this word, among so many; empty when none has.
+  /// The first control cycle line with this word, within a number of lines; empty if there is none.
   std::string await_cycle(const std::string& name, const std::string& word, int cycles_max) {
     for (int cycle = 0; cycle < cycles_max;) {
       const std::string line = controller_->read_line();
@@ -155,7 +155,7 @@ class DyingDisk : public SiteTest {
       ASSERT_NE(await_cycle(name, word, cycles_max), "") << said_;
     }
   }
-  /// Another battery at the same place, whose power goes the other way.
+  /// Another battery at the same address, with reversed power.
   void swap_battery(bool is_wrong) {
     const int port = site_.battery_port;
     site_.battery.reset();
@@ -174,12 +174,12 @@ class DyingDisk : public SiteTest {
   }
 
   struct Answers {
-    CsvRow decided;  ///< the newest cycle, by the CSV, which lies on another disk
+    CsvRow decided;  ///< the newest control cycle, by the CSV on another disk
     std::string status;
     std::string json;
     std::string metrics;
   };
-  /// Asks everybody while the controller stands still.
+  /// Queries all programs while the controller is stopped.
   Answers ask_all() {
     controller_->signal(SIGSTOP);
     Answers answers;
@@ -191,8 +191,8 @@ class DyingDisk : public SiteTest {
     return answers;
   }
 
-  /// What everybody says of the controller is what it has just decided. Asked again when it was
-  /// stopped between deciding and telling.
+  /// All reports equal the controller's last decision. Repeated if it was stopped between decision
+  /// and report.
   void expect_all_agree(bool may_be_unknown) {
     Answers answers = ask_all();
     for (int i = 0; i < 20; ++i) {
@@ -233,7 +233,7 @@ class DyingDisk : public SiteTest {
   std::string said_;
 };
 
-/// The disk dies under a running controller, which then trips.
+/// The disk fails under a running controller, which then trips.
 struct Death {
   const char* name;
   void (*happen)(const StateDisk& disk);
@@ -268,7 +268,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   expect_all_agree(false);
   end_run();
 
-  start();  // what was cleared stays cleared
+  start();  // a cleared trip stays cleared
   EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
   disk_.free_again();
   disk_.come_back();
@@ -290,12 +290,12 @@ TEST_P(DyingDiskRun, WithoutARunFolderTheyKnowOrSayThatTheyDoNot) {
 INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// What happens to the disk between a run that has tripped and the next start.
+/// Disk faults between a tripped run and the next start.
 struct Accident {
   const char* name;
   void (*happen)(const StateDisk& disk);
   bool boots;            ///< the run folder is empty again
-  const char* expected;  ///< the reason of the next run's cycles
+  const char* expected;  ///< reason of the next run's control cycles
 };
 
 constexpr Accident kAccidents[] = {
@@ -337,7 +337,7 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
 INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// What people say to the controller while its disk takes nothing.
+/// Operator commands while the disk refuses writes.
 class DyingDiskWords : public DyingDisk {
  protected:
   Said hold(std::vector<std::string> arguments) {
@@ -399,7 +399,7 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheB
   }
 }
 
-/// It has never run here, and cannot keep anything: not driven, and said so.
+/// A first run without storage: not driven, and reported.
 TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
   for (const Death& death : kDeaths) {
     if (death.name == std::string("IoErrors")) continue;  // not commissioned: nothing can be read
@@ -422,7 +422,7 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
   }
 }
 
-/// The folder is suddenly empty: what was known goes on in it.
+/// The folder is suddenly empty: known state is written to it.
 TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
   ASSERT_NO_FATAL_FAILURE(start_and_run(true));
   disk_.unmount();
@@ -434,7 +434,7 @@ TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
   end_run();
   swap_battery(false);
   said_.clear();
-  start();  // with the sign check that memory has
+  start();  // with the sign check from memory
   EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
   end_run();
   EXPECT_THAT(said_, AllOf(Names("commissioned.toml"), Not(HasSubstr("mode=running"))));
@@ -446,7 +446,7 @@ TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
   EXPECT_THAT(refused.text, Names("commissioned.toml [state] folder"));
 }
 
-/// A disk that is mounted after the start, and knows of a trip.
+/// A disk that is mounted after the start, and records a trip.
 TEST_F(DyingDisk, MountedLateItsTripCounts) {
   disk_.unmount();
   ASSERT_NO_FATAL_FAILURE(start_and_run(false));
@@ -457,7 +457,7 @@ TEST_F(DyingDisk, MountedLateItsTripCounts) {
   fs::rename(disk_.folder(), site_.folder.file("card"));
   fs::create_directory(disk_.folder());
   commission(false);
-  start();  // on the folder below, where nothing is known
+  start();  // on the folder below, without state
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   said_.clear();
   disk_.mount_late(site_.folder.file("card"));

@@ -1,5 +1,5 @@
-// The commands of bess-edge as an operator types them: each exit
-// code that edge/README.md promises, and what is said of a controller that has tripped or ended.
+// Commands of bess-edge as an operator types them: each exit code in edge/README.md, and the
+// reports about a controller that has tripped or ended.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -17,7 +17,7 @@ using ::testing::StartsWith;
 class EdgeCommands : public SiteTest {
  protected:
   EdgeCommands() : SiteTest(900) {}
-  /// The words, with the configuration where an operator may put it: before or behind.
+  /// The words, with the configuration before or after them.
   Said with_config(std::vector<std::string> words) {
     const Said said = ask(words);
     words.insert(words.begin(), {"--config", config_});
@@ -27,9 +27,9 @@ class EdgeCommands : public SiteTest {
   int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
 };
 
-/// The table of exit codes in edge/README.md, row by row; the command line's 2 is above.
+/// The table of exit codes in edge/README.md, row by row; 2 (command line) is above.
 TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
-  config_ = site_.write_config();  // nobody listens
+  config_ = site_.write_config();  // no listener
   EXPECT_EQ(code_of({"--check"}), 1);
   EXPECT_EQ(code_of({"--self-test"}), 1);
   EXPECT_EQ(code_of({"--cycles", "1"}), 1);
@@ -88,8 +88,7 @@ TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
-/// A hold cannot make a battery be driven that the supervision has given back: that is said where
-/// it is asked for.
+/// A hold cannot drive a battery that the supervision has released: the command says so.
 TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
   start_site(1'200);
   const int port = site_.battery_port;

@@ -1,7 +1,6 @@
-// Orders that are not in force until their end, on every shipped map: somebody gives the battery
-// back, writes another mode or another power, or the device ends them, at each, every other or
-// every third tick: after how many cycles it is found.
-// And what is nobody's intention: then nothing may be found.
+// Lost orders on every shipped map: another controller releases the battery, writes another mode or
+// power, or the device ends them, at every, every other or every third tick; the number of control
+// cycles until detection. And unintended losses, which must not be found.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -25,7 +24,7 @@ std::int64_t now_s(const SupervisedSite& site) {
   return site.clock.now_utc_ns() / kNanosecondsPerSecond;
 }
 
-/// What somebody, or the device, does to an order.
+/// Action of another controller, or the device, on an order.
 struct Interference {
   enum class Kind { kRelease, kMode, kPower, kEnd };
   Kind kind;
@@ -51,10 +50,10 @@ const std::vector<Interference> kInterferences = {
 struct Shows {
   bool replaced = true;
   bool ended = true;
-  /// Giving back, or changing the mode, writes no more than the device does at an order's end.
+  /// A release, or a change of mode, writes no more than the device does at an order's end.
   bool release_is_end = false;
   bool mode_is_end = false;
-  bool has_mode = true;  ///< orders need one that somebody may change
+  bool has_mode = true;  ///< orders need one that another controller may change
 };
 
 Shows what_it_shows(const MapVariant& v) {
@@ -84,7 +83,7 @@ Reason found_as(const Shows& map, Interference::Kind kind) {
   return is_end ? Reason::kNoAnswer : Reason::kOtherMaster;
 }
 
-/// Thirty seconds after every `every`th tick.
+/// 30 s after every `every`th tick.
 void interfere(SupervisedSite& site, const Interference& what, int every) {
   site.clock.every_half_minute = [&site, &what, every] {
     const std::int64_t s = now_s(site);
@@ -95,7 +94,7 @@ void interfere(SupervisedSite& site, const Interference& what, int every) {
 }
 
 struct Outcome {
-  int cycles_to_find = 0;  ///< since the first order was touched, until it is given back; 0: never
+  int cycles_to_find = 0;  ///< from the first disturbed order until the release; 0: never
   int cycles_to_tell = 0;  ///< likewise, until health is degraded by it
   Reason reason = Reason::kStudent;
   CycleRecord last;
@@ -127,7 +126,7 @@ void expect_found(const Outcome& o, Reason reason, int every) {
   EXPECT_EQ(o.last.replaced_orders == 0, o.reason == Reason::kNoAnswer);
 }
 
-/// Who insists gives up after an hour, unless two of three orders hold.
+/// With insist control stops after an hour, unless two of three orders last.
 void expect_told(const Outcome& o, int every) {
   EXPECT_GT(o.cycles_to_tell, 0);
   EXPECT_LE(o.cycles_to_tell, 3 * every);
@@ -138,7 +137,7 @@ void expect_told(const Outcome& o, int every) {
 TEST_P(EveryMapsOrders, WhoEndsOrReplacesThemIsFoundAlsoWhenHeComesAndGoes) {
   const Shows map = what_it_shows(GetParam());
   for (const Interference& what : kInterferences) {
-    if (!shows(map, what.kind)) continue;  // feeding may outdo it unseen
+    if (!shows(map, what.kind)) continue;  // a refresh may hide it
     for (const int every : {1, 2, 3}) {
       for (const bool yields : {true, false}) {
         SCOPED_TRACE(std::string(what.name) + " every " + std::to_string(every));
@@ -157,8 +156,7 @@ TEST_P(EveryMapsOrders, WhoEndsOrReplacesThemIsFoundAlsoWhenHeComesAndGoes) {
   }
 }
 
-/// What ends orders and is nobody's intention: asked at each half minute, true when it has
-/// happened.
+/// Unintended ends of orders: called every 30 s, true when it has happened.
 struct Innocent {
   const char* name;
   std::function<bool(SupervisedSite&, std::int64_t cycle, std::int64_t second)> happens;
@@ -186,7 +184,7 @@ auto process_is_stopped(std::int64_t seconds) {
   };
 }
 
-/// To and fro.
+/// Alternating.
 auto clock_steps(std::int64_t every, std::int64_t step_s) {
   return [every, step_s](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
     const bool now = second == 60 && cycle % every == 2;
@@ -283,16 +281,14 @@ TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
     };
     std::map<Reason, int> reasons;
     for (cycle = 0; cycle < 300; ++cycle) ++reasons[site.cycle().reason];
-    // Where the registers show no end, the simulator's next one waits for the next order that
-    // differs.
+    // Where the registers show no end, the simulator's next end waits for an order that differs.
     EXPECT_GE(happened, what_it_shows(GetParam()).ended ? 20 : 0);
     EXPECT_EQ(reasons[Reason::kOtherMaster], 0);
     EXPECT_EQ(reasons[Reason::kNoAnswer], 0);
   }
 }
 
-/// A new process finds the order of the one before, and what became of it in between is not its to
-/// judge.
+/// A new process finds the previous order, and cannot judge what happened in between.
 TEST_P(EveryMapsOrders, RestartsLoseNone) {
   SupervisedSite site(GetParam());
   trade_both_ways(site);
@@ -304,11 +300,11 @@ TEST_P(EveryMapsOrders, RestartsLoseNone) {
   }
 }
 
-/// One request in two hundred is not answered or refused as busy, and a gateway is busy, silent or
-/// without its device for some seconds about once an hour: nobody is stopped for it.
+/// One request in two hundred is unanswered or refused as busy, and a gateway is busy, silent or
+/// without its device for some seconds about once an hour: no stop results.
 TEST_P(EveryMapsOrders, OrdinaryBusFaultsStopNothing) {
   SupervisedSite site(GetParam());
-  site.prices.price = [](std::int64_t minute_utc_s) {  // it never stands still for long
+  site.prices.price = [](std::int64_t minute_utc_s) {  // it is never paused for long
     return static_cast<std::int32_t>(minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000) +
            static_cast<std::int32_t>(minute_utc_s / 60 % 7);
   };

@@ -1,6 +1,6 @@
 // A day of orders through the driver and the simulated battery of every shipped map and variant, in
-// moved time: the energy that flows is the energy that was ordered, watchdogs stay fed while the
-// controller lives and end the order when it dies.
+// moved time: the flowing energy equals the ordered energy, watchdogs are refreshed while the
+// controller runs and end the order when it dies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,8 @@ class EveryMap : public ::testing::TestWithParam<MapVariant> {
  protected:
   EveryMap() : device_(GetParam().map, GetParam().variant), t_(device_.test) {}
 
-  /// The rest of a cycle as the control loop spends it: refreshes as often as the driver asks.
+  /// The rest of a control cycle as the control loop spends it: refreshes as often as the driver
+  /// requests.
   void pass_cycle() {
     const int interval_s = t_.driver->refresh_interval_s();
     int left_s = 120;
@@ -36,7 +37,7 @@ TEST_P(EveryMap, EnergyIsAsOrderedForADay) {
   double ordered_wh = 0;
   for (int cycle = 0; cycle < 720; ++cycle) {
     ASSERT_EQ(t_.read(), Status::kOk) << cycle;
-    // Away from the limits, so that everything ordered fits.
+    // Away from the limits, so that all orders fit.
     std::int32_t power_w = static_cast<std::int32_t>(random() % 3) * 2'000 - 2'000;
     if (t_.measured.soc_e4 > 8'000) power_w = std::min(power_w, 0);
     if (t_.measured.soc_e4 < 3'000) power_w = std::max(power_w, 0);
@@ -70,7 +71,7 @@ TEST_P(EveryMap, ADeadControllerLeavesNoOrderBehind) {
   const bool forever = t_.map.watchdog.kind == Watchdog::Kind::kNone;
   EXPECT_EQ(t_.measured.power_w, forever ? 2'000 : 0);
   EXPECT_EQ(t_.measured.dispatch_active, forever);
-  // Whoever comes back brings the order into force again.
+  // A restarted controller brings the order into force again.
   ASSERT_EQ(t_.order(-2'000), Status::kOk);
   ASSERT_EQ(t_.read(), Status::kOk);
   EXPECT_NEAR(t_.measured.power_w, -2'000, 2);
@@ -93,7 +94,7 @@ TEST_P(EveryMap, ARestartTakesOverAndRestoresTheDevicesOwnMode) {
   ASSERT_EQ(successor.release(), Status::kOk);
   ASSERT_EQ(successor.read(m), Status::kOk);
   EXPECT_EQ(m.power_w, 0);
-  // The first one's end, while the device is at rest already, changes nothing.
+  // The first one's end, with the device at rest already, changes nothing.
   ASSERT_EQ(t_.driver->release(), Status::kOk);
   ASSERT_EQ(t_.read(), Status::kOk);
   EXPECT_EQ(t_.measured.power_w, 0);

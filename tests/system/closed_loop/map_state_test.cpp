@@ -1,5 +1,5 @@
-// What every shipped map makes of a device that is not well: raw extremes are no values, every
-// alarm and every warning is seen, and registers that a model lacks are done without.
+// Unhealthy devices on every shipped map: raw extremes are no values, every alarm and every warning
+// is seen, and registers that a model lacks are optional.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-/// The simulated battery of a map, some of its registers held by hand.
+/// The simulated battery of a map, with some fixed registers.
 class HeldDevice {
  public:
   explicit HeldDevice(const MapVariant& wanted)
@@ -53,7 +53,7 @@ class HeldDevice {
     std::uint64_t bits;
   };
 
-  /// As it was at the start; measurements are rendered anew anyway.
+  /// As at the start; measurements are rendered again anyway.
   [[nodiscard]] std::uint64_t before(int point) {
     const RegisterPoint& p = map().points[point];
     const auto& table = p.read_function == 4 ? well_.test.device.input : well_.test.device.holding;
@@ -77,7 +77,7 @@ class HeldDevice {
   }
 
   SimulatedDevice simulated_;
-  SimulatedDevice well_;  ///< nothing was ever held in it
+  SimulatedDevice well_;  ///< it never had a value
   std::vector<Held> held_;
 };
 
@@ -98,7 +98,7 @@ std::vector<std::uint64_t> raw_extremes(RegisterType type) {
   }
 }
 
-/// SoC, powers, capacity, limits, temperatures, and what the alarms must not lack.
+/// SoC, powers, capacity, limits, temperatures, and the required parts of alarms.
 TEST_P(EveryMapState, RawExtremesAreNoValues) {
   int refused = 0;
   for (const std::int8_t point : load_shipped_map(GetParam()).required) {
@@ -144,12 +144,12 @@ TEST_P(EveryMapState, EveryAlarmStopsAndEveryWarningIsTold) {
   EXPECT_FALSE(device.measured().warning);
 }
 
-/// An alarm orders 0 W for five minutes; an island's house must have its battery at once.
+/// An alarm orders 0 W for five minutes; off-grid, the house needs its battery immediately.
 TEST_P(EveryMapState, OffGridIsStrongerThanTheFaultsThatComeWithIt) {
   HeldDevice device(GetParam());
   ASSERT_EQ(device.read(), Status::kOk);
   EXPECT_FALSE(device.measured().off_grid);
-  if (device.map().off_grid.point < 0) return;  // this map cannot tell
+  if (device.map().off_grid.point < 0) return;  // this map cannot show it
   const auto other =
       std::find_if(device.map().alarms.begin(), device.map().alarms.end(),
                    [&](const Condition& c) { return c.point != device.map().off_grid.point; });
@@ -166,7 +166,7 @@ TEST_P(EveryMapState, WhatAModelLacksIsDoneWithout) {
   HeldDevice device(GetParam());
   int optional = 0;
   for (int i = 0; i < device.map().points.size(); ++i) {
-    const auto& required = device.map().required;  // some of them tell the power
+    const auto& required = device.map().required;  // some of them report the power
     const bool is_required = std::find(required.begin(), required.end(), i) != required.end();
     if (!device.map().points[i].optional || is_required) continue;
     device.lack(i);
@@ -184,7 +184,7 @@ TEST_P(EveryMapState, WhatAModelLacksIsDoneWithout) {
   EXPECT_GT(device.device().refused_reads, refused);
 }
 
-/// One register that is refused must not take its neighbours with it.
+/// A single refused register must not affect its neighbours.
 TEST_P(EveryMapState, WhatAModelHasIsSeenBesideWhatItLacks) {
   const RegisterMap map = load_shipped_map(GetParam());
   for (int lacking = 0; lacking < map.points.size(); ++lacking) {

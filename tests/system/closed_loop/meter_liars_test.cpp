@@ -1,6 +1,6 @@
-// The control loop behind a meter that lies, against houses that move: how long limits are passed
-// once a step of the battery has contradicted the meter, after how many cycles it is found, and
-// that an honest meter is never accused. Prints the table of lies.
+// Control loop behind a wrong meter, against houses with moving loads: how long limits are exceeded
+// after a step of the battery has contradicted the meter, the number of control cycles until
+// detection, and no false accusation of a correct meter. Prints the table of faults.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace bess {
 namespace {
 
-/// Lets something look at every second that passes.
+/// Calls an observer every second.
 struct WatchedClock : FakeClock {
   bool sleep_until_utc_ns(std::int64_t utc_ns) {
     if (!each_second) return FakeClock::sleep_until_utc_ns(utc_ns);
@@ -28,7 +28,7 @@ struct WatchedClock : FakeClock {
   std::function<void(std::int64_t)> each_second;
 };
 
-/// What the meter makes of the truth.
+/// The meter's value from the true one.
 struct Lie {
   const char* name;
   bool frozen = false;
@@ -36,7 +36,7 @@ struct Lie {
   double offset_w = 0;
   int late_s = 0;
   bool other_phase = false;   ///< sees a third of the house and not the battery
-  int each_s = 0, for_s = 0;  ///< comes and goes; 0: lasts
+  int each_s = 0, for_s = 0;  ///< intermittent; 0: permanent
 };
 
 struct LyingMeter {
@@ -124,7 +124,7 @@ TEST(MeterLiars, AnHonestMeterIsNeverAccused) {
   }
 }
 
-/// EUR of some days close to the limits.
+/// Earnings in EUR of some days close to the limits.
 double earned_eur(const MovingHouse::Habits& habits, bool judges) {
   constexpr int kDays = 6;
   const MovingHouse house(habits, kDayStartS, kDays + 1, 1);
@@ -140,7 +140,7 @@ double earned_eur(const MovingHouse::Habits& habits, bool judges) {
   return eur;
 }
 
-/// Doubts and possible ratios take power where the limits are near: in most houses next to none.
+/// Doubts and possible ratios reduce power where the limits are near: in most houses very little.
 TEST(MeterLiars, AnHonestMeterCostsLittle) {
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     const double believed_eur = earned_eur(habits, false);
@@ -155,13 +155,13 @@ constexpr double kImportW = 6'000;
 constexpr double kExportW = 3'000;
 constexpr std::int64_t kLieAfterS = 3 * 3'600;
 
-/// What a lie cost, from the first step of the battery under it on.
+/// Cost of a meter fault, from the battery's first step on.
 struct Damage {
   int over_s = 0;  ///< limit passed through the battery
   double over_w_max = 0;
-  int trial_s = 0;          ///< the same after it was found: the power that tests it
+  int trial_s = 0;          ///< the same after detection: the test power
   int cycles_to_find = -1;  ///< from that step on
-  int steps_to_find = 0;    ///< of the battery, by an eighth of its rating and more
+  int steps_to_find = 0;    ///< of the battery, by at least an eighth of its rating
 };
 
 class Witnessed {
@@ -206,7 +206,7 @@ class Witnessed {
   Trial& trial_;
   Damage damage_;
   double before_w_ = 0;
-  std::int64_t step_s_ = 0;  ///< the first one under the lie
+  std::int64_t step_s_ = 0;  ///< the first one under the fault
   int steps_ = 0;
 };
 
@@ -227,7 +227,7 @@ constexpr Lie kLies[] = {
     {.name = "inverted 2 min of 5", .gain = -1, .each_s = 300, .for_s = 120},
 };
 
-/// Steps every few cycles, of either sign.
+/// Steps every few control cycles, of either sign.
 std::function<std::int32_t(std::int64_t)> restless_price(std::uint64_t seed) {
   return [seed](std::int64_t utc_s) {
     const auto slot = static_cast<std::uint64_t>(utc_s / 360) * 2'654'435'761U + seed * 97;
@@ -256,7 +256,7 @@ Damage worst_damage(const Lie& lie, const MovingHouse::Habits& habits) {
   return worst;
 }
 
-/// Lies that are wrong at every step and hide it: found within a handful.
+/// Faults that are wrong at every step: found within a handful.
 bool is_constant(const Lie& lie) {
   return lie.each_s == 0 && (lie.frozen || lie.other_phase || lie.gain <= 0.1);
 }
@@ -275,7 +275,8 @@ TEST(MeterLiars, ALimitIsPassedForAMinuteAtMostOnceAStepHasContradicted) {
       const Damage now = worst_damage(lie, habits);
       std::printf("%-20s | %8d %9.0f %10d %10d %10d\n", lie.name, now.over_s, now.over_w_max,
                   now.cycles_to_find, now.steps_to_find, now.trial_s);
-      // In the wildest house an honest meter passes them for longer than that, house by house.
+      // In the most restless house a correct meter exceeds them for longer than that, house by
+      // house.
       const bool is_wild = habits.hob && habits.pv_w > 0;
       if (is_bounded(lie)) {
         EXPECT_LE(now.over_s, is_wild ? 90 : 60) << habits.name << ", " << lie.name;
@@ -289,7 +290,7 @@ TEST(MeterLiars, ALimitIsPassedForAMinuteAtMostOnceAStepHasContradicted) {
 
 // --- the quarter-hour's cap --------------------------------------------------------------------
 
-/// Quarter-hours above the cap, or above the house alone where that is more, through the battery.
+/// Quarter-hours above the cap, or above the house load if that is more, caused by the battery.
 int quarters_above_cap(const Lie& lie, const MovingHouse::Habits& habits) {
   constexpr double kCapW = 4'000;
   int quarters = 0;

@@ -62,13 +62,13 @@ TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
   EXPECT_EQ(site.battery.orders.back().soc_min_e4, 1'000);
 }
 
-/// Waves that never fill it: from the day on which it is due, the battery goes to full, once.
+/// Waves that never fill it: from its due day on, the battery charges to full, once.
 TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
   ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
   settings.full_charge_every_days = 3;
   settings.guard.soc_max_e4 = 10'000;
   Site site(settings);
-  site.prices.price = [](std::int64_t minute_utc_s) {  // dear: the student sells, or rests
+  site.prices.price = [](std::int64_t minute_utc_s) {  // high price: the student sells, or rests
     const auto cents = static_cast<std::int32_t>(minute_utc_s / 60 % 97);  // it is not frozen
     return (minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000) + cents;
   };

@@ -1,5 +1,5 @@
-// People and the real programs: a hold that the running controller finds, a notifier that it does
-// not notice.
+// Operators and the real programs: a hold that the running controller finds, a notifier that does
+// not disturb it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -56,7 +56,7 @@ TEST_F(People, AHoldOutlastsARestartAndNeedsNoPrice) {
   }
 }
 
-/// A lock that cannot even be opened without waiting for ever shows who tries.
+/// A lock that would block on opening shows the process that tries.
 TEST_F(People, StatusWithoutLockTouchesNone) {
   start_site(600);
   EXPECT_EQ(ask({"--cycles", "1"}).exit_code, 0);
@@ -77,7 +77,7 @@ class Notify : public People {
         << "[notify]\nevery_s = 1\nafter_s = 1\ncommand = '" << command << "'\nprogram = \""
         << edge_program() << "\"\n";
   }
-  /// False after half a minute.
+  /// False after 30 s.
   bool is_mailed(const std::string& piece) const {
     for (int i = 0; i < 300; ++i) {
       if (text_of_file(site_.folder.file("mails")).find(piece) != std::string::npos) return true;
@@ -87,7 +87,7 @@ class Notify : public People {
   }
 };
 
-/// Stopped while it asks or writes, killed, started again: no cycle is late, none is missed.
+/// Stopped while it reads or writes, killed, restarted: no control cycle is late, none is missed.
 TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
   start_site(600);
   use_mail();
@@ -103,7 +103,7 @@ TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
   }
   running.read_all();
   EXPECT_EQ(running.wait(), 0);
-  int cycles = 0;  // since the first price came
+  int cycles = 0;  // since the first price
   for (const CsvRow& row : edge_log()) {
     if (row.at("mode") == "stopping" || (cycles == 0 && row.at("mode") == "start")) continue;
     ++cycles;
@@ -130,7 +130,7 @@ TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
-/// The members of `bess-edge status` and `earned` that the topics are made of are there.
+/// The members of `bess-edge status` and `earned` behind the topics exist.
 TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
   start_site(3'000);

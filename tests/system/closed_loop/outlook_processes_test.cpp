@@ -1,5 +1,5 @@
-// bess-edge with a student by outlook built in, on a market that publishes day-ahead prices: what
-// is planned when they come in time, what over a restart while they stay away, and the seal.
+// bess-edge with a student by outlook built in, on a market that publishes day-ahead prices: the
+// plan when they come in time, over a restart while they are missing, and the seal.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t kHour = 3'600;
 constexpr std::int64_t kPublishedS = SimulatedSite::kStartS + 11 * kHour;  // 13:00 in Brussels
 
-/// Three local days of hours, dear in the evening.
+/// Three local days of hours, high prices in the evening.
 std::string day_ahead() {
   std::ostringstream text;
   text << "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
@@ -78,7 +78,7 @@ TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
     const bool knows_tomorrow = std::stoi(row.at("outlook_quarter_hours")) > 96;
     const bool is_after_one = row.at("utc") >= std::string(utc_text(kPublishedS).view());
     EXPECT_TRUE(is_after_one || !knows_tomorrow) << row.at("utc");
-    // A slow machine fetches it some cycles late; what is known stays known.
+    // A slow machine fetches it some control cycles late; known prices stay known.
     EXPECT_TRUE(knows_tomorrow || with_tomorrow == 0) << row.at("utc");
     before_one += is_after_one ? 0 : 1;
     with_tomorrow += knows_tomorrow ? 1 : 0;
@@ -87,7 +87,7 @@ TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
   EXPECT_GT(with_tomorrow, 0);
 }
 
-/// What came before is kept on the disk, on the day of 92 quarter-hours too.
+/// Earlier prices are on disk, on the day of 92 quarter-hours too.
 TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
   start_market(Publishes::kDayAhead);
   const int port = site_.market_port;

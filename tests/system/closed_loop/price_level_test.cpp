@@ -1,6 +1,6 @@
-// The price level on both sides: the real control loop, on a market that is served as bess-sim
-// serves it and read as the edge reads it, against what the workstation makes of the same minutes.
-// Bit for bit, over gaps, restarts, prices beyond every range and both clock changes.
+// Price level on both sides: the real control loop, on a market served by bess-sim and read by the
+// edge, against the workstation's level of the same minutes. Bit-identical, over gaps, restarts,
+// out-of-range prices and both clock changes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Prices as bess-sim serves them, kept as PriceReader keeps them: the newest row of this process's
-/// life. At a stale tick the answer is ten minutes old, so the newest row comes a second time.
+/// Prices as bess-sim serves them, stored as PriceReader stores them: the newest row of this
+/// process. At a stale tick the answer is ten minutes old, so the newest row repeats.
 class ServedPrices {
  public:
   ServedPrices(const MarketView& view, const std::vector<std::int64_t>& stale_ticks)
@@ -53,7 +53,7 @@ class ServedPrices {
   PriceReport report_;
 };
 
-/// One life of the program after the other, on one battery and one market.
+/// Successive runs of the program, on one battery and one market.
 class Replay {
  public:
   explicit Replay(const MinuteSeries& series) : series_(series), view_(series, 0) {
@@ -72,7 +72,7 @@ class Replay {
       records.push_back(run_cycle(*loop_));
     }
   }
-  /// The program ends; the next one starts later, from the record as it lies on the disk.
+  /// The program ends; the next one starts later, from the record on disk.
   void restart_after(std::int64_t down_s) {
     RecordBytes bytes;
     encode_record(records.back(), records.size(), bytes);
@@ -95,8 +95,7 @@ class Replay {
   }
   [[nodiscard]] std::int64_t end_utc_s() const { return series_.utc_s(series_.size() - 1); }
 
-  /// The minutes as this edge saw them: of the rows between two decisions it saw the newest at
-  /// most.
+  /// The minutes as this edge saw them: at most the newest of the rows between two decisions.
   [[nodiscard]] MinuteSeries seen() const {
     MinuteSeries seen = series_;
     std::int64_t before_utc_s =
@@ -134,15 +133,14 @@ class Replay {
   std::unique_ptr<Loop> loop_;
 };
 
-/// The level after each tick, counted once more and by hand: the newest row that there is at the
-/// tick.
+/// The level after each tick, computed independently: the newest available row at the tick.
 std::map<std::int64_t, PriceLevel> levels_by_hand(const MinuteSeries& series) {
   std::map<std::int64_t, PriceLevel> levels;
   PriceLevel level;
   std::int64_t newest = -1;
   for (std::size_t minute = 0; minute < series.size(); ++minute) {
     const std::int64_t tick_utc_s =
-        series.utc_s(minute) + 60;  // the first instant at which it is there
+        series.utc_s(minute) + 60;  // the first instant of its availability
     if (Replay::is_published(series.indicative[minute])) newest = static_cast<std::int64_t>(minute);
     if (tick_utc_s % kSecondsPerStep != 0) continue;
     if (newest >= 0) {
@@ -155,7 +153,7 @@ std::map<std::int64_t, PriceLevel> levels_by_hand(const MinuteSeries& series) {
   return levels;
 }
 
-/// Of the decisions that both sides took, as many as there must be at least.
+/// Of the decisions on both sides, the required minimum.
 void expect_equal_levels(const Replay& replay, std::size_t at_least) {
   const MinuteSeries seen = replay.seen();
   const MarketSteps market = make_market_steps(seen, MarketOptions{});
@@ -166,12 +164,12 @@ void expect_equal_levels(const Replay& replay, std::size_t at_least) {
   }
   std::size_t compared = 0;
   for (const CycleRecord& record : replay.records) {
-    if (replay.was_stale(record.utc_s)) continue;  // its row may count at the next tick, not here
+    if (replay.was_stale(record.utc_s)) continue;  // its row may count at the next tick only
     const std::string at(utc_text(record.utc_s).view());
     ASSERT_TRUE(by_hand.contains(record.utc_s)) << at;
     ASSERT_EQ(record.price_level.centi_q16, by_hand.at(record.utc_s).centi_q16) << at;
     const auto found = on_workstation.find(record.utc_s);
-    if (found == on_workstation.end()) continue;  // not settled: nothing to learn from
+    if (found == on_workstation.end()) continue;  // not settled: no training data
     ASSERT_EQ(record.price_level.centi_eur_per_mwh(), found->second) << at;
     ++compared;
   }
@@ -184,7 +182,7 @@ void round_prices(MinuteSeries& series) {
 }
 
 /// Rows without a price for minutes (fewer than one answer has rows), no rows for hours, and prices
-/// beyond the lattice and beyond belief.
+/// beyond the lattice and beyond plausibility.
 void disturb(MinuteSeries& series, std::uint64_t seed) {
   Random random(seed);
   const auto at = [&](int minutes) {
@@ -214,7 +212,7 @@ void disturb(MinuteSeries& series, std::uint64_t seed) {
   }
 }
 
-/// 32 days with the last Sunday of the month in their midst.
+/// 32 days around the last Sunday of the month.
 void replay_month(MinuteSeries series, std::uint64_t seed) {
   set_market_time_zone();
   round_prices(series);
@@ -295,10 +293,10 @@ TEST(PriceLevelHistory, FetchedFromBessSimEqualsTheWorkstations) {
   serving.join();
   EXPECT_EQ(history.hours_covered(), 72);
 
-  // The workstation knows the same three days and no more.
+  // The workstation has the same three days only.
   MinuteSeries known{.start_utc_s = history.first_minute_utc_s(), .indicative = {}, .settled = {}};
   const auto begin = static_cast<std::ptrdiff_t>((known.start_utc_s - series.start_utc_s) / 60);
-  const std::ptrdiff_t end = begin + 72 * 60 + kMinutesPerStep;  // the last tick's step is whole
+  const std::ptrdiff_t end = begin + 72 * 60 + kMinutesPerStep;  // the last tick's step is complete
   known.indicative.assign(series.indicative.begin() + begin, series.indicative.begin() + end);
   known.settled.assign(static_cast<std::size_t>(end - begin), 50.0);
   const MarketSteps market = make_market_steps(known, MarketOptions{});

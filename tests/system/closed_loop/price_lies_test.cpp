@@ -1,4 +1,4 @@
-// A price source that lies, before the real control loop: what it can do to the battery is bounded.
+// Wrong price source before the real control loop: its effect on the battery is bounded.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -13,7 +13,7 @@ using Loop = FakePlant::Loop;
 
 constexpr std::int32_t kExtremeCenti = 1'000'000;
 
-/// Dear and cheap in turns, beyond every threshold: the most that a source can ask for.
+/// Alternating high and low prices, beyond every threshold: the most that a source can request.
 struct Liar : FakePlant {
   Liar() {
     prices.price = [](std::int64_t minute_utc_s) {
@@ -22,7 +22,7 @@ struct Liar : FakePlant {
   }
 };
 
-/// Changes of sign among the last orders of an hour, counted without the loop's help.
+/// Changes of sign among the last orders of an hour, counted independently of the loop.
 int most_reversals_in_an_hour(const std::vector<CycleRecord>& records) {
   std::vector<int> reversals;
   int direction = 0;
@@ -70,7 +70,7 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
   EXPECT_EQ(most_reversals_in_an_hour(records), 6);
 }
 
-/// The loop before a source that hangs: the same price under new stamps.
+/// The loop with a frozen source: the same price under new stamps.
 struct Hung : FakePlant {
   Hung() { set_price(9'000); }
 };
@@ -95,7 +95,7 @@ TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
   EXPECT_EQ(record.standing_price.unchanged_s, 0);
 }
 
-/// 20 runs of ten minutes: each takes over what the one before logged.
+/// 20 runs of ten minutes: each restores the log of the previous one.
 TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
   Hung hung;
   CycleRecord record;

@@ -1,5 +1,5 @@
-// The real bess-edge beside a real bess-prices that is killed, stopped, torn, full or of another
-// version, at random moments: no cycle is late, no price is traded on beyond its age.
+// Real bess-edge with a real bess-prices that is killed, stopped, torn, full or of another version,
+// at random moments: no control cycle is late, no price is used beyond its age limit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -20,7 +20,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The default, judged at the tick; logged is the age at the order, after the wait for a new one.
+/// The default, evaluated at the tick; the logged age is at the order, after the wait for a new
+/// one.
 constexpr int kPriceAgeSMax = 240 + 20 + 1;
 
 class PriceProcesses : public ::testing::Test {
@@ -41,7 +42,7 @@ class PriceProcesses : public ::testing::Test {
   void wait_cycles(double cycles) const {
     usleep(static_cast<useconds_t>(cycles * 120e6 / kScale));
   }
-  /// In place of the record, as no sound bess-prices leaves it.
+  /// Replacement of the record, as no intact bess-prices leaves it.
   void write_record(const std::string& bytes) const {
     std::ofstream(record_ + ".new", std::ios::binary) << bytes;
     std::filesystem::rename(record_ + ".new", record_);
@@ -51,7 +52,7 @@ class PriceProcesses : public ::testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  static constexpr int kScale = 150;  // a cycle is 0.8 s
+  static constexpr int kScale = 150;  // a control cycle is 0.8 s
   SimulatedSite site_{kScale};
   std::string config_, record_;
   std::unique_ptr<ChildProcess> prices_;

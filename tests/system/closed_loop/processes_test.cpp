@@ -1,6 +1,5 @@
-// The real programs together: bess-edge between bess-sim battery and bess-sim market, over Modbus
-// TCP and HTTP on free ports, in scaled time. The battery's own record is held against the edge's
-// log.
+// Real programs together: bess-edge between bess-sim battery and bess-sim market, over Modbus TCP
+// and HTTP on free ports, in scaled time. The battery's own record is compared with the edge's log.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -24,12 +23,13 @@ using ::testing::Not;
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 
 /// Slow enough that an order outlasts the start of a process. The environment names a program under
-/// test when a sanitizer looks at it, and that takes longer to start.
+/// test in sanitizer runs, which start more slowly.
 std::int32_t outlasting_scale() {
   return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 10 : 3);
 }
 
-/// Follows a controller until it orders power; the line of that cycle, empty when it ended before.
+/// Follows a controller until it orders power; returns the line of that control cycle, empty if it
+/// ended before.
 std::string line_with_power(ChildProcess& edge) {
   std::string line;
   do line = edge.read_line();
@@ -60,7 +60,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
   double ordered_wh = 0;
   int moves = 0;
   const std::vector<CsvRow> log = edge_log();
-  ASSERT_EQ(log.size(), 46U);  // 45 cycles and the stop
+  ASSERT_EQ(log.size(), 46U);  // 45 control cycles and the stop
   for (const CsvRow& row : log) {
     if (row.at("mode") == "stopping") continue;
     EXPECT_EQ(row.at("mode"), "running") << row.at("utc");
@@ -77,7 +77,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
     EXPECT_GE(std::stod(row.at("soc")), 0.1);
     EXPECT_LE(std::stod(row.at("soc")), 1.0);
   }
-  // Each order begins about a second of simulated time after its tick; a busy machine needs more.
+  // Each order begins about 1 s of simulated time after its tick; a busy machine needs more.
   EXPECT_NEAR(exchanged_wh, ordered_wh, 0.1 * 4'000 / 30.0 * moves);
 }
 
@@ -94,8 +94,8 @@ TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
   EXPECT_EQ(record.back().at("commanded_power_w"), "0");
 }
 
-/// A second controller, with a state folder of its own: the battery's lock stands between them, for
-/// one that only reads as well, because the battery serves one connection.
+/// A second controller with a separate state folder: the battery's lock excludes it, also for one
+/// that only reads, because the battery serves one connection.
 TEST_F(Processes, TwoControllersCannotShareABattery) {
   start_site();
   const std::string other = site_.commission({.state = "other"});
@@ -106,7 +106,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
       ChildProcess({edge_program(), "--config", other, "--check"}),
       ChildProcess({edge_program(), "--config", other, "--dry-run"}),
       ChildProcess({edge_program(), "release", "--config", other, "--yes"}),
-  };  // together: each waits a second for the lock
+  };  // together: each waits 1 s for the lock
   for (ChildProcess& second : ways) {
     const std::string text = second.read_all();
     EXPECT_EQ(second.wait(), 1) << text;
@@ -146,7 +146,8 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   {
     ChildProcess edge = controller();
     for (int i = 0; i < 15; ++i) await_line(edge, "utc=");
-    // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both honest here.
+    // A loaded machine may be late with a control cycle of 133 ms: ok and degraded are both correct
+    // here.
     const Said status = ask({"status"});
     EXPECT_LE(status.exit_code, 1) << status.text;
     EXPECT_THAT(status.text, Names(std::to_string(edge.pid()) + " running alphaess block EUR/MWh"));
@@ -162,7 +163,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_STREQ(status_of(config_).value()["last"]["mode"].text_or(""), "stopping");
   ChildProcess follower({edge_program(), "status", "--follow", "--config", config_});
   for (int views = 0; views < 2; ++views) ASSERT_NE(await_line(follower, " stopping "), "");
-  // The ring and the CSV that the controller wrote besides are the same log, line by line.
+  // The ring and the controller's CSV are the same log, line by line.
   EXPECT_EQ(run({"log", "--csv"}, 0), text_of_file(site_.folder.file("edge.csv")));
   const std::string last = run({"log", "--last", "2"}, 0);
   EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 2) << last;
@@ -172,7 +173,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_THAT(run({"log", "--since", middle}, 0), ::testing::StartsWith("utc=" + middle + " "));
 }
 
-/// systemd's end of a service's life: ready, fed every cycle, stopping.
+/// systemd's side of a service: ready, alive every control cycle, stopping.
 TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   const std::string name = site_.folder.file("notify");
   const int systemd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -197,7 +198,7 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   std::erase_if(told, [](const std::string& t) { return t.starts_with("EXTEND_TIMEOUT_USEC="); });
   ASSERT_EQ(told.size(), 5U);
   EXPECT_THAT(told[0], HasSubstr("READY=1"));
-  EXPECT_THAT(told[1], Names("STATUS=running"));  // its WATCHDOG=1 only if the machine kept up
+  EXPECT_THAT(told[1], Names("STATUS=running"));  // its WATCHDOG=1 only if in time
   EXPECT_THAT(told[4], HasSubstr("STOPPING=1"));
 }
 
@@ -255,7 +256,7 @@ TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
   EXPECT_EQ(status(), before);
 }
 
-/// As for an upgrade: SIGHUP, and a new process goes on where the old one was.
+/// As for an upgrade: SIGHUP, and a new process continues the order.
 TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartGoesOn) {
   start_site();
   const ChildProcess prices({BESS_PRICES_PROGRAM, "--config", config_});  // it outlasts the change
@@ -276,7 +277,7 @@ TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartGoesOn) {
   EXPECT_EQ(first_cycles, 2);
 }
 
-/// A killed controller's order, ended by hand before its watchdog does.
+/// A killed controller's order, ended by a command before its watchdog does.
 TEST_F(SlowProcesses, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
   start_site();
   ChildProcess edge = controller();
@@ -308,7 +309,7 @@ TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(said.exit_code, 1);
 }
 
-/// One row in ten cycles says 9,000 EUR/MWh: nothing is ordered by it.
+/// One row in ten control cycles has 9,000 EUR/MWh: nothing is ordered by it.
 TEST_F(Processes, ASinglePriceFarFromTheOthersIsNotActedOn) {
   std::string prices = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
   for (int minute = -60; minute < 150; ++minute) {

@@ -1,4 +1,4 @@
-// A device is recorded while bess-edge drives it, and replayed: the real programs decide the same
+// Recording of a device that bess-edge drives, and its replay: the real programs decide the same
 // against the recording. The map fits the recording, and a map with a mistake does not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using ::testing::Not;
 constexpr std::int32_t kScale = 120;
 constexpr int kCycles = 8;
 
-/// What a cycle saw and did, without how long it took.
+/// Inputs and orders of a control cycle, without its duration.
 std::string decisions(const std::string& csv_path) {
   std::string text;
   for (const CsvRow& row : read_csv(csv_path)) {
@@ -66,7 +66,7 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
     return joined(options, GetParam().faults);
   }
-  /// Both simulators at the same ports, and the clock from its start on.
+  /// Both simulators at the same ports, with a restarted clock.
   void start_again(const std::vector<std::string>& options) {
     if (site_.battery) SimulatedSite::stop(*site_.battery);
     if (site_.market) SimulatedSite::stop(*site_.market);
@@ -76,7 +76,7 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     site_.start_battery(options, battery_port);
     site_.start_market({}, SimulatedSite::minute_prices(150), market_port);
   }
-  /// Drives what is there; its decisions. The sign check is taken over.
+  /// Drives the device; returns its decisions. The sign check is reused.
   std::string drive(const std::string& state, const std::vector<std::string>& options = {}) {
     const std::string folder = site_.folder.file(state);
     std::filesystem::create_directories(folder);
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {{"capacity", "word_order = \"low_first\"", "word_order = \"high_first\""},
                   {"battery_power", "sign = -1", "sign"}}},
         Recorded{{"sungrow_sh", "external_ems"}, {{"soc", "scale = 1000", "scale"}}},
-        // A device that is busy now and then is as busy when it is replayed.
+        // A device that is busy now and then is equally busy in the replay.
         Recorded{{"simulator", ""}, {}, {"--fault", "exception", "--fault-every", "7"}},
         Recorded{{"sma", "bms_mode"},
                  {{"soc", "word_order = \"low_first\"", "word_order = \"high_first\""}}}),
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(m.map) + (*m.variant == '\0' ? "" : std::string("_") + m.variant);
     });
 
-/// `bess-edge record`, and what becomes of a file that is no longer whole.
+/// `bess-edge record`, and a file that is incomplete.
 class RecordCommand : public SiteTest {
  protected:
   RecordCommand() : SiteTest(kScale) {}
@@ -249,14 +249,14 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
   EXPECT_THAT(accepted.read_line(), HasSubstr("listening on"));
 }
 
-/// What the line `key = number` of a command's answer says.
+/// The value of `key = number` in a command's answer.
 double number_of(const std::string& key, const std::string& text) {
   const std::size_t at = text.find(key + " = ");
   return at == std::string::npos ? NAN : std::atof(text.c_str() + at + key.size() + 3);
 }
 
 TEST_F(RecordCommand, StepsOfACommissionTellDelayRampAndLag) {
-  SimulatedSite site(12);  // a slow clock: a bus that is held up for 10 ms blurs 0.1 s
+  SimulatedSite site(12);  // a slow clock: a bus delay of 10 ms blurs 0.1 s
   site.start_battery({"--map", shipped_map("simulator"), "--battery",
                       site.folder.write("real.toml",
                                         "[battery]\npower_w = 4000\ncapacity_wh = 8000\n"

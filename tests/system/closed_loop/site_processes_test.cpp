@@ -1,5 +1,5 @@
-// Behind the meter with the real programs: bess-edge reads bess-sim's meter over Modbus, takes
-// limits from `bess-edge limit`, and bess-sim's own record says what flowed.
+// Site behind a meter with the real programs: bess-edge reads bess-sim's meter over Modbus, takes
+// limits from `bess-edge limit`, and bess-sim's own record gives the real power.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ constexpr std::int32_t kScale = 120;
 class SiteProcesses : public SiteTest {
  protected:
   SiteProcesses() : SiteTest(kScale) {}
-  /// Prices at which the battery charges all the time, or by turns of six minutes; the house takes
+  /// Prices at which the battery charges all the time, or in turns of six minutes; the house takes
   /// 1500 W.
   void start(const std::vector<std::string>& meter_options,
              const std::vector<int>& prices = {-600}) {
@@ -111,7 +111,7 @@ TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
   }
 }
 
-/// Larger than the sign needs is only ordered where nobody forbids it.
+/// More than the sign check needs is only ordered where no limit forbids it.
 TEST_F(SiteProcesses, CommissionOrdersNothingLargerUnderALimit) {
   start({});
   configure("[limits]\nfile = \"limit\"\n");
@@ -133,7 +133,7 @@ TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
   EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
 }
 
-/// bess-sim's own liars, told by journal, status and log.
+/// Wrong meters of bess-sim, reported by journal, status and log.
 TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
   start(own_meter("simulator", {"--meter-fault", "grid-scaled", "--meter-fault-from-s", "480"}),
         {-600, 1'600});

@@ -1,5 +1,5 @@
-// The control loop behind the meter: the real loop, guard and site on a fake clock, against a house
-// that turns its consumers on and off, a meter that falls silent, and limits from outside.
+// Control loop behind the meter: the real loop, guard and site on a fake clock, against a house
+// with changing loads, a meter that falls silent, and outside limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ TEST(Site, AHouseThatAsksForMoreIsGivenItBeforeTheNextTick) {
   EXPECT_EQ(record.site.order_cuts, 1);
   house.use(500);
   house.clock.now_ns += 60 * kNanosecondsPerSecond;
-  EXPECT_EQ(house.cycle().site.order_cuts, 1);  // given back by a tick alone
+  EXPECT_EQ(house.cycle().site.order_cuts, 1);  // only restored by a tick
   EXPECT_EQ(house.battery.orders.back().power_w, 4'000);
 }
 
@@ -154,7 +154,7 @@ TEST(Site, ACutThatFailsIsMadeAgain) {
   const CycleRecord record = house.cycle();
   EXPECT_EQ(record.site.order_cuts, 1);
   EXPECT_GT(house.battery.orders.size(), 5U);
-  EXPECT_EQ(record.mode, Mode::kRunning);  // what fails between two ticks does not release it
+  EXPECT_EQ(record.mode, Mode::kRunning);  // a failure between two ticks does not release it
 }
 
 TEST(Site, ACutThatChangesItsDirectionCountsAsAReversal) {
@@ -217,14 +217,14 @@ TEST(Site, PeakShavingKeepsTheHouseItselfUnderTheCap) {
   EXPECT_LT(house.battery.physics.soc_frac(), 0.5);
 }
 
-/// Weeks of a household's load, with a meter that is silent now and then: what passes a limit
-/// through the battery does so until the next check, or until a silent meter counts as lost.
+/// Weeks of a household's load, with a meter that is silent now and then: limits are exceeded
+/// through the battery only until the next check, or until a silent meter counts as lost.
 TEST(Site, ALimitIsPassedForNoLongerThanACheckTakes) {
   constexpr double kImportW = 4'500, kExportW = 500;
   SiteSettings settings = metered({.import_w_max = 4'500, .export_w_max = 500});
   House house(settings, HouseLoad::daily(5));
   std::mt19937_64 random(7);
-  // Of many values: two of them to and fro are a source that hangs.
+  // Many values: two alternating values are a frozen source.
   house.prices.price = [&](std::int64_t) {
     const auto cents = static_cast<std::int32_t>(random() % 5'000);
     return random() % 2 == 0 ? -60'000 - cents : 160'000 + cents;

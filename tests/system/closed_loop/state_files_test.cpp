@@ -1,7 +1,6 @@
-// The small files of controller and notifier, damaged between two runs of the real programs: what
-// is drawn at random from a named seed, over all files and all ways in which a card forgets. The
-// sign check, an operator's hold and what was told are kept by another copy, each loss is a line,
-// nothing is believed that was not written so.
+// State files of controller and notifier, damaged between two runs of the real programs, drawn from
+// a named seed over all files and all damage of a card. The sign check, a hold and the sent alerts
+// survive in another copy, each loss is a line, and only data that was written is accepted.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -28,8 +27,8 @@ constexpr std::uint32_t kSeed = 20'261'123;
 
 struct StateFile {
   const char* path;          ///< in the site's folder
-  bool is_written_at_start;  ///< what cannot be replaced there keeps the controller from starting
-  bool is_read = true;       ///< by anybody, as long as the other one is younger
+  bool is_written_at_start;  ///< the controller does not start if it cannot be replaced
+  bool is_read = true;       ///< by any reader, while the other copy is younger
 };
 constexpr StateFile kFiles[] = {
     {"state/commissioned.toml", false},
@@ -59,7 +58,7 @@ std::size_t count_of(const std::string& text, const std::string& piece) {
   return count;
 }
 
-/// A battery that an operator holds at 0 W: the prices alone would discharge it.
+/// An operator holds the battery at 0 W: the prices alone would discharge it.
 class StateFiles : public SiteTest {
  protected:
   StateFiles() : SiteTest(kScale) {}
@@ -138,7 +137,7 @@ class StateFiles : public SiteTest {
     }
   }
 
-  /// Of a controller that has ended, with its newest cycle, whoever has to tell it.
+  /// Of a controller that has ended, with its newest control cycle: any program that reports it.
   void expect_status_is_true() {
     const Said json = ask({"status", "--json"});
     EXPECT_EQ(json.exit_code, 3) << json.text;
@@ -152,7 +151,7 @@ class StateFiles : public SiteTest {
         << metrics.text;
     said_ += json.text + text.text + metrics.text;
   }
-  /// What was told is not told again.
+  /// Sent alerts are not repeated.
   void expect_notifier_remembers() {
     const std::size_t before = mails();
     said_ += notify();
@@ -169,7 +168,7 @@ class StateFiles : public SiteTest {
       EXPECT_THAT(run, Not(HasSubstr("utc=")));
       return;
     }
-    // A busy machine may reach the battery late; whatever is ordered is the hold.
+    // A busy machine may reach the battery late; every order is the hold.
     EXPECT_LE(exit_code_, 1) << run;
     EXPECT_GE(count_of(run, " mode=running "), 1U) << run;
     EXPECT_EQ(count_of(run, " ordered_power_w=0 reason=held "), count_of(run, " mode=running "))
@@ -182,11 +181,11 @@ class StateFiles : public SiteTest {
     const std::string path = site_.folder.file(file.path);
     const std::string before = text_of_file(path);
     damage(path, how);
-    fs::last_write_time(path, fs::file_time_type::clock::now());  // the younger one is looked at
+    fs::last_write_time(path, fs::file_time_type::clock::now());  // the younger copy is examined
     expect_status_is_true();
     expect_notifier_remembers();
     expect_driven_as_before(file, how);
-    // A bit in the words around the checksum costs nothing but the checksum.
+    // A flip in the words around the checksum only removes the checksum.
     const bool is_of_the_words = how == Damage::kFlip || how == Damage::kCut;
     EXPECT_TRUE(said_.find(path) != std::string::npos || is_of_the_words || !file.is_read) << said_;
   }
@@ -205,8 +204,8 @@ TEST_F(StateFiles, WhateverACardForgetsNothingIsForgottenOrBelieved) {
   }
 }
 
-/// Each copy of the sign check lost is a refusal, each copy of the hold lost is told and not
-/// followed.
+/// If each copy of the sign check is lost, control is refused; if each copy of the hold is lost, it
+/// is reported and not followed.
 TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
   for (const char* path : {"state/hold", "run/hold"}) {
     std::ofstream(site_.folder.file(path)) << std::string(73, '\0');
@@ -231,7 +230,7 @@ TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
   EXPECT_EQ(mails(), before + 1) << "told again rather than never";
 }
 
-/// The wear of the state folder's card, where it tells: by status, metrics and mail.
+/// Wear of the state folder's card, if it reports any: in status, metrics and mail.
 TEST_F(StateFiles, AWornCardIsToldByEverybody) {
   const TemporaryFolder root;
   setenv("BESS_ROOT", root.file("").c_str(), 1);

@@ -1,6 +1,6 @@
-// The real control loop and driver against the simulated battery of every shipped map that does not
-// do what it is told, in moved time: how soon it is noticed, what was ordered meanwhile; and a
-// battery that is only slow, noisy and throttled, for a month.
+// Real control loop and driver against the simulated battery of every shipped map that does not
+// follow orders, in moved time: detection time and orders until then; and a battery that is only
+// slow, noisy and throttled, for a month.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,12 +23,12 @@ const int kMonthDays = 3;  // many times slower
 const int kMonthDays = few_or_all(6, 30);
 #endif
 
-/// What breaks, and what it must be called.
+/// A fault, and its expected name.
 struct Fault {
   const char* name;
   std::function<void(SupervisedSite&)> begin;
   Reason reason;
-  bool rests = false;  ///< 0 W is ordered when it breaks
+  bool rests = false;  ///< 0 W is ordered when it fails
 };
 
 const std::vector<Fault> kFaults = {
@@ -58,7 +58,7 @@ bool shows_capacity(const RegisterMap& map) {
   return std::find(map.required.begin(), map.required.end(), point) != map.required.end();
 }
 
-/// Orders of a device that lets nothing be read back: who else orders cannot be seen.
+/// Orders of a device without read-back: another controller cannot be seen.
 bool reads_back(const RegisterMap& map) {
   const auto& writes = map.sequence(Command::kCharge).writes;
   return std::any_of(writes.begin(), writes.end(),
@@ -82,7 +82,7 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
       ASSERT_FALSE(is_stop_reason(record.reason))
           << fault.name << " " << reason_name(record.reason);
     }
-    // A map whose idle order is no order to the simulator has nothing to disobey.
+    // A map whose idle order is no order to the simulator cannot show a fault at rest.
     if (fault.rests && !site.device.battery.dispatch_active()) continue;
     fault.begin(site);
     int cycles = 0;
@@ -92,17 +92,17 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
       ++cycles;
     } while (!is_stop_reason(record.reason) && cycles < 10);
     EXPECT_EQ(record.reason, fault.reason) << fault.name << ": " << reason_name(record.reason);
-    // The reading that ends the second cycle finds it, at the tick of the third.
-    // What charges a hybrid too much may be the sun: only the discharging cycles show it.
+    // The reading that ends the second control cycle finds it, at the tick of the third. Excess
+    // charge of a hybrid may come from the sun: only the discharging control cycles show it.
     const bool may_be_sun =
         map.response.charges_by_itself && fault.reason == Reason::kUncontrolledPower;
-    // A SoC in whole percents that may be a minute old says little where the order turns every four
-    // minutes.
+    // A SoC in whole percents that may be a minute old shows little where the order reverses every
+    // four minutes.
     const bool is_coarse = map.response.soc_step_e4 >= 100 && fault.reason == Reason::kSocMismatch;
     EXPECT_LE(cycles, may_be_sun ? 5 : is_coarse ? 7 : 3) << fault.name;
     EXPECT_EQ(record.mode, Mode::kSafe) << fault.name;
     EXPECT_EQ(record.ordered_power_w, 0) << fault.name;
-    // And from here on nothing of ours is in force.
+    // From here on no order of ours is in force.
     site.clock.every_half_minute = [] {};
     for (int i = 0; i < 4; ++i) {
       record = site.cycle();
@@ -112,15 +112,14 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
   }
 }
 
-/// The identity checks that are made every ten minutes know the capacity too, and end the reading:
-/// whichever of the two finds it first, what is told is the cause, as long as it lasts. Then the
-/// battery is driven again.
+/// The identity check every ten minutes also reads the capacity, and ends the reading: whichever is
+/// first, the reported cause stays while it lasts. Then the battery is driven again.
 TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
   for (int phase = 0; phase < 5; ++phase) {
     SupervisedSite site(GetParam());
     RegisterMap& map = site.device.test.map;
     if (!shows_capacity(map)) continue;
-    for (IdentityCheck& check : map.identity) {  // as the configuration narrows it
+    for (IdentityCheck& check : map.identity) {  // as limited by the configuration
       if (map.points[check.point].name != "capacity") continue;
       check.value_min = 6'000;
       check.value_max = 10'000;
@@ -152,7 +151,7 @@ TEST_P(EveryMapSupervised, LessThanOrderedIsToldWithinTwoCycles) {
   EXPECT_FALSE(is_stop_reason(record.reason)) << reason_name(record.reason);
 }
 
-/// Days of restless prices, with a battery that is slow, noisy and throttled.
+/// Days of varying prices, with a battery that is slow, noisy and throttled.
 template <typename After>
 void expect_nothing_raised(SupervisedSite& site, int days, const After& after_cycle) {
   set_habits(site, {.delay_s = 5, .noise_frac = 0.02, .slows_near_limits = true});
@@ -182,8 +181,8 @@ TEST_P(EveryMapSupervised, DaysOfASlowNoisyThrottledBatteryRaisesNothing) {
   EXPECT_GT(driven, kMonthDays * kStepsPerDay / 4);
 }
 
-/// Operators hold, a reserve is kept, it is filled on every other day, and a meter cuts orders
-/// between cycles.
+/// Holds, a reserve, a full charge every other day, and a meter that cuts orders between control
+/// cycles.
 TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   const int kDays = kMonthDays / 3;
   set_market_time_zone();
@@ -215,8 +214,8 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   EXPECT_GT(cuts, kDays * 10);
 }
 
-/// Stopped between two cycles, continued twenty minutes later: the watchdog has ended the order,
-/// and nothing brings it back before a new price is decided on.
+/// Paused between two control cycles, continued twenty minutes later: the watchdog has ended the
+/// order, and it stays ended until a new price is decided on.
 TEST_P(EveryMapSupervised, AProcessThatWasStoppedDoesNotGoOnWithItsOldOrder) {
   constexpr std::int64_t kStoppedS = 1'230;
   SupervisedSite site(GetParam());

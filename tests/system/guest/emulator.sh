@@ -1,12 +1,12 @@
-# Sourced by tests/system/guest/emulated: one arm64 machine with a kernel of its own in
-# qemu-system-aarch64, on a disk image. A cut kills the emulator: what the guest had not brought to
-# its disk is lost, as on a real machine.
+# Sourced by tests/system/guest/emulated: one arm64 machine with its own kernel in
+# qemu-system-aarch64, on a disk image. A cut kills the emulator: data that is not on disk is lost,
+# as on a real machine.
 #   make_arm64_base       FOLDER/arm64: Debian 12 arm64 with systemd, sshd and the simulators,
-#                         configured by qemu's user mode in a user namespace of its own, so that
-#                         this machine learns no foreign programs
+#                         configured by qemu's user mode in a separate user namespace, so that
+#                         this machine registers no foreign programs
 #   make_initrd           FOLDER/initrd: busybox and what the kernel needs to find its root on a
 #                         virtio disk
-#   boot IMAGE            starts it; comes back when it answers by ssh
+#   boot IMAGE            starts it; returns when it answers by ssh
 #   on COMMAND            as root inside;  cut_power;  shut_down
 # They use $folder, $source and $programs (bess-sim for arm64).
 
@@ -80,7 +80,7 @@ make_arm64_base() {
   mv "$base.new" "$base"
 }
 
-# libraries_of PROGRAM FOLDER: what it needs beyond the C library, and what they need, out of the
+# libraries_of PROGRAM FOLDER: its libraries except the C library, and their dependencies, from the
 # sysroot.
 libraries_of() {
   local name file

@@ -1,15 +1,14 @@
 # Sourced by the tests of tests/system/guest: machines with systemd as their first process, in
-# containers (systemd-nspawn): Debian of this processor, of the release that $package is for, with
-# the simulators inside, no network but their own loopback. Needs root.
-#   make_base             what all machines start from, once: $guest, of $release
-#   boot NAME             a machine over a copy of it (made when it is not there) is started
+# containers (systemd-nspawn): Debian of this processor and of the release that $package is for,
+# with the simulators inside, no network except loopback. Needs root.
+#   make_base             base of all machines, made once: $guest, of $release
+#   boot NAME             starts a machine over a copy of it (made if absent)
 #   on NAME COMMAND       as root inside;  send NAME FILE PLACE
-#   play OPTION...        the Ansible roll-out; its exit code is in $code, its words in ansible.log
-#   cut_power NAME        every process of the machine is killed at once;  shut_down NAME
+#   play OPTION...        the Ansible roll-out; its exit code is in $code, its output in ansible.log
+#   cut_power NAME        kills every process of the machine;  shut_down NAME
 #   forget NAME
-# They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut
-# kills all processes of a machine, but what they had written without waiting for the disk is not
-# lost.
+# They use $folder, $source and $programs (folder of bess-sim). The kernel is this machine's: a cut
+# kills all processes of a machine, but unsynchronised writes are not lost.
 
 # shellcheck source=tests/system/guest/site.sh
 . "$source/tests/system/guest/site.sh"
@@ -48,7 +47,7 @@ make_base() {
   done
   [ "$(id -u)" = 0 ] || skip "machines need root"
   mkdir -p "$folder"
-  # Of an older test, without what this one needs.
+  # Left by an older test, without the files of this one.
   [ ! -d "$guest" ] || [ -d "$guest/usr/share/doc/$httplib" ] ||
     rm -rf "$guest" "$tar"
   if [ -d "$guest" ] &&
@@ -68,7 +67,7 @@ make_base() {
   tar -C "$guest.new" -xf "$tar"
   rm -rf "$guest.new"/boot/*
   site_into "$guest.new"
-  # Upgrades come when a test says so.
+  # Upgrades only start when a test starts them.
   for program in apt-daily.timer apt-daily-upgrade.timer unattended-upgrades.service; do
     ln -sf /dev/null "$guest.new/etc/systemd/system/$program"
   done

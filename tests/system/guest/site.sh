@@ -1,12 +1,12 @@
-# Sourced by machine.sh and emulator.sh: what their guests are made of.
+# Sourced by machine.sh and emulator.sh: parts of their guests.
 #   site_into ROOT        simulated battery and market, started at each boot before bess-edge;
 #                         ROOT/opt/bess-site/lib is for the libraries of bess-sim
 #   raspberry_image FILE ROOT   an image in the layout of Raspberry Pi OS, FAT before ext4, with
 #                               that system
-#   program LINE          for variant: a program that answers as ever, and controls by that line
-#   variant VERSION [COMMAND]   FOLDER/bess-edge_VERSION.deb: $package with another version, spoilt
+#   program LINE          for variant: a program with normal answers that controls by that line
+#   variant VERSION [COMMAND]   FOLDER/bess-edge_VERSION.deb: $package with another version, changed
 #                               by the command in its tree
-# Uses $source, $folder and $programs (where bess-sim is).
+# Uses $source, $folder and $programs (folder of bess-sim).
 site_into() {
   local site=$1/opt/bess-site
   mkdir -p "$site/lib" "$1/etc/bess"

@@ -1,4 +1,4 @@
-"""Options of the tests on places, and the place itself."""
+"""Options of the tests on places, and the place fixture."""
 import base64
 import shlex
 import shutil
@@ -49,7 +49,7 @@ class Place:
         return text
 
     def write(self, path, text):
-        """In one line, because a serial console knows nothing else."""
+        """In one line, as a serial console requires."""
         self.run(
             f"echo {base64.b64encode(text.encode()).decode()} | base64 -d > {shlex.quote(path)}")
 
@@ -57,17 +57,17 @@ class Place:
         return self.run(f"cat {shlex.quote(path)}")
 
     def start(self, command, log):
-        """Its process number; both streams go to the file."""
+        """Process id; both streams go to the file."""
         pid = int(self.run(f"nohup {command} >{log} 2>&1 </dev/null & echo $!").split()[-1])
         self.children.append(pid)
         return pid
 
     def fetch_prices(self, config):
-        """bess-prices for that configuration; one that runs already stays."""
+        """Starts bess-prices for that configuration, unless it runs already."""
         return self.start(f"{self.prices} --config {config}", f"{self.folder}/prices.log")
 
     def is_running(self, pid):
-        """A child that has ended and was not waited for is none."""
+        """A zombie process counts as ended."""
         code, state = self.attempt(f"sed -n 's/^State:.//p' /proc/{pid}/status")
         return code == 0 and state.strip() != "" and not state.startswith(("Z", "X"))
 

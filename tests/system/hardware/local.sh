@@ -1,6 +1,6 @@
 #!/bin/sh
-# local.sh SOURCE PROGRAMS [emulated]: the tests on places, on this machine, or with the Raspberry
-# Pi's programs of build-aarch64, emulated. Exit code 77: what they need is not there.
+# local.sh SOURCE PROGRAMS [emulated]: tests on places on this machine, or with the Raspberry Pi's
+# programs of build-aarch64, emulated. Exit code 77: a requirement is missing.
 cd "$1" || exit 1
 /usr/bin/python3 -c 'import labgrid, pytest' 2>/dev/null ||
   {

@@ -1,4 +1,4 @@
-"""A labgrid driver for the machine that the tests run on: its shell, as SSHDriver is that of
+"""labgrid driver for the local machine: its shell, as SSHDriver is the shell of
 another machine."""
 import subprocess
 
@@ -13,7 +13,7 @@ from labgrid.step import step
 @target_factory.reg_driver
 @attr.s(eq=False)
 class LocalShellDriver(CommandMixin, Driver, CommandProtocol):
-    """Runs commands in the folder that pytest was started in."""
+    """Runs commands in the start folder of pytest."""
 
     @Driver.check_active
     @step(args=["cmd"], result=True)

@@ -1,4 +1,4 @@
-"""Driving a battery that can be hurt: limits of its own, somebody who watches, a key that ends
+"""Driving a real battery: limits of its own, a person who watches, and a key that ends
 it."""
 import json
 import os
@@ -10,7 +10,7 @@ import tty
 
 
 def limited(settings, power_w, soc_min, soc_max):
-    """The text of a bess-edge configuration, with these limits in place of its own."""
+    """The text of a bess-edge configuration, with these limits instead of its own."""
     tables = {"": {"control": "true"}, "battery": {"power_w": str(power_w)},
               "guard": {"soc_min": str(soc_min), "soc_max": str(soc_max)}}
     lines, table = [], ""
@@ -36,7 +36,7 @@ def limited(settings, power_w, soc_min, soc_max):
 
 
 class AbortKey:
-    """Q at the terminal, whatever pytest does with its streams. Without a terminal there is Ctrl-C
+    """Q at the terminal, despite pytest's capture of streams. Without a terminal use Ctrl-C
     alone."""
 
     def __enter__(self):
@@ -63,7 +63,7 @@ class AbortKey:
 
 
 def complaint(status, limits):
-    """What of a running controller's status breaks the limits; "" when nothing does."""
+    """Violated limits in a running controller's status; "" if there are none."""
     last = status.get("last", status)
     ordered, power, soc = (last.get(key) for key in ("ordered_power_w", "battery_power_w",
                                                      "soc_e4"))
@@ -82,8 +82,8 @@ def complaint(status, limits):
 def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
     """Drives the battery of `config` (a path on the place) within the limits; the controller's log.
 
-    However it ends, by itself, the key, Ctrl-C or a broken limit: the controller is stopped, which
-    orders 0 W and releases the battery, and what it said last is checked.
+    On any end (regular, key, Ctrl-C or violated limit) the controller is stopped, which
+    orders 0 W and releases the battery, and its last output is checked.
     """
     own = f"{config}.limited.toml"
     place.write(own, limited(place.read(config), limits.power_w, limits.soc_min, limits.soc_max))
@@ -103,7 +103,7 @@ def drive(place, config, limits, cycles, cycle_s=120, is_aborted=lambda: False):
             time.sleep(min(1, cycle_s / 10))
     finally:
         place.attempt(f"kill -TERM {pid} {prices}")
-        for _ in range(700):  # a battery without a watchdog is tried to be released for 65 s
+        for _ in range(700):  # releasing a battery without a watchdog is retried for 65 s
             if not place.is_running(pid):
                 break
             time.sleep(0.1)

@@ -1,5 +1,5 @@
-"""bess-edge where it will run: on this machine, on an emulated Raspberry Pi, on a real one over
-ssh; with a simulated battery on the same machine, and with a real one if somebody says so.
+"""bess-edge on its targets: on this machine, on an emulated Raspberry Pi, on a real one over
+ssh; with a simulated battery on the same machine, and with a real one on request.
 README.md here has the commands."""
 import math
 import re
@@ -64,7 +64,7 @@ def test_drives_a_simulated_battery_and_the_map_fits_what_was_recorded(place, si
 
 
 def test_keeps_the_limits_of_a_real_battery(place, site):
-    """What --real does, on the simulated one: no order above the limit, released at the end."""
+    """--real on the simulated battery: no order above the limit, released at the end."""
     said = drive(place, site.config, Limits(400, 0.3, 0.7), cycles=4, cycle_s=120 / SCALE)
     ordered = [int(w) for w in re.findall(r" ordered_power_w=(-?\d+) ", said)]
     assert max(abs(w) for w in ordered) == 400

@@ -1,7 +1,7 @@
-// The gate on learning: the teacher that `bess-train train` makes by default, trained on the
-// yardstick, earns more than the rule-based controller and no less than tabular value iteration and
-// the stochastic program that it began as, on days that it was not trained on. The seed is fixed
-// and training repeats to the bit, so the verdict on a build is the same every time.
+// Learning gate: the teacher that `bess-train train` makes by default, trained on the benchmark,
+// earns more than the rule-based controller and no less than tabular value iteration and the
+// stochastic program that it started as, on held-out days. The seed is fixed and training is
+// bit-identical, so the verdict on a build is reproducible.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluat
   return lead;
 }
 
-/// Stopped after the first validation: what is left is the beginning.
+/// Stopped after the first validation: the result is the start.
 TEST(LearningGate, BeforeItsFirstStepTheTeacherIsTheProgramOnEveryDay) {
   set_market_time_zone();
   const RunConfig config = load_run_config("");
@@ -71,8 +71,8 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
           .profit_eur_per_day_per_mwh())
       << "step 0 is the program";
   EXPECT_LT(training.curve.back().edge_mass_frac, 5e-3) << "the default warns of its own support";
-  // 42 days judge better than the 20 test days alone. Of the validation days the teacher knows
-  // which of its seven sets of weights they liked.
+  // 42 days give a better estimate than the 20 test days. Of the validation days the teacher only
+  // knows which of its seven weight sets was best.
   const std::vector<MarketDay> days = market.days_of(Split::kHeldOut);
   for (const bool carry_soc : {false, true}) {
     const EvaluationOptions options{config.battery, config.initial_soc_frac, carry_soc};
@@ -81,7 +81,7 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
                days.size(), earned.profit_eur_per_day_per_mwh());
     const PairedDifference over_rule = lead("rule", earned, evaluate(market, days, rule, options));
     EXPECT_GT(over_rule.mean, 2 * over_rule.standard_error);
-    // Level: another processor's vectors make another teacher, and a tie by chance must pass.
+    // Level: another processor's vectors make another teacher, and a tie must pass.
     const PairedDifference over_tabular =
         lead("tabular", earned, evaluate(market, days, tabular, options));
     EXPECT_GE(over_tabular.mean, -over_tabular.standard_error);

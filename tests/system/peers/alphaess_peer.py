@@ -1,21 +1,20 @@
 #!/usr/bin/python3
-"""An AlphaESS battery as pymodbus serves it: an implementation of Modbus that shares nothing with
-bess.
+"""An AlphaESS battery as pymodbus serves it: an independent implementation of Modbus.
 
     alphaess_peer.py --soc 435                 # TCP on a free port, which is printed
     alphaess_peer.py --soc 435 --serial DEVICE # RTU, 9600 8N1
     alphaess_peer.py --soc 435 --scale 60 --fault twice  # misbehaves from the controller's third
                                                          order on; time runs 60 times as fast
-    alphaess_peer.py --soc 435 --scale 60 --fault reversed --every 2   # in every other two minutes
-                                                                       # of that only
+    alphaess_peer.py --soc 435 --scale 60 --fault reversed --every 2   # in every other
+                                                                       # two-minute step only
     alphaess_peer.py --soc 435 --scale 60 --habits       # no fault: 5 s of lag, 800 W/s, 2 % of
                                                          noise, slow near full and empty
 
 Without --scale the state of charge stays as it is. Faults of the power: reversed, twice, third,
-dead (no power), idle-discharge, echo (shows the order, nothing flows), drain (1 kW besides, not
+dead (no power), idle-discharge, echo (shows the order, nothing flows), drain (1 kW in addition, not
 shown). Of the display: soc-stuck, soc-inverted, capacity (100
-kWh), wrong-echo (of every write). Besides: other-master (orders 4.5 kW of discharge every 30 s).
-What healthy ones do: recalibrates (6 % up, at once), forced-charge (below 10 %, to 11 %), balancing
+kWh), wrong-echo (of every write). Also: other-master (orders 4.5 kW of discharge every 30 s).
+Healthy habits: recalibrates (6 % up, immediately), forced-charge (below 10 %, to 11 %), balancing
 (450 W while full).
 Registers by the vendor's manual V1.23; every write is printed as "write ADDRESS VALUE...". The
 dispatch block starts as the vendor's stop command leaves it. Runs until it is killed.
@@ -43,7 +42,7 @@ GAIN = {"reversed": -1, "twice": 2, "third": 0.3, "dead": 0, "echo": 0}
 
 
 class Cells:
-    """What flows, in steps of at most a second: - charge, + discharge, in W; the charge in 0.1
+    """Real power, in steps of at most a second: - charge, + discharge, in W; the charge in 0.1
     %."""
 
     def __init__(self, soc, has_habits):
@@ -77,7 +76,7 @@ class Cells:
 
 
 class Registers(ModbusSequentialDataBlock):
-    """Holding registers that print what is written and follow the dispatch block."""
+    """Holding registers that print writes and follow the dispatch block."""
 
     def __init__(self, options):
         super().__init__(0, [0] * 0x1000)
@@ -135,7 +134,7 @@ class Registers(ModbusSequentialDataBlock):
         return min(max(round(soc), 0), 1000)
 
     def live(self):
-        """Up to this moment: what has flowed, and what is shown of it."""
+        """Real and shown energy up to now."""
         now = time.monotonic()
         seconds = (now - self.since) * self.scale
         steps = max(int(seconds), 1)

@@ -1,6 +1,6 @@
-// bess-sim's battery between independent masters (pymodbus, mbpoll), one for each shipped map: what
-// they order flows, what they read is that, and the energy of the simulator's own record is power
-// times time, worked out by hand.
+// Independent masters (pymodbus, mbpoll) with bess-sim's battery, one for each shipped map: ordered
+// power flows, readings agree, and the energy in the simulator's record is power times time,
+// computed by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

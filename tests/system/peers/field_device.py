@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Batteries and gateways as users report them, over Modbus TCP on a free port, which is printed:
-framing, registers and behaviour from Python's standard library and the makers' documents alone.
+"""Batteries and gateways of user reports, over Modbus TCP on a free port, which is printed:
+framing, registers and behaviour only from Python's library and the manufacturers' documents.
 
     field_device.py --device sungrow --firmware '{"signed": true, "bits": false}' --record FILE \\
       --scale 60 --anchor-ns N --start-s UTC --gateway '{"answer_unit": 255}' --trouble '{...}'
@@ -12,10 +12,10 @@ and senalse/ha-alphaess-modbus (function 16, 250 or 255 for 100 %); SMA by evcc 
 17115 and 15440) and OpenEMS SmaBatteryImpl (no 40153). + charges, - discharges, in W.
 
 SIGUSR1 begins the trouble, SIGUSR2 ends it: "refuse" (reads of unit, first to last; code, 0 =
-silence; spell_s: so long from the first on), "fault_after_s", "island_after_s", "firmware" (an
+silence; spell_s: duration from the first on), "fault_after_s", "island_after_s", "firmware" (an
 update), "boot" ("zeros", "ones" or an exception). A gateway has "busy" (before_s, after_s, every:
-exception 6 around each so manieth tick) and "late" (each so manieth answer comes before the one
-after it) while there is trouble, "answer_unit" and "one_client" always. The record has a line for
+exception 6 around every Nth tick) and "late" (every Nth answer comes before the one
+after it) during the trouble, "answer_unit" and "one_client" always. The record has a line for
 each write, change of power and trouble, after its time in UTC seconds. Runs until it is killed.
 """
 import argparse
@@ -33,7 +33,7 @@ CYCLE_S = 120
 
 
 class Refused(Exception):
-    """Exception answer with this code; 0: no answer at all."""
+    """Exception answer with this code; 0: no answer."""
 
     def __init__(self, code):
         super().__init__(code)
@@ -50,7 +50,7 @@ def u32(value, low_first=False):
 
 
 class Battery:
-    """Cells that follow the order of a device at once; a device says `ordered`, and what it
+    """Cells that follow the order of a device immediately; a device defines `ordered`, and what it
     shows."""
     units = (1,)
 
@@ -58,7 +58,7 @@ class Battery:
         self.firmware, self.soc, self.record = firmware, soc, record
         self.since, self.power, self.until = None, 0, math.inf
         self.fault = self.island = False
-        self.held = {}  # (unit, address): what was written there
+        self.held = {}  # (unit, address): value written there
 
     def ordered(self):
         raise NotImplementedError
@@ -67,7 +67,7 @@ class Battery:
         """The device ends the order by itself."""
 
     def ranges(self, unit, function):
-        """What can be read there: pairs of addresses; what is not shown is 0."""
+        """Readable registers: pairs of addresses; others are 0."""
         raise NotImplementedError
 
     def shown(self, unit, function):
@@ -210,7 +210,7 @@ class SunSpec(Battery):
 
     def ordered(self):
         """StorCtl_Mod bit 0 limits charging to InWRte, bit 1 discharging to OutWRte; between both
-        the house decides, and takes nothing here. A negative rate asks for the other direction."""
+        the house decides, and takes nothing here. A negative rate requests the other direction."""
         if 124 not in self.heads:
             return 0
         mode = self.of_124(5)
@@ -333,7 +333,7 @@ class Sma(Battery):
 
 
 class Site:
-    """The battery behind its gateway: one request at a time, whoever asks."""
+    """The battery behind its gateway: one request at a time from any client."""
 
     def __init__(self, options):
         self.options, self.lock = options, threading.RLock()
@@ -416,7 +416,7 @@ class Site:
         return pdu[:5]
 
     def frames(self, transaction, unit, pdu):
-        """What goes back for one request."""
+        """Reply to one request."""
         try:
             answer = self.answer(unit, pdu)
         except Refused as refused:
@@ -450,7 +450,7 @@ class Site:
             self.clients -= 1
 
     def age(self):
-        """What flows is recorded when it changes, also while nobody asks."""
+        """Records power changes, also without requests."""
         while True:
             time.sleep(1 / self.options.scale)
             with self.lock:

@@ -1,6 +1,5 @@
-// The real bess-edge against batteries and gateways that behave as users report them
-// (field_device.py, which shares nothing with bess): what is ordered, which reason stops it, and
-// how much energy flows. Each row of reports is a test, and three draws of it are run.
+// Real bess-edge against batteries and gateways of user reports (field_device.py, independent of
+// bess): orders, stop reasons, and energy. Each row of reports is a test, with three draws.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +21,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int32_t kScale = 60;  // a cycle takes 2 s
+constexpr std::int32_t kScale = 60;  // a control cycle takes 2 s
 constexpr int kCycleS = 120;
 constexpr double kRatedW = 4'000;
 constexpr double kCheap = -600;  // charge
@@ -30,8 +29,8 @@ constexpr double kDear = 1'600;  // discharge
 
 struct Draw {
   const char* name;
-  unsigned index;  ///< which variant, where a row lists them
-  unsigned seed;   ///< of what is drawn besides
+  unsigned index;  ///< variant, if a row lists several
+  unsigned seed;   ///< seed of the other draws
   friend void PrintTo(const Draw& d, std::ostream* out) { *out << d.name; }
 };
 constexpr Draw kAlder{"alder", 0, 5201};
@@ -39,7 +38,7 @@ constexpr Draw kBirch{"birch", 1, 5202};
 constexpr Draw kCedar{"cedar", 2, 5203};
 
 struct Device {
-  const char* kind = "";  ///< of field_device.py
+  const char* kind = "";  ///< options of field_device.py
   std::string keys;       ///< lines of [battery]
   std::string firmware = "{}";
   std::string gateway = "{}";
@@ -115,7 +114,7 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
     edge_ = std::make_unique<ChildProcess>(
         std::vector<std::string>{edge_program(), "--config", config_});
   }
-  /// The next cycles, fewer when the controller ends before.
+  /// The next control cycles, fewer if the controller ends before.
   std::vector<Cycle> cycles(int count) {
     std::vector<Cycle> all;
     while (static_cast<int>(all.size()) < count) {
@@ -150,7 +149,7 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
     }
     return all;
   }
-  /// What flowed, + into the battery, by the device's own record.
+  /// Energy, + into the battery, by the device's own record.
   [[nodiscard]] double energy_wh(double from_s, double to_s) const {
     double wh = 0, power = 0, since = from_s;
     for (const Recorded& r : record("power ")) {
@@ -197,13 +196,13 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
     ASSERT_GE(driven(cycles(2)), 1);
     begin_trouble();
   }
-  /// Commissioned and driven at once, which the device allows.
+  /// A healthy device is commissioned and driven for two control cycles; then the trouble begins.
   std::vector<Cycle> commission_and_drive(const Device& device, int count) {
     start_and_commission(device);
     if (HasFatalFailure()) return {};
     start_edge();
     std::vector<Cycle> all = cycles(count);
-    if (!all.empty() && !all.front().drives()) all.erase(all.begin());  // may have begun mid-cycle
+    if (!all.empty() && !all.front().drives()) all.erase(all.begin());  // may begin within a cycle
     return all;
   }
 
@@ -211,7 +210,7 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
   std::unique_ptr<ChildProcess> edge_;
   std::mt19937 random_{GetParam().seed};
   std::string config_;
-  std::vector<std::string> notes_;  ///< lines that are not a cycle's
+  std::vector<std::string> notes_;  ///< lines other than control cycles
 };
 
 /// A gateway answers the read of the alarms and its retry with exception 11 or 10, then recovers;
@@ -249,7 +248,7 @@ TEST_P(Field, AlarmsLostForOneRead) {
   EXPECT_THAT(run({"status", "--prometheus"}).text, HasSubstr(",reason=\"alarm\""));
 }
 
-/// A unit behind a gateway is gone for good: a BMS's alarms, a range, the off-grid state.
+/// A unit behind a gateway is permanently gone: a BMS's alarms, a range, the off-grid state.
 TEST_P(Field, ProtectionLostForGood) {
   const std::string reason = GetParam().index == 1 ? "grid_unknown" : "protection_lost";
   drive_into_trouble(variant(
@@ -276,7 +275,7 @@ TEST_P(Field, ProtectionLostForGood) {
   const Said status = run({"status", "--prometheus"});
   EXPECT_THAT(status.text, HasSubstr(",reason=\"" + reason + "\""));
   EXPECT_EQ(run({"status"}).exit_code, 1);
-  // Tried for 10 s, not twice at once.
+  // Retries for 10 s, without parallel attempts.
   const std::vector<Recorded> tries = record("refused");
   EXPECT_GE(std::ranges::count_if(tries,
                                   [&](const Recorded& r) {
@@ -286,8 +285,8 @@ TEST_P(Field, ProtectionLostForGood) {
             1);
 }
 
-/// No chain with 103 and 124, or none yet: nothing aborts, an order can be released as soon as the
-/// device is there, and so it is driven.
+/// No chain with 103 and 124, or none yet: nothing aborts, and an order can be released as soon as
+/// the device is there, so it is driven.
 TEST_P(Field, SunSpecBootsOrIsAnother) {
   const std::string boot = variant<std::string>("\"zeros\"", "\"ones\"",
                                                 std::to_string(draw(0, 2) == 0   ? 2
@@ -329,8 +328,8 @@ TEST_P(Field, SunSpecChainIsAnother) {
   }
 }
 
-/// The BMS shows more than 100 %: from the start, where a full battery is sold, or as soon as it
-/// is full. It is clamped, and named once.
+/// The BMS shows more than 100 %: from the start, where a full battery is sold, or as soon as it is
+/// full. The value is clamped, and reported once.
 TEST_P(Field, SocAboveHundred) {
   const bool is_victron = GetParam().index == 1, becomes_full = GetParam().index == 2;
   const std::string gain =
@@ -346,7 +345,7 @@ TEST_P(Field, SocAboveHundred) {
   const std::vector<Cycle> all = cycles(8);
   EXPECT_EQ(all.size(), 8U);
   EXPECT_EQ(std::ranges::count(all, "link", &Cycle::reason), 0);
-  EXPECT_GE(driven(all), becomes_full ? 1 : 7);  // the first may have begun in mid cycle
+  EXPECT_GE(driven(all), becomes_full ? 1 : 7);  // the first may have begun within a control cycle
   for (const Cycle& c : all) {
     EXPECT_EQ(c.mode, "running");
     if (!becomes_full) {
@@ -359,7 +358,7 @@ TEST_P(Field, SocAboveHundred) {
   EXPECT_EQ(std::ranges::count_if(notes_, names_it), 1);
 }
 
-/// Whatever the firmware says of the battery's power, commission finds out and the day is driven.
+/// Commissioning finds the firmware's sign of the battery power, and the day is driven.
 TEST_P(Field, SungrowFirmware) {
   const std::vector<Cycle> all = commission_and_drive(
       {.kind = "sungrow",
@@ -374,7 +373,7 @@ TEST_P(Field, SungrowFirmware) {
   EXPECT_GE(share_delivered(all), 0.98);
 }
 
-/// The firmware is updated while running: right from then on, or stopped for good.
+/// Firmware update while running: correct from then on, or a permanent stop.
 TEST_P(Field, SungrowUpdate) {
   drive_into_trouble(
       {.kind = "sungrow",
@@ -395,7 +394,8 @@ TEST_P(Field, SungrowUpdate) {
   EXPECT_EQ(changes, 0);
 }
 
-/// Set-points end after 10 s, 60 s or something between: fed in time, or the key to set is named.
+/// Set points end after 10 s, 60 s or a time in between: refreshed in time, or the key to set is
+/// named.
 TEST_P(Field, VictronSetPointEndsSooner) {
   const std::string timeout_s = variant<std::string>("10", "60", std::to_string(draw(10, 20)));
   start({.kind = "victron",
@@ -470,7 +470,7 @@ TEST_P(Field, StopWhileBusy) {
   EXPECT_EQ(record("write 85 2176 ").back().what.substr(0, 16), "write 85 2176 0 ");
 }
 
-/// Each so manieth answer comes only before the next one, on whatever connection.
+/// Every Nth answer only comes before the next one, on any connection.
 TEST_P(Field, LateAnswers) {
   const int every = draw(8, 14);
   const char* const kind = variant<const char*>("alphaess", "sma", "alphaess");
@@ -494,7 +494,7 @@ TEST_P(Field, ForeignUnitIds) {
   EXPECT_EQ(driven(all), static_cast<int>(all.size()));
 }
 
-/// Nobody answers at a base that the device does not use: the chain is at the next one.
+/// No answer at a base that the device does not use: the chain is at the next one.
 TEST_P(Field, SunSpecBaseIsSilent) {
   const std::vector<Cycle> all = commission_and_drive(
       {.kind = "sunspec",
@@ -506,7 +506,7 @@ TEST_P(Field, SunSpecBaseIsSilent) {
   EXPECT_GE(driven(all), 4);
 }
 
-/// Inverters that obey the set-point alone, and have no 40153; and one that obeys both.
+/// Inverters that only obey the set point, and have no 40153; and one that obeys both.
 TEST_P(Field, SmaObeysTheSetPointAlone) {
   start({.kind = "sma",
          .keys = map_keys(
@@ -516,7 +516,7 @@ TEST_P(Field, SmaObeysTheSetPointAlone) {
              variant<std::string>(R"({"smart_energy": true})", R"({"smart_energy": true})", "{}")});
   if (HasFatalFailure()) return;
   const Said check = commission();
-  // Limits that are ignored are found before the first trade.
+  // Ignored limits are found before the first trade.
   EXPECT_EQ(check.exit_code, variant(0, 1, 0)) << check.text;
   if (check.exit_code != 0) return;
   start_edge();

@@ -4,15 +4,15 @@ mbpoll look.
 
     master_peer.py --map alphaess --variant block --port 1502 --scale 60 --anchor-ns N --start-s UTC
 
-Registers by the makers' tables, worked out by hand; shares nothing with bess. Holds 3000 W of
+Registers by the manufacturers' tables, by hand; independent of bess. Holds 3000 W of
 charge, then of discharge, for 150 simulated seconds each, and prints
 
     soc TENTHS-OF-A-PERCENT
     order WATTS from UTC-S to UTC-S pymodbus WATTS mbpoll WATTS
 
 With --day it orders a day on alphaess instead, each order for its own time. With --interfere it is
-the second master: thirty seconds after every --every-th tick it writes stop, or another mode, in
-place of what another master has ordered, and prints the tick.
+the second master: 30 s after every --every-th tick it writes stop, or another mode, instead
+of another master's order, and prints the tick.
 """
 import argparse
 import re
@@ -34,7 +34,7 @@ def signed(value, bits):
 
 
 class Master:
-    """Writes and reads of one device, each by two programs that know nothing of each other."""
+    """Writes and reads of one device, each by two independent programs."""
 
     def __init__(self, port):
         self.port, self.client = port, ModbusTcpClient("127.0.0.1", port=port, timeout=5)
@@ -126,7 +126,7 @@ class Simulator:
 
 class SunSpec124:
     """callifo/fronius-modbus-control: a discharging limit below 0 charges (mode 2), and a charging
-    limit below 0 beside the same discharging limit discharges (mode 3); 10000 = 100 % of the
+    limit below 0 with the same discharging limit discharges (mode 3); 10000 = 100 % of the
     rating."""
 
     def __init__(self, master, _):
@@ -148,7 +148,7 @@ class SunSpec124:
         self.master.write(1, self.mode, 0)
 
     def other_mode(self):
-        """The limit of charging in place of the other, or of both."""
+        """The charging limit instead of the other, or of both."""
         self.master.write(1, self.mode, 1)
 
     def soc(self, read):
@@ -385,7 +385,7 @@ class Kostal:
 
 
 class Marstek:
-    """openWB: function 6 alone; evcc: other registers for the third generation."""
+    """openWB: function 6 only; evcc: other registers for the third generation."""
 
     def __init__(self, master, variant):
         self.master, self.is_new = master, variant == "gen_3"

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A meter as pymodbus serves it: an implementation of Modbus that shares nothing with bess.
+"""A meter as pymodbus serves it: an independent implementation of Modbus.
 
     meter_peer.py --map eastron_sdm630 --watts -1230      # TCP on a free port, which is printed
 
-Registers by the makers' tables, worked out by hand; watts are import, a multiple of 10. Runs until
+Registers by the manufacturers' tables, by hand; watts are import, a multiple of 10. Runs until
 it is killed.
 """
 import argparse

@@ -1,5 +1,5 @@
-// The real bess-edge against independent meters (pymodbus), one for each shipped map: what --check
-// reads must be what the meter shows, in both directions.
+// Real bess-edge against independent meters (pymodbus), one for each shipped map: --check must read
+// what the meter shows, in both directions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

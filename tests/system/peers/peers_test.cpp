@@ -1,7 +1,7 @@
-// The real bess-edge against an independent battery (pymodbus), watched by an independent master
+// Real bess-edge against an independent battery (pymodbus), watched by an independent master
 // (mbpoll): the dispatch block of AlphaESS, register by register, for charge, idle, discharge and
 // release, over TCP and over a serial line (socat), written as one block and as five writes. The
-// expected registers are worked out by hand from the vendor's manual:
+// expected registers are computed by hand from the vendor's manual:
 //   0x0880 start | 32000 + W, below it charging (2) | 32000 + var (2) | mode 2 = SoC control |
 //   SoC limit, 0.4 % each: ceiling 100 % = 255 (none), floor 10 % = 25 | seconds (2) | 255 | PV 0
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-constexpr std::int32_t kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
+constexpr std::int32_t kScale = 60;  // control cycle of 2 s: time to kill the edge between orders
 constexpr std::int32_t kBreakdownScale = 240;
 
 struct Setup {
@@ -28,7 +28,7 @@ struct Setup {
   const char* variant;
 };
 
-/// What the market and the battery look like, and what must then stand in 0x0880..0x088A.
+/// State of market and battery, and the expected registers 0x0880..0x088A.
 struct Situation {
   const char* name;
   int price_eur_per_mwh;
@@ -42,7 +42,7 @@ const Situation kDischarge{
 /// Very cheap, but full.
 const Situation kIdle{"idle", -600, 1'000, {1, 0, 32'000, 0, 32'000, 2, 255, 0, 300, 255, 0}};
 
-/// The writes by which one order arrives.
+/// The writes of one order.
 std::vector<std::string> writes_of(const std::vector<int>& d, const std::string& variant) {
   const auto line = [&](int first, int count) {
     std::string text = std::string("write ").append(std::to_string(0x0880 + first));
@@ -55,7 +55,7 @@ std::vector<std::string> writes_of(const std::vector<int>& d, const std::string&
   return {line(0, 1), line(1, 2), line(7, 2), line(6, 1), line(5, 1)};
 }
 
-/// Starts alphaess_peer.py in place of the site's battery; the line that says where it listens.
+/// Starts alphaess_peer.py instead of the site's battery; returns the line with its address.
 std::string start_peer(SimulatedSite& site, int soc_permille,
                        const std::vector<std::string>& options) {
   site.start_clock();
@@ -99,7 +99,7 @@ class Peers : public PeerTest, public ::testing::WithParamInterface<Setup> {
     if (!GetParam().rtu) return keys;
     return keys + "transport = \"rtu\"\ndevice = \"" + site_.folder.file("edge_end") + "\"\n";
   }
-  /// Runs the edge in a situation up to its first order; then it ends by this signal.
+  /// Runs the edge in a situation up to its first order; then ends it with this signal.
   void run_edge(const Situation& situation, int signal) {
     start_battery(situation.soc_permille);
     ASSERT_FALSE(HasFailure());
@@ -115,8 +115,7 @@ class Peers : public PeerTest, public ::testing::WithParamInterface<Setup> {
     ASSERT_EQ(edge.wait(), signal == SIGKILL ? 128 + SIGKILL : 0);
   }
 
-  /// What mbpoll reads in the dispatch block: it asks for all, each value is printed with its
-  /// address.
+  /// mbpoll's reading of the dispatch block: each value is printed with its address.
   std::vector<int> read_dispatch() {
     std::vector<std::string> arguments = {kMbpoll, "-a", "85", "-0", "-r", "2176", "-c",
                                           "11",    "-t", "4",  "-1", "-o", "5"};
@@ -134,13 +133,12 @@ class Peers : public PeerTest, public ::testing::WithParamInterface<Setup> {
       const std::string key = std::string("[").append(std::to_string(address)).append("]:");
       const std::size_t at = text.find(key);
       EXPECT_NE(at, std::string::npos) << text;
-      // A value above 32767 is printed with its signed reading in brackets behind it.
+      // A value above 32767 is followed by its signed reading in brackets.
       if (at != std::string::npos) registers.push_back(std::atoi(text.c_str() + at + key.size()));
     }
     return registers;
   }
-  /// All writes that the battery has had since its sign check, which ends by releasing it, in their
-  /// order.
+  /// All writes to the battery since its sign check, which ends with a release, in their order.
   std::vector<std::string> take_writes() {
     site_.battery->signal(SIGTERM);
     std::vector<std::string> writes;
@@ -191,15 +189,15 @@ TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
   EXPECT_THAT(take_writes(), ElementsAreArray(expected));
 }
 
-/// A battery that breaks after two good orders, at a price that asks for the same order in every
-/// cycle.
+/// A battery that fails after two good orders, at a price that requests the same order in every
+/// control cycle.
 struct Breakdown {
   const char* fault;
   const char* reason = "";
-  int cycles_until_noticed = 0;  ///< from the order with which it breaks
+  int cycles_until_noticed = 0;  ///< from the order at which it fails
   const char* guard_keys = "";
   int exit_code = 0;
-  int every = 1;  ///< in every so manieth two minutes
+  int every = 1;  ///< in every Nth two-minute step
   int soc_permille = 435;
   int price_eur_per_mwh = -600;
 };
@@ -228,7 +226,8 @@ class PeersBreakdown : public PeerTest, public ::testing::WithParamInterface<Bre
         {.battery_keys = SimulatedSite::alphaess_keys(2'000), .guard_keys = GetParam().guard_keys});
   }
 
-  /// The cycle of the first line that holds the text; 0 when there is none within `cycles_max`.
+  /// The control cycle of the first line that contains the text; 0 if there is none within
+  /// `cycles_max`.
   static int cycle_with(ChildProcess& edge, const std::string& text, int cycles_max) {
     for (int cycle = 0; cycle < cycles_max;) {
       const std::string line = edge.read_line();
@@ -254,7 +253,7 @@ TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
   const int noticed = cycle_with(edge, reason, kGoodCycles + 2 + GetParam().cycles_until_noticed);
   EXPECT_GT(noticed, kGoodCycles);
   // One for the tick at which the fault first shows, one that a busy machine may lose: exact counts
-  // are the trial's, in virtual time.
+  // are in the trial, in virtual time.
   EXPECT_LE(noticed, kGoodCycles + 2 + GetParam().cycles_until_noticed);
   edge.signal(SIGTERM);
   EXPECT_THAT(edge.read_all(), ::testing::Not(HasSubstr("mode=running")));
@@ -268,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
                       Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
                       Breakdown{"echo", "soc_mismatch", 3},
-                      // What comes and goes, and the end of the SoC.
+                      // Intermittent faults, and the ends of the SoC.
                       Breakdown{.fault = "reversed",
                                 .reason = "wrong_direction",
                                 .cycles_until_noticed = 6,
@@ -289,12 +288,13 @@ INSTANTIATE_TEST_SUITE_P(
                                 .price_eur_per_mwh = 1'600},
                       Breakdown{"capacity", "capacity", 1},
                       Breakdown{"other-master", "other_master", 2},
-                      // An order that fails is taken back at once: three of them are no danger. Nor
+                      // A failed order is withdrawn immediately: three of them are harmless. Nor
                       // can the release be confirmed.
                       Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
     breakdown_name);
 
-/// Lag, ramp, noise and taper, and whatever else a healthy battery does, for two hours of its time.
+/// Lag, ramp, noise and taper, and all other habits of a healthy battery, for two hours of its
+/// time.
 class PeersHealthy : public PeersBreakdown {};
 
 TEST_P(PeersHealthy, IsDrivenOn) {

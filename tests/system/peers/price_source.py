@@ -1,32 +1,32 @@
 #!/usr/bin/python3
-r"""A price server that behaves as users report them, of Python's standard library alone: it shares
-nothing with bess.
+r"""Price server with the behaviour of user reports, only from Python's standard library,
+independent of bess.
 
     price_source.py --behaviour JSON --prices wave|walk --seed 7 \
         --scale 60 --anchor-ns N --start-s N
 
 It prints "port N", then serves rows of ods161 (datetime, imbalanceprice, newest first, limit and
 offset) at any path, by a clock that runs `scale` times as fast. "wave": ten minutes of -600, then
-ten of 1600 EUR/MWh, so that what is right in each minute is known; "walk": honest prices around 90.
+ten of 1600 EUR/MWh, so that the right action is known; "walk": plausible prices around 90.
 
 Behaviours, any of them together:
-  late_s                 rows are there that long after their minute
+  late_s                 delay of rows after their minute
   order                  ascending, shuffled or doubled
-  spoil, every           of each so manieth row: the price is "null", "NaN", "text", "missing",
+  spoil, every           of every Nth row: the price is "null", "NaN", "text", "missing",
                          "twice"; or any number, which stands for none
   factor, from_min       prices are multiplied (another unit), from that minute on
-  shift_s                times are stamped so much later
-  stale, every           each so manieth answer is so many seconds old; frozen_s: all, for ever
-  limit                  {"per_s", "status", "retry_after", "ban_after", "ban_s"}: more is refused
+  shift_s                offset of the time stamps
+  stale, every           age of every Nth answer in s; frozen_s: of all, permanently
+  limit                  {"per_s", "status", "retry_after", "ban_after", "ban_s"}: excess is refused
   encoding               gzip, deflate or gzip_cut
-  cut                    so much of the body, of a length that promises all
+  cut                    share of the body sent, with the full length announced
   chunked                in chunks; "cut" ends them early
   redirect               "path", "host" or "loop"
-  instead                "html", "empty", "no_rows", 204, 404, 500: with every, each so manieth
-  drip_s, wait_s         the body in so long; headers after so long (wall time)
-  drop, every            "reset" or "close" of each so manieth connection
-  pad                    so many bytes of fields that nobody asked for in each row
-  first_address          what ::1 does: "hang", "reset" or "html"; 127.0.0.1 serves
+  instead                "html", "empty", "no_rows", 204, 404, 500: with every, every Nth
+  drip_s, wait_s         duration of the body; delay of the headers (wall time)
+  drop, every            "reset" or "close" of every Nth connection
+  pad                    bytes of unrequested fields in each row
+  first_address          behaviour of ::1: "hang", "reset" or "html"; 127.0.0.1 serves
 """
 import argparse
 import datetime
@@ -74,7 +74,7 @@ class Source:
         return self.options.start_s + elapsed * self.options.scale
 
     def on(self, key):
-        """The behaviour, for each so manieth answer where it says "every"."""
+        """The behaviour, for every Nth answer if it has "every"."""
         value = self.behaviour.get(key)
         every = self.behaviour.get("every", 1)
         return value if value is not None and self.answers % every == 0 else None

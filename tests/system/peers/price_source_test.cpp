@@ -1,7 +1,6 @@
-// The real bess-prices and bess-edge against price servers that behave as users report them
-// (price_source.py, which shares nothing with bess). Of each minute it is known what is right: no
-// order may be against a price that is young enough to be traded on, and where any usual client
-// gets its rows every cycle must be traded.
+// Real bess-prices and bess-edge against price servers of user reports (price_source.py,
+// independent of bess). The right action of each minute is known: no order may contradict a price
+// that is fresh enough, and where a usual client gets its rows every control cycle must be traded.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,15 +15,15 @@
 namespace bess {
 namespace {
 
-constexpr std::int32_t kScale = 60;  // a cycle takes 2 s
+constexpr std::int32_t kScale = 60;  // a control cycle takes 2 s
 constexpr int kCycles = 16;
-constexpr std::int64_t kHalfMin = 10;  ///< of the wave: so many minutes cheap, so many dear
+constexpr std::int64_t kHalfMin = 10;  ///< minutes of the wave's low and high price
 
 enum class Wanted {
-  kAll,    ///< every cycle is traded, but for the first and one more
-  kSome,   ///< half of them at least
-  kNone,   ///< not one: no price can be had, or none that may be traded on
-  kRight,  ///< as it comes, but never against the price
+  kAll,    ///< every control cycle is traded, except the first and one more
+  kSome,   ///< at least half of them
+  kNone,   ///< none: no price is available, or none that may be traded on
+  kRight,  ///< any number, but never against the price
 };
 
 struct Behaviour {
@@ -32,7 +31,7 @@ struct Behaviour {
   const char* json;
   Wanted wanted;
   const char* keys = "";    ///< of [price]
-  const char* status = "";  ///< what the last cycle says of prices, where it is known
+  const char* status = "";  ///< price state of the last control cycle, where it is known
   const char* host = "http://127.0.0.1";
   const char* prices = "wave";
   friend void PrintTo(const Behaviour& b, std::ostream* out) { *out << b.name; }
@@ -100,10 +99,10 @@ constexpr Behaviour kBehaviours[] = {
     {"large", R"({"pad": 20000})", kAll},
 };
 
-/// + charge at the cheap price, - discharge at the dear one, of a minute.
+/// + charge at the low price, - discharge at the high one, of a minute.
 int right_sign(std::int64_t minute) { return minute / kHalfMin % 2 == 0 ? 1 : -1; }
 
-/// An order may follow any price that is not older than [guard] allows.
+/// An order may follow any price within the age limit of [guard].
 bool may_be_right(const JournalCycle& cycle) {
   const int sign = cycle.ordered_w > 0 ? 1 : -1;
   for (std::int64_t age_s = 60; age_s <= 300; age_s += 60) {
@@ -175,7 +174,7 @@ TEST_P(PriceSources, AreTradedOnRightOrNotAtAll) {
   }
 }
 
-/// Each tenth, and the others in the long run.
+/// Every tenth, and the others in the long run.
 std::vector<Behaviour> each_tenth(bool rest) {
   std::vector<Behaviour> drawn;
   for (std::size_t i = 0; i < std::size(kBehaviours); ++i) {

@@ -14,7 +14,7 @@ except ImportError:
 
 
 class Unit(ModbusSlaveContext):
-    """A block of registers from address 0; 3.8 has no zero mode any more."""
+    """A block of registers from address 0; 3.8 has no zero mode."""
 
     def __init__(self, block, read_function=3):
         super().__init__()

@@ -1,6 +1,6 @@
-// The real bess-edge and bess-sim's battery, and a second master (pymodbus) who writes stop, or
-// another mode, thirty seconds after each tick, or each other: by the makers' tables, worked out by
-// hand. It is found, and the battery is given back.
+// Real bess-edge and bess-sim's battery with a second master (pymodbus), which writes stop, or
+// another mode, 30 s after each tick, or every other tick: by the manufacturers' tables, by hand.
+// The edge finds it, and releases the battery.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@
 namespace bess {
 namespace {
 
-constexpr std::int32_t kScale = 60;  // a cycle takes 2 s
+constexpr std::int32_t kScale = 60;  // a control cycle takes 2 s
 
 struct SecondMaster {
   MapVariant map;
   const char* writes;  ///< stop or mode
-  int every = 1;       ///< in every so manieth step
+  int every = 1;       ///< in every Nth step
 
   friend void PrintTo(const SecondMaster& m, std::ostream* out) {
     *out << m.map.map << " " << m.map.variant << " " << m.writes << " every " << m.every;
@@ -29,7 +29,7 @@ class SecondMasterPeer : public PeerTest, public ::testing::WithParamInterface<S
  protected:
   SecondMasterPeer() : PeerTest("pymodbus") {}
 
-  /// Commissioned, at a price that asks for charging in every cycle.
+  /// Commissioned, at a price that requests charging in every control cycle.
   std::string start_site() {
     const MapVariant& m = GetParam().map;
     const std::string variant = m.variant;
@@ -45,7 +45,8 @@ class SecondMasterPeer : public PeerTest, public ::testing::WithParamInterface<S
     return site_.commission({.battery_keys = keys});
   }
 
-  /// The first cycle line that holds one of the texts; empty when there is none within `lines_max`.
+  /// The first control cycle line that contains one of the texts; empty if there is none within
+  /// `lines_max`.
   static std::string line_with(ChildProcess& edge, const std::vector<std::string>& texts,
                                int lines_max) {
     for (int i = 0; i < lines_max;) {
@@ -60,7 +61,7 @@ class SecondMasterPeer : public PeerTest, public ::testing::WithParamInterface<S
     return "";
   }
 
-  /// From the first tick that was touched until the battery was given back.
+  /// From the first disturbed tick until the release of the battery.
   [[nodiscard]] int cycles_from(std::int64_t first_utc_s) const {
     int cycles = 0;
     for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
@@ -86,11 +87,10 @@ TEST_P(SecondMasterPeer, IsFoundAndTheBatteryGivenBack) {
   ASSERT_TRUE(first.starts_with("tick ")) << first << other.read_all();
   const std::int64_t first_utc_s = std::atoll(first.c_str() + 5);
   const int most = 3 * GetParam().every;
-  // Lines of cycles that ended before are still in the pipe.
+  // Lines of earlier control cycles are still in the pipe.
   const std::string found =
       line_with(edge, {"reason=other_master ", "reason=no_answer "}, most + 3);
-  // Nothing of it can be read back, and it is written again every half minute: who comes between is
-  // outdone.
+  // Nothing can be read back, and the edge writes again every 30 s: it outdoes the other master.
   const bool is_blind = std::string(GetParam().map.variant) == "setpoint";
   EXPECT_EQ(found.empty(), is_blind);
   other.signal(SIGKILL);

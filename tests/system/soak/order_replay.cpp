@@ -1,9 +1,9 @@
-// Decides every cycle of a log again, from the integers that it recorded, and compares the orders
-// bit by bit: what a Raspberry Pi ordered must be what this machine would have ordered.
+// Order replay: recomputes every control cycle of a log from its recorded integers, and compares
+// the orders bit by bit between a Raspberry Pi and this machine.
 //   order_replay EDGE.TOML EDGE.CSV
 //   exit 0 every order is the same   1 one differs, or the log is not a run in control   2 usage
-// A free run on each machine would not do: the battery's state of charge depends on when, to the
-// millisecond, an order arrives, so the inputs themselves would differ.
+// An independent run on each machine would not do: the battery's state of charge depends on the
+// millisecond at which an order arrives, so the inputs would differ.
 #include <cstdio>
 #include <map>
 #include <stdexcept>
@@ -26,7 +26,7 @@ std::int64_t utc_of(const CsvRow& row, const char* column) {
   return utc_s;
 }
 
-/// What the guard was given: the simulated site has no alarm, and limits that never bind.
+/// Inputs of the guard: the simulated site has no alarm, and limits that never bind.
 GuardInputs inputs_of(const CsvRow& row) {
   return undisturbed_inputs(
       utc_of(row, "utc"), std::stoi(row.at("soc_e4")),

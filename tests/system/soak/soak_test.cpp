@@ -1,7 +1,7 @@
-// The real bess-edge for many cycles under BESS_SECCOMP=kill, in scaled time, with everything
-// around it failing: the Modbus connection is cut in every cycle, every price request is a TLS
-// handshake, the name is looked up again all the time, the price server answers nonsense now and
-// then, and both ends die and come back. Afterwards the process must not have grown by anything.
+// Soak test: the real bess-edge for many control cycles under BESS_SECCOMP=kill, in scaled time,
+// with faults: the Modbus connection is cut in every control cycle, every price request is a TLS
+// handshake, the name is looked up each time, the price server gives invalid answers now and then,
+// and both servers die and return. Afterwards the process must not have grown.
 //   BESS_SOAK_CYCLES   length of the long run; tools/soak sets it
 //   BESS_SOAK_SCALE    simulated seconds per second; less for a slow machine
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ int wish(const char* name, int otherwise) {
 
 int long_run_cycles() { return std::max(wish("BESS_SOAK_CYCLES", 300), 2 * kWarmCycles); }
 
-/// A name of this machine that the resolver knows, so that names are really looked up.
+/// A resolvable name of this machine, so that names are really looked up.
 std::string resolvable_name() {
   char name[256] = "";
   gethostname(name, sizeof name - 1);
@@ -47,7 +47,7 @@ std::string resolvable_name() {
   return is_loopback ? name : "localhost";
 }
 
-/// What /proc says about a process.
+/// /proc information of a process.
 struct Footprint {
   long resident_kib = 0;
   int open_files = 0;
@@ -90,7 +90,7 @@ class Soak : public ::testing::Test {
                         "--fault", "all", "--fault-every", "5"},
                        prices_, port);
   }
-  /// The test's authority among those of a real system.
+  /// The test's certificate authority among those of a real system.
   std::string write_bundle() const {
     const std::string system = text_of_file("/etc/ssl/certs/ca-certificates.crt");
     return site_.folder.write("bundle.pem", system + text_of_file(ca_.ca()));
@@ -99,7 +99,7 @@ class Soak : public ::testing::Test {
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
   void let_ends_die(int cycle, int cycles);
 
-  SimulatedSite site_{wish("BESS_SOAK_SCALE", 2'000)};  // a cycle is 60 ms
+  SimulatedSite site_{wish("BESS_SOAK_SCALE", 2'000)};  // a control cycle is 60 ms
   std::string name_ = resolvable_name();
   DatedCertificate ca_{"DNS:" + name_};
   std::string bundle_ = write_bundle();
@@ -138,7 +138,7 @@ void Soak::follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResul
 
 RunResult Soak::run(int cycles) {
   RunResult result;
-  // Prices for three times the cycles: a busy machine skips ticks.
+  // Prices for three times the control cycles: a busy machine skips ticks.
   prices_ = SimulatedSite::minute_prices(6 * cycles, {.amplitude_eur_per_mwh = 600});
   site_.start_clock();
   start_battery(0);
@@ -177,7 +177,7 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.complaints, "");
   EXPECT_EQ(result.cycles, cycles);
-  EXPECT_GE(result.connections, cycles * 9 / 10);     // cut in every cycle in which there was one
+  EXPECT_GE(result.connections, cycles * 9 / 10);     // cut in every control cycle that had one
   EXPECT_GT(result.modes.at("running"), cycles / 3);  // 246 of 300 on a quiet machine
   EXPECT_GE(result.price_statuses.at("not_connected"), 5);  // while the price server was dead
   EXPECT_GE(result.modes.at("safe"), 5);                    // while the battery was
@@ -186,7 +186,7 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_LE(result.end.resident_kib, result.warm.resident_kib + 1'024);
   EXPECT_EQ(result.end.threads, 3);  // control, log, holds
   EXPECT_EQ(result.end.seccomp, 2);
-  EXPECT_NE(result.sealed, "");  // to its end, without one allocator call
+  EXPECT_NE(result.sealed, "");  // to its end, without an allocator call
 }
 
 TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
@@ -197,7 +197,7 @@ TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
   const RunResult soak = run(cycles);
   print("soak", soak);
   expect_clean(soak, cycles);
-  EXPECT_LE(soak.end.open_files, soak.warm.open_files + 2);  // sockets of the moment
+  EXPECT_LE(soak.end.open_files, soak.warm.open_files + 2);  // current sockets
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The supervision among healthy batteries: days of real prices on each variant, without a trip.
+// Supervision of healthy batteries: days of real prices on each variant, without a trip.
 #include <gtest/gtest.h>
 
 #include <span>
@@ -26,9 +26,9 @@ TEST_P(HonestBattery, TripsNothing) {
   EXPECT_GT(days.moved_wh, kDays * GetParam().nature.capacity_wh);
 }
 
-/// The controller is killed after so many cycles, its clock is stepped after so many.
+/// The controller is killed, and its clock stepped, after these numbers of control cycles.
 TEST_P(HonestBattery, TripsNothingAmongKillsAndStepsOfTheClock) {
-  // Slower than its map says: it may look wrong at times, and is no trip.
+  // Slower than its map says: it may look wrong at times, but must not trip.
   const bool is_beyond_its_map = GetParam().name == std::string_view("ramp_30_w_per_s");
   const Disturbances cases[] = {{.kill_every = 1},
                                 {.kill_every = 7},

@@ -1,5 +1,5 @@
-// Faults that the counts forgive are found by what they move, whatever their rhythm: the bound of
-// edge/core/supervision/energy_balance.h.
+// Rare faults that the counters forgive are found by the energy that they move, at any rhythm: the
+// bound of edge/core/supervision/energy_balance.h.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,7 +11,7 @@
 namespace bess::trial {
 namespace {
 
-/// At each second to tenth tick, and at random ones.
+/// At every second to tenth tick, and at random ones.
 std::vector<FaultTimes> rhythms() {
   std::vector<FaultTimes> all;
   for (int every = 2; every <= 10; ++every) all.push_back({.every = every});
@@ -50,7 +50,7 @@ TEST_P(RareFault, IsToldAndTripsBeforeTwiceTheBound) {
                                          .orders = orders,
                                          .soc_frac = soc_frac,
                                          .cycles_max = kRareDays * kStepsPerDay});
-        if (r.wrong_wh == 0) continue;  // it never met an order that it is a fault of
+        if (r.wrong_wh == 0) continue;  // no order showed the fault
         SCOPED_TRACE("every " + std::to_string(times.every) + ", at random " +
                      std::to_string(times.probability) + ", " + std::string(orders_name(orders)) +
                      ", from " + std::to_string(soc_frac) + ": " + say_rare(r));

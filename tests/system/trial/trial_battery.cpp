@@ -37,7 +37,7 @@ Status TrialBattery::read(BatteryMeasurement& measurement) {
   advance();
   if (now_s_ < back_s_) return Status::kTimeout;
   measurement = shown_;
-  // What was written is read back as it stands, whatever its measurements do.
+  // The read-back equals the write, whatever its measurements do.
   measurement.dispatch_active = is_dispatched_;
   measurement.has_order_power = true;
   measurement.order_power_w = to_watts(ordered_w_);
@@ -58,7 +58,7 @@ Status TrialBattery::order(const PowerOrder& order) {
   floor_frac_ = order.soc_min_e4 / 1e4;
   ceiling_frac_ = order.soc_max_e4 / 1e4;
   dispatch_end_s_ = now_s_ + order.duration_s;
-  return is_late ? Status::kTimeout : Status::kOk;  // it has understood all the same
+  return is_late ? Status::kTimeout : Status::kOk;  // it has obeyed nevertheless
 }
 
 Status TrialBattery::release() {
@@ -131,7 +131,7 @@ double TrialBattery::sun_w() const {
   return std::max(height, 0.0) * clouds * nature_.pv_peak_w;
 }
 
-/// Without an order. Some cover what their house draws, and take what it leaves of its sun.
+/// Without an order. Some cover the load of their house, and take the rest of its sun.
 double TrialBattery::own_mode_w() const {
   if (!nature_.follows_house) return 0;
   const double morning_and_evening = std::sin((hour_of_day() - 1) * std::numbers::pi / 6);
@@ -192,7 +192,7 @@ double TrialBattery::within_limits(double power_w) const {
   return std::clamp(power_w, -discharge_limit_w(), charge_limit_w());
 }
 
-/// What its management does, whatever was ordered.
+/// Actions of its management, independent of the order.
 double TrialBattery::overridden_w(double power_w) {
   if (now_s_ < back_s_) return 0;
   const double counted = counted_frac();
@@ -226,10 +226,10 @@ void TrialBattery::count_charge() {
   const double before_frac = charge_frac_;
   charge_frac_ = std::clamp(charge_frac_ + moved_frac, 0.0, 1.0);
   count_error_frac_ += (nature_.counted_frac - 1) * (charge_frac_ - before_frac);
-  // Between two calibrations the count drifts away by what flows, towards what it will be off.
+  // Between two calibrations the count drifts with the energy, towards its next error.
   const double drift = 0.04 * std::abs(charge_frac_ - before_frac);
   count_error_frac_ += std::clamp(target_error_frac_ - count_error_frac_, -drift, drift);
-  // Its voltage says that it is full, or empty: what is missing is made up for by and by.
+  // Its voltage shows that it is full, or empty: the difference is corrected gradually.
   const bool is_at_end = charge_frac_ > 0.995 || charge_frac_ < 0.02;
   if (is_at_end) count_error_frac_ -= std::clamp(count_error_frac_, -kCreep, kCreep);
   constexpr double kSettleS = 600;
@@ -239,7 +239,8 @@ void TrialBattery::count_charge() {
   if (nature_.calibration != Calibration::kNone) calibrate();
 }
 
-/// At rest a voltage says how full it is: the count moves at once. At the ends it must be 0 or 1.
+/// At rest the voltage shows the charge: the count moves immediately. At the ends it must be 0 or
+/// 1.
 void TrialBattery::calibrate() {
   const int day = static_cast<int>(now_s_ / kSecondsPerDay);
   if (day == calibration_day_) return;

@@ -1,7 +1,7 @@
-// The battery of the trial behind the control loop's battery interface: cells, a power stage and a
-// battery management that counts, shows and errs, in steps of a second. Written from what batteries
-// do, not from tools/simulators/battery_sim, whose mistakes it must not share. Faults change what
-// flows or is shown.
+// Battery of the trial behind the control loop's battery interface: cells, a power stage and a
+// battery management that counts, shows and errs, in steps of 1 s. Written from the behaviour of
+// batteries, independently of tools/simulators/battery_sim and its errors. Faults change the real
+// or the shown power.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace bess::trial {
 
-/// Since the start, as the cells know it.
+/// Since the start, in the cells.
 struct EnergyAccount {
   double moved_wh = 0;  ///< in and out, at the grid side
   double wrong_wh =
-      0;  ///< against what an honest battery would have let flow, or beyond order and it
+      0;  ///< against the flow of a healthy battery, or beyond order and it
 };
 
 class TrialBattery {
@@ -73,11 +73,11 @@ class TrialBattery {
   std::int64_t now_s_;
 
   double charge_frac_;       ///< of the cells
-  double count_error_frac_;  ///< what the management counts too much
+  double count_error_frac_;  ///< error of the management's count
   double target_error_frac_ = 0;
   int calibration_day_ = -1;
   std::int64_t resting_s_ = 0;
-  double surface_frac_ = 0;  ///< counted too much since the last charge, settling at rest
+  double surface_frac_ = 0;  ///< error since the last charge, settling at rest
 
   bool is_dispatched_ = false;
   double ordered_w_ = 0;
@@ -87,11 +87,11 @@ class TrialBattery {
   double ceiling_frac_ = 1;
   std::int64_t dispatch_end_s_ = 0;
 
-  double followed_w_ = 0;  ///< the newest command, after its lag the target
+  double followed_w_ = 0;  ///< the newest command, the target after its lag
   std::int64_t followed_from_s_ = 0;
   double target_w_ = 0;
   double stage_w_ = 0;  ///< of the power stage, on its ramp
-  double wander_ = 0;   ///< noise of the moment, as a share
+  double wander_ = 0;   ///< current noise, relative
   double flow_w_ = 0;
   double honest_w_ = 0;
   bool is_forced_ = false;

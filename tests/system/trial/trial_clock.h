@@ -1,4 +1,4 @@
-// The control loop's clock in the trial: it jumps from deadline to deadline.
+// Clock of the control loop in the trial: it jumps from deadline to deadline.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace bess::trial {
 
 struct TrialClock {
   std::int64_t now_ns = 0;      ///< the true time
-  std::int64_t stepped_ns = 0;  ///< by which the machine's is ahead
+  std::int64_t stepped_ns = 0;  ///< offset of the machine's clock
   std::int64_t step_at_ns = 0;
   std::int64_t step_ns = 0;  ///< 0 = none is due
 
@@ -31,7 +31,7 @@ struct TrialClock {
     now_ns = std::max(now_ns, utc_ns - stepped_ns);
     return true;
   }
-  /// In the first sleep that lasts so long.
+  /// In the first sleep of at least this length.
   void step_after(std::int64_t after_s, std::int64_t step_s) {
     step_at_ns = now_ns + after_s * kNanosecondsPerSecond;
     step_ns = step_s * kNanosecondsPerSecond;

@@ -15,7 +15,7 @@ std::int32_t rounded(double value) { return static_cast<std::int32_t>(std::lroun
 
 std::int32_t soc_e4_of(double frac) { return rounded(std::clamp(frac, 0.0, 1.0) * 1e3) * 10; }
 
-/// The order to the digit, as an echo shows it.
+/// The exact order, as an echo shows it.
 void show_order(Truth t, Shown& m) { m.power_w = rounded(t.ordered_w); }
 
 void show_soc(Truth t, Shown& m, double gain) {
@@ -24,18 +24,18 @@ void show_soc(Truth t, Shown& m, double gain) {
 
 void freeze_soc(Truth t, Shown& m) { m.soc_e4 = t.at_fault.soc_e4; }
 
-/// Some watts of any house, another every minute.
+/// Some watts of a house, different every minute.
 double house_w(std::int64_t now_s) {
   return 300 + 200.0 * static_cast<double>(now_s / 60 * 7'919 % 11);
 }
 
-/// Evenly between -1 and 1, another every half minute.
+/// Uniform between -1 and 1, different every half minute.
 double any_share(std::int64_t now_s) {
   return static_cast<double>(now_s / 30 * 104'729 % 2'001) / 1'000 - 1;
 }
 
 constexpr TrialFault kFaults[] = {
-    // What flows is wrong, and is shown.
+    // Wrong power, and shown.
     {"inverted", [](Flow f) { return -f.honest_w; }},
     {"inverted_discharge", [](Flow f) { return std::abs(f.honest_w); }},
     {"inverted_charge", [](Flow f) { return -std::abs(f.honest_w); }},
@@ -62,7 +62,7 @@ constexpr TrialFault kFaults[] = {
     {"oscillates",
      [](Flow f) { return f.honest_w + (f.now_s / 30 % 2 == 0 ? 3'000.0 : -3'000.0); }},
 
-    // What flows is wrong, and is not shown.
+    // Wrong power, and not shown.
     {"echo_dead", [](Flow) { return 0.0; }, show_order},
     {"echo_half", [](Flow f) { return 0.5 * f.honest_w; }, show_order},
     {"echo_fifth", [](Flow f) { return 0.2 * f.honest_w; }, show_order},
@@ -84,7 +84,7 @@ constexpr TrialFault kFaults[] = {
        if (t.ordered_w == 0) m.power_w = 0;
      }},
 
-    // What flows is right, what is shown is not.
+    // Correct power, wrong display.
     {"soc_frozen", nullptr, freeze_soc},
     {"power_frozen", nullptr, [](Truth t, Shown& m) { m.power_w = t.at_fault.power_w; }},
     {"all_frozen", nullptr, [](Truth t, Shown& m) { m = t.at_fault; }},

@@ -1,4 +1,4 @@
-// How soon each fault of the trial is found, by how often it strikes and what is ordered meanwhile.
+// Detection time of each fault of the trial, by its frequency and the orders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,13 +48,13 @@ std::string say(const FaultResult& r) {
   return std::string(reason_name(r.reason)) + " after " + std::to_string(r.cycles) + " cycles";
 }
 
-/// How often it strikes, what is done to the controller meanwhile, and within how many cycles it is
-/// found with orders of one kind.
+/// Frequency of a fault, actions on the controller, and the number of control cycles within which
+/// it is found with orders of one kind.
 struct Way {
   const char* name;
   int cycles_max;
   int every = 1;
-  bool is_killed = false;  ///< after each cycle: each run sees one reading or two
+  bool is_killed = false;  ///< after each control cycle: each run sees one reading or two
   int step_every = 0;      ///< of its clock
 };
 constexpr Way kWays[] = {{"constant", 3},
@@ -66,7 +66,7 @@ constexpr Way kWays[] = {{"constant", 3},
 
 class ShownFaultOfTheTrial : public ::testing::TestWithParam<ShownFault> {
  protected:
-  /// Stopped for a reason of the battery's, and not driven on.
+  /// Stopped for a reason of the battery, without a restart.
   static void expect_found(const Way& way, Orders orders, int cycles_max) {
     const FaultResult r = try_fault({.fault = &trial_fault(GetParam().name),
                                      .times = {.every = way.every},
@@ -80,7 +80,7 @@ class ShownFaultOfTheTrial : public ::testing::TestWithParam<ShownFault> {
     if (r.is_trip) {
       EXPECT_EQ(r.driven_after, 0);
     } else {
-      EXPECT_LE(r.driven_after, kCyclesAfter * 3 / 4);  // tried again, less and less often
+      EXPECT_LE(r.driven_after, kCyclesAfter * 3 / 4);  // retried, less and less often
     }
   }
 };
@@ -105,12 +105,13 @@ std::string fault_name(const ::testing::TestParamInfo<ShownFault>& info) { retur
 INSTANTIATE_TEST_SUITE_P(Faults, ShownFaultOfTheTrial, ::testing::ValuesIn(kShownFaults),
                          fault_name);
 
-/// A fault that only the SoC shows, and within how many cycles at full power.
+/// A fault that only the SoC shows, and the number of control cycles at full power within which it
+/// is found.
 struct SocFault {
   const char* name;
   int cycles_max;
   bool is_told =
-      false;  ///< with the share that arrives, and not stopped: a wrong capacity, a bad meter
+      false;  ///< reported as a warning with the share that arrives: a wrong capacity, a bad meter
   friend void PrintTo(const SocFault& f, std::ostream* out) { *out << f.name; }
 };
 
@@ -164,7 +165,7 @@ TEST(TrialFaults, WhatLeavesOrComesBesidesOrdersOfEitherSignIsTold) {
   }
 }
 
-/// What nothing shows in two hours: why stands in edge/core/supervision/README.md.
+/// Faults that nothing shows within two hours, see edge/core/supervision/README.md.
 constexpr std::string_view kUnseen[] = {"soc_at_least_9_percent", "limit_0_w_shown"};
 
 TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrTold) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int32_t kDearCentiEur = 160'000;
 constexpr std::int32_t kCheapCentiEur = -60'000;
 constexpr std::int64_t kDayS = 86'400;
-/// Days into the yardstick at which the trial begins: 1 February 2023.
+/// Day of the benchmark on which the trial begins: 1 February 2023.
 constexpr std::int64_t kFirstDay = 31;
 
 bool charges_at(Orders orders, std::int64_t cycle) {
@@ -71,7 +71,7 @@ void TrialSite::kill_and_restart() {
 }
 
 void TrialSite::step_clock() {
-  // In sum none: days of one price stay days of one price.
+  // Sum zero: days of one price stay days of one price.
   constexpr std::int64_t kStepsS[] = {1,    -1,    30,     -30, 119, -119,   600,
                                       -600, 3'600, -3'600, -2,  45,  -3'000, 2'957};
   const std::int64_t step_s = kStepsS[clock_steps_ % std::size(kStepsS)];
@@ -133,7 +133,7 @@ void note_told(const ResponseFindings& findings, FaultResult& result) {
   result.told = findings;
 }
 
-/// Days of alternating orders end at the floor by losses alone, where no fault has much to move.
+/// Days of alternating orders end at the floor by losses alone, where a fault has little to move.
 Orders orders_at(const TrialSite& site, const FaultCase& c, bool& recharges) {
   const bool drifts = c.orders == Orders::kAlternating || c.orders == Orders::kPairs;
   if (c.cycles_max == 0 || !drifts) return c.orders;
@@ -150,12 +150,12 @@ FaultResult try_fault(const FaultCase& c) {
   if (c.orders != Orders::kRealDay) settings.reversals_per_hour_max = 0;
   if (c.cycles_max > 0) settings.frozen_price = {.frozen_s = 0, .stop_s = 0};  // of two, for days
   TrialSite site({}, c.soc_frac, settings, 1);
-  // In balance, so that the fault begins where it was wanted.
+  // In balance, so that the fault begins at the intended charge.
   for (int i = 0; i < 3; ++i) site.cycle(Orders::kZero);
   if (c.soc_frac > 0.2) {
     for (int i = 0; i < 2; ++i) site.cycle(i == 0 ? Orders::kDischarge : Orders::kCharge);
   }
-  // Until a battery has reversed, what flows is still of the order before.
+  // Until a battery has reversed, its power belongs to the previous order.
   constexpr std::int64_t kReversedS = 10;
   const std::int64_t begin_s = c.cycles_max > 0 ? kReversedS : 0;
   site.battery.begin_fault(*c.fault, c.times, site.next_tick_utc_s() + begin_s);

@@ -1,5 +1,5 @@
-// The control loop against the battery of the trial, in moved time: orders from prices or from a
-// hold, a fault that begins at a tick, and what came of it.
+// Trial run: the control loop against the trial battery, in moved time. Orders come from prices or
+// a hold, a fault begins at a tick; returns the result.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace bess::trial {
 
-/// What the prices, or a hold, make the controller order.
+/// Orders that the prices, or a hold, cause.
 enum class Orders : std::uint8_t {
   kCharge,
   kDischarge,
@@ -43,9 +43,9 @@ struct TrialPrices {
   std::int32_t price_centi_eur_per_mwh = 0;
 };
 
-/// What a run leaves behind for the next one.
+/// State that a run leaves for the next one.
 struct TrialLog {
-  static constexpr std::size_t kRecordsMax = 500;  ///< more than a start reads again
+  static constexpr std::size_t kRecordsMax = 500;  ///< more than a start reads
   bool read_back(std::int64_t records_ago, CycleRecord& record) const {
     if (records_ago >= std::ssize(records)) return false;
     record = records[records.size() - 1 - static_cast<std::size_t>(records_ago)];
@@ -63,7 +63,7 @@ class TrialSite {
   TrialSite(const TrialSite&) = delete;
   TrialSite& operator=(const TrialSite&) = delete;
 
-  /// The cycle of the next tick, with such orders.
+  /// The control cycle of the next tick, with such orders.
   CycleRecord cycle(Orders orders);
   /// With an operator's hold.
   CycleRecord cycle_held(std::int32_t power_w);
@@ -74,10 +74,10 @@ class TrialSite {
   TrialPrices prices;
   HoldMailbox holds;
 
-  /// Killed between two cycles, and started again with what its newest record kept.
+  /// Killed between two control cycles, and restarted with the state in its newest record.
   void kill_and_restart();
   void clear_trip() { loop_->clear_trip(); }
-  /// The next of the steps that a time server and people make, somewhere in the next cycle.
+  /// The next clock step of a time server or a person, within the next control cycle.
   void step_clock();
 
  private:
@@ -91,7 +91,7 @@ class TrialSite {
   std::size_t clock_steps_ = 0;
 };
 
-/// The settings of a controller of such a battery.
+/// Settings of a controller of such a battery.
 ControlSettings trial_settings(const HonestVariant& variant);
 
 struct FaultCase {
@@ -99,21 +99,21 @@ struct FaultCase {
   FaultTimes times{};
   Orders orders = Orders::kCharge;
   double soc_frac = 0.45;
-  bool is_killed = false;  ///< the controller, after each cycle
-  int step_every = 0;      ///< the clock is stepped after so many cycles; 0 = never
+  bool is_killed = false;  ///< the controller, after each control cycle
+  int step_every = 0;      ///< the clock is stepped after this number of control cycles; 0 = never
   int cycles_max = 0;      ///< 0 = fault_cycles_max
 };
 
-/// A fault is found when the battery is stopped for it.
+/// A fault is found when the battery is stopped.
 struct FaultResult {
-  int cycles = 0;                    ///< begun since the fault, that which finds it included
+  int cycles = 0;                    ///< since the fault, including the one that finds it
   Reason reason = Reason::kStudent;  ///< kStudent: not found
   bool is_trip = false;
   double wrong_wh = 0;
-  double wrong_until_told_wh = 0;  ///< until the sum of it was worth a line of `status`; 0 = never
-  int driven_after = 0;     ///< of the next thirty cycles, those with an order that is not 0 W
-  int weak_answers = 0;     ///< the most that were told
-  int told_cycles = 0;      ///< until energy was told that does not arrive, or is lost; 0 = never
+  double wrong_until_told_wh = 0;  ///< until `status` reports its sum; 0 = never
+  int driven_after = 0;     ///< of the next thirty cycles, those with an order other than 0 W
+  int weak_answers = 0;     ///< maximum number of findings reported
+  int told_cycles = 0;      ///< until missing or lost energy was reported; 0 = never
   ResponseFindings told{};  ///< the last of it
 };
 
@@ -125,22 +125,22 @@ FaultResult try_fault(const FaultCase& c);
 
 struct HonestDays {
   int cycles = 0;
-  int driven = 0;  ///< with an order that is not 0 W
-  int trips = 0;   ///< each cleared at once
+  int driven = 0;  ///< with an order other than 0 W
+  int trips = 0;   ///< each cleared immediately
   Reason first_trip = Reason::kStudent;
   int first_trip_cycle = 0;
   std::int32_t wrong_energy_e6_max = 0;
   double moved_wh = 0;
 };
 
-/// After so many cycles each; 0 = never.
+/// After this number of control cycles each; 0 = never.
 struct Disturbances {
   int kill_every = 0;  ///< the controller
   int step_every = 0;  ///< the clock is stepped
 };
 HonestDays live_honest_days(const HonestVariant& variant, int days, const Disturbances& often = {});
 
-/// The yardstick of tests/data.
+/// The benchmark of tests/data.
 const MinuteSeries& real_prices();
 
 }  // namespace bess::trial

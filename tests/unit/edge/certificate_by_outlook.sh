@@ -1,6 +1,6 @@
 #!/bin/sh
 # certificate_by_outlook.sh CERTIFICATE FOLDER: a package's certificate of a student by outlook
-# names its context and the hash of its plan, and is refused beside another program or another plan.
+# names its context and the hash of its plan, and is refused with another program or plan.
 certificate=$1
 folder=$2
 line=$(cat "$folder/decision_signature.txt")

@@ -1,4 +1,4 @@
-// The small parts of the edge: built-in student, ticks, log lines.
+// Small parts of the edge: built-in student, ticks, log lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # install.sh CMAKE BUILD FOLDER [EMULATOR...]: installs the edge below FOLDER and checks that the
-# pieces name each other: the unit starts the installed program, the example configuration loads the
-# installed map.
+# parts refer to each other: the unit starts the installed program, the example configuration loads
+# the installed map.
 cmake=$1 build=$2 folder=$3
 shift 3
 fail() { echo "$*"; exit 1; }
@@ -16,7 +16,7 @@ config=$folder/etc/bess/edge.toml.example
 map=$(sed -n 's/^map = "\(.*\)".*/\1/p' "$config")
 [ -f "$folder$map" ] || fail "$config names $map, which is not installed"
 grep -q '^folder = "/var/lib/bess"' "$config" || fail "$config keeps its state in the wrong place"
-# The installed program reads the installed configuration, with the map where DESTDIR put it.
+# The installed program reads the installed configuration, with the map in DESTDIR.
 sed "s|^map = \"|&$folder|; s|/var/lib/bess|$folder/none|" "$config" >"$folder/edge.toml"
 said=$("$@" "$folder$program" status --config "$folder/edge.toml")
 [ $? -eq 3 ] || fail "status of a controller that does not run: $said"

@@ -1,7 +1,7 @@
-// The edge's half of the equality with the workstation: drawn weeks go through the book, the
-// planner, the board and a student by outlook (tests/data/golden/outlook_student), and every day's
-// decisions have the checksum that the workstation finds (workstation/correction/student/
-// outlook_equality_test.cpp, which writes the golden file too).
+// Edge side of the equality with the workstation: drawn weeks go through the day-ahead store, the
+// planner, the exchange and a student by outlook (tests/data/golden/outlook_student), and every
+// day's decisions have the workstation's checksum (workstation/correction/student/
+// outlook_equality_test.cpp, which also writes the golden file).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,7 +92,7 @@ void expect_golden(OutlookInputs inputs) {
   EXPECT_EQ(found, golden_lines_of(found));
   EXPECT_GT(edge->sources(OutlookSource::kPlanned), 1'000);
   EXPECT_GT(edge->sources(OutlookSource::kUsual), 100);
-  // The very first price alone moves the level further than a decision can.
+  // Only the very first price moves the level further than a decision can.
   EXPECT_LE(edge->sources(OutlookSource::kLate), 1);
   EXPECT_EQ(edge->sources(OutlookSource::kMissing), 0);
 }

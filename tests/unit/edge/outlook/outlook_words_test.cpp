@@ -1,4 +1,4 @@
-// What people are told of an outlook: why, status.
+// Outlook texts: why, status.
 #include <gmock/gmock.h>
 
 #include "edge/app/program/startup.h"

@@ -1,4 +1,4 @@
-// The control loop as bess-edge instantiates it, in an object of its own for the object proofs.
+// Control loop as bess-edge instantiates it, in an object for the object proofs.
 #include "edge/app/program/controller.h"
 #include "edge/app/program/real_world.h"
 

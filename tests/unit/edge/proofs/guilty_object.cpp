@@ -1,4 +1,4 @@
-// Everything that the object proofs forbid, so that a test can show that they find it. Compiled,
+// Guilty object: everything that the object proofs forbid, to show that they find it. Compiled,
 // never run.
 #include <cstdio>
 #include <cstdlib>

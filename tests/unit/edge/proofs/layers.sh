@@ -1,7 +1,7 @@
 #!/bin/sh
-# layers.sh TREE: fails, naming file and line, when a file below TREE includes what its layer must
-# not know: another part of the project, or a library that a part has for itself. A folder that is
-# no longer there fails as well: a renamed one must not slip through.
+# layers.sh TREE: fails, naming file and line, if a file below TREE includes what its layer must not
+# use: another part of the project, or another part's private library. A missing folder fails as
+# well, so that a rename is noticed.
 cd "$1" || exit 1
 status=0
 includes() { grep -rnH --include='*.h' --include='*.cpp' "^#include $1" $2; }  # PATTERN FOLDERS
@@ -11,7 +11,7 @@ blame() {  # blame FOUND WHY
   status=1
 }
 
-# layer PLACE ALLOWED...: of the project, PLACE includes files below ALLOWED alone.
+# layer PLACE ALLOWED...: of the project, PLACE only includes files below ALLOWED.
 layer() {
   place=$1
   shift
@@ -24,8 +24,8 @@ layer shared                        shared
 layer shared/host                   shared
 blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" \
   "the integer part of shared knows no host"
-# The edge: what decides knows nothing else; then the battery, what is kept of each cycle, the price
-# that another process publishes, and the program around them.
+# The edge: the decision parts use nothing else; then the battery, the records of each control
+# cycle, the published price, and the program around them.
 e=edge
 layer $e/core                       $e/core shared
 layer $e/device                     $e/device $e/core shared
@@ -34,7 +34,7 @@ layer $e/prices/record              $e/prices/record $e/records/log $e/core shar
 controls="$e/prices/record $e/records $e/device $e/core"
 layer $e/app                        $e/app $controls shared
 layer $e/main.cpp                   $e shared
-# Programs beside it, with the heap. Companions read what it wrote.
+# Other programs, with the heap. Companions read its files.
 layer $e/prices/fetch               $e/prices/fetch $e/companions/common $e/app/storage \
   $e/app/settings $controls shared
 layer $e/companions                 $e/companions $e/records $e/core shared \
@@ -42,12 +42,12 @@ layer $e/companions                 $e/companions $e/records $e/core shared \
 blame "$(includes '"shared/host' $e |
   grep -vE '^edge/(device/registers/map_|app/|records/(account|why)/|companions/|prices/fetch/)')" \
   "the heap is of start-up, commands, companion programs, and the reader of register maps"
-# The simulators, and the trial, which must not share their mistakes.
+# The simulators, and the trial, which must not share their errors.
 layer tools/simulators              tools/simulators $e/device/registers $e/core/base shared
 layer tests/system/trial            tests/system/trial tests/support/thorough.h \
   $e/app/program/take_over.h $e/core shared
-# It runs the edge's own objects in virtual time, and the real programs; the witness shares nothing
-# with what it looks at.
+# It runs the edge's own objects in virtual time, and the real programs; the witness is independent
+# of the decoded device.
 h=tools/hil_runner
 layer $h                            $h tools/simulators $e shared
 layer $h/witness                    $h/witness
@@ -62,7 +62,7 @@ layer $w/report                     $w/report $w/correction $w/policy $w/data $w
 layer $w/runs                       $w/runs $w/report $w/correction $w/policy $w/data $w/base shared
 layer $w/cli                        $w shared
 
-# only HEADER OWNERS [PLACES]: of PLACES, the edge and shared unless given, only files whose path
+# only HEADER OWNERS [PLACES]: in PLACES, by default the edge and shared, only files whose path
 # begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/device/battery/modbus_wire.cpp:
@@ -73,7 +73,7 @@ only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 only pugixml '(workstation/data/market/feed/entsoe_|tools/hil_runner/run/report_page)' \
   'edge shared workstation tools'
 
-# What decides knows neither files, sockets, threads nor signals.
+# The decision parts use neither files, sockets, threads nor signals.
 io='(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream)'
 decides="$e/core/control $e/core/supervision $e/core/site $e/core/loop"
 blame "$(grep -rnHE "^#include <($io|thread|mutex)" $decides)" "what decides knows no io"

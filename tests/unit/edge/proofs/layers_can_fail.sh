@@ -1,6 +1,6 @@
 #!/bin/sh
-# layers_can_fail.sh TREE FOLDER: shows that layers.sh finds what it forbids. A copy of TREE below
-# FOLDER gets wrong lines, and each must be named; without them the copy must pass.
+# layers_can_fail.sh TREE FOLDER: shows that layers.sh finds violations. A copy of TREE below FOLDER
+# gets wrong lines, and each must be named; without them the copy must pass.
 tree=$1 copy=$2
 proof=$tree/tests/unit/edge/proofs/layers.sh
 rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" \

@@ -1,9 +1,9 @@
 #!/bin/sh
-# no_allocator.sh NM "NAME..." FILE...: fails, naming object and symbol, when an object NAME.cpp.o
-# in the archives or objects FILE refers to an allocator, to a function of the C library that calls
-# one, to an exception, or to a std class that owns memory. Fails as well when a NAME is in no FILE:
-# a renamed file must not slip through. std::__throw_system_error is left alone: std::mutex names it
-# for a mutex that is broken.
+# no_allocator.sh NM "NAME..." FILE...: fails, naming object and symbol, if an object NAME.cpp.o in
+# the archives or objects FILE refers to an allocator, to a function of the C library that calls
+# one, to an exception, or to a std class that owns memory. Fails as well if a NAME is in no FILE,
+# so that a rename is noticed. std::__throw_system_error is allowed: std::mutex uses it for a broken
+# mutex.
 nm=$1 names=$2
 shift 2
 status=0

@@ -1,8 +1,8 @@
 #!/bin/sh
-# no_float.sh OBJDUMP "NAME..." FILE...: fails, naming object and instruction, when an object
-# NAME.cpp.o in the archives or objects FILE holds floating-point arithmetic, comparison or
-# conversion (x86 SSE, AVX and x87, aarch64, armhf). Moves and integer vector instructions are fine.
-# Fails as well when a NAME is in no FILE.
+# no_float.sh OBJDUMP "NAME..." FILE...: fails, naming object and instruction, if an object
+# NAME.cpp.o in the archives or objects FILE contains floating-point arithmetic, comparison or
+# conversion (x86 SSE, AVX and x87, aarch64, armhf). Moves and integer vector instructions are
+# allowed. Fails as well if a NAME is in no FILE.
 objdump=$1 names=$2
 shift 2
 status=0

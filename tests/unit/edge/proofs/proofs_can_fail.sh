@@ -1,6 +1,6 @@
 #!/bin/sh
 # proofs_can_fail.sh FOLDER NM OBJDUMP GUILTY_OBJECT INNOCENT_ARCHIVE: shows that each object proof
-# finds what it forbids, and that it complains about a name that is not there.
+# finds violations, and reports a missing name.
 folder=$1 nm=$2 objdump=$3 guilty=$4 innocent=$5
 expect() {  # expect TEXT OUTPUT: the output of a failed proof names the culprit
   printf '%s\n' "$2" | grep -q -- "$1" && return

@@ -1,5 +1,5 @@
-// The words of bess-edge in this process: where they may stand, what is said of a slip, and what
-// each command refuses before it reads a file.
+// Command lines of bess-edge in this process: option positions, messages for typing errors, and
+// refusals before a file is read.
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -103,8 +103,7 @@ TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
   }
 }
 
-/// Nobody listens: it says what it would write all the same, what cannot be reached, and that it is
-/// not well.
+/// No connection: prints what it would write, the unreachable parts, and an unhealthy result.
 TEST(EdgeWords, ACheckRunsInThisProcess) {
   const TemporaryFolder folder;
   const std::string config = folder.write("edge.toml", R"([battery]

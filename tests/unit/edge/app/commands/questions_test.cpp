@@ -1,5 +1,4 @@
-// `why` and `earned` as an operator asks them: on a configuration and its log, by the clock on the
-// wall.
+// `why` and `earned` on a configuration and its log, by the wall clock.
 #include <gmock/gmock.h>
 
 #include <ctime>
@@ -41,8 +40,8 @@ url = "http://127.0.0.1:1/prices"
     EXPECT_TRUE(ring_.open(folder_.file("state/decisions.ring").c_str(), 2'000, error))
         << error.c_str();
   }
-  /// Whenever a test runs: the newest cycle ends in the quarter-hour that its price is of, else
-  /// what it exchanges has no price yet.
+  /// At any time of the test: the newest control cycle ends in the quarter-hour of its price,
+  /// otherwise its energy has no price yet.
   void end_where_the_price_is() {
     constexpr std::int64_t kQuarterHour = 900;
     until_utc_s_ = until_utc_s_ / kSecondsPerStep * kSecondsPerStep;
@@ -51,7 +50,7 @@ url = "http://127.0.0.1:1/prices"
       until_utc_s_ -= kSecondsPerStep;
     }
   }
-  /// `cycles` before now and up to it, charging 3 kW at 40 EUR/MWh.
+  /// `cycles` before now, charging 3 kW at 40 EUR/MWh.
   void log_until_now(int cycles) {
     log_until_now(cycles, [](const CycleRecord&) { return Action::kCharge; });
   }
@@ -150,7 +149,7 @@ TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
   EXPECT_THAT(csv, HasSubstr(",local,energy_wh,earned_eur\n"));
   EXPECT_THAT(csv, HasSubstr("," + ago(7) + ",100.00,-0.004000\n"));
   EXPECT_EQ(ask({"log", "--at", "2020-01-01 12:00"}).out, "");
-  // The same margins as why tells, of the same cycle.
+  // The same margins as in `why`, of the same control cycle.
   const Json why = Json::parse(ask({"why", "--at", ago(7), "--json"}).out);
   const auto margin = [&](const char* name) {
     return formatted("%.2f", why.value()["margins"][name].number().value_or(0));
@@ -170,7 +169,7 @@ TEST_F(Questions, StatusSaysWhomToCall) {
   EXPECT_STREQ(status.value()["contact"].text(), "Ann, +32 2 000 00 00");
 }
 
-/// What the controller published. Old training days are a warning, not a matter of health.
+/// Status published by the controller. Old training days are a warning and do not affect health.
 TEST_F(Questions, StatusTellsTheTrainingDays) {
   const auto published = [&](const char* from, const char* until) {
     RunIdentity identity;
@@ -213,7 +212,7 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   EXPECT_EQ(json.value()["stops"]["driven_share"].number(), 1);
 }
 
-/// The bill of the day that the log is of, at a price that was published since.
+/// The bill of the log's day, at a price published since.
 TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   end_where_the_price_is();
   log_until_now(60);

@@ -1,4 +1,4 @@
-// How the process is asked to stop, and which signal hands the battery over to the next run.
+// Stop requests to the process, and the signal that hands the battery over to the next run.
 #include "edge/app/program/edge_clock.h"
 
 #include <gtest/gtest.h>

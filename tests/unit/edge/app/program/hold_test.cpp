@@ -1,5 +1,4 @@
-// A hold from the command to the mailbox: the file's text, what is no such text, and the thread
-// that looks.
+// Hold from the command to the mailbox: the file's text, invalid texts, and the watching thread.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -58,7 +57,7 @@ TEST(HoldFile, NoFileIsNoHoldAndWhatBlocksOrLeadsAwayIsUnreadable) {
   EXPECT_TRUE(read_hold(folder.write("big", std::string(1'000'000, 'x')).c_str()).unreadable);
 }
 
-/// Waits for what the other thread finds; false after half a minute.
+/// Waits for the other thread's finding; false after 30 s.
 bool is_published(const HoldWatch& watch, const Hold& hold) {
   for (int ms = 0; ms < 30'000; ++ms) {
     if (watch.mailbox().latest() == hold) return true;
@@ -82,7 +81,7 @@ TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
   EXPECT_TRUE(is_published(*watch, Hold{}));
 }
 
-/// Two places, as after a disk has refused some of the words.
+/// Two copies, as after a disk has refused some writes.
 class TwoHolds : public ::testing::Test {
  protected:
   TwoHolds() : paths_{.state = folder_.file("state").c_str(), .run = folder_.file("run").c_str()} {}

@@ -1,4 +1,4 @@
-// What the journal says of the price level at the start, and what --check says of the context.
+// Journal text of the price level at the start, and the context in --check.
 #include "edge/app/program/startup.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What ties the controller to its machine: lock files, systemd's notify socket, journal levels.
+// Service interfaces of the controller: lock files, systemd's notify socket, journal levels.
 #include <gmock/gmock.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -57,7 +57,7 @@ TEST(InstanceLock, IsFreeAfterItsHolderHasGoneHoweverItWent) {
   EXPECT_EQ(holder_of(path.c_str()), 0);
 }
 
-/// The file is removed by its holder: a lock on the removed file must not count.
+/// The owner removes the file: a lock on the removed file must not count.
 TEST(InstanceLock, ManyTakersAreNeverInsideTogether) {
   const TemporaryFolder folder;
   const std::string path = folder.file("lock");
@@ -75,8 +75,8 @@ TEST(InstanceLock, ManyTakersAreNeverInsideTogether) {
       const std::int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
       if (!lock.take(path.c_str(), "x", error)) continue;
       if (clock_ns(CLOCK_MONOTONIC) - start_ns > kNanosecondsPerSecond / 20) ++waits;
-      if (mkdir(inside.c_str(), 0755) != 0) _exit(1);  // somebody else is inside
-      sched_yield();                                   // lets the others come and try
+      if (mkdir(inside.c_str(), 0755) != 0) _exit(1);  // another process is inside
+      sched_yield();                                   // lets the others try
       if (rmdir(inside.c_str()) != 0) _exit(2);
       ++taken;
     }

@@ -1,5 +1,5 @@
-// What a start takes over from the log: which cycles are recalled, in which order, and how old an
-// order is.
+// State restored from the log at the start: which control cycles, in which order, and the age of an
+// order.
 #include "edge/app/program/take_over.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct MadeUpLog {
     record = records[records.size() - 1 - static_cast<std::size_t>(records_ago)];
     return true;
   }
-  /// One every two minutes, the newest a minute ago.
+  /// One every two minutes, the newest 1 min old.
   explicit MadeUpLog(std::int64_t count) {
     for (std::int64_t i = count - 1; i >= 0; --i) {
       CycleRecord record;
@@ -81,7 +81,7 @@ TEST(RecallCycles, ARecordThatCannotBeReadIsLeftOut) {
   EXPECT_EQ(recalled(log).cycles, (std::vector<std::int64_t>{1, 2, 3, 5}));
 }
 
-/// The clock of the run before was ahead: its records lie in the future.
+/// The clock of the previous run was ahead: its records are in the future.
 TEST(RecallCycles, RecordsOfAClockThatWasAheadAreRecalled) {
   MadeUpLog log(4);
   for (CycleRecord& record : log.records) record.utc_s += 3'600;

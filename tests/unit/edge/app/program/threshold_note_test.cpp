@@ -1,4 +1,4 @@
-// The guard's thresholds beside the proved ones: who answers for a price between the two.
+// Thresholds of the guard against the proved ones: who decides at a price between the two.
 #include "edge/app/program/startup.h"
 
 #include <gmock/gmock.h>
@@ -12,10 +12,10 @@ namespace {
 
 struct ThresholdCase {
   PriceThresholds guard, proved;
-  const char* codes;  ///< besides "[guard]" where they differ
+  const char* codes;  ///< in addition to "[guard]" where they differ
 };
 
-/// Whether the guard alone, the student alone or nobody answers between them is another text.
+/// The text depends on who decides between them: the guard alone, the student alone, or neither.
 TEST(ThresholdNote, NamesBothAndWhoAnswersBetweenThem) {
   const ThresholdCase cases[] = {
       {{-120, 640}, {-120, 640}, "-120 640"},

@@ -1,5 +1,5 @@
-// A register map against what a device answered: each kind of mistake is named, with what would
-// fit.
+// Register map check against recorded answers: each kind of mistake is named, with the value that
+// would fit.
 #include "edge/app/recording/map_check.h"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ discharge = [["start = 1", "order = power", "seconds = duration"]]
 release = ["start = 0"]
 )";
 
-/// What a device of that map does, as one sees it on the bus.
+/// Behaviour of a device with that map on the bus.
 class MapCheckTest : public ::testing::Test {
  protected:
   void load(const std::string& from = "", const std::string& to = "") {
@@ -70,8 +70,7 @@ class MapCheckTest : public ::testing::Test {
     std::copy(values.begin(), values.end(), exchange.registers.begin());
     check_->add(exchange);
   }
-  /// An hour and a half of charging and discharging in turns, read every 10 s. `gain`: SoC against
-  /// power.
+  /// 90 min of alternating charge and discharge, read every 10 s. `gain`: SoC against power.
   void drive(double gain = 1, int power_sign = 1) {
     double soc_permille = 500;
     for (int turn = 0; turn < 6; ++turn) {
@@ -207,7 +206,7 @@ TEST_F(MapCheckTest, WhatCannotBeJudgedIsSaid) {
 TEST_F(MapCheckTest, AGapOfTheRecordingIsNoEnergy) {
   load();
   drive();
-  utc_s_ += 86'400;  // full of what nobody has seen
+  utc_s_ += 86'400;  // full of unobserved values
   drive();
   EXPECT_EQ(findings(), "");
 }

@@ -1,4 +1,4 @@
-// Steps in a recording that is made here, of a battery whose delay, ramp and lag are known.
+// Steps in a synthetic recording of a battery with known delay, ramp and lag.
 #include "edge/app/recording/energy_evidence.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ class RecordedStepsTest : public ::testing::Test {
     for (const int power_w : {0, 500, 0, -500, 0, 3'000, -3'000, 3'000, 0}) {
       order(power_w);
       read_for(20);
-      order(power_w);  // fed again
+      order(power_w);  // refreshed
       read_for(25);
     }
   }
@@ -79,7 +79,7 @@ TEST_F(RecordedStepsTest, TellDelayRampAndLagWithinThreePercent) {
       {.delay_s = 4, .ramp_w_per_s = 0, .time_constant_s = 5},
       {.delay_s = 3, .ramp_w_per_s = 800, .time_constant_s = 0},
   };
-  constexpr double kNoLagS = 0.1;  // less is not told from the delay
+  constexpr double kNoLagS = 0.1;  // indistinguishable from the delay
   for (const PowerResponse& real : cases) {
     SCOPED_TRACE(real.delay_s);
     begin(real);
@@ -115,7 +115,7 @@ TEST_F(RecordedStepsTest, WhatShowsNoWholeStepIsLeftOut) {
   read_for(30);
   ASSERT_EQ(steps_->whole().size(), 1U);
   EXPECT_EQ(steps_->whole()[0]->step_w(), 6'800);
-  order(8'000);  // 3,900 come
+  order(8'000);  // 3,900 arrive
   read_for(60);
   EXPECT_EQ(steps_->whole().size(), 1U) << "held back";
 }

@@ -1,5 +1,5 @@
-// What is recorded of a device: the mask hides what is nobody else's business, the recorder writes
-// whole lines, keeps within its bound and renames at the end.
+// Recording of a device: the mask hides private data, the recorder writes whole lines, stays within
+// its size limit and renames at the end.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -18,8 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A map of a device that tells its type and serial number in one text, and a meter's number beside
-/// it.
+/// Map of a device with its type and serial number in one text, followed by a meter's number.
 constexpr const char* kMap = R"(
 map = { name = "talkative", unit = 1, kind = "meter", read_gap_registers_max = 4 }
 state = { measure = ["grid_power", "meter_number"], grid_power = "grid_power" }
@@ -66,7 +65,7 @@ class Recording : public ::testing::Test {
 };
 
 TEST_F(Recording, HidesATextBeyondWhatTheIdentityCheckAsksFor) {
-  // "X1S9", "7 \0" -> "X1XX", "X \0": padding is none of it.
+  // "X1S9", "7 \0" -> "X1XX", "X \0": padding is excluded.
   EXPECT_THAT(masked(reading(0, {0x5831, 0x5339, 0x3720, 0x0000})).values(),
               ElementsAre(0x5831, 0x5858, 0x5820, 0x0000));
 }
@@ -90,7 +89,7 @@ TEST(RecordingMask, KeepsTheWalkOverModelsAndWhatLiesInThem) {
   };
   EXPECT_THAT(kept(40'000, {0x5375, 0x6E53}), ElementsAre(0x5375, 0x6E53));
   EXPECT_THAT(kept(40'002, {1, 66}), ElementsAre(1, 66));
-  EXPECT_THAT(kept(40'004, {0x4672, 0x6F6E}), ElementsAre(0, 0));  // the maker's name, in model 1
+  EXPECT_THAT(kept(40'004, {0x4672, 0x6F6E}), ElementsAre(0, 0));  // manufacturer, in model 1
   EXPECT_THAT(kept(40'070, {124, 24}), ElementsAre(124, 24));
   const RegisterPoint& soc = map.points[find_point(map, "soc")];
   EXPECT_THAT(kept(static_cast<std::uint16_t>(40'070 + soc.address), {4'350}), ElementsAre(4'350));

@@ -1,4 +1,4 @@
-// The operator's configuration: the documented example loads, and every mistake is one clear line.
+// Configuration of the operator: the documented example loads, and every mistake is one clear line.
 #include "edge/app/settings/edge_config.h"
 
 #include "edge/app/settings/idle_keys.h"
@@ -72,7 +72,7 @@ TEST_F(ConfigFile, ReadsEveryUnit) {
   EXPECT_EQ(config_->clock.anchor_monotonic_ns, 5);
 }
 
-/// They bound what a price source that lies can do, and honest prices never come near:
+/// They bound the effect of a wrong price source, and real prices never come near:
 /// edge/prices/record/README.md.
 TEST_F(ConfigFile, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
   load_good(valid_text());
@@ -135,7 +135,7 @@ TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
   EXPECT_EQ(config_->log.ring_days, 365);
 }
 
-/// A relative path on the command line must not be put before the state's files twice.
+/// A relative path on the command line must be prefixed only once.
 TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateBesideIt) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::create_directory(folder_.file("etc"));
@@ -146,7 +146,7 @@ TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateBesideIt) {
   EXPECT_EQ(config_->log.ring, "etc/state/decisions.ring");
 }
 
-/// Every way to write one battery's place must lead to one lock; every other battery to another.
+/// Every spelling of one battery's address must lead to one lock; another battery to another lock.
 TEST_F(ConfigFile, TheBatterysLockIsNamedByItsPlace) {
   config_->battery.map.unit = 85;
   const std::string folder_of_locks(lock_folder());
@@ -243,7 +243,7 @@ TEST_F(ConfigFile, ReadsTheKeysOfAnotherPriceServer) {
   const std::string headers = folder_.write("headers", "X-Api-Key: k\n");
   ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
   std::string text = valid_text();
-  text.replace(text.find("http://"), 7, "https://");  // secrets go over nothing else
+  text.replace(text.find("http://"), 7, "https://");  // secrets require it
   text.replace(
       text.find("[price]"), 7,
       "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"");
@@ -285,7 +285,7 @@ TEST_F(ConfigFile, ReadsWhereDayAheadPricesComeFrom) {
   }
 }
 
-/// Configurations of earlier versions still start; what they say is named as without effect.
+/// Configurations of earlier versions still start; obsolete keys are reported as without effect.
 TEST_F(ConfigFile, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
   std::string text = valid_text();
   text.insert(text.find("[guard]") + 7, "\nhold_s = 10\norder_deadline_s = 5");
@@ -300,14 +300,14 @@ TEST_F(ConfigFile, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
               testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
                                             "resolve_every_s", "ask_spread_s", "lock_folder"));
   EXPECT_THAT(keys_without_effect(*config_), testing::Contains(Names("[outlook] ask_spread_s")));
-  // It is no proposal for a key that is misspelt.
+  // It is not suggested for a misspelt key.
   text.replace(text.find("timeout_ms"), 10, "timeoutms ");
   EXPECT_FALSE(load(text));
   EXPECT_THAT(error_, testing::AllOf(Names("[price] timeoutms url"),
                                      testing::Not(testing::HasSubstr("timeout_ms"))));
 }
 
-/// Of a thousand real machines; a simulated one asks at once.
+/// Spread over a thousand real machines; a simulated one fetches immediately.
 TEST_F(ConfigFile, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
   std::string text = valid_text();
   text.erase(text.find("[simulation]"));

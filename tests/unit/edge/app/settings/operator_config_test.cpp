@@ -58,7 +58,8 @@ TEST(PeopleConfig, ReadsWhatPeopleWant) {
   EXPECT_EQ(config.control.reserve[1].months, 0x801);
 }
 
-/// bess-notify reads its own section: a mistake in it must not keep the controller from starting.
+/// bess-notify reads its own section: a mistake in it must not prevent the controller from
+/// starting.
 TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
   EdgeConfig config;
   std::string error;

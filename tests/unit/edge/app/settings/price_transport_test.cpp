@@ -1,4 +1,4 @@
-// What a configuration may ask over plain http, and what the start says of it.
+// Requests allowed over plain http, and the report at the start.
 #include "edge/app/settings/edge_config.h"
 #include "edge/app/settings/price_config.h"
 

@@ -1,4 +1,4 @@
-// [meter] and [limits]: what they mean, and that every mistake is one line with the mend.
+// [meter] and [limits]: their meaning, and that every mistake is one line with its correction.
 #include "edge/app/settings/control_config.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The stored sign check: what it is bound to, and what a newcomer reads when it does not fit.
+// Stored sign check: its binding, and the text shown when it does not fit.
 #include "edge/app/storage/commission_file.h"
 
 #include <gmock/gmock.h>
@@ -176,7 +176,7 @@ TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
               ::testing::AllOf(Names("commissioned.toml sudo"), ::testing::Not(Names("[state]"))));
 }
 
-/// A program before this one kept it once, and without a checksum: no loss.
+/// An earlier version kept it once, without a checksum: no loss.
 TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
   for (const char* place : kPlaces) std::filesystem::remove(folder_.file(place));
   folder_.write(kPlaces[0], text_.substr(0, text_.rfind("# crc32=")));
@@ -185,7 +185,7 @@ TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
   expect_all_whole();
 }
 
-/// Of another battery, from before: what can be written, and what cannot, must not be mixed.
+/// An older file of another battery: readable and unreadable copies must not be mixed.
 TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
   std::filesystem::remove(folder_.file(kPlaces[1]));
   std::filesystem::create_directory(folder_.file(kPlaces[1]));

@@ -1,4 +1,4 @@
-// Files that a stranger could have put there. Only root can act the stranger: else these are
+// Files possibly made by another user. Only root can act as another user: otherwise these are
 // skipped.
 #include "edge/app/storage/instance_lock.h"
 
@@ -20,7 +20,7 @@ class FileOwner : public ::testing::Test {
   void SetUp() override {
     if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
   }
-  /// A file as that user would have put it there, for everybody to write.
+  /// A file as that user would have made it, writable by everyone.
   std::string strangers(const std::string& name) const {
     std::string path = folder_.write(name, "");
     EXPECT_EQ(chmod(path.c_str(), 0666), 0);
@@ -54,10 +54,10 @@ TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
   }
 }
 
-/// Whoever may open a file can hold its lock, and so could keep the controller from starting.
+/// Anyone who may open a file can hold its lock, and so prevent the controller from starting.
 TEST_F(FileOwner, NobodyElseMayOpenTheLock) {
   const std::string path = folder_.write("lock", "");
-  ASSERT_EQ(chmod(path.c_str(), 0666), 0);  // as an older program made it
+  ASSERT_EQ(chmod(path.c_str(), 0666), 0);  // as an older version made it
   ASSERT_EQ(chmod(folder_.file("").c_str(), 0755), 0);
   InstanceLock lock;
   ASSERT_TRUE(lock.take(path.c_str(), "the battery", error_)) << error_.c_str();
@@ -72,7 +72,7 @@ TEST_F(FileOwner, NobodyElseMayOpenTheLock) {
   EXPECT_EQ(status, 0);
 }
 
-/// A reader believes the folder's owner, who can put anything there, and nobody else.
+/// A reader also trusts the folder's owner, who can put any file there, and no other user.
 TEST_F(FileOwner, AReaderBelievesTheOwnerOfTheFolder) {
   const std::string path = strangers("status.json");
   EXPECT_FALSE(is_believable(path.c_str()));

@@ -1,5 +1,5 @@
-// The file of the outside limit: absent, good, malformed, and what must never make the control
-// thread wait.
+// File of the outside limit: absent, good, malformed, and cases that must never block the control
+// thread.
 #include "edge/app/storage/operator_files.h"
 
 #include <gtest/gtest.h>
@@ -44,8 +44,8 @@ TEST(LimitFile, WhatCannotBeUnderstoodIsMalformed) {
   }
 }
 
-/// Any program may write it, so that it has no checksum: a digit that was flipped into another is
-/// another limit. Nothing else passes, and none of them says that there is no limit.
+/// Any program may write it, so it has no checksum: a flipped digit can be another limit. Nothing
+/// else passes, and no damage reads as "no limit".
 TEST(LimitFile, AFlippedBitIsMalformedOrAnotherDigit) {
   const TemporaryFolder folder;
   const std::string line = "1500 2750 2023-03-26T00:15:00Z\n";

@@ -1,5 +1,4 @@
-// The file of cleared trips: its text, what is no such text, and that one word in either place is
-// enough.
+// File of cleared trips: its text, invalid texts, and that an entry in either copy suffices.
 #include "edge/app/storage/recall.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +40,7 @@ TEST(ClearedTrips, TheOldestOfNineIsForgotten) {
   EXPECT_FALSE(ClearedTrips{}.has(0)) << "no trip is none that was cleared";
 }
 
-/// A trip that nobody has cleared must not come out of a card's mistake.
+/// A damaged card must not clear a trip.
 TEST(ClearedTrips, AnythingElseIsUnreadable) {
   const std::string good = text_of(cleared(2));
   for (std::size_t i = 0; i < good.size(); ++i) {

@@ -55,7 +55,7 @@ TEST(Alarms, WhatPassesSoonIsNotTold) {
   for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(book.observe({kLink}, s).empty());
   for (int s = 300; s <= 1'200; s += 30) EXPECT_TRUE(book.observe({}, s).empty());
   EXPECT_TRUE(book.alarms().empty());
-  EXPECT_TRUE(book.observe({kLink}, 1'230).empty());  // another one: it counts from here
+  EXPECT_TRUE(book.observe({kLink}, 1'230).empty());  // another one: counted from here
 }
 
 TEST(Alarms, WhatComesAndGoesIsOneTrouble) {

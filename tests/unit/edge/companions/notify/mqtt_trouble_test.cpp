@@ -1,5 +1,4 @@
-// Why a broker cannot be reached is told by its cause: each cause by a real server, or
-// a real broker, that has it.
+// Broker errors are reported by cause: each cause by a real server or broker that has it.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -22,7 +21,7 @@ class MqttTrouble : public ::testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
   }
-  /// What a message meets at this broker.
+  /// Result of a message to this broker.
   static std::string send(int port, const std::string& ca_file, const std::string& user = "") {
     NotifySettings notify;
     notify.name = "garage";

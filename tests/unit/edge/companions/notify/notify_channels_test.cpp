@@ -1,5 +1,5 @@
-// Channels that hang, beside ones that do not: the whole program with a command that sleeps and a
-// broker that comes and goes. What is reported, when, how often, and what survives a kill.
+// Hanging channels next to working ones: the whole program with a command that sleeps and a broker
+// that comes and goes. Which reports are sent, when and how often, and which survive a kill.
 #include <gmock/gmock.h>
 
 #include "shared/host/child_process.h"
@@ -34,7 +34,7 @@ class Channels : public Mqtt {
     text += "mqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n";
     return folder_.write("edge.toml", text);
   }
-  /// The program between a broker and somebody who listens.
+  /// The program with a broker and a subscriber.
   struct Running {
     explicit Running(Channels& at)
         : broker(at.folder_, at.port()),
@@ -42,7 +42,7 @@ class Channels : public Mqtt {
           notify({BESS_NOTIFY_PROGRAM, "--config", at.config()}) {
       EXPECT_EQ(all->await("/status", "online"), "online");
     }
-    /// Seconds that it takes to end.
+    /// Seconds until it ends.
     double stop() {
       const double begin_s = seconds_now();
       notify.signal(SIGTERM);
@@ -53,7 +53,7 @@ class Channels : public Mqtt {
     std::unique_ptr<Listener> all;
     ChildProcess notify;
   };
-  /// Waits until a file has this many lines; false after half a minute.
+  /// Waits until a file has this many lines; false after 30 s.
   bool await_lines(const std::string& name, std::size_t count) const {
     for (int i = 0; i < 600; ++i) {
       if (count_of(text_of_file(folder_.file(name)), "\n") >= count) return true;
@@ -93,8 +93,8 @@ TEST_F(Channels, FortyFiveSecondsAreFortyFiveSeconds) {
   EXPECT_THAT(all.await("/event", "over"), HasSubstr("an outage (lasted 45 s)"));
 }
 
-/// The broker stands still, goes away, and is there again: each event comes once and in order, and
-/// the command is run meanwhile.
+/// The broker hangs, disappears and returns: each event arrives once and in order, and the command
+/// continues to run.
 TEST_F(Channels, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   use_command();
   Running running(*this);
@@ -116,15 +116,15 @@ TEST_F(Channels, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   ASSERT_NE(running.all->await("/event", "over"), "");
   set_status("degraded", R"("WARN: two")");
   ASSERT_NE(running.all->await("/event", "WARN: two"), "");
-  EXPECT_EQ(running.all->count("/event"), 2U);  // since it is there again
-  running.broker.freeze();                      // which does not hold up the end
+  EXPECT_EQ(running.all->count("/event"), 2U);  // since its return
+  running.broker.freeze();                      // which does not delay the end
   set_status("degraded", R"("WARN: three")");
   EXPECT_TRUE(await_lines("told", 4));
   EXPECT_LT(running.stop(), 20);
   running.broker.thaw();
 }
 
-/// A command that hangs is killed at its deadline, with all that it started, and run again.
+/// A hanging command is killed at its deadline with all child processes, and run again.
 TEST_F(Channels, ACommandThatHangsIsKilledAndRunAgain) {
   settings_.mqtt.host = "";
   settings_.command_ms_max = 300;
@@ -143,8 +143,7 @@ TEST_F(Channels, ACommandThatHangsIsKilledAndRunAgain) {
   EXPECT_TRUE(pending().empty());
 }
 
-/// Killed again and again while its command takes its time: no alarm is lost, and the file is whole
-/// each time.
+/// Killed repeatedly during a slow command: no alarm is lost, and the file is complete each time.
 TEST_F(Channels, AKillLosesNothing) {
   settings_.command = "echo x >>" + folder_.file("command_began") +
                       "; sleep 0.3; echo \"$BESS_TITLE\" >>" + folder_.file("told");
@@ -171,7 +170,7 @@ TEST_F(Channels, AKillLosesNothing) {
   EXPECT_EQ(count_of(text_of_file(folder_.file("notify/told.json")), "\"version\""), 1U);
 }
 
-/// What the program says on one run.
+/// Output of one run.
 Said run(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
   return answer_of(std::move(arguments));
@@ -185,7 +184,7 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
     EXPECT_EQ(second.exit_code, 1);
     EXPECT_THAT(second.text, Names("[notify] folder " + std::to_string(first.notify.pid()) + " " +
                                    folder_.file("notify/lock")));
-    // These may, and leave what the first one published.
+    // These may run, and leave the first one's publication.
     EXPECT_EQ(run({"--config", file, "--check"}).exit_code, 0);
     EXPECT_EQ(run({"--config", file, "--test"}).exit_code, 0);
     EXPECT_NE(first.all->await("/event", "\"key\":\"test\""), "");
@@ -196,10 +195,10 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
     first.notify.wait();
     EXPECT_EQ(first.all->await("/status", "offline"), "offline") << "by the broker";
   }
-  EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed one holds nothing
+  EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed process owns no lock
 }
 
-/// Where nothing can be kept, something must be told all the same, and that too.
+/// Without storage, alarms are still reported, and so is the storage fault.
 TEST_F(Channels, ANotifierThatCannotLockStillTells) {
   const std::string file =
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +

@@ -1,5 +1,5 @@
-// The notifier's parts: settings and their mistakes, a child program, troubles of a status, the
-// alarm command, topics, what is kept over restarts.
+// Parts of the notifier: settings and their mistakes, a child program, faults in a status, the
+// alarm command, topics, stored state.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -168,12 +168,12 @@ TEST(ChildProgram, IsHeardWithItsErrors) {
   EXPECT_EQ(result.complaint(), "last");
   EXPECT_TRUE(run_and_hear({"true"}, 10).is_well());
   EXPECT_EQ(run_and_hear({"sh", "-c", "kill -9 $$"}, 10).exit_code, 128 + 9);
-  // It closes what it says with, and goes on: not for longer than its time.
+  // It closes its output and continues, but not beyond its time limit.
   EXPECT_THAT(run_and_hear({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 1).complaint(),
               HasSubstr("did not end in time"));
 }
 
-/// A script that stands for bess-edge.
+/// Replacement script for bess-edge.
 std::string write_program(const TemporaryFolder& folder, const std::string& body) {
   const std::string path = folder.write("program", "#!/bin/sh\n" + body + "\n");
   EXPECT_EQ(chmod(path.c_str(), 0755), 0);
@@ -205,7 +205,7 @@ TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
                                            "a rule of next year"));
 }
 
-/// From the first answer that fails to the safe mode that follows.
+/// From the first failed answer to the resulting safe mode.
 TEST(ControllerStatus, AnOutageIsOneTrouble) {
   const auto keys_at = [](Mode mode, Reason reason, bool battery_fails) {
     RunStatus run;
@@ -316,7 +316,7 @@ constexpr const char* kEarned = R"({"days": [{"date": "2023-11-26",
     "charged_kwh": 12.345, "discharged_kwh": 10.5, "full_cycles": 1.25, "cycles": 720,
     "interventions": 3}]})";
 
-/// What stands in the broker is an interface: a difference moves what users have built upon.
+/// Topics are an interface: a difference breaks users' configurations.
 TEST(Topics, AreTheseToTheLetter) {
   NotifySettings settings;
   settings.name = "garage";
@@ -410,7 +410,7 @@ TEST_F(NotifierStateFile, AnyFlippedByteIsSeenAndCostsNothing) {
       flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
       std::ofstream(path, std::ios::binary) << flipped;
       ASSERT_EQ(read().day, "7") << i;
-      // In the words around the checksum a flip makes it one without: what it says is as it was.
+      // A flip in the words around the checksum removes it: the contents are unchanged.
       EXPECT_TRUE(!losses_.empty() || i >= text_.rfind(",\n")) << i;
     }
     std::ofstream(path) << text_;

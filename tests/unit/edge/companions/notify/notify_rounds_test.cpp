@@ -1,5 +1,5 @@
-// Whole rounds of the notifier: a status that changes, a command that is a script, and a real
-// broker on loopback. Time is an argument.
+// Whole rounds of the notifier: a changing status, a script as the command, and a real broker on
+// loopback. Time is an argument.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -28,8 +28,8 @@ TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
   EXPECT_THAT(told(), HasSubstr("over: WARN: mode is safe, reason no_price (lasted 20 min)"));
 }
 
-/// Raised and cleared in a drawn order, while the command fails and the notifier starts again
-/// whenever they like: each alarm and each end is told once, in turns, and none is missing.
+/// Raised and cleared in a drawn order, while the command fails and the notifier restarts at
+/// random: each alarm and each end is reported once, alternating, and none is missing.
 TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
   constexpr std::uint32_t kSeed = 20'261'128;
   constexpr int kKinds = 4;
@@ -78,7 +78,7 @@ TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
   }
 }
 
-/// The oldest go when more wait than are kept, and the journal has each of them.
+/// The oldest are dropped when the retry queue is full, and the journal has each of them.
 TEST_F(Rounds, TheQueueForTheCommandIsBounded) {
   settings_.after_s = 0;
   settings_.command = "exit 75";
@@ -114,7 +114,7 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
   EXPECT_THAT(told(), HasSubstr("day 2023-03-27: +0.77 EUR"));
 }
 
-/// A day late is no trouble, four are one, and its end is told.
+/// One day late is no alert, four days are one, and its end is reported.
 TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   use_command();
   settings_.after_s = 0;
@@ -163,7 +163,7 @@ TEST_F(Mqtt, TheStateIsRetainedTheEventComesOnceAndTheEndIsOffline) {
     EXPECT_NE(all.await("bess/v1/garage/alarms", "no_price"), "");
     EXPECT_THAT(all.await("homeassistant/device/bess_garage/config", "components"),
                 HasSubstr("\"unique_id\":\"bess_garage_soc\""));
-    Listener later(port(), "bess/v1/garage/#");  // retained: who comes later knows at once
+    Listener later(port(), "bess/v1/garage/#");  // retained: for later subscribers
     EXPECT_THAT(later.await("/state", "health"), HasSubstr("\"health\":\"degraded\""));
     EXPECT_EQ(later.await("/status", "o"), "online");
   }
@@ -171,11 +171,11 @@ TEST_F(Mqtt, TheStateIsRetainedTheEventComesOnceAndTheEndIsOffline) {
   EXPECT_EQ(all.count("/event"), 1U);
 }
 
-/// No broker at the start, and one that restarts without a memory: everything is there again.
+/// No broker at the start, and one that restarts without memory: everything is published again.
 TEST_F(Mqtt, ComesBackWithItsRetainedValues) {
   set_status("degraded", kReason);
   Notifier notifier(settings_);
-  whole_round(notifier, kNow);  // nobody listens
+  whole_round(notifier, kNow);  // no listener
   Broker broker(folder_, port());
   {
     Listener all(port(), "#");
@@ -191,7 +191,7 @@ TEST_F(Mqtt, ComesBackWithItsRetainedValues) {
   EXPECT_NE(again.await("/config", "components"), "");
 }
 
-/// The money of today and of yesterday is the program's own answer.
+/// Earnings of today and yesterday come from the program's own output.
 TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
   Broker broker(folder_, port());
   settings_.program = write_script("bess-edge", R"(case "$1 $2" in
@@ -216,12 +216,12 @@ TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
             R"({"date":"2023-03-27","earned_eur":0.125,"cycles":9})");
 }
 
-/// A hold and its end by the broker, where the key allows it: one at a time, in order, never one
-/// that was given when nobody was here, and nothing else.
+/// A hold and its end by the broker, where the key allows it: one at a time, in order, none that
+/// was sent while the notifier was away, and nothing else.
 TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   Broker broker(folder_, port());
   Listener all(port(), "#");
-  all.publish("bess/v1/garage/hold/set", "ON", true);  // retained, before the notifier comes
+  all.publish("bess/v1/garage/hold/set", "ON", true);  // retained, before the notifier connects
   ASSERT_EQ(all.await("/hold/set", "ON"), "ON");
   const std::string calls = folder_.file("calls");
   const std::string program =
@@ -245,7 +245,7 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   for (const char* power :
        {"1.5", "1e3", " 1", "99999999999", "5001", "-5001", "NaN", "--release"}) {
     all.publish("bess/v1/garage/hold_power/set", power);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // eight wait at most
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // at most eight wait
   }
   all.publish("bess/v1/garage/hold_power/set", std::string(100'000, '9'));
   all.publish("bess/v1/garage/release/set", "ON");
@@ -256,7 +256,7 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
     return text_of_file(calls);
   };
   const std::string end = " --config " + config + "\n";
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // eight wait at most
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // at most eight wait
   all.publish("bess/v1/garage/hold/set", "ON");
   EXPECT_EQ(await_calls("hold -1500 --for 60m" + end), "hold -1500 --for 60m" + end);
   all.publish("bess/v1/garage/hold/set", "OFF");

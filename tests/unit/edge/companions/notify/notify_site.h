@@ -1,5 +1,5 @@
-// What the tests of whole rounds stand on: a site without a controller, whose status is a file and
-// whose alarm command writes into another.
+// Site for tests of whole rounds: no controller, its status is a file and its alarm command writes
+// into another.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,11 +24,10 @@ inline std::size_t count_of(const std::string& text, const std::string& piece) {
   return count;
 }
 
-/// A site without a controller: its status is a file, its command writes into another.
 class Rounds : public ::testing::Test {
  protected:
   Rounds() {
-    signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read what it is given
+    signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read its input
     settings_.config_path = "edge.toml";
     settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
     settings_.memories = {folder_.file("notify/told.json")};
@@ -55,7 +54,7 @@ class Rounds : public ::testing::Test {
                           R"( "totals": {"cycles": 9}})");
     std::filesystem::rename(beside, folder_.file("status.json"));  // a round may look at any time
   }
-  /// What the command has not taken, as it was kept.
+  /// The retry queue as stored.
   [[nodiscard]] std::deque<Message> pending() const {
     std::vector<std::string> losses;
     return read_notifier_state(settings_.memories, losses).pending;
@@ -68,7 +67,7 @@ class Rounds : public ::testing::Test {
 
 inline constexpr const char* kReason = R"("WARN: mode is safe, reason no_price")";
 
-/// A round, and what the channels make of it.
+/// A round, and the result of the channels.
 inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {
   notifier.run_round(now_utc_s);
   EXPECT_TRUE(notifier.finish(std::chrono::minutes(2)));

@@ -1,4 +1,4 @@
-"""bess-page in a browser, a smoke test: the state is told, the charts are drawn, the console stays
+"""Smoke test of bess-page in a browser: the state is shown, the charts are drawn, the console stays
 silent, and nothing is wider than the window.
 
   page_in_a_browser.py PAGE_SITE BESS_PAGE

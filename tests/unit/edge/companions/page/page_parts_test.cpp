@@ -1,4 +1,4 @@
-// What the page is made of, each by itself.
+// Parts of the page.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -32,7 +32,7 @@ TEST(RequestGuard, AnswersToItsOwnNamesAlone) {
   EXPECT_FALSE(is_our_host("localhost", settings));
 }
 
-/// The map's integers are the student's: every price of drawn columns, in drawn contexts.
+/// Integers of the map equal the student's: every price of drawn columns, in drawn contexts.
 TEST(DecisionMap, IsTheStudentAtEveryPrice) {
   std::mt19937_64 random(7);
   const PriceThresholds thresholds;

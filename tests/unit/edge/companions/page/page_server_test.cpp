@@ -1,5 +1,4 @@
-// The page over HTTP, on a site whose log is made up and whose answers are those of the real
-// bess-edge.
+// Page server over HTTP, on a site with a synthetic log and the answers of the real bess-edge.
 #include <gmock/gmock.h>
 #include <httplib.h>
 #include <signal.h>
@@ -61,7 +60,7 @@ class PageServerTest : public ::testing::Test {
   [[nodiscard]] Got get(const std::string& path, const httplib::Headers& headers = {}) const {
     return got(client().Get(path.c_str(), headers));
   }
-  /// What bess-edge prints by itself.
+  /// Direct output of bess-edge.
   [[nodiscard]] std::string printed(std::vector<std::string> words) const {
     words.insert(words.begin(), BESS_EDGE_PROGRAM);
     words.insert(words.end(), {"--config", site_.config()});
@@ -90,8 +89,7 @@ class PageServerTest : public ::testing::Test {
   std::thread thread_;
 };
 
-/// A connection that sends what it is given, byte by byte as it stands, and takes what comes until
-/// the end or 10 s.
+/// A connection that sends raw bytes, and receives until the end or 10 s.
 std::string answer_to(int port, const std::string& request) {
   sockaddr_in address = loopback_address(static_cast<std::uint16_t>(port));
   const FileDescriptor fd(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -166,7 +164,7 @@ TEST_F(PageServerTest, AForeignNameIsNotAnswered) {
   }
 }
 
-/// A controller that cannot be asked is told, and takes nothing else with it.
+/// A controller that gives no answer is reported, without affecting other parts.
 TEST_F(PageServerTest, AnAbsentControllerIsTold) {
   PageSettings settings = site_.settings();
   settings.program = site_.folder.file("not there");
@@ -183,7 +181,7 @@ TEST_F(PageServerTest, WhatIsNoJsonIsNoAnswer) {
   EXPECT_EQ(trouble(get("/api/status")), "the card is gone");
 }
 
-/// While it is asked the answer before stands, with its age; then there is none.
+/// While a command runs the previous answer remains, with its age; then there is none.
 TEST_F(PageServerTest, AHangingControllerIsTold) {
   const std::string hangs = site_.folder.file("hangs");
   PageSettings settings = with_program("[ ! -e '" + hangs + "' ] || sleep 60\necho '{}'\n");
@@ -223,8 +221,8 @@ TEST_F(PageServerTest, ManyWhoLookAtOnceAskTheControllerOnce) {
   EXPECT_EQ(words, (std::multiset<std::string>{"status", "why"}));
 }
 
-/// Sixty connections of one address, which say nothing, a half of a header, or a byte now and then:
-/// the page is there all the same, while they stand and while new ones come.
+/// Sixty connections of one address, silent, with half a header, or with a byte now and then: the
+/// page is served nevertheless.
 TEST_F(PageServerTest, HalfOpenConnectionsKeepNobodyWaiting) {
   using std::chrono::steady_clock;
   serve();
@@ -252,7 +250,7 @@ TEST_F(PageServerTest, HalfOpenConnectionsKeepNobodyWaiting) {
   }
 }
 
-/// Requests that no browser sends, drawn: nothing crashes, nothing but the page is read.
+/// Drawn requests that no browser sends: no crash, and only the page is readable.
 TEST_F(PageServerTest, HostileRequestsGetNothing) {
   serve();
   std::mt19937_64 random(20'261'123);

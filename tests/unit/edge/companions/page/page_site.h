@@ -1,5 +1,5 @@
-// A site to look at: the configuration of a battery, and a decision log as a controller leaves it,
-// without a controller. The answers on its page are those of the real bess-edge.
+// Page test site: the configuration of a battery, and a decision log, without a controller. The
+// answers on its page come from the real bess-edge.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class PageSite {
   TemporaryFolder folder;
 
  private:
-  /// Prices as a wave over the day, decided by the student.
+  /// Prices as a wave over the day, decisions of the student.
   void write_log(int cycles) const {
     std::filesystem::create_directory(folder.file("state"));
     RingLog ring;

@@ -1,5 +1,4 @@
-// page_site: a site to look at with bess-page, until its input ends; prints its configuration's
-// path.
+// page_site: test site for bess-page, until its input ends; prints the path of its configuration.
 #include <cstdio>
 
 #include "tests/unit/edge/companions/page/page_site.h"

@@ -1,4 +1,4 @@
-// What the connection bears: hand-made cases for each limit, and what holds for any load and limit.
+// Limits of the connection: hand-made cases for each limit, and invariants for any load and limit.
 #include "edge/core/site/connection_guard.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(ConnectionGuard, ExportCountsWhatTheHouseTakes) {
   EXPECT_EQ(range.discharge_w_max, 1'000 - 100 + 2'000);
   EXPECT_EQ(range.discharge_reason, Reason::kExportLimit);
   ConnectionState sunny = at_3_kw();
-  sunny.grid_w = -3'000;  // 4 kW of sun left over, of which the battery takes 1
+  sunny.grid_w = -3'000;  // 4 kW surplus of sun, of which the battery takes 1
   EXPECT_EQ(range_of({.export_w_max = 1'000}, sunny).discharge_w_max, 0);
   EXPECT_EQ(range_of({.export_w_max = 0, .margin_w = 0}, at_3_kw()).discharge_w_max, 2'000);
 }
@@ -54,14 +54,14 @@ TEST(ConnectionGuard, ExportCountsWhatTheHouseTakes) {
 TEST(ConnectionGuard, TheQuarterHoursMeanStaysUnderItsCap) {
   const ConnectionSettings settings{.peak_w_max = 3'000, .margin_w = 0};
   EXPECT_EQ(range_of(settings, at_3_kw()).charge_w_max, 1'000);  // from the start: cap less house
-  // A third of it gone at 1.5 kW: the rest may be as much dearer.
+  // A third of it is gone at 1.5 kW: the rest may be proportionally higher.
   const SiteRange saved = range_of(settings, at_3_kw(300 * 1'500, 600));
   EXPECT_EQ(saved.charge_w_max, (3'000 * 900 - 300 * 1'500) / 600 - 2'000);
   EXPECT_EQ(saved.charge_reason, Reason::kQuarterHourPeak);
   EXPECT_EQ(range_of(settings, at_3_kw(3'000 * 900, 300)).charge_w_max, 0);
 }
 
-/// The order of this step goes on into the next quarter-hour, where nothing is saved yet.
+/// The order of this step extends into the next quarter-hour, where nothing is saved yet.
 TEST(ConnectionGuard, WhatIsLeftOfAQuarterHourIsNotSpentInTheNext) {
   const ConnectionSettings settings{.peak_w_max = 3'000, .margin_w = 0};
   EXPECT_GT(range_of(settings, at_3_kw(0, 120)).charge_w_max, 4'000);
@@ -78,7 +78,7 @@ TEST(ConnectionGuard, ReliefGivesBackWhatTheBatteryTookAndNoMore) {
   ConnectionSettings shaving = settings;
   shaving.peak_shave = true;
   EXPECT_EQ(range_of(shaving, state).relief_w, 2'500);
-  state.grid_w = 1'000;  // the house alone stays under it
+  state.grid_w = 1'000;  // the house alone stays below it
   EXPECT_EQ(range_of(shaving, state).relief_w, 0);
 }
 
@@ -129,7 +129,7 @@ TEST(ConnectionGuard, HoldsItsPromisesForAnyLoadAndLimit) {
     if (charge_w > 0) {
       ++limited;
       ASSERT_LE(now.import_ws + (house_w + charge_w) * now.left_s, cap_ws);
-      ASSERT_EQ(range.relief_w, 0);  // never asks for both
+      ASSERT_EQ(range.relief_w, 0);  // never requests both
     }
     ASSERT_GE(range.relief_w, 0);
     ASSERT_LE(range.relief_w, std::max<std::int64_t>(house_w, 0));

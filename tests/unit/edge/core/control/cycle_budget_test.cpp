@@ -1,4 +1,4 @@
-// The cycle budget: what is counted, when it is spent, when the day begins again.
+// Full-cycle budget: what counts, when it is used up, and the start of the day.
 #include "edge/core/control/cycle_budget.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +10,13 @@ constexpr std::int32_t kDay = 20'230'326;
 
 TEST(CycleBudget, SumsWhatOrdersMovedInBothDirections) {
   CycleBudget budget(1'000);
-  budget.update(kDay, 5'000, true);  // the first reading has nothing to compare with
+  budget.update(kDay, 5'000, true);  // the first reading has no predecessor
   EXPECT_EQ(budget.today().soc_moved_e4, 0);
   budget.update(kDay, 5'900, true);
   budget.update(kDay, 5'000, true);
   EXPECT_EQ(budget.today().soc_moved_e4, 1'800);
   EXPECT_FALSE(budget.is_spent());
-  budget.update(kDay, 4'800, true);  // 20 % moved = a tenth of a cycle
+  budget.update(kDay, 4'800, true);  // 20 % moved = a tenth of a full cycle
   EXPECT_TRUE(budget.is_spent());
 }
 

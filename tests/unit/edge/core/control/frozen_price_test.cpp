@@ -1,4 +1,4 @@
-// A price that stands still under new stamps: what counts as standing still, and what does not.
+// Frozen price under new stamps: what counts as frozen, and what does not.
 #include "edge/core/control/frozen_price.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(FrozenPrice, TheSameRowAgainIsNoNewStamp) {
   EXPECT_EQ(rows.frozen.price().unchanged_s, 0);
 }
 
-/// A source that hangs and drops rows besides: no outage thaws it, and none counts as its hours.
+/// A frozen source that also drops rows: no outage resets it, and none counts towards its hours.
 TEST(FrozenPrice, AnOutageCountsAsOneStepAndAFewMinutes) {
   Rows rows;
   rows.add(2, 700);
@@ -89,7 +89,7 @@ TEST(FrozenPrice, ARestartDoesNotThawIt) {
   EXPECT_EQ(moved.price().unchanged_s, 0);
 }
 
-/// A clock that was wrong left a stamp of the future behind.
+/// A wrong clock left a stamp of the future.
 TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
   FrozenPrice frozen{FrozenPriceSettings{}};
   frozen.restore(
@@ -107,7 +107,7 @@ TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
   }
 }
 
-/// Rows that go round among `values`, each for `each` rows.
+/// Rows that rotate among `values`, each for `each` rows.
 Rows rows_among(int values, int each, int rows) {
   Rows r;
   for (int i = 0; i < rows; ++i) r.add(1, 5'000 + i / each % values);

@@ -1,4 +1,4 @@
-// The operator's rules in the guard: above student and thresholds, below holds, limits and stop
+// Rules of the operator in the guard: above student and thresholds, below holds, limits and stop
 // reasons.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// How soon faults that come and go are found, and what is forgiven.
+// Detection time of intermittent faults, and what is forgiven.
 #include "edge/core/supervision/leaky_count.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// How the price level is come by at a start: what of the log is believed, what is asked when the
-// log has none, and that a student by month asks for nothing.
+// Price level at a start: accepted log values, the request when the log has none, and no request of
+// a student by month.
 #include "edge/core/control/level_start.h"
 
 #include <gtest/gtest.h>
@@ -75,8 +75,8 @@ TEST(LevelFromLog, ARowOfTheFutureDoesNotFreezeTheLevel) {
   }
 }
 
-/// A machine without a clock of its own starts in 1970: the level stays, and rows count once the
-/// time is set.
+/// A machine without a battery-backed clock starts in 1970: the level stays, and rows count once
+/// the time is set.
 TEST(LevelFromLog, AClockInThePastKeepsTheLevel) {
   for (const std::int64_t now : {0, 30, 90, 600}) {  // seconds since 1970
     PriceLevel level = level_from_log(kLogged, now);

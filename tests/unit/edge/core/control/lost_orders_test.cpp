@@ -1,5 +1,4 @@
-// Which orders count as lost, how soon that is found, what is nobody's intention, and how long
-// control insists.
+// Lost orders: which count, detection time, unintended losses, and how long control insists.
 #include "edge/core/supervision/lost_orders.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ Response reading(std::int64_t number, Fate fate, std::int32_t ordered_w = kW) {
                           .order_ended = fate == Fate::kEnded}};
 }
 
-/// Readings until the battery is given back; 0: not within `most`.
+/// Readings until the release of the battery; 0: not within `most`.
 int given_back_after(const std::function<Fate(int)>& fate, bool yields = true, int most = 400) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 1; i <= most; ++i) {
@@ -55,7 +54,7 @@ TEST(LostOrders, WhoComesAndGoesIsFoundAsWell) {
   }
 }
 
-/// Now a stop, now another power: one master.
+/// Alternating stop and other power: one master.
 TEST(LostOrders, EndsAndReplacementsCountTogether) {
   const auto mixed = [](int i) {
     return i % 4 == 0 ? Fate::kEnded : i % 2 == 0 ? Fate::kReplaced : Fate::kHolds;
@@ -74,7 +73,7 @@ TEST(LostOrders, TheReasonIsTheHandThatWasSeen) {
   }
 }
 
-/// After a reboot the device may show the lost order again and again, until it takes the next.
+/// After a reboot the device may repeatedly show the lost order, until it takes the next.
 TEST(LostOrders, OneOrderIsLostOnce) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 0; i < 5; ++i) {
@@ -86,7 +85,7 @@ TEST(LostOrders, OneOrderIsLostOnce) {
   EXPECT_EQ(orders.ended(), 1);
 }
 
-/// Read as ours before the tick, replaced before it was fed at the tick: the same number.
+/// Read as ours before the tick, replaced before the refresh at the tick: the same number.
 TEST(LostOrders, AnOrderThatWasSeenToHoldCanStillBeLost) {
   LostOrders orders{ResponseSettings{}};
   orders.observe(reading(1, Fate::kHolds), false);
@@ -201,7 +200,7 @@ TEST(LostOrders, TheShareOfTheLastHourOutlastsARestart) {
   EXPECT_TRUE(next.is_to_be_given_up(kFirstUtcS + 63 * kSecondsPerStep, true));
 }
 
-/// A run that is killed after each loss: the level goes on.
+/// A run that is killed after each loss: the level continues.
 TEST(LostOrders, ManyShortRunsFindItTogether) {
   LostOrderHistory logged;
   int found = 0;
@@ -228,7 +227,7 @@ TEST(LostOrders, ADamagedHistoryIsBounded) {
   EXPECT_EQ(others.history(), LostOrderHistory{});
 }
 
-/// A pause is short again only when orders have held: every third one lost, and good ones between.
+/// A pause only shortens after orders have lasted: every third one lost, with good ones between.
 TEST(LostOrders, PausesGrowUntilOrdersHold) {
   Supervision supervision({});
   std::int64_t number = 0;

@@ -1,5 +1,5 @@
-// The meter's witness, reading by reading: what a doubt is, what a finding, and how it ends. Whole
-// days with houses that move are in tests/system/closed_loop/meter_liars_test.cpp.
+// Meter check, reading by reading: doubts, findings, and how they end. Whole days with moving
+// houses are in tests/system/closed_loop/meter_liars_test.cpp.
 #include "edge/core/site/meter_witness.h"
 
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::int64_t kStart = 1'679'788'800;
 
-/// A controller's grid of readings, without the controller: orders, settled readings, cuts.
+/// A controller's schedule of readings, without the controller: orders, steady readings, cuts.
 struct Connection {
-  /// What the meter makes of house and battery.
+  /// The meter's value from house and battery.
   std::function<double(double)> meter = [](double grid_w) { return grid_w; };
   MeterWitness witness{MeterWitnessSettings{}};
   std::int64_t utc_s = kStart;
@@ -32,7 +32,7 @@ struct Connection {
                                .age_s = static_cast<std::int32_t>(utc_s - ordered_utc_s)}});
     ask_again();
   }
-  /// As the loop: what may be ordered has become less.
+  /// As in the loop: the allowed power has decreased.
   void ask_again() {
     const std::int32_t most_w = witness.power_w_max(utc_s);
     if (power_w > most_w || power_w < -most_w) order(power_w > 0 ? most_w : -most_w);
@@ -41,7 +41,7 @@ struct Connection {
     if (watts != power_w) ordered_utc_s = utc_s;
     power_w = watts;
   }
-  /// One cycle at that wish, from the tick on; readings every 10 s.
+  /// One control cycle at that requested power, from the tick on; readings every 10 s.
   void cycle(std::int32_t wish_w) {
     const std::int32_t most_w = witness.power_w_max(utc_s);
     order(std::max(-most_w, std::min(most_w, wish_w)));
@@ -61,7 +61,7 @@ TEST(MeterWitness, OneContradictionIsTakenBackAtOnceAndForgiven) {
   c.cycles(6);
   c.order(4'000);
   c.utc_s += 27;
-  c.house_w = -3'600;  // something went off just then
+  c.house_w = -3'600;  // a load switched off at that moment
   c.read();
   EXPECT_EQ(c.power_w, 0);
   EXPECT_EQ(c.witness.trust().doubt, 3);
@@ -92,7 +92,7 @@ TEST(MeterWitness, ARatioThatAStepHasShownIsPossibleFromThenOn) {
   EXPECT_EQ(c.witness.possible_ratios(c.utc_s).least_permille, 1'000);
   EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 1'000);
   c.meter = [](double w) { return 0.65 * w; };
-  c.cycle(4'000);  // from an honest reading to one that is not
+  c.cycle(4'000);  // from a correct reading to a wrong one
   c.cycle(0);
   EXPECT_NEAR(c.witness.possible_ratios(c.utc_s).least_permille, 650, 10);
   EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 1'000);

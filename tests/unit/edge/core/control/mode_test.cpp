@@ -18,7 +18,7 @@ TEST(Mode, EveryTransition) {
       {kStart, false, false, false, false, false, kRunning},
       {kStart, false, true, false, false, false, kStart},
       {kStart, false, true, true, false, false, kStart},    // nothing was ordered: nothing to hold
-      {kStart, false, true, false, false, true, kHolding},  // of the run before
+      {kStart, false, true, false, false, true, kHolding},  // of the previous run
       {kStart, false, false, false, false, true, kRunning},
       {kSafe, false, true, true, false, true, kSafe},
       {kRunning, false, false, true, false, false, kRunning},

@@ -1,5 +1,5 @@
-// What people want besides trading: holds, a reserve by the hour, full charges. Each by itself,
-// then what the guard makes of them.
+// Operator requests besides trading: holds, a reserve by the hour, full charges. Each separately,
+// then in the guard.
 #include <gtest/gtest.h>
 
 #include "edge/core/control/full_charge.h"

@@ -1,4 +1,4 @@
-// The history of a first start: the level that a controller which had run all the time would have.
+// Price history of a first start: the level of a controller that had run all the time.
 #include "edge/core/control/price_history.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(PriceHistory, LeavesToTheLoopWhatNoTickHasSeenYet) {
   history.add(kLastTick, 9'000);
   history.add(kLastTick + 60, 9'000);
   EXPECT_EQ(history.rows(), 0);
-  history.add(kLastTick - 3'660, 9'000);  // and what lies before the hours
+  history.add(kLastTick - 3'660, 9'000);  // and the rows before these hours
   history.add(INT64_MIN / 2, 9'000);
   EXPECT_EQ(history.rows(), 0);
   history.add(kLastTick - 3'600, 9'000);

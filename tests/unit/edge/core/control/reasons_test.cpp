@@ -1,4 +1,4 @@
-// The table of reasons for people is the one that the program has.
+// Documented table of reasons equals the program's.
 #include "edge/core/control/reasons.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// A log whose clock was stepped between its records: how long it really was from one reading to the
-// next.
+// Log with clock steps between its records: the real time from one reading to the next.
 #include "edge/core/loop/cycle_parts.h"
 
 #include <gtest/gtest.h>

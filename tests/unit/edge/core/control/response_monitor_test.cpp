@@ -1,5 +1,5 @@
-// What counts as following an order: every fault is found in two readings, and a battery that is
-// only slow, noisy or near an end of its charge is left alone.
+// Following an order: every fault is found in two readings, and a slow or noisy battery, or one
+// near an end of its charge, is accepted.
 #include "edge/core/supervision/response_monitor.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int32_t kStepS = 120;
 
-/// A battery of 4 kW and 8 kWh that is read every two minutes, with what it shows.
+/// A battery of 4 kW and 8 kWh that is read every two minutes, with its displayed values.
 struct MonitoredSite {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.5;
@@ -77,12 +77,12 @@ TEST(ResponseMonitor, ThreeRightAnswersForgetAWrongOne) {
   }
 }
 
-/// Recalled or after a pause, with nothing known of the order before: it may be on its way.
+/// Restored or after a pause, with an unknown previous order: the power may still be changing.
 TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
   const auto after_first_readings = [](std::int32_t ordered_w, std::int32_t power_w,
                                        std::int32_t age_s) {
     ResponseMonitor monitor{ResponseSettings{}};
-    for (int i = 0; i < 4; ++i) {  // far apart: none knows the one before
+    for (int i = 0; i < 4; ++i) {  // far apart: none knows the previous one
       monitor.observe(driven_reading(3'600 * (i + 1), ordered_w, power_w, age_s, 5'000 + i, 0));
     }
     return monitor.trip();
@@ -90,7 +90,7 @@ TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
   EXPECT_EQ(after_first_readings(0, -490, 117), std::nullopt);
   EXPECT_EQ(after_first_readings(-1'000, 490, 117), std::nullopt);
   EXPECT_EQ(after_first_readings(1'000, 1'350, 117), std::nullopt);
-  // It has stood for longer, or no ramp of any battery would be that far behind.
+  // It has lasted longer, or no ramp of any battery would be that far behind.
   EXPECT_EQ(after_first_readings(0, -490, 237), Reason::kUncontrolledPower);
   EXPECT_EQ(after_first_readings(0, -3'000, 117), Reason::kUncontrolledPower);
   EXPECT_EQ(after_first_readings(4'000, -4'000, 117), Reason::kWrongDirection);
@@ -117,7 +117,7 @@ TEST(ResponseMonitor, NoPowerInTheMiddleOfTheChargeIsNoAnswer) {
   EXPECT_EQ(site.monitor.trip(), std::nullopt);
 }
 
-/// README: an order of 0 W begins the count anew.
+/// README: an order of 0 W restarts the count.
 TEST(ResponseMonitor, UnansweredOrdersAreCountedInARow) {
   MonitoredSite site;
   site.soc_frac = 0.97;
@@ -205,8 +205,7 @@ TEST(ResponseMonitor, ABatteryThatLooksAfterItselfIsNoFault) {
   }
 }
 
-/// Full power for the first half of every step, none for the second: what a meter's limit makes of
-/// it.
+/// Full power for the first half of every step, none for the second, as a meter's limit causes.
 TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.2;
@@ -276,8 +275,7 @@ TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThe
   EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
 
-/// What a clock that is stepped makes of cycles: readings seconds after their order, and soon
-/// again.
+/// Control cycles under clock steps: readings seconds after their order, and soon again.
 struct ShortCycles {
   ResponseMonitor monitor{ResponseSettings{}};
   std::int64_t steady_s = 0;
@@ -291,7 +289,7 @@ struct ShortCycles {
 TEST(ResponseMonitor, SomeSecondsBeyondItsMapTheOrderBeforeIsNoFault) {
   ShortCycles cycles;
   cycles.read(4'000, 117, 4'000, kStepS, 5'000);
-  cycles.read(0, 22, 4'000, 25, 5'030);  // of a lag of 25 s, where the map says 20
+  cycles.read(0, 22, 4'000, 25, 5'030);  // of a lag of 25 s, where the map has 20
   cycles.read(0, 117, 0, 95, 5'030);
   cycles.read(4'000, 117, 4'000, kStepS, 5'160);
   cycles.read(0, 22, 4'000, 25, 5'190);
@@ -337,7 +335,7 @@ TEST(ResponseMonitor, ALagCountsInAShortCycle) {
   }
 }
 
-/// Near full 1.6 of 4 kW flow: on the way to 0 W the setpoint is still above that at first.
+/// Near full 1.6 of 4 kW flow: on the way to 0 W the set point is still above that at first.
 TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
   for (const std::int32_t soc_e4 : {9'700, 5'000}) {
     ShortCycles cycles;

@@ -1,4 +1,4 @@
-// Changes between charging and discharging, counted over the hour that moves on with the clock.
+// Reversals between charging and discharging, counted over the last hour.
 #include "edge/core/control/cycle_budget.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t kStart = 1'679'875'200;
 
-/// Orders one power a step and returns how many reversals the hour then has.
+/// Orders one power per step and returns the reversals of the hour.
 class Orders {
  public:
   explicit Orders(std::int32_t per_hour_max) : cap(per_hour_max) { cap.advance(now_utc_s); }
@@ -57,7 +57,7 @@ TEST(ReversalCap, WithoutACapNothingIsBarred) {
   EXPECT_EQ(orders.cap.barred_direction(), 0);
 }
 
-/// A source that lies must not get another hour's reversals out of a restart.
+/// A restart must not allow a wrong source another hour's reversals.
 TEST(ReversalCap, ARestartGoesOnCounting) {
   Orders before(3);
   for (const std::int32_t power_w : {1, -1, 1, -1}) before.order(power_w);

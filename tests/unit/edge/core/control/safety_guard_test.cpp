@@ -1,4 +1,4 @@
-// The guard: one case per reason, then the precedence between them.
+// Safety guard: one case per reason, then the precedence between them.
 #include "edge/core/control/safety_guard.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ std::vector<StopCase> cases() {
   };
 }
 
-/// At a restart the order in force may be another controller's, or a register's nonsense.
+/// At a restart the order in force may come from another controller, or be invalid.
 TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
   SafetyGuard guard({.ramp_w_max = 1'000});
   GuardInputs in = healthy(Action::kCharge);
@@ -138,7 +138,7 @@ TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
   EXPECT_EQ(power_at(1'051), -4'000);
 }
 
-/// However extreme the price: it is what a source that lies would send.
+/// However extreme the price: a wrong source could send it.
 TEST(SafetyGuard, AReversalTooManyIsNotFollowedBeyondTheThresholdsEither) {
   GuardInputs in = healthy(Action::kIdle);
   in.price_centi_eur_per_mwh = 1'000'000;
@@ -186,7 +186,7 @@ TEST(SafetyGuard, WhatAnOldPriceHasBecomeStandsInForItsTimeAlone) {
   EXPECT_FALSE(SafetyGuard(GuardSettings{}).may_stand_in(in)) << "off by default";
 
   EXPECT_FALSE(aged(3'841));
-  in.price_stands_in = true;  // whoever says so
+  in.price_stands_in = true;  // from any source
   EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kPriceAge);
   EXPECT_TRUE(aged(3'840));
   expect(SafetyGuard(settings).decide(in), -settings.power_w, Reason::kStandIn);
@@ -245,12 +245,12 @@ TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
   EXPECT_EQ(decide_once(in).power_w, -500);
   in.measurement.soc_e4 = 1'000;
   expect(decide_once(in), 0, Reason::kSocEmpty);
-  in = healthy(Action::kDischarge);  // the student gives more than that anyway
+  in = healthy(Action::kDischarge);  // the student allows more than that anyway
   in.site.relief_w = 1'200;
   expect(decide_once(in), -4'000, Reason::kStudent);
 }
 
-/// Between two ticks an order is only ever taken off.
+/// Between two ticks an order is only ever reduced.
 TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
   const SafetyGuard guard{GuardSettings{}};
   GuardInputs in = healthy(Action::kCharge);

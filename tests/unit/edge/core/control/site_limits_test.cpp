@@ -1,5 +1,5 @@
-// The site's parts: energy of the quarter-hour, the outside limit's line, and what becomes of both
-// when the meter or the limit is lost.
+// Site limits: energy of the quarter-hour, the line of the outside limit, and the result when the
+// meter or the limit is lost.
 #include "edge/core/site/site_limits.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ TEST(QuarterHourEnergy, ImportIsTheSumOfWhatWasMeasured) {
   energy.add(kQuarter, 1'000, 500);
   energy.add(kQuarter + 10, 2'000, 500);
   energy.add(kQuarter + 20, -4'000,
-             -1'000);  // export pays nothing back; when it turned is not known
+             -1'000);  // export does not count negative; the time of the change is unknown
   const auto sums = energy.at(kQuarter + 20);
   EXPECT_EQ(sums.import_ws, 10 * 1'500 + 10 * 1'000);
   EXPECT_EQ(sums.battery_ws, 20 * 500);
@@ -51,7 +51,7 @@ TEST(QuarterHourEnergy, ARestartGoesOnFromTheLog) {
   EXPECT_EQ(energy.at(kQuarter + 140).battery_ws, 20 * 3'600);
   QuarterHourEnergy later(2'500, 30);
   later.restore(kQuarter + 120, 100, 20);
-  later.add(kQuarter + 910, 300, 0);  // another quarter-hour: nothing of it counts
+  later.add(kQuarter + 910, 300, 0);  // another quarter-hour: none of it counts
   EXPECT_EQ(later.at(kQuarter + 910).import_ws, 10 * 2'500);
   EXPECT_EQ(later.at(kQuarter + 910).battery_ws, 0);
   QuarterHourEnergy stepped(2'500, 30);  // the log was written while the clock was ahead
@@ -204,7 +204,7 @@ TEST(SiteLimits, AControllerThatMustSpeakLeavesTheBatteryIdleWhenItDoesNot) {
   EXPECT_EQ(t.range(kQuarter).charge_w_max, 0);
   EXPECT_EQ(t.site.report(kQuarter).limit_status, Status::kTimeout);
   t.limits.is_set = true;
-  t.limits.limit.until_utc_s = kQuarter + 60;  // without any cap: only a sign of life
+  t.limits.limit.until_utc_s = kQuarter + 60;  // without any limit: only a sign of life
   t.observe(kQuarter);
   EXPECT_EQ(t.range(kQuarter).charge_w_max, kAnyPowerW);
   EXPECT_EQ(t.range(kQuarter + 60).charge_w_max, 0);

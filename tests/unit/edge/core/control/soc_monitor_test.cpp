@@ -1,5 +1,5 @@
-// The state of charge against measured power: what is found, how soon, and what an honest count may
-// do.
+// State of charge against measured power: findings, detection time, and the tolerance for a healthy
+// count.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,7 @@ std::int32_t discharge(int) { return -4'000; }
 std::int32_t rest(int) { return 0; }
 std::int32_t alternating(int i) { return i % 2 == 0 ? 4'000 : -4'000; }
 
-/// 4 kW and 8 kWh, read 3 s before every tick: what is stored, what the SoC says, what the meter
-/// says.
+/// 4 kW and 8 kWh, read 3 s before every tick: stored energy, reported SoC, metered power.
 struct CountedBattery {
   explicit CountedBattery(double soc_frac, std::int32_t shown_step_e4 = 10)
       : monitor({.band = {.soc_step_e4 = shown_step_e4}}),
@@ -37,7 +36,7 @@ struct CountedBattery {
   std::int64_t utc_s = 0;
   std::int32_t ordered_before_w = 0;
   std::int32_t age_s = 0;
-  /// What flows, what the SoC shows of what is stored, what the meter shows of what flows.
+  /// Real power, reported share of the stored energy, metered share of the power.
   std::function<double(double)> flow = [](double ordered_w) { return ordered_w; };
   std::function<double(double)> count = [](double frac) { return frac; };
   std::function<double(double, double)> meter = [](double, double flowing_w) { return flowing_w; };
@@ -54,7 +53,7 @@ struct CountedBattery {
     monitor.observe(driven_reading(utc_s, ordered_w, power_w, age_s, soc_e4));
   }
 
-  /// Honest readings at rest first: the fault has a reading before it.
+  /// Healthy readings at rest first: the fault has a reading before it.
   int readings_until(const std::function<bool(const ResponseMonitor&)>& is_found,
                      const OrdersByCycle& orders) {
     for (int i = 0; i < 100; ++i) {
@@ -87,7 +86,7 @@ TEST(SocMonitor, AnEndExcusesNoMoreThanACountCanBeWrongBy) {
 TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
   for (const double error : {-0.08, -0.04, 0.04, 0.08}) {
     CountedBattery battery(0.5);
-    double wrong = 0;  // how far the count is off by now
+    double wrong = 0;  // current error of the count
     battery.count = [&](double stored) { return std::clamp(stored + wrong, 0.05, 0.99); };
     battery.flow = [&](double ordered_w) {
       const double room =
@@ -96,7 +95,7 @@ TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
     };
     for (int turn = 0; turn < 6; ++turn) {
       for (int i = 0; i < 60; ++i) {
-        wrong += error / 40;  // drifts with what flows, and is set right at both ends
+        wrong += error / 40;  // drifts with the energy, and is corrected at both ends
         if (battery.stored_frac > 0.98 || battery.stored_frac < 0.06) wrong = 0;
         battery.step(turn % 2 == 0 ? 4'000 : -4'000);
         ASSERT_EQ(battery.monitor.trip(), std::nullopt) << error << " turn " << turn << " " << i;
@@ -127,7 +126,7 @@ TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
   EXPECT_EQ(standby.readings_until(has_told_loss, rest), 1'000);
 }
 
-/// One cause, one line: 60 % too much of what is charged is no gain besides.
+/// One cause, one line: 60 % too much charge is not also a gain.
 TEST(SocMonitor, ASocOfAnotherScaleIsNoGainBesides) {
   CountedBattery scaled(0.1);
   scaled.count = [](double stored) { return 0.1 + (stored - 0.1) * 1.7; };
@@ -171,8 +170,8 @@ TEST(SocMonitor, EnergyThatDoesNotArriveInOneDirectionIsAShareAndNoDrain) {
   EXPECT_EQ(battery.monitor.trip(), std::nullopt);
 }
 
-/// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are sure after
-/// 560 s; where nothing is known of before, 140 s either way, after twice as long.
+/// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are certain
+/// after 560 s; with an unknown past, 140 s either way, after twice as long.
 TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   const ResponseSettings settings{.band = {.soc_refresh_s = 120}};
   SeldomSoc soc(settings);
@@ -197,7 +196,7 @@ TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   EXPECT_FALSE(SeldomSoc(ResponseSettings{}).is_seldom());
 }
 
-/// The SoC of a device that brings it up to date every `refresh_s`, and says so.
+/// The SoC of a device that updates it every `refresh_s`, and declares so.
 struct SeldomBattery {
   explicit SeldomBattery(std::int32_t refresh_s)
       : monitor({.band = {.soc_step_e4 = 10, .soc_refresh_s = refresh_s}}), refresh_s(refresh_s) {}
@@ -239,7 +238,7 @@ TEST(SeldomSoc, HonestIsLeftAloneWhateverIsOrdered) {
   for (const std::int32_t refresh_s : {90, 110, 120, 180, 300, 600}) {
     SeldomBattery battery(refresh_s);
     for (int i = 0; i < 4'000; ++i) {
-      // Back to the middle: what is meant is not the ends.
+      // Back to the middle, away from the ends.
       const std::int32_t towards_w = battery.stored_frac > 0.5 ? -4'000 : 4'000;
       const std::int32_t any_w = static_cast<std::int32_t>(random() % 9) * 1'000 - 4'000;
       battery.step(std::abs(battery.stored_frac - 0.5) > 0.3 ? towards_w : any_w);
@@ -292,7 +291,7 @@ TEST(EnergyPath, OfAWindowIsTheLeastAndTheMostAndTheForgottenEitherWay) {
   expect_since(990, {-40'000, 400'000});
   for (int i = 0; i < 1'000; ++i) path.add(1'250 + i, 1'000);
   EXPECT_EQ(path.since(2'200, 4'000).least_ws, 950'000);
-  // Of the oldest points nothing is left.
+  // Nothing is left of the oldest points.
   EXPECT_EQ(path.since(1'250, 4'000).least_ws,
             (999 - 63) * 1'000 - (999 - 63) * std::int64_t{4'000});
 }

@@ -1,4 +1,4 @@
-// What an old price has probably become.
+// Expected value of an old price.
 #include "edge/core/control/level_start.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What follows from what was found: trips stay, pauses end and grow, conditions pass.
+// Consequences of findings: trips stay, pauses end and grow, conditions pass.
 #include "edge/core/supervision/supervision.h"
 
 #include <gtest/gtest.h>
@@ -135,12 +135,12 @@ TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {
   now.measurement.capacity_wh = 8'000;
   supervision.observe(now, false);
   EXPECT_EQ(supervision.stop_reason(), std::nullopt);
-  now.measurement.capacity_wh = 0;  // a device that tells none
+  now.measurement.capacity_wh = 0;  // a device that reports none
   supervision.observe(now, false);
   EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
-/// Ten minutes each time, and a trip only after a day without an honest reading.
+/// Ten minutes each time, and a trip only after a day without a good reading.
 TEST(Supervision, ABatteryThatLooksAfterItselfIsLeftAloneForAWhile) {
   Supervision supervision(kSettings);
   const auto balancing = [](std::int64_t utc_s) {

@@ -1,5 +1,5 @@
-// Energy against or beyond orders adds up over hours, is forgiven by days, and outlives pauses,
-// restarts and all but a person's word.
+// Wrong energy, against or beyond orders: it adds up over hours, decays over days, and survives
+// pauses and restarts; only a manual clear resets it.
 #include "edge/core/supervision/energy_balance.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ struct Cells {
   }
 };
 
-/// At every fifth reading, which the counts forgive.
+/// At every fifth reading, which the counters forgive.
 struct RarelyWrong {
   Supervision supervision{SupervisionSettings{}};
   Cells cells;
@@ -127,8 +127,7 @@ TEST(WrongEnergy, ARestartKeepsItAndAClearedTripDoesNot) {
   EXPECT_EQ(after.findings.wrong_energy_e6, 0);
 }
 
-/// A battery at a site with a meter, which is looked at between the ticks as well; 40 minutes each
-/// way.
+/// A battery at a site with a meter, which is also checked between the ticks; 40 minutes each way.
 struct WatchedSite {
   SupervisionPart part{SupervisionSettings{}, 10};
   Cells cells;

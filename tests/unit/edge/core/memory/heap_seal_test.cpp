@@ -1,5 +1,5 @@
-// The seal's parts, each in a child process of its own: what the kernel refuses afterwards, and
-// what it still allows.
+// Heap seal, each part in a child process: what the kernel refuses afterwards, and what it still
+// allows.
 #include "edge/core/memory/heap_seal.h"
 
 #include <fcntl.h>
@@ -96,7 +96,8 @@ TEST(SeccompFilter, EverythingElseStaysAllowed) {
 }
 
 #ifndef BESS_SANITIZED
-/// This test program has the C library's malloc family: just what the check at start must find.
+/// This test program has the C library's malloc family: the check at the start must find exactly
+/// that.
 TEST(HeapSeal, AProcessWithoutOursIsRefused) {
   EXPECT_EXIT(_exit(prepare_memory() ? kAllAsExpected : 1), ::testing::ExitedWithCode(1), "malloc");
 }

@@ -1,5 +1,5 @@
-// This test program has the malloc family of bess-edge: every member works until the process is
-// sealed, and ends it from then on, on whatever thread.
+// malloc family of bess-edge: every member works until the process is sealed, and ends it
+// afterwards, on any thread.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kCheckFailed = 70;
 
-// The compiler may drop a pair of malloc and free whose pointer goes nowhere.
+// The compiler may drop a pair of malloc and free whose pointer is unused.
 void* volatile kept = nullptr;
 
 bool is_aligned(const void* payload, std::size_t alignment) {
@@ -119,7 +119,7 @@ TEST(MallocFamilyDeathTest, BehindTheSealItGivesMemoryAgain) {
   EXPECT_EXIT(
       {
         { const HeapSeal seal; }
-        kept = malloc(10);  // the filter stays; what is there already is enough
+        kept = malloc(10);  // the filter stays; existing memory suffices
         _exit(kept != nullptr ? 7 : 1);
       },
       ::testing::ExitedWithCode(7), "");

@@ -1,5 +1,5 @@
-// The memory budget in edge/core/memory/README.md against the program: no object is larger than its
-// row says, no row promises far more than is used, and the sum is the sum.
+// Memory budget in edge/core/memory/README.md against the program: no object is larger than its
+// row, no row is far larger than its object, and the sum is correct.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,7 +1,7 @@
 #!/bin/sh
-# probation.sh FOLDER: bess-probation on machines of folders, between stand-ins for systemd and the
-# versions' programs. Bad packages and bad moments: whatever happens, the version that worked runs,
-# or the new one has shown that it works. Prints a table.
+# probation.sh FOLDER: bess-probation on simulated machines (folders), with replacements for systemd
+# and the versions' programs. Bad packages and bad moments: in the end the working version runs, or
+# the new one has proved that it works. Prints a table.
 folder=${1:?the folder is missing: without it the stand-ins would go into /bin}
 script=$(cd "$(dirname "$0")/../../../../.." && pwd)/edge/delivery/package/bess-probation
 failures=0
@@ -19,7 +19,7 @@ started() {
 }
 case "$*" in
   *ActiveState*) cat active ;;
-  *NRestarts*)  # what crashes is started again and again
+  *NRestarts*)  # a crashing program is restarted repeatedly
     if [ "$(cat "does_$(cat running)" 2>/dev/null)" = crash ]; then
       echo $(($(cat restarts) + 2)) >restarts
     fi
@@ -37,7 +37,7 @@ exec /bin/cp "$@"
 SH
 export PATH="$folder/bin:$PATH"
 
-# A version's program: it tells what the log has, as the real one does.
+# A version's program: reports the log's contents, as the real one does.
 version_into() {  # version_into PLACE VERSION [COMMAND in its folder BEFORE SUMS] [AFTER]
   mkdir -p "$1/bin" "$1/share/maps" "$1/systemd"
   cat >"$1/bin/bess-edge" <<SH
@@ -83,7 +83,7 @@ machine() {  # with 1.0 confirmed and in control
   minute=10
   for _ in 1 2 3; do tick; done
 }
-tick() {  # two minutes of whatever runs
+tick() {  # two minutes of the running version
   minute=$((minute + 1))
   [ "$(cat active)" = active ] || return 0
   how=$(cat "does_$(cat running)" 2>/dev/null || echo good)
@@ -107,7 +107,7 @@ deliver() {  # deliver VERSION [SPOIL BEFORE SUMS] [SPOIL AFTER]: what dpkg unpa
 probation() { sh "$script" "$@" >said 2>&1; }
 upgrade() { probation admit "$1" && deliver "$@" && probation begin; }
 value() { sed -n "s/^$1=//p" "$kept/state"; }
-judge() {  # until it has ended, at most so many looks
+judge() {  # until it has ended, with a maximum number of checks
   looks=0
   while [ $((looks += 1)) -le "${1:-30}" ]; do
     tick
@@ -144,7 +144,7 @@ done
 machine; upgrade 2.0; judge 1; echo price >site; judge 5; rm site; judge
 expect "a market that goes away for ten minutes" confirmed 2.0
 
-refused() {  # refused WHAT REASON: the version that ran runs on, untouched, and it is not blocked
+refused() {  # refused WHAT REASON: the running version continues, unchanged, and it is not blocked
   expect "$1" rolled_back 1.0 "$2"
   grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: what runs was touched"
   probation admit 2.0 || fail "$1: it is blocked"
@@ -210,7 +210,7 @@ machine; upgrade 2.0; head -c 20 "$kept/probation" >x; mv x "$kept/probation"; j
 machine; echo crash >does_2.0; upgrade 2.0; ln -sfn versions/1.0 "$store/current"; echo 1.0 >running
 probation begin; judge; expect "cut off before the switch, and it crashes" rolled_back 1.0
 
-# Killed at any moment of a delivery, a look and a revert: dpkg or the timer comes again.
+# Killed at any moment of a delivery, a check and a revert: dpkg or the timer runs again.
 cut=0
 for does in good crash; do
   for ms in 10 40 120; do

@@ -1,6 +1,6 @@
-// What the driver does with a map beyond writing it: nothing twice, the watchdog in time, flash
-// within its budget, back to the device's own mode when half a command was taken, no stale or
-// implausible value used.
+// Battery driver beyond writing a map: no repeated write, the watchdog in time, flash within its
+// budget, back to the device's own mode after a partial command, no stale or implausible value
+// used.
 #include "edge/device/battery/battery_driver.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ order = [["power = power", "time = duration"], "enable = 1"]
 release = ["enable = 0"]
 )";
 
-/// With a check of what device it is.
+/// With an identity check.
 const std::vector<std::pair<std::string, std::string>> kIdentity = {
     {"[command]\n",
      "[[identity]]\npoint = \"mode\"\nmin = 0\nmax = 7\nhint = \"is it this "
@@ -77,7 +77,7 @@ TEST_F(DriverTest, AnOrderInForceCostsNoWriteUntilItsWatchdogIsDue) {
   t.device.pass_s(59);
   EXPECT_THAT(t.writes_of(1'000), IsEmpty());
   EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
-  t.device.pass_s(61);  // a cycle after the first
+  t.device.pass_s(61);  // a control cycle after the first
   EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
   EXPECT_THAT(t.writes_of(1'001), SizeIs(2));
   EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
@@ -115,11 +115,11 @@ TEST_F(DriverTest, AFailedRefreshIsTriedAgainByTheNextOrder) {
 
 TEST_F(DriverTest, AnExpiredOrOverwrittenOrderIsWrittenAgain) {
   MapUnderTest& t = with_order();
-  t.device.set(10, {0});  // the device shows that its timer has run out
+  t.device.set(10, {0});  // the device shows that its timer has expired
   EXPECT_FALSE(t.reading().dispatch_active);
   t.device.take_writes();
   EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
-  t.device.set(11, {777});  // somebody else
+  t.device.set(11, {777});  // another controller
   EXPECT_EQ(t.reading().order_power_w, 777);
   EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
 }
@@ -154,7 +154,7 @@ TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
-    for (const bool fed : {false, true}) {  // found by the reading, or by the feeding before it
+    for (const bool fed : {false, true}) {  // found by the reading, or by the refresh before it
       MapUnderTest& t = with();
       ASSERT_EQ(t.order(1'000), Status::kOk);
       t.device.pass_s(110);
@@ -162,7 +162,7 @@ TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
       if (fed) {
         EXPECT_EQ(t.driver->refresh(), c.replaced || c.ended ? Status::kNotApplied : Status::kOk);
       }
-      for (int i = 0; i < 2; ++i) {  // told until it is ordered again
+      for (int i = 0; i < 2; ++i) {  // reported until it is ordered again
         EXPECT_EQ(t.reading().order_replaced, c.replaced);
         EXPECT_EQ(t.measured.order_ended, c.ended);
       }
@@ -188,7 +188,7 @@ TEST_F(DriverTest, AnotherModeThanTheReleasesIsSomebodysIntention) {
   }
 }
 
-/// Where the end of an order shows nowhere, what enabled it still does.
+/// Where the end of an order is invisible, its enabling register still shows it.
 TEST_F(DriverTest, AModeThatEnabledTheOrderIsLookedAfter) {
   MapUnderTest& t = with_order({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
                                 {"refresh_s = 120", "refresh_s = 120\nexpiry_visible = false"}});
@@ -202,7 +202,7 @@ TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
     for (const bool fed : {false, true}) {
       MapUnderTest& t = with();
       ASSERT_EQ(t.order(1'000), Status::kOk);
-      t.device.pass_s(passed_s);  // the process was stopped, the link away
+      t.device.pass_s(passed_s);  // the process was stopped, the link down
       t.device.set(10, {0});
       if (fed) {
         EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
@@ -212,7 +212,7 @@ TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
   }
 }
 
-/// The link fails just when the end is looked at more closely.
+/// The link fails during the closer look at the end of an order.
 TEST_F(DriverTest, AnEndIsNoHandEvenWhereTheReadingFails) {
   MapUnderTest& t = with_order();
   t.device.pass_s(110);
@@ -263,7 +263,7 @@ TEST_F(DriverTest, WhatWeGiveBackOrCannotFeedWasNotLost) {
 TEST_F(DriverTest, NothingOfAnOrderIsWrittenAfterItsTime) {
   MapUnderTest& t = with();
   ASSERT_EQ(t.read(), Status::kOk);
-  // The process is stopped before the second write leaves, and goes on twenty minutes later.
+  // The process is stopped before the second write leaves, and continues twenty minutes later.
   int requests = 0;
   t.device.before_request = [&] {
     if (++requests == 2) t.device.pass_s(1'200);
@@ -273,7 +273,7 @@ TEST_F(DriverTest, NothingOfAnOrderIsWrittenAfterItsTime) {
                          .duration_s = 300,
                          .write_until_ns = t.device.now_ns + 60'000'000'000};
   EXPECT_EQ(t.driver->order(order), Status::kTooLate);
-  // The first write's half is taken back; the second never left.
+  // The first write's half is taken back; the second was never sent.
   for (const WriteRecord& write : t.device.take_writes()) {
     if (write.address == 10) {
       EXPECT_EQ(write.values, std::vector<int>{0});
@@ -406,7 +406,7 @@ TEST_F(DriverTest, FlashIsWrittenOnlyWhenItChangesAndOnlyWithinTheBudget) {
                            "\"time = duration\", \"enable = 1\"]\n#"},
                           {"release = [", "release = [\"mode = 0\", "}});
   t.device.set(20, {1});
-  ASSERT_EQ(t.order(1'000), Status::kOk);  // it holds 1 already: read, not written
+  ASSERT_EQ(t.order(1'000), Status::kOk);  // it is 1 already: read, not written
   EXPECT_EQ(t.driver->counters().flash_writes_today, 0);
   for (const int power_w : {-1'000, 1'000, -1'000, 1'000}) {
     ASSERT_EQ(t.order(power_w), Status::kOk);
@@ -414,7 +414,7 @@ TEST_F(DriverTest, FlashIsWrittenOnlyWhenItChangesAndOnlyWithinTheBudget) {
   EXPECT_EQ(t.driver->counters().flash_writes_today, 4);
   t.device.take_writes();
   EXPECT_EQ(t.order(-1'000), Status::kWriteBudget);
-  EXPECT_THAT(t.device.writes, IsEmpty());  // not even the half that costs nothing
+  EXPECT_THAT(t.device.writes, IsEmpty());  // not even the half without flash cost
   ASSERT_EQ(t.order(1'000), Status::kOk);   // in force: costs nothing
   ASSERT_EQ(t.driver->release(), Status::kOk);
   EXPECT_EQ(t.driver->counters().flash_writes_today, 5);
@@ -443,7 +443,7 @@ TEST_F(DriverTest, ARefusedOrderEndsTheFeedingOfTheOneBefore) {
   t.device.take_writes();
   ASSERT_EQ(t.order(-1'000), Status::kWriteBudget);
   t.device.pass_s(30);
-  EXPECT_THAT(t.refresh_writes(), IsEmpty());  // charging goes on no longer than its timer
+  EXPECT_THAT(t.refresh_writes(), IsEmpty());  // charging ends with its timer
 }
 
 TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
@@ -454,7 +454,7 @@ TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
   t.device.pass_s(181);  // the limits are too old, and the link is down
   t.device.exception = -1;
   ASSERT_EQ(t.order(0), Status::kTimeout);
-  t.device.exception = 0;  // it is back before the next cycle
+  t.device.exception = 0;  // it is back before the next control cycle
   t.device.take_writes();
   EXPECT_THAT(t.refresh_writes(), IsEmpty());
 }
@@ -466,7 +466,7 @@ TEST_F(DriverTest, WithoutAWatchdogARefusedOrderTakesBackTheOneBefore) {
   EXPECT_EQ(t.device.holding[10], 0);
 }
 
-/// A register that cannot be set back is tried every cycle of the safe state, for months.
+/// A register that cannot be restored is retried every control cycle of the safe state, for months.
 TEST_F(DriverTest, ReleasesThatFailDoNotWearTheFlashBeyondItsDay) {
   MapUnderTest& t = with({{"release = [", "release = [\"mode = 0\", \"enable = 0\"] #"}});
   t.device.set(20, {1});
@@ -477,7 +477,7 @@ TEST_F(DriverTest, ReleasesThatFailDoNotWearTheFlashBeyondItsDay) {
   for (int cycle = 0; cycle < 20; ++cycle) {
     t.device.set(10, {1});
     EXPECT_NE(t.driver->release(), Status::kOk);
-    EXPECT_EQ(t.device.holding[10], 0);  // what costs nothing is done all the same
+    EXPECT_EQ(t.device.holding[10], 0);  // writes without flash cost are still made
   }
   EXPECT_EQ(t.driver->counters().flash_writes_today, 5);
   ++t.device.day;
@@ -517,7 +517,7 @@ TEST_F(DriverTest, AShortenedTimerIsFedAtOnce) {
   t.device.take_writes();
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_THAT(t.refresh_writes(), IsEmpty());
-  t.device.set(21, {100});  // somebody wrote a shorter time
+  t.device.set(21, {100});  // another program wrote a shorter time
   ASSERT_EQ(t.read(), Status::kOk);
   EXPECT_THAT(t.refresh_writes(), SizeIs(2));
 }
@@ -537,7 +537,7 @@ TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
   t.device.set(0, {106});
   t.device.pass_s(601);
   EXPECT_EQ(t.read(), Status::kImplausible);
-  EXPECT_EQ(t.driver->release(), Status::kOk);  // giving back is possible all the same
+  EXPECT_EQ(t.driver->release(), Status::kOk);  // a release is still possible
 }
 
 TEST_F(DriverTest, FailingMeasurementsDoNotKeepFromHoldingAndReleasing) {

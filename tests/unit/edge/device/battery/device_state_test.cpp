@@ -1,5 +1,5 @@
-// Where the shipped maps find alarms, warnings and the state of the device, register by register as
-// the sources in their heads name them; what a state must not hinder; what a device need not have.
+// Alarms, warnings and device state of the shipped maps, register by register as the sources in
+// their heads name them; states that must not block; optional registers.
 #include <gmock/gmock.h>
 
 #include "tests/support/register_device.h"
@@ -24,7 +24,7 @@ Told told_by(const BatteryMeasurement& m) {
   return m.warning ? Told::kWarning : Told::kNothing;
 }
 
-/// Each case alone in a device that `fill` has made well.
+/// Each case alone, in a device that `fill` has made healthy.
 void expect_told(const char* map, const std::function<void(RegisterDevice&)>& fill,
                  const std::vector<StateCase>& cases) {
   for (const StateCase& c : cases) {
@@ -105,7 +105,7 @@ TEST(DeviceState, FroniusGen24) {
   };
   expect_told("fronius_gen24", fill,
               {{3, 40'107, {7}, Told::kAlarm},
-               {3, 40'109, {0, 0x0080}, Told::kAlarm},    // too hot
+               {3, 40'109, {0, 0x0080}, Told::kAlarm},    // over-temperature
                {3, 40'109, {0, 0x0010}, Told::kWarning},  // grid disconnected
                {3, 40'109, {0xFFFF, 0xFFFF}, Told::kNothing},
                {3, 40'320, {7}, Told::kAlarm},
@@ -172,17 +172,17 @@ TEST(DeviceState, SunSpec) {
   expect_told("sunspec_704", fill_704,
               {{3, 40'070 + 4, {6}, Told::kAlarm},
                {3, 40'070 + 4, {7}, Told::kNothing},   // standby
-               {3, 40'070 + 6, {1, 0}, Told::kAlarm},  // the maker's own
+               {3, 40'070 + 6, {1, 0}, Told::kAlarm},  // manufacturer-specific
                {3, 40'070 + 6, {0, 0x0010}, Told::kWarning},
                {3, bank + 22, {99}, Told::kAlarm},
                {3, bank + 26, {0, 1}, Told::kAlarm},  // communication lost
-               {3, bank + 26, {0, 2}, Told::kAlarm},  // too hot
+               {3, bank + 26, {0, 2}, Told::kAlarm},  // over-temperature
                {3, bank + 26, {0, 4}, Told::kWarning},
                {3, bank + 26, {0x0020, 0}, Told::kWarning},         // fan
                {3, bank + 26, {0x0001, 0xE000}, Told::kNothing}});  // SoC near its limits
 }
 
-/// A battery that the house lives on must be let go by whoever comes back.
+/// A battery that supplies the house must be released by a restarted controller.
 TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
   MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   t.device.set(0x0440, {2});
@@ -196,7 +196,7 @@ TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
   EXPECT_EQ(other.read(), Status::kImplausible) << "no such work mode is known";
 }
 
-/// It shows no SoC then: nothing is driven, but an order of an earlier run is taken back.
+/// It shows no SoC then: nothing is driven, but an order of an earlier run is ended.
 TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
   MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0xFFFF, 0xFFFF});
@@ -224,7 +224,7 @@ TEST(OptionalPoint, ARegisterThatEveryDeviceHasIsNotDoneWithout) {
   EXPECT_EQ(t.read(), Status::kBusException);
 }
 
-/// Behind a GX the battery's service may be absent, as other exceptions say.
+/// Behind a GX the battery's service may be absent, as other exceptions show.
 TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
   for (const int exception : {2, 10, 11}) {
     MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
@@ -237,7 +237,7 @@ TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
   }
 }
 
-/// Any other answer may pass: the register is not given up for it.
+/// Any other answer may be temporary: the register is still read.
 TEST(OptionalPoint, IsNotGivenUpForAnotherException) {
   MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   t.device.missing = {{.address = 267, .exception = 4}};
@@ -252,7 +252,7 @@ TEST(OptionalPoint, AModelThatIsThereAgainIsReadAgain) {
   t.device.set(0x08D4, {0, 1});
   t.device.missing = {{.address = 0x08D4}};
   EXPECT_FALSE(t.reading().alarm);
-  t.device.missing.clear();  // it was starting up
+  t.device.missing.clear();  // the device was starting
   t.device.pass_s(601);
   EXPECT_TRUE(t.reading().alarm);
 }

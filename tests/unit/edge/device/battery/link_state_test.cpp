@@ -1,5 +1,4 @@
-// The state machines of connection and order, and which old RTU replies could be mistaken for a
-// new one.
+// State machines of connection and order, and old RTU replies that could be mistaken for a new one.
 #include "edge/device/battery/link_state.h"
 
 #include <gtest/gtest.h>
@@ -24,16 +23,16 @@ TEST(LinkState, ADeadBatteryIsTriedLessAndLessOften) {
   for (const std::int64_t pause : {1, 2, 4, 8, 16, 32, 60, 60}) {
     ASSERT_EQ(machine.state(now), LinkState::kDisconnected);
     machine.on_connect_failed(now);
-    machine.on_lost(now);  // closing what is not open shortens nothing
+    machine.on_lost(now);  // closing a closed connection shortens nothing
     EXPECT_EQ(machine.state(now + pause - 1), LinkState::kBackingOff) << pause;
     now += pause;
   }
   machine.on_connected(now);
   machine.on_answered(now);
   machine.on_lost(now);
-  EXPECT_EQ(machine.state(now), LinkState::kDisconnected);  // a lost connection is mended at once
+  EXPECT_EQ(machine.state(now), LinkState::kDisconnected);  // a lost connection: immediate retry
   machine.on_connect_failed(now);
-  EXPECT_EQ(machine.state(now + 1), LinkState::kDisconnected);  // the pauses begin anew
+  EXPECT_EQ(machine.state(now + 1), LinkState::kDisconnected);  // the pauses restart
 }
 
 TEST(LinkState, RequestsKeepTheDevicesPauses) {
@@ -63,7 +62,7 @@ TEST(UnansweredRequests, OnlyWhatCouldBeMistakenWaits) {
   unanswered.add(kSoc, 50);
   EXPECT_EQ(unanswered.earliest_ns(kMode), 1'050);
   EXPECT_EQ(unanswered.earliest_ns(kSoc), 0);    // an old answer is the same register
-  EXPECT_EQ(unanswered.earliest_ns(kBlock), 0);  // told apart by its length
+  EXPECT_EQ(unanswered.earliest_ns(kBlock), 0);  // distinguished by its length
 }
 
 TEST(UnansweredRequests, AReplyOfAnotherShapeProvesThatTheOldOnesHaveGone) {
@@ -77,7 +76,7 @@ TEST(UnansweredRequests, AReplyOfAnotherShapeProvesThatTheOldOnesHaveGone) {
 TEST(UnansweredRequests, AReplyOfTheSameShapeMayHaveBeenTheOldOne) {
   UnansweredRequests unanswered(1'000);
   unanswered.add(kSoc, 50);
-  unanswered.on_answered(kSoc, 70);  // then the answer to this one is still to come
+  unanswered.on_answered(kSoc, 70);  // then the answer to this one is still pending
   EXPECT_EQ(unanswered.earliest_ns(kMode), 1'070);
   unanswered.forget_old(1'069);
   EXPECT_FALSE(unanswered.empty());
@@ -97,7 +96,7 @@ constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
 constexpr Watchdog kHundredSeconds{
     .kind = Watchdog::Kind::kDuration, .duration_s = 100, .refresh_s = 60};
 
-/// The drawn table: what each event makes of each state.
+/// The table of events and states, as drawn.
 TEST(OrderState, FollowsItsTable) {
   struct Row {
     const char* events;  ///< e enabled, t taken, f fed, l lost, r released
@@ -145,7 +144,7 @@ TEST(OrderState, ItsTimeRunsFromTheLastFeeding) {
   EXPECT_FALSE(stays.is_due(INT64_MAX));
 }
 
-/// What ran out was not lost, but for what somebody else wrote over.
+/// An expired order is not lost, unless another controller overwrote it.
 TEST(OrderState, ALossIsRememberedUntilTheNextOrder) {
   for (const bool is_foreign : {false, true}) {
     for (const std::int64_t now_ns : {1 * kSecondNs, 95 * kSecondNs}) {

@@ -1,5 +1,5 @@
-// Modbus frames: the bytes of a request against literals from the standard, and every way in which
-// a reply may differ from what was asked.
+// Modbus frames: the bytes of a request against literals from the standard, and every possible
+// difference of a reply from its request.
 #include "edge/device/battery/modbus_frame.h"
 
 #include <gtest/gtest.h>
@@ -135,7 +135,7 @@ TEST(ModbusFrame, WaitsForTheReplysOwnLengthAndNeverForMoreThanAFrame) {
   EXPECT_EQ(missing(Framing::kRtu, {}), 5);
   EXPECT_EQ(missing(Framing::kRtu, {85, 3, 4, 1, 2}), 4);
   EXPECT_EQ(missing(Framing::kRtu, {85, 0x83, 6, 1, 2}), 0);
-  EXPECT_EQ(missing(Framing::kRtu, {85, 16, 4, 1, 2}), -1);  // some other answer, or noise
+  EXPECT_EQ(missing(Framing::kRtu, {85, 16, 4, 1, 2}), -1);  // another answer, or noise
 }
 
 }  // namespace

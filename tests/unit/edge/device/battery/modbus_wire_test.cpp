@@ -1,4 +1,4 @@
-// The wire to a device that says nothing, while signals come.
+// Wire to a silent device, while signals arrive.
 #include "edge/device/battery/modbus_wire.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::int64_t monotonic_ns() {
   return now.tv_sec * kNanosecondsPerSecond + now.tv_nsec;
 }
 
-/// A signal each millisecond, which breaks off what waits.
+/// A signal every millisecond, which interrupts waiting calls.
 class Alarms {
  public:
   Alarms() {

@@ -1,5 +1,5 @@
-// A protective reading that a device has had once is required: whatever it is lost to, whenever and
-// for however long, the battery is not driven as if nothing was wrong.
+// Required readings: a protective reading that a device has had once stays required; whatever loses
+// it, whenever and however long, the battery is not driven as if nothing was wrong.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -39,7 +39,7 @@ TEST(RequiredReading, ThatStaysAwayIsNamed) {
     EXPECT_FALSE(t.measured.grid_unknown) << exception;
     EXPECT_EQ(t.measured.soc_e4, 6'200) << exception;
     EXPECT_LE(t.device.now_ns - start_ns, 25'000'000'000) << exception;
-    t.device.pass_s(3'600);  // identified again meanwhile: it is not forgotten
+    t.device.pass_s(3'600);  // identified again in between: it is not forgotten
     EXPECT_NE(t.reading().lost_point, 0) << exception;
     t.device.missing.clear();
     EXPECT_EQ(t.reading().lost_point, 0) << exception;
@@ -70,7 +70,7 @@ TEST(RequiredReading, ThatTurnsNotImplementedIsLost) {
 }
 
 /// Any protective point of any map, by any exception or silence, at any moment, from half a second
-/// to for ever.
+/// to permanently.
 class LostReadings : public ::testing::TestWithParam<MapVariant> {};
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;

@@ -1,5 +1,6 @@
-// Every map at devices that are another's, still starting, empty or mad: nothing aborts, nothing is
-// written before the device has proved to be the map's, and what is said names a register or model.
+// Every map with unexpected devices: another manufacturer's, still starting, empty or erratic.
+// Nothing aborts, nothing is written before the identity check, and each message names a register
+// or model.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -23,7 +24,7 @@ struct CheckClock {
   RegisterDevice& device;
 };
 
-/// All that a program does with a device that it meets.
+/// All steps of a program with a new device.
 void meet(MapUnderTest& t, bool is_stranger) {
   IdentityFailure failure;
   if (t.driver->check_identity(failure) == Status::kImplausible) {
@@ -51,7 +52,7 @@ TEST_P(StrangeDevices, AreMetWithoutACrash) {
     MapUnderTest t(shipped_map(GetParam().map), GetParam().variant);
     t.device.holding = theirs.test.device.holding;
     t.device.input = theirs.test.device.input;
-    meet(t, false);  // some maps of one maker know each other's devices
+    meet(t, false);  // some maps of one manufacturer accept each other's devices
   }
 }
 

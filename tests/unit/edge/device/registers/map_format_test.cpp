@@ -1,6 +1,5 @@
-// What the map format can say about a point and a file: types, word orders, scales, masks, missing
-// values, included files, variants; and that every mistake is one line with file, line and the
-// mend.
+// Map format: types, word orders, scales, masks, missing values, included files, variants; and
+// every mistake is one line with file, line and correction.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -60,7 +59,7 @@ class MapFormat : public ::testing::Test {
  protected:
   /// A map whose point "power" has these keys.
   RegisterMap with_point(const std::string& keys) {
-    std::string head = kHead;  // no command writes the point under test: any type may stand there
+    std::string head = kHead;  // no command writes the point under test: any type is allowed
     head.replace(head.find("power = power"), 13, "battery_power = power");
     return loaded(head + keys + "\nmin = -5000000000\nmax = 5000000000\n");
   }
@@ -169,7 +168,7 @@ TEST_F(MapFormat, RoundingAndSteps) {
   EXPECT_THAT(encoded(ten, 15), ElementsAre(2));
   EXPECT_THAT(encoded(ten, 19, Rounding::kDown), ElementsAre(1));
   EXPECT_THAT(encoded(ten, 11, Rounding::kUp), ElementsAre(2));
-  // Down means the value, not the raw count behind a mirrored sign.
+  // Rounding down applies to the value, not the raw count behind a mirrored sign.
   EXPECT_THAT(encoded(ten + "sign = -1", 19, Rounding::kDown), ElementsAre(0xFFFF));
   EXPECT_THAT(encoded("type = \"s16\"\nstep = 100", 999), ElementsAre(900));
   EXPECT_THAT(encoded("type = \"s16\"\nstep = 100", -999), ElementsAre(65'536 - 900));
@@ -189,7 +188,7 @@ TEST_F(MapFormat, TwoFactsInOneRegister) {
   EXPECT_EQ(value, 1);
 }
 
-/// The map's word for a point's value; empty when it has none.
+/// The map's name of a point's value; empty if it has none.
 std::string_view name_of_value(const RegisterMap& map, int point, std::int64_t value) {
   for (const NamedValue& named : map.names) {
     if (named.point == point && !named.is_bit && named.value == value) return named.name.view();

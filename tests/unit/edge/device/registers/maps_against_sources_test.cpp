@@ -1,5 +1,5 @@
-// What makers and other projects say of a device, against the maps: the facts here come from the
-// sources that each test names, not from the map, so that a misreading cannot agree with itself.
+// Maps against manufacturers and other projects: the facts here come from the sources that each
+// test names, not from the map, so that a misreading cannot confirm itself.
 #include <gtest/gtest.h>
 
 #include "tests/support/register_device.h"
@@ -54,7 +54,7 @@ TEST(SungrowPower, HasItsSignOnEveryFirmware) {
   }
 }
 
-/// mkaiser issue 377: 13079 counts down from what was written, to 0, then the EMS mode is 0.
+/// mkaiser issue 377: 13079 counts down from the written value to 0, then the EMS mode is 0.
 TEST(SungrowHeartbeat, CountsDownWithoutBeingTakenForAnotherMaster) {
   MapUnderTest t(shipped_map("sungrow_sh"));
   t.device.set_input(12'999, {0x40, 0});
@@ -99,7 +99,7 @@ TEST(VictronInput, IsWhatTheBatteryTakesAndTheLoadOnTheOutput) {
     ASSERT_EQ(t.order(power_w), Status::kOk) << power_w;
     EXPECT_EQ(t.reading().power_w, power_w);
     EXPECT_EQ(t.measured.order_power_w, power_w);
-    output_w += 1'500;  // a kettle: followed as soon as the set-point is sent again
+    output_w += 1'500;  // a kettle: followed as soon as the set point is sent again
     t.device.pass_s(t.driver->refresh_interval_s());
     ASSERT_EQ(t.driver->refresh(), Status::kOk);
     EXPECT_EQ(t.reading().power_w, power_w);
@@ -142,7 +142,8 @@ TEST(AlphaEssSingles, AreWrittenAndReleasedByTheOtherFunction) {
   }
 }
 
-/// Manual: 250 is 100 %; senalse and the Home Assistant community: 255 is. Neither ends early.
+/// Manual: 250 is 100 %; senalse and the Home Assistant community: 255 is 100 %. Neither ends
+/// early.
 TEST(AlphaEssSoc, ACeilingOfAHundredPercentIsNone) {
   MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   PowerOrder order{.power_w = 2'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};

@@ -1,5 +1,5 @@
-// Every shipped meter map through the real reader: the registers that the sources name, signs, and
-// what is refused. And the batteries' own grid points.
+// Every shipped meter map through the real reader: the registers named by the sources, signs, and
+// refusals. Also the batteries' own grid meters.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -20,7 +20,7 @@ std::string meter_map(const std::string& name) {
 struct MeterUnderTest {
   explicit MeterUnderTest(const std::string& name, const std::string& variant = "")
       : map(load_good_map(meter_map(name), variant)) {}
-  /// What it reads in W; -1 with `status` set where it does not.
+  /// Power in W; -1 with `status` set on failure.
   std::int32_t read() {
     std::int32_t power_w = -1;
     status = meter.read(power_w);
@@ -63,7 +63,7 @@ TEST(MeterMaps, SunSpecIsTheTotalPowerAndItsScaleFactor) {
     MeterUnderTest t("sunspec", variant);
     lay_out_sunspec(t.device, model);
     EXPECT_EQ(t.read(), -1'230) << variant;
-    t.device.set(40'070 + 18, {0x8000});  // "I do not have this"
+    t.device.set(40'070 + 18, {0x8000});  // "not implemented"
     t.expect_implausible();
   }
   MeterUnderTest other("sunspec", "three_phase");

@@ -1,4 +1,4 @@
-// The AlphaESS map, register by register in its dispatch variants, and the codec.
+// AlphaESS map, register by register in its dispatch variants, and the codec.
 #include <gmock/gmock.h>
 
 #include "edge/device/registers/codec.h"

@@ -1,5 +1,5 @@
 // Every shipped map through the real driver: the registers of charge, idle, discharge and release,
-// one by one, as the sources named in the maps state them; signs; what release restores. SunSpec:
+// one by one, as the maps' sources give them; signs; what release restores. SunSpec:
 // sunspec_maps_test.
 #include <gmock/gmock.h>
 
@@ -88,7 +88,7 @@ TEST(HuaweiLuna2000, ForcibleIsLastAndFlashOnlyWhenItDiffers) {
   EXPECT_EQ(t.measured.soc_e4, 5'050);
   EXPECT_EQ(t.measured.capacity_wh, 10'000);
   EXPECT_EQ(t.measured.discharge_w_max, 4'500);
-  // 47075 holds the rated power already
+  // 47075 is the rated power already
   EXPECT_THAT(t.writes_of(4'000), ElementsAre(fc6(47'087, 1), fc16(47'247, {0, 4'000}),
                                               fc6(47'083, 2), fc6(47'246, 0), fc6(47'100, 1)));
   EXPECT_THAT(t.writes_of(0),
@@ -147,13 +147,14 @@ TEST(VictronEss3, SixtySecondsWithoutARefreshIsNoOrderAnyMore) {
   EXPECT_THAT(t.writes_of(1'000), ElementsAre(fc16(37, {1'000, 0, 0}, 228)));
 }
 
-/// Its set-point has lapsed, but the mode stays: passthru for ever, unless a successor releases it.
+/// Its set point has expired, but the mode stays: passthru permanently, unless a later run releases
+/// it.
 TEST(VictronEss3, AModeThatAKilledProcessLeftIsSeenByTheNext) {
   MapUnderTest t(shipped_map("victron_ess3"));
   t.device.set(843, {62});
   t.device.set(2'902, {3});
   EXPECT_TRUE(t.reading().dispatch_active);
-  EXPECT_FALSE(t.measured.has_order_power);  // whether it still holds is not known
+  EXPECT_FALSE(t.measured.has_order_power);  // whether it is still in force is unknown
   ASSERT_EQ(t.driver->release(), Status::kOk);
   EXPECT_EQ(t.device.holding[2'902], 1);
   EXPECT_FALSE(t.reading().dispatch_active);
@@ -215,7 +216,7 @@ TEST(Sma, SixOrderedWrites) {
                           write(40'797, 0), write(40'799, 4'200), write(40'801, 0)));
 }
 
-/// What a killed process ordered must not be taken for the limits to give back.
+/// Limits ordered by a killed process must not be taken for the original ones.
 TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
   MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0, 55});

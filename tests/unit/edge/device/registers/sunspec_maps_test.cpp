@@ -1,4 +1,4 @@
-// The SunSpec maps through the real driver: models found by walking, points at their offsets, scale
+// SunSpec maps through the real driver: models found by walking, points at their offsets, scale
 // factors, and the registers of every order. The other shipped maps: shipped_maps_test.
 #include <gmock/gmock.h>
 
@@ -66,7 +66,7 @@ TEST(SunSpec704, APreviewKnowsPlacesAndScalesOnceTheDeviceWasRead) {
   EXPECT_EQ(t.driver->preview(write, order, address, block), Status::kNotConnected);
   fill_models(t.device, 40'000, 704, 65, 802);
   t.device.set(40'070 + 67 + 3, {8'000});
-  t.device.set(40'070 + 55, {1});  // set-point in 10 W
+  t.device.set(40'070 + 55, {1});  // set point in 10 W
   ASSERT_EQ(t.read(), Status::kOk);
   ASSERT_EQ(t.driver->preview(write, order, address, block), Status::kOk);
   EXPECT_EQ(address, 40'093);

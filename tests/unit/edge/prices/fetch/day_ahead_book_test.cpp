@@ -1,4 +1,4 @@
-// Whatever a source may answer with: what is kept of it, and what is known when.
+// Answers of any source: what is stored, and what is known when.
 #include "edge/prices/fetch/day_ahead_book.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kHour = 3'600;
 
-/// Prices of quarter-hours that differ from each other and from day to day.
+/// Prices of quarter-hours that differ from each other and between days.
 std::int32_t price_at(std::int64_t utc_s) {
   return static_cast<std::int32_t>(utc_s / kSecondsPerQuarterHour * 7'919 % 20'011) - 4'000;
 }
@@ -127,7 +127,7 @@ struct Spoilt {
 
 class BookOfToday : public Book, public testing::WithParamInterface<Spoilt> {};
 
-/// Today is known, and an answer of today and tomorrow comes that something is wrong with.
+/// Today is known, and a faulty answer of today and tomorrow arrives.
 TEST_P(BookOfToday, AnswersAsTheTableSays) {
   ASSERT_EQ(take(rows_of(days_.today_utc_s, days_.tomorrow_utc_s), days_.today_utc_s), Status::kOk);
   std::vector<DayAheadRow> rows = both();
@@ -135,7 +135,7 @@ TEST_P(BookOfToday, AnswersAsTheTableSays) {
   EXPECT_EQ(take(rows, now_), GetParam().status);
   EXPECT_EQ(known(days_.today_utc_s, days_.tomorrow_utc_s, now_), 96);
   EXPECT_EQ(known_tomorrow(local(6, 11, 13)), GetParam().known_tomorrow);
-  // The next good one is taken as if nothing had been.
+  // The next good one is accepted normally.
   EXPECT_EQ(take(both(), now_ + 600), Status::kOk);
   EXPECT_EQ(known_tomorrow(local(6, 11, 14)), 96);
 }

@@ -1,4 +1,4 @@
-// What an answer holds, where it is asked for, and when.
+// Contents of an answer, its source, and the time of the request.
 #include "edge/prices/fetch/day_ahead_feed.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What the planning thread offers, and what a cycle makes of it when the thread keeps up, is late,
-// or has died.
+// Results of the planning thread, and their use in a control cycle when the thread is in time,
+// late, or dead.
 #include "edge/prices/fetch/outlook_fetcher.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class Planner : public InMarketZone, public testing::Test {
   OutlookReport at(std::int64_t tick, std::int32_t level_centi, std::int32_t soc_e4 = 4'000) {
     return outlook_at(*board_, tick, soc_e4, level_centi);
   }
-  /// Of a plan of the days and level, which is kept until others are asked for.
+  /// A plan of the days and level, cached until others are requested.
   std::int32_t direct(std::int64_t tick, std::int32_t level_centi, const OutlookDays& days,
                       std::int32_t soc_e4 = 4'000) {
     if (planned_for_ != planned_level_centi(level_centi) || planned_days_ != days) {
@@ -90,7 +90,7 @@ TEST_F(Planner, TheUsualDayIsAPlanOfNothingPublished) {
   }
 }
 
-/// On the day on which summer time begins, the hour that is left out has the row of the next.
+/// On the first day of summer time, the skipped hour has the row of the next.
 TEST_F(Planner, TheUsualDayHasEveryQuarterHourWhateverDayItWasMadeOn) {
   for (const CivilTime day : {CivilTime{2025, 3, 30, 8, 0, 0}, CivilTime{2025, 10, 26, 8, 0, 0}}) {
     planner_->plan_usual_day(utc_from_civil(day), 8'000);

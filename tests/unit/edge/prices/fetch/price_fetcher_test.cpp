@@ -1,4 +1,4 @@
-// bess-prices between servers as they are: units, rows that are no numbers, refusals, history.
+// bess-prices with realistic servers: units, invalid rows, refusals, history.
 #include "edge/prices/fetch/price_fetcher.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The price answer: real shapes, nulls, disorder, the future, nonsense.
+// Price answers: real formats, nulls, disorder, future stamps, garbage.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -23,7 +23,7 @@ Status parse(std::string_view json, PriceRow& row) {
   return parse_newest_price(json, PriceFields{}, kAsked, row);
 }
 
-/// Of an answer that must have one.
+/// The row of an answer that must have one.
 PriceRow newest_of(std::string_view json) {
   PriceRow row;
   EXPECT_EQ(parse(json, row), Status::kOk) << json;
@@ -62,7 +62,7 @@ TEST(PriceJson, AMinuteCountsFromItsEndButForTheClocksTolerance) {
   EXPECT_EQ(parse_newest_price(json, PriceFields{}, first_utc_s - 1, row), Status::kNoRow);
 }
 
-/// What markets have settled at, what may be bid, and the limit itself: each to the cent.
+/// Settled prices, allowed bids, and the limit itself: each to the cent.
 TEST(PriceJson, PricesAreExactToTheLimit) {
   const std::map<std::string, std::int32_t> centi_of = {{"25907.54", 2'590'754},
                                                         {"-25907.54", -2'590'754},

@@ -1,4 +1,4 @@
-// What bess-edge makes of the record of bess-prices: rows, plans, damage, lies, silence.
+// Published prices as bess-edge reads them: rows, plans, damage, wrong prices, silence.
 #include "edge/prices/record/price_reader.h"
 
 #include <gtest/gtest.h>
@@ -119,7 +119,7 @@ TEST_F(PriceReaderTest, AnotherVersionAndDamageAreNoPrices) {
 }
 
 TEST_F(PriceReaderTest, OneThatIsSilentForCyclesIsTold) {
-  // Simulated time runs fast enough for three cycles in a moment.
+  // Simulated time is fast enough for three control cycles in a moment.
   const ScaledClock fast{.anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC) - kNanosecondsPerSecond,
                          .anchor_utc_s = minute_now(),
                          .scale = 10'000};
@@ -131,7 +131,7 @@ TEST_F(PriceReaderTest, OneThatIsSilentForCyclesIsTold) {
   EXPECT_TRUE(reader.latest().has_row);
 }
 
-/// Read while it is written, thousands of times: never half of one and half of another.
+/// Read during writes, thousands of times: never half of one and half of another.
 TEST_F(PriceReaderTest, IsNeverTorn) {
   std::atomic<bool> is_over = false;
   std::thread writer([&] {

@@ -1,5 +1,5 @@
-// Settled prices: rows as Elia's portal gives them, a server that has them late, fails or talks
-// nonsense, and the file that comes of it.
+// Settled prices: rows in the format of Elia's portal, a late, failing or invalid server, and the
+// resulting file.
 #include "edge/prices/fetch/settled_fetch.h"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ const std::string kSettings =
     "[battery]\nmap = \"" BESS_SOURCE_DIR
     "/edge/device/maps/simulator.toml\"\n[price]\nurl = \"http://127.0.0.1:1/p\"\n";
 constexpr std::int64_t kSettleNow = 1'679'911'200;       // 2023-03-27, 12:00 in Brussels
-constexpr std::int64_t kSettleMidnight = 1'679'868'000;  // 22:00Z: the day before had 23 hours
+constexpr std::int64_t kSettleMidnight = 1'679'868'000;  // 22:00Z: the previous day had 23 hours
 
 TEST(SettledRows, AreElias) {
   std::string trouble;
@@ -50,7 +50,7 @@ TEST(SettledRows, AreElias) {
   }
 }
 
-/// Late: a quarter of an hour, twice as long each time, four hours at most; whole: behind midnight.
+/// Late: 15 min, doubled each time, 4 h at most; complete: after midnight.
 TEST(SettledSchedule, TriesAgainAndThenOnceADay) {
   set_market_time_zone();
   SettledSchedule schedule;
@@ -69,7 +69,8 @@ TEST(SettledSchedule, TriesAgainAndThenOnceADay) {
   EXPECT_TRUE(schedule.is_due(kSettleMidnight + 7'200));
 }
 
-/// Words of Elia's portal (Opendatasoft, Explore API v2.1): instants with their offset, half open.
+/// Query terms of Elia's portal (Opendatasoft, Explore API v2.1): instants with their offset, half
+/// open.
 TEST(SettledUrl, IsEliasWhereItHasNoQuery) {
   SettledSource source;
   source.url = "https://opendata.elia.be/datasets/ods134/exports/json";
@@ -137,7 +138,7 @@ TEST_F(SettledServer, IsAskedForWhatIsOpenAndWhatItSaysIsKept) {
   EXPECT_THAT(request_, HasSubstr("%222023-03-25T22:00:00Z%22"));
   EXPECT_THAT(request_, HasSubstr("%222023-03-26T22:00:00Z%22"));
   EXPECT_EQ(kept().quarters().size(), 96u);
-  // Half of it validated, at another price; asked for next time is the other half.
+  // Half of it is validated, at another price; the next request is for the other half.
   body_ = rows(first, first + 43'200, 13, "Validated");
   EXPECT_TRUE(fetch().is_whole);
   EXPECT_EQ(kept().find(first)->eur_per_mwh, 13);
@@ -177,7 +178,7 @@ TEST_F(SettledServer, ADamagedFileIsFetchedAgain) {
   EXPECT_EQ(text_of_file(source_.file), whole);
 }
 
-/// By the program, and then by the fetcher beside the alarms.
+/// By the program, and then by the fetcher next to the alarms.
 TEST_F(SettledServer, IsAskedByTheProgram) {
   const std::int64_t now = clock_ns(CLOCK_REALTIME) / kNanosecondsPerSecond;
   const std::int64_t start = now / 900 * 900 - 96 * 900;

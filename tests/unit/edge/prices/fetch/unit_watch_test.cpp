@@ -1,4 +1,4 @@
-// Prices in another unit are found, honest ones that are small are not; when to ask is learnt.
+// Prices in another unit are found, small real ones are accepted; the request time is learnt.
 #include "edge/prices/fetch/unit_watch.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(UnitWatch, CentsAreFound) {
   EXPECT_GT(minutes_until_doubtful(300, [](int m) { return 100 * (usual(m) + 40); }), 0);
 }
 
-/// As on a sunny Sunday: two hours and a quarter within half a euro, in whole cents.
+/// As on a sunny Sunday: 135 min within 0.5 EUR, in whole cents.
 TEST(UnitWatch, SmallHonestPricesAreNot) {
   EXPECT_EQ(
       minutes_until_doubtful(135, [](int m) { return std::round(40 * std::sin(m / 3.0)) / 100; }),

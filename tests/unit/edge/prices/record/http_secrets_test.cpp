@@ -1,4 +1,5 @@
-// Secrets of the price request: what the header file may hold, and what a log may show.
+// Secrets of the price request: allowed contents of the header file, and the allowed contents of a
+// log.
 #include "edge/prices/record/http_trust.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +32,7 @@ TEST(LoggableUrl, HidesUsersAndSecretQueryValues) {
       {"https://a.example/x?rows=1;token=2", "https://a.example/x?rows=1;token=..."},
       {"https://a.example/x?token=a=b", "https://a.example/x?token=..."},
       {"https://a.example/u@v?where=a@b", "https://a.example/u@v?where=a@b"},
-      // Whatever is not known to be harmless may be a secret.
+      // Anything not known to be harmless may be a secret.
       {"https://a.example/x?code=1&appid=2&sig=3&pwd=4&limit=5",
        "https://a.example/x?code=...&appid=...&sig=...&pwd=...&limit=5"},
       {"https://a.example/x?Limit=1&xlimit=2&limitx=3",

@@ -1,4 +1,4 @@
-// Which price URLs others could write: a table.
+// Price URLs that others could write: a table.
 #include "edge/prices/record/http_trust.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST(HttpTrust, LoopbackIsANumberOfThisMachine) {
       {UrlTransport::kLoopback,
        {"http://127.0.0.1:8080/x", "http://127.255.0.9/", "http://127.1/", "http://[::1]:8080/x",
         "http://[0:0:0:0:0:0:0:1]/x"}},
-      // What localhost is, the resolver says.
+      // The resolver defines localhost.
       {UrlTransport::kOpen,
        {"http://localhost/x", "http://a.example/x", "http://192.168.1.9/x",
         "http://127.0.0.1.example/x", "http://127.0.0.1@a.example/x", "http://[fe80::1]/x"}},

@@ -1,4 +1,5 @@
-// What becomes of a row far from the one before: one lie moves nothing, the truth is a row late.
+// Treatment of a row far from the previous one: one wrong row has no effect, a correct one is a row
+// late.
 #include "edge/prices/record/newest_row.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The daily line: money by hand, and its text to the letter.
+// Daily summary line: money computed by hand, and its exact text.
 #include "edge/records/account/day_account.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST(DayAccount, TheLineIsThis) {
       "soc_empty 3, held 1)");
 }
 
-/// An order holds from when it was written, which the price's age tells; a release is none.
+/// An order is in force from its write, which the price's age shows; a release is none.
 TEST(DayAccount, ASampleIsARecordsOwn) {
   CycleRecord record = cycle(-7, 100);
   ExchangeSample taken;
@@ -87,13 +87,13 @@ TEST(DayAccount, ASampleIsARecordsOwn) {
   EXPECT_FALSE(sample_of(record, taken));
 }
 
-/// Three ticks without a record, and a clock that was stepped back, which leaves none out.
+/// Three ticks without a record, and a clock step backwards, which omits none.
 TEST(DayAccount, TicksWithoutARecordCount) {
   set_market_time_zone();
   const MoneyTerms terms;
   DayBook book(kDay, kDay, terms);
   const std::int64_t noon_utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
-  for (const int tick : {-400, 0, 1, 5, 2}) {  // the first is of the day before
+  for (const int tick : {-400, 0, 1, 5, 2}) {  // the first belongs to the previous day
     CycleRecord record = cycle(0, 0, Reason::kPriceAge);
     record.mode = Mode::kHolding;
     record.utc_s = noon_utc_s + tick * kSecondsPerStep;

@@ -1,4 +1,4 @@
-// Some days together: sums by hand, the charge at both ends, and the same numbers as text, CSV and
+// Sums over days: computed by hand, the charge at both ends, and the same numbers as text, CSV and
 // JSON.
 #include "edge/records/account/earnings.h"
 
@@ -35,7 +35,7 @@ void add_half_hour(DayBook& book, std::int64_t from_utc_s, std::int32_t power_w,
   }
 }
 
-/// 2 kWh in at 50 EUR/MWh on the first day, 1 kWh out at 250 on the second: half of it is left.
+/// 2 kWh in at 50 EUR/MWh on the first day, 1 kWh out at 250 on the second: half of it remains.
 Earnings two_days(const MoneyTerms& terms = {}) {
   set_market_time_zone();
   DayBook book(20'261'122, 20'261'123, terms);
@@ -62,7 +62,7 @@ TEST(EarningsOfDays, AddUp) {
   EXPECT_NEAR(all.discharged_kwh(), 1, 1e-9);
   EXPECT_NEAR(all.unseen_kwh(), 0, 1e-9);
   EXPECT_NEAR(all.stored_kwh(), (0.425 - 0.30) * 8, 1e-9);
-  // Three quarter-hours each, of the first and of the second day; what is stored has losses.
+  // Three quarter-hours each, of the first and of the second day; stored energy has losses.
   EXPECT_NEAR(all.money().mean_price_eur_per_mwh(), 150, 1e-9);
   EXPECT_NEAR(all.stored_eur(), 0.15 * std::sqrt(0.9), 1e-9);
   EXPECT_NEAR(all.money().estimated_eur, 0.15, 1e-9);

@@ -1,4 +1,4 @@
-// What a person may ask for, and what is none of it.
+// Valid and invalid periods.
 #include "edge/records/account/account_days.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The file of settled prices: written, read back, damaged; what is newer counts, and what is
-// validated stays so. And the keys that money is counted by.
+// File of settled prices: written, read back, damaged; newer prices replace older ones, and
+// validated ones stay. Also the keys for accounting.
 #include "edge/records/account/settled_prices.h"
 
 #include <gmock/gmock.h>
@@ -48,7 +48,7 @@ TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {
   EXPECT_EQ(prices.quarters().size(), 1u);
 }
 
-/// A card that forgets: every byte of the file, one after the other.
+/// A damaged card: every byte of the file, in sequence.
 TEST(SettledPrices, ADamagedFileIsNotBelieved) {
   SettledPrices prices;
   put(prices, {{kSettledQuarter, 131.07, kAsValidated}, {kSettledQuarter + 900, 5, kAsPublished}});

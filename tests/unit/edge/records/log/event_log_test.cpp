@@ -1,5 +1,5 @@
-// The log thread: a record handed over arrives everywhere, a restart finds it, and a disk that
-// stands still costs records but never the control thread's time.
+// Log thread: a record handed over arrives everywhere, a restart finds it, and a blocked disk costs
+// records but never the control thread's time.
 #include "edge/records/log/event_log.h"
 
 #include <fcntl.h>
@@ -43,7 +43,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// A journal line that is no cycle's.
+/// A journal line other than a control cycle's.
 bool is_about_a_file(const std::string& line) { return line.find("utc=") == line.npos; }
 
 class Log : public ::testing::Test {
@@ -57,7 +57,7 @@ class Log : public ::testing::Test {
     s.ring_days = 1;
     return s;
   }
-  /// A log that has opened well.
+  /// A log that has opened successfully.
   std::unique_ptr<EventLog> opened(const EventLogSettings& s, const RunIdentity& run = {}) {
     auto log = std::make_unique<EventLog>();
     EXPECT_TRUE(log->open(s, run, error_)) << error_.c_str();
@@ -68,7 +68,7 @@ class Log : public ::testing::Test {
     EXPECT_TRUE(log.newest(newest));
     return newest;
   }
-  /// What stands on standard output while these are written.
+  /// Standard output while these are written.
   static std::string journal_of(EventLog& log, std::initializer_list<CycleRecord> records) {
     ::testing::internal::CaptureStdout();
     for (const CycleRecord& record : records) log.write(record);
@@ -105,8 +105,7 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
   EXPECT_EQ(newest.counters.flash_writes_today, 100);
 }
 
-/// The CSV is a pipe that nobody reads: the log thread stands still in write(2), as on a blocked
-/// card.
+/// The CSV is a pipe without a reader: the log thread blocks in write(2), as on a blocked card.
 TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   EventLogSettings s = settings();
   const std::string pipe_path = folder_.file("pipe");
@@ -119,7 +118,7 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   constexpr int kRecords = 1'000;
   for (int cycle = 1; cycle <= kRecords; ++cycle) log->write(record_of(cycle));
   EXPECT_FALSE(
-      log->drain(kNanosecondsPerSecond / 100));  // it does stand still, and drain is bounded
+      log->drain(kNanosecondsPerSecond / 100));  // it is blocked, and drain is bounded
   char bytes[65'536];
   for (bool drained = false; !drained; drained = log->drain(kNanosecondsPerSecond / 100)) {
     while (read(reader, bytes, sizeof bytes) > 0) continue;
@@ -144,7 +143,7 @@ TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   EXPECT_THAT(status(), HasSubstr("\"disk_is_failing\": true"));
 }
 
-/// What a process makes of a disk that has room for files of this size and no larger ones.
+/// Behaviour of a process with a file size limit.
 template <typename Act>
 int exit_code_with_room_for(rlim_t bytes, const Act& act) {
   const pid_t child = fork();
@@ -164,8 +163,8 @@ void make_room() {
   setrlimit(RLIMIT_FSIZE, &all);
 }
 
-/// No file can be made at all: the first records are lost, and as soon as there is room everything
-/// is.
+/// No file can be created: the first records are lost, and everything works as soon as there is
+/// room.
 TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
   const int code = exit_code_with_room_for(0, [&] {
     const auto log = std::make_unique<EventLog>();
@@ -183,7 +182,7 @@ TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
   EXPECT_EQ(newest_of(*opened(settings())).cycle, 2);
 }
 
-/// A larger log has no room: the one that is there goes on, with what it knows.
+/// A larger log has no room: the existing one continues, with its contents.
 TEST_F(Log, ALogThatCannotGrowGoesOnAtItsSize) {
   {
     const auto log = opened(settings());
@@ -221,7 +220,7 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   EXPECT_THAT(status(), HasSubstr("\"disk_is_failing\": true"));
 }
 
-/// What a disk in trouble does not change: the line promises nothing that is not so.
+/// A disk fault does not change this: the line makes no false promise.
 TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
   struct Case {
     bool control;
