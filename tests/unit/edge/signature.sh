@@ -1,6 +1,6 @@
 #!/bin/sh
-# signature.sh EXPECTED [EMULATOR...] PROGRAM: fails when `bess-edge signature` (PROGRAM) does not
-# print the line in the file EXPECTED, and says whether the student or the code has changed, and how
+# signature.sh EXPECTED [EMULATOR...] PROGRAM: fails if `bess-edge signature` (PROGRAM) does not
+# print the line in the file EXPECTED, reports whether the student or the code has changed, and how
 # to renew the file.
 file=$1
 shift

@@ -1,13 +1,14 @@
 #!/bin/sh
-# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: shows that signature.sh passes the right line
-# alone, tells another student from other decisions, and that the command it names renews the file.
+# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: shows that signature.sh passes the correct
+# line only, distinguishes another student from other decisions, and that the command it names
+# renews the file.
 folder=$1
 shift
 fail() { echo "$*"; exit 1; }
 rm -rf "$folder" && mkdir -p "$folder" || exit 1
 line=$("$@" signature) || fail "$* signature: failed"
 check() { sh "${0%/*}/signature.sh" "$folder/expected" "$@"; }
-refused() {  # signature.sh fails, says $why, and its command mends it
+refused() {  # signature.sh fails, gives $why, and its command renews the file
   said=$(check "$@") && fail "signature.sh passed: $(cat "$folder/expected")"
   printf '%s\n' "$said" | grep -q "$why" || fail "signature.sh did not say \"$why\": $said"
   sh -c "$(printf '%s\n' "$said" | tail -n 1)" || fail "the command that renews the file failed"

@@ -1,5 +1,5 @@
-// One step of the battery: energy is conserved, bounds are exact, and what does not fit is neither
-// exchanged nor paid.
+// Battery model step: energy is conserved, bounds are exact, and energy that does not fit is
+// neither exchanged nor paid.
 #include "shared/battery_model.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 const double kEta = std::sqrt(0.9);
 
-/// What the store gains for the energy exchanged with the grid [Paper, Eq. 2].
+/// Stored energy for the energy exchanged with the grid [Paper, Eq. 2].
 double stored_wh(const BatteryParameters& battery, double power_w, double hours) {
   return power_w > 0 ? power_w * hours * battery.charge_efficiency
                      : power_w * hours / battery.discharge_efficiency;
@@ -181,7 +181,7 @@ TEST(PowerResponse, MeanAndEndAreThoseOfTheCourse) {
         const PowerResponse response{delay_s, ramp_w_per_s, tau_s};
         PowerState from{-4'000, -4'000};
         for (const double wanted_w :
-             {3'000.0, 3'000.0, -500.0}) {  // from each where it had come to
+             {3'000.0, 3'000.0, -500.0}) {  // from the state that each has reached
           const FollowedPower exact = integrated(response, from, wanted_w, 30);
           const FollowedPower closed = followed_power(response, from, wanted_w, 30);
           SCOPED_TRACE(testing::Message() << delay_s << ' ' << ramp_w_per_s << ' ' << tau_s);

@@ -1,5 +1,5 @@
-// The student's third input: the month, or the class of the price level, and what makes its edges
-// valid.
+// Context classes of the student: the month, or the class of the price level, and the validity of
+// its edges.
 #include "shared/context_classes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The box of a rule and what is left to decide in it: the integers that proof and guard share.
+// Decision rule: its box and the remaining decisions, the integers that proof and guard share.
 #include "shared/decision_rule.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(RuleLimits, AllRulesCountWhereTheyHold) {
             (RuleLimits{action_bit(Action::kDischarge), 500}));
 }
 
-/// A row that is left out, and every field that is changed, shows in the hash.
+/// An omitted row, and every changed field, changes the hash.
 TEST(RuledHash, KnowsEveryRowAndField) {
   const std::int32_t row[kGuardRuleFields] = {-100, 400, 3, 150, 92, 28, 0x803, 0xfff, 2, 500};
   const std::vector<GuardRule> rules{guard_rule_of(row),

@@ -1,4 +1,4 @@
-// Each cost by hand on one exchange, at a price above and below zero; without costs nothing
+// Exchange costs by hand on one exchange, at a price above and below zero; without costs nothing
 // changes.
 #include "shared/exchange_cost.h"
 
@@ -13,7 +13,7 @@ struct ExchangeByHand {
   const char* name;
   double wear;
   TradingCosts costs;
-  // Of 2 MWh, EUR: what it costs to take them, and what they earn when given.
+  // Of 2 MWh, EUR: the cost of taking them, and the revenue of giving them.
   double taken_at_100, taken_at_minus_100;
   double given_at_100, given_at_minus_100;
 };

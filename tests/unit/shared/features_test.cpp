@@ -1,4 +1,4 @@
-// From raw measurements to the lattice: clamps, halves, and every field inside its range.
+// Features from raw measurements to the lattice: clamps, halves, and every field inside its range.
 #include "shared/features.h"
 
 #include <gtest/gtest.h>

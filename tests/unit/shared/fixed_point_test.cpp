@@ -1,4 +1,4 @@
-// Rounding is defined once: to nearest, halves towards +infinity, below zero as well.
+// Fixed-point rounding is defined once: to nearest, halves towards +infinity, below zero as well.
 #include "shared/fixed_point.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Brussels wall time from UTC, with the two days a year that have 92 and 100 quarter-hours.
+// Local time of Brussels from UTC, with the two days per year that have 92 and 100 quarter-hours.
 #include "shared/local_time.h"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST_F(LocalTime, TheWallClockLeadsBackToItsInstant) {
                                                .hour = local.minute_of_day / 60,
                                                .minute = local.minute_of_day % 60,
                                                .second = 0});
-    // The second of an hour that comes twice is told as the first.
+    // The second of a repeated hour reads like the first.
     const LocalMinute an_hour_ago = local_minute_of(at - 3'600);
     const bool is_second = an_hour_ago.minute_of_day == local.minute_of_day;
     ASSERT_EQ(found, is_second ? at - 3'600 : at) << utc_text(at).c_str();

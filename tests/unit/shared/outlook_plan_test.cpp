@@ -1,5 +1,5 @@
-// The plan on day-ahead prices in integers: held from rising with SoC, the same on every machine,
-// on days of any length, whatever is known of their prices.
+// Plan on day-ahead prices in integers: it never rises with SoC, is identical on every machine, for
+// days of any length and any known prices.
 #include "shared/outlook/outlook_plan.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ TEST_F(OutlookPlanTest, LevelsArePlannedEvenlyBelowZeroToo) {
   EXPECT_EQ(planned_level_centi(-801), -1600);
 }
 
-// Where tomorrow is not published it is the mean by hour, moved by half of what today lies above.
+// Where tomorrow is not published it is the mean by hour, moved by half of today's excess.
 TEST_F(OutlookPlanTest, AnUnknownTomorrowIsTheMeanAndPartOfTodaysHeight) {
   OutlookDays unknown = flat_days(noon_utc_s_, 12'000);
   OutlookDays known = unknown;
@@ -137,7 +137,7 @@ TEST_F(OutlookPlanTest, AnUnknownTomorrowIsTheMeanAndPartOfTodaysHeight) {
   EXPECT_EQ(at(plan(unknown), noon_utc_s_, 3000), expected);
 }
 
-// 30 March has 23 hours and 26 October 25: the plan serves each of their steps and no other.
+// 30 March has 23 hours and 26 October 25: the plan has exactly their steps.
 TEST_F(OutlookPlanTest, DaysOfAnyLength) {
   const struct {
     CivilTime noon_utc;
@@ -157,8 +157,8 @@ TEST_F(OutlookPlanTest, DaysOfAnyLength) {
   }
 }
 
-// Prices at the ends of what a file may hold, in turn: nothing leaves its integers (the sanitizers
-// look on), and the break-even price stays within what it can say.
+// Alternating extreme prices of a file: no integer overflows (sanitizers check), and the break-even
+// price stays within its range.
 TEST_F(OutlookPlanTest, ExtremePricesStayInside) {
   OutlookDays days = flat_days(noon_utc_s_, 0);
   for (std::size_t q = 0; q < std::size(days.day_ahead_centi); ++q) {
@@ -171,8 +171,8 @@ TEST_F(OutlookPlanTest, ExtremePricesStayInside) {
   }
 }
 
-// One number for a spring's and an autumn's clock change with gaps: another compiler, machine or
-// instruction set must find the same.
+// One number for the clock changes of spring and autumn with gaps: every compiler, machine and
+// instruction set must compute it.
 TEST_F(OutlookPlanTest, IsTheSameToTheBitEverywhere) {
   Crc32 crc;
   for (const CivilTime& noon : {CivilTime{2025, 3, 29, 12, 0, 0}, CivilTime{2025, 3, 30, 12, 0, 0},

@@ -1,5 +1,5 @@
-// The small shared parts: the one argmax, the checksum, the fixed-capacity vector and text, the
-// latches of the SoC, the age of training days.
+// Small shared parts: argmax, checksum, fixed-capacity vector and text, latches of the SoC, age of
+// training days.
 #include <gtest/gtest.h>
 
 #include "edge/core/base/static_vector.h"
@@ -103,7 +103,7 @@ TEST(TrainingPeriod, IsToldOfWhenItIsOldOrOfAnotherRegime) {
       {"2023-05-22", "2026-11-27",
        "1285 days ago, before the price regime from 1 October 2025 (day-ahead in quarter-hours)"},
       {"2025-10-01", "2025-12-31", ""},
-      {"2023-05-22", "1970-01-01", ""},  // a clock that nobody has set
+      {"2023-05-22", "1970-01-01", ""},  // an unset clock
       {"", "2026-11-27", ""},
       {"2023-02-30", "2026-11-27", ""},
   };

@@ -1,4 +1,4 @@
-// The trailing price level: what counts, how often, how much, and what a gap does to it.
+// Trailing price level: which prices count, how often, how much, and the effect of a gap.
 #include "shared/price_level.h"
 
 #include <gtest/gtest.h>
@@ -59,8 +59,8 @@ TEST(PriceLevel, CountsPricesAsTheStudentSeesThem) {
   EXPECT_EQ(level_after(INT32_MIN, INT32_MIN).centi_eur_per_mwh(), -50'000);
 }
 
-/// Halves go up on both sides of zero, in the mean as well as in what is shown of it: the same on
-/// every machine.
+/// Halves round up on both sides of zero, in the mean and in its output: identical on every
+/// machine.
 TEST(PriceLevel, RoundsNegativePricesAsPositiveOnes) {
   const struct {
     std::int64_t centi_q16;
@@ -75,10 +75,10 @@ TEST(PriceLevel, RoundsNegativePricesAsPositiveOnes) {
   EXPECT_EQ(level_after(0, -1).centi_q16, -91);
   EXPECT_EQ(level_after(0, 5).centi_q16, 455);
   EXPECT_EQ(level_after(0, -5).centi_q16, -455);
-  PriceLevel half{.centi_q16 = 360, .row_minute_utc_s = kMinute};  // goes by -1/2: up, to 0
+  PriceLevel half{.centi_q16 = 360, .row_minute_utc_s = kMinute};  // moves by -1/2: up, to 0
   half.observe(kMinute + 120, 0);
   EXPECT_EQ(half.centi_q16, 360);
-  half = {.centi_q16 = -360, .row_minute_utc_s = kMinute};  // goes by +1/2: up, to 1
+  half = {.centi_q16 = -360, .row_minute_utc_s = kMinute};  // moves by +1/2: up, to 1
   half.observe(kMinute + 120, 0);
   EXPECT_EQ(half.centi_q16, -359);
 }

@@ -1,5 +1,5 @@
-// The exported header is C++ as well, and its hashes are those of the arrays: exported_student.h
-// asserts it at compile time.
+// Exported header in C++: its hashes are those of the arrays, which exported_student.h asserts at
+// compile time.
 #include "shared/nn/exported_student.h"
 #include "student_header_check.h"
 

@@ -1,6 +1,6 @@
-// The integer student, bit for bit: golden vectors of nets drawn from fixed seeds. The same file
-// must come out of every compiler and machine; a difference is a change of function.
-// Rewrite the golden file with the command in its first line.
+// Integer student, bit for bit: golden vectors of nets drawn from fixed seeds. Every compiler and
+// machine must produce the same file; a difference is a change of function. Rewrite the golden file
+// with the command in its first line.
 #include "shared/nn/student_net.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ constexpr std::uint64_t kSeed = 2'024;
 constexpr int kStates = 20'000;
 constexpr int kWrittenOut = 4;
 
-/// One line a net: seed, weights hash, checksums of decisions and of logits, count of each action;
-/// then some states written out.
+/// One line per net: seed, weights hash, checksums of decisions and of logits, count of each
+/// action; then some states in full.
 std::string golden_text() {
   std::ostringstream out;
   out << "# generator shared_test, version 1, seed " << kSeed

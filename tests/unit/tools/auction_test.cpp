@@ -1,5 +1,5 @@
-// The simulated auction: what of the day-ahead prices is out when, in the shape of energy-charts,
-// and what each of its faults makes of a day.
+// Simulated auction: the published day-ahead prices over time, in the format of energy-charts, and
+// the effect of each fault on a day.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ std::vector<Published> rows_of(const AuctionAnswer& answer) {
   return rows;
 }
 
-/// The local day whose prices came on the 28th at 12:57, seen at 14:00 local.
+/// The local day whose prices were published on the 28th at 12:57, seen at 14:00 local.
 AuctionAnswer tomorrow(const AuctionView& view, std::string_view now = "2025-03-28T13:00:00Z") {
   return view.answer("2025-03-29", "2025-03-29", utc_of(now));
 }
@@ -128,9 +128,9 @@ TEST(AuctionFaults, EachHasANameAndSpoilsADay) {
   }
 }
 
-// When they strike.
+// Times of the faults.
 
-/// By day of delivery, asked at the end of all: whether it is missing.
+/// By day of delivery, queried at the end: whether it is missing.
 std::vector<bool> missing_days(const AuctionSettings& schedule,
                                std::string_view now = "2025-04-28T00:00:00Z") {
   std::vector<bool> missing;
@@ -142,7 +142,7 @@ std::vector<bool> missing_days(const AuctionSettings& schedule,
 
 TEST(AuctionFaults, ComeAndGoByDay) {
   constexpr AuctionFault kMissing = AuctionFault::kMissing;
-  // That of the 28th came the day before the start.
+  // The prices of the 28th were published on the day before the start.
   EXPECT_THAT(missing_days({.fault = kMissing}), ElementsAre(false, true, true, true));
   EXPECT_THAT(missing_days({.fault = kMissing, .every = 2}),
               ElementsAre(false, false, true, false));
@@ -165,7 +165,7 @@ TEST(AuctionFaults, AllComeInTurn) {
             AuctionFault::kLate);
 }
 
-// Where the prices come from.
+// Sources of the prices.
 
 constexpr const char* kHeader = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
 

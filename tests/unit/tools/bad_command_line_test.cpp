@@ -1,5 +1,5 @@
-// bess-sim refuses what nobody can have meant before it listens: one clear line, exit code 2 for a
-// bad command line and 1 for bad input.
+// bess-sim refuses senseless command lines before it listens: one clear line, exit code 2 for a bad
+// command line and 1 for bad input.
 #include "tests/support/bad_command_lines.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ constexpr BadCommandLine kCases[] = {
     {"battery --stop-bits 3", 2, "--stop-bits"},
     {"battery --exception-code 0", 2, "--exception-code"},
     {"battery --fault-seed -1", 2, "--fault-seed"},
-    // Options that contradict each other, or wait for one that is not there.
+    // Contradictory options, or options that need a missing one.
     {"battery --serial NONE --port 1502", 2, "--serial --port"},
     {"battery --baud 9600", 2, "--baud --serial"},
     {"battery --parity even", 2, "--parity --serial"},

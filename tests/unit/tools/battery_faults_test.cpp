@@ -1,4 +1,4 @@
-// The simulated battery's faults of values, as the edge sees them, and the schedule of all faults.
+// Value faults of the simulated battery, as the edge sees them, and the schedule of all faults.
 #include "tools/simulators/battery_sim/battery_faults.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(BatteryFaults, ASlowRampTakesItsTimeFromOrderToOrder) {
   EXPECT_EQ(battery.power_w(), 0);
 }
 
-/// By hand: 1 - exp(-t / 5 s), behind a delay, behind a ramp, and the same however it is looked at.
+/// By hand: 1 - exp(-t / 5 s), behind a delay, behind a ramp, and independent of the query times.
 TEST(BatteryFaults, ATimeConstantIsAnExponentialBehindDelayAndRamp) {
   for (const std::int64_t look_ms : {5'000, 250}) {
     SimulatedBattery battery(kWithoutLosses, 0.5, 0);
@@ -127,8 +127,7 @@ TEST(BatteryFaults, BalancingBurnsPowerWhileItIsFull) {
   EXPECT_EQ(battery.power_w(), -1'000);
 }
 
-/// Twelve minutes of 4 kW from 50 %: what is shown and what is true, in what an honest one would
-/// have moved.
+/// Twelve minutes of 4 kW from 50 %: shown and true change, as a share of a healthy battery's.
 TEST(BatteryFaults, DisplaysLieAsTheirNamesSay) {
   struct Row {
     BatteryFault fault;

@@ -1,4 +1,4 @@
-// [battery] of a configuration, as the simulator takes it.
+// [battery] of a configuration, as the simulator reads it.
 #include "tools/simulators/battery_sim/battery_command.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ TEST(BatteryFile, EveryKeyIsTakenAndWhatIsNotThereStays) {
   for (const BatteryKey& key : kBatteryKeys) {
     double& field = key.of(wanted);
     const std::string_view name = key.name;
-    const bool is_end = name == "soc_max" || name == "cold_to_hour";  // above its beginning
+    const bool is_end = name == "soc_max" || name == "cold_to_hour";  // above its start
     field = is_end ? 0.9 : key.low + (key.high - key.low) / 64;
     text += std::string(key.name) + " = " + std::to_string(field) + "\n";
   }

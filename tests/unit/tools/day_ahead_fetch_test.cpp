@@ -1,6 +1,5 @@
-// The simulated auction against the program that fetches from the real one: `bess-train prices
-// fetch --day-ahead` gets from bess-sim market what its file holds, and says of each fault what it
-// can.
+// Simulated auction and the fetch program of the real one: `bess-train prices fetch --day-ahead`
+// gets the contents of bess-sim market's file, and reports each detectable fault.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -19,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 28 and 29 March 2025, local: the second day comes when the market starts.
+/// 28 and 29 March 2025, local: the second day is published when the market starts.
 constexpr LocalDate kToday{2025, 3, 28}, kTomorrow{2025, 3, 29};
 constexpr std::int64_t kStartS = 1'743'163'200;  // 2025-03-28T12:00:00Z
 
@@ -43,7 +42,7 @@ class FetchFromSimulatedAuction : public TrainCommands {
     write_day_ahead_file(path("da.csv"), two_days(), "made for a test");
     write_file(path("minutes.csv"), kMinutes);
   }
-  /// Of a market that has just started.
+  /// From a market that has just started.
   Result fetch(const std::vector<std::string>& more = {}) {
     SitePrograms site(BESS_SIM_PROGRAM, path(""));
     site.clock = {.start_utc_s = kStartS};
@@ -89,7 +88,7 @@ TEST_F(FetchFromSimulatedAuction, RefusesWhatFaultsLeaveOfADay) {
 TEST_F(FetchFromSimulatedAuction, OptionsSayWhichDaysAreStruck) {
   const std::vector<std::string> missing{"--day-ahead-fault", "missing"};
   const std::pair<std::vector<std::string>, bool> cases[] = {
-      {{"--day-ahead-fault-every", "2"}, false},  // the second day would be
+      {{"--day-ahead-fault-every", "2"}, false},  // the second day would be published
       {{"--day-ahead-fault-from-s", "60"}, false},
       {{"--day-ahead-fault-to-s", "60"}, true},
       {{"--day-ahead-mend-s", "0"}, false},

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flash_device.sh SOURCE FOLDER: tools/flash device onto a loop device, and what it refuses. Exit 77
-# = skipped.
+# flash_device.sh SOURCE FOLDER: tools/flash device onto a loop device, and its refusals. Exit 77 =
+# skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/unit/tools/script_test.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# flash_image.sh SOURCE FOLDER: tools/flash image on made-up images: the two partitions of Raspberry
-# Pi OS with the few files that tell bookworm from trixie (the real images are not here). Needs no
-# root. Exit 77 = skipped.
+# flash_image.sh SOURCE FOLDER: tools/flash image on synthetic images: the two partitions of
+# Raspberry Pi OS with the few files that distinguish bookworm from trixie (the real images are not
+# here). Needs no root. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/unit/tools/script_test.sh
@@ -36,7 +36,7 @@ image_of bullseye bullseye
 image_of old_trixie trixie
 package=$(made_up_package packages arm64 1.0)
 echo "ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAIHJ1c3Q= ops" >key.pub
-settings() {  # settings [LINE...]: what the edge takes, and then these lines
+settings() {  # settings [LINE...]: required settings of the edge, and then these lines
   sed -e 's/^control = true/control = false/' -e '/^\[simulation\]/,$d' \
     "$source/tests/system/guest/edge.toml.in" >edge.toml
   [ $# -eq 0 ] || printf '%s\n' "$@" >>edge.toml
@@ -85,7 +85,7 @@ flash trixie.img.xz --out out.img --package "$package" --wifi "the house" \
 expect "$(boot_file out.img user-data)" 'hostname: "bess1"' "trixie's user-data"
 expect "$(boot_file out.img network-config)" '"the house":' "trixie's network-config"
 expect "$(boot_file out.img meta-data)" 'instance-id: bess-' "trixie's meta-data"
-# By the boot partition alone: the system's own is as it was.
+# Only on the boot partition: the system's own file is unchanged.
 boot_file out.img bess/bess-edge_1.0_arm64.deb | cmp -s - "$package" ||
   fail "trixie: the package is not on the boot partition"
 [ "$(boot_file out.img bess/edge.toml)" = "$(cat edge.toml)" ] ||
@@ -197,7 +197,7 @@ code=0
 flash bookworm.img --out absent/out.img --package "$package" || code=$?
 [ $code -eq 1 ] && grep -q "absent/out.img" said ||
   fail "no folder for the image: $(cat said)"
-# The archive out of reach; apt still asks, and is told no at once by a port that nobody serves.
+# The archive is out of reach: a port without a server refuses apt immediately.
 sed -i '/^Package: libcurl4$/,/^$/d' tree-bookworm/var/lib/dpkg/status
 image_of lacking bookworm init_config 2>/dev/null || true
 debugfs -w -R "rm /var/lib/dpkg/status" "lacking.img?offset=$((34816 * 512))" 2>/dev/null

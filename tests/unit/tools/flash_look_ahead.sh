@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# flash_look_ahead.sh SOURCE FOLDER: what tools/flash ssh asks of the new program on the machine,
-# with a stand-in for it: settings that are refused, a machine without settings. Exit 77 = skipped.
+# flash_look_ahead.sh SOURCE FOLDER: checks that tools/flash ssh runs with the new program on the
+# machine, with a replacement for it: refused settings, a machine without settings. Exit 77 =
+# skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/unit/tools/script_test.sh
@@ -12,7 +13,7 @@ enter_folder
 mkdir bin maps
 printf '#!/bin/sh\n[ -e "%s/runs" ]\n' "$folder" >bin/systemctl
 chmod 755 bin/systemctl
-# The new program: says what the test put there, and notes how it was asked.
+# The new program: prints the test's text, and logs its arguments.
 program="#!/bin/sh
 echo \"\$*\" >>$folder/asked
 case \"\$1\" in
@@ -39,7 +40,7 @@ echo 'bess-edge: edge.toml:3: no such key' >status
 look_ahead
 [ $code -eq 1 ] || fail "settings that are refused: exit code $code"
 grep -q "somebody else speaks" err || fail "what the new program said is lost: $(cat err)"
-rm runs  # no controller: the new program tries battery and price itself, which may be away
+rm runs  # no controller: the new program connects to battery and price itself, which may be absent
 echo 1 >check_code
 look_ahead
 [ $code -eq 0 ] || fail "no controller: exit code $code"

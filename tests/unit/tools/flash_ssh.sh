@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flash_ssh.sh SOURCE FOLDER: tools/flash ssh with a stand-in for ssh: what it sends, and that each
-# refusal is one line before anything is installed. Exit 77 = skipped.
+# flash_ssh.sh SOURCE FOLDER: tools/flash ssh with a replacement for ssh: its commands, and that
+# each refusal is one line before anything is installed. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/unit/tools/script_test.sh
@@ -13,7 +13,8 @@ mkdir bin tmp
 stand_in() { cat >"bin/$1" && chmod 755 "bin/$1"; }
 export MACHINE=$folder/machine
 mkdir -p "$MACHINE"
-# The other machine: commands run here, between stand-ins for what they would ask there.
+# The other machine: commands run here, with replacements for the programs that they would call
+# there.
 stand_in ssh <<'SH'
 #!/bin/sh
 [ ! -e "$MACHINE/refuses" ] || { echo "ops@edge: Permission denied (publickey)." >&2; exit 255; }
@@ -85,7 +86,7 @@ flash --package "$package" --config edge.toml || code=$?
 [ $code -eq 1 ] && grep -q "2.0 .*1.0: the unit failed" said ||
   fail "a roll-back, exit code $code: $(cat said)"
 
-# Broken while apt-get works; a machine that does not come back; what is left here.
+# Broken while apt-get runs; a machine that does not return; remaining local files.
 mv bin/there/apt-get apt-get
 printf '#!/bin/sh\nexit 255\n' >bin/there/apt-get
 chmod 755 bin/there/apt-get

@@ -1,4 +1,5 @@
-// The simulated house: where its watts come from, and that every mistake in a file names its line.
+// House load of the simulator: the source of its power, and that every mistake in a file names its
+// line.
 #include "tools/simulators/battery_sim/house_load.h"
 
 #include <gmock/gmock.h>

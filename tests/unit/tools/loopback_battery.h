@@ -1,5 +1,5 @@
-// A simulated battery on its own thread, over TCP on a free port or over a pair of pseudo
-// terminals, in scaled time, and the settings with which the edge reaches it.
+// Simulated battery on its own thread, over TCP on a free port or over a pair of pseudo terminals,
+// in scaled time, and the edge's settings for it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ class LoopbackBattery {
     }
     return settings;
   }
-  /// Ends the server; what the battery is really doing may be read afterwards.
+  /// Ends the server; the true state of the battery may be read afterwards.
   const SimulatedBattery& stop() {
     if (thread_.joinable()) {
       ::close(stop_[1]);

@@ -1,5 +1,5 @@
 #!/bin/bash
-# manual.sh SOURCE FOLDER PROGRAM...: pages and completion hold what the programs' --help says.
+# manual.sh SOURCE FOLDER PROGRAM...: pages and completion contain the programs' --help.
 source=$1 folder=$2
 shift 2
 fail() { echo "$*"; exit 1; }
@@ -36,7 +36,7 @@ for program in "$@"; do
 done
 [ $pages -gt $# ] || fail "no subcommand was looked at"
 
-offered() {  # offered WORDS...: what is offered for the last of them
+offered() {  # offered WORDS...: the completions of the last of them
   COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()
   "_${1//-/_}"
   echo "${COMPREPLY[*]}"

@@ -1,5 +1,5 @@
 // Every shipped map over real Modbus TCP: the edge's own framing and driver against libmodbus'
-// frames and the simulated device, orders read back and obeyed, the device released.
+// frames and the simulated device, orders read back and followed, the device released.
 #include <gtest/gtest.h>
 
 #include "edge/device/battery/modbus_battery.h"

@@ -1,4 +1,4 @@
-// The simulated market: what is published when, in the shape of Elia's API, and its file reader.
+// Simulated market: the published rows over time, in the format of Elia's API, and its file reader.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

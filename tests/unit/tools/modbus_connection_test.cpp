@@ -1,5 +1,5 @@
-// The connection's life: nobody there, a queue that is full, a server that closes when idle, a
-// serial adapter that is pulled and comes back, too many open files.
+// Life of a connection: no server, a full queue, a server that closes when idle, a serial adapter
+// that is unplugged and returns, too many open files.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -35,7 +35,7 @@ class Listener {
     pollfd event{.fd = fd_, .events = POLLIN, .revents = 0};
     return poll(&event, 1, ms) == 1 ? accept(fd_, nullptr, nullptr) : -1;
   }
-  /// Fills the queue, so that the next connect gets no answer at all.
+  /// Fills the queue, so that the next connect gets no answer.
   [[nodiscard]] int connect_once() const {
     const int fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     static_cast<void>(connect(fd, reinterpret_cast<const sockaddr*>(&address_), sizeof address_));
@@ -54,7 +54,7 @@ class Listener {
 };
 
 TEST(ModbusConnection, ADeadBatteryIsNotHammered) {
-  const Listener battery(-1);  // the port is taken, nobody listens
+  const Listener battery(-1);  // the port is in use, without a listener
   ModbusLink link(battery.link(100), {}, ScaledClock{});
   std::uint16_t soc = 0;
   EXPECT_EQ(link.read(kSoc, &soc), Status::kNotConnected);
@@ -62,7 +62,7 @@ TEST(ModbusConnection, ADeadBatteryIsNotHammered) {
   EXPECT_EQ(link.read(kSoc, &soc), Status::kNotConnected);  // backing off for a second
   EXPECT_EQ(battery.accept_within(0), -1);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + 11 * kNanosecondsPerSecond / 10);
-  EXPECT_EQ(link.read(kSoc, &soc), Status::kTimeout);  // tried, connected, and nobody answered
+  EXPECT_EQ(link.read(kSoc, &soc), Status::kTimeout);  // tried, connected, and no answer
   const int accepted = battery.accept_within(1'000);
   EXPECT_GE(accepted, 0);
   ::close(accepted);
@@ -134,7 +134,7 @@ TEST(ModbusConnection, ASerialAdapterThatIsPulledAndComesBack) {
   ASSERT_EQ(link.read(kSoc, &soc), Status::kOk);
   battery.reset();
   EXPECT_EQ(link.read(kSoc, &soc), Status::kNotConnected);
-  EXPECT_EQ(link.read(kSoc, &soc), Status::kNotConnected);  // the name leads nowhere
+  EXPECT_EQ(link.read(kSoc, &soc), Status::kNotConnected);  // the name does not resolve
   battery.emplace("block", BatteryServerSettings{}, Transport::kRtu);
   plug_in(*battery);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 10);  // 100 s
@@ -143,7 +143,7 @@ TEST(ModbusConnection, ASerialAdapterThatIsPulledAndComesBack) {
   EXPECT_EQ(link.counters().reconnects, 1);
 }
 
-/// A pseudo terminal has no parity bit to set, but keeps which kind it would be.
+/// A pseudo terminal cannot set a parity bit, but stores the parity setting.
 TEST(ModbusConnection, TheSerialLineIsSetAsConfigured) {
   LoopbackBattery battery("block", {}, Transport::kRtu);
   BatteryLinkSettings settings = battery.link(2'000);

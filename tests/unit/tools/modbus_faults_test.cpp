@@ -1,7 +1,7 @@
-// Every fault of the bus, over TCP and over a serial line, ends in a right answer or in an error,
-// never in a wrong value used: first the link alone with random reads and writes, then the battery
-// driver with orders. The faults come at random from a fixed seed, so that they meet every kind of
-// request.
+// Bus faults over TCP and over a serial line: each ends in a correct answer or in an error, never
+// in the use of a wrong value. First the link alone with random reads and writes, then the battery
+// driver with orders. The faults come at random from a fixed seed, so that they affect every kind
+// of request.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -26,7 +26,7 @@ constexpr std::int32_t kResponseTimeoutMs = 40;
 BatteryServerSettings troubled(const Trouble& trouble, double probability) {
   BatteryServerSettings settings;
   settings.faults = {.faults = {trouble.fault}, .probability = probability, .seed = 7};
-  if (trouble.fault == BatteryFault::kRefuse) {  // what stands must fall to be refused
+  if (trouble.fault == BatteryFault::kRefuse) {  // an open connection must be closed to be refused
     settings.faults.faults.push_back(BatteryFault::kDrop);
   }
   settings.late_ms = trouble.late_ms;
@@ -45,7 +45,7 @@ std::vector<Trouble> all_troubles() {
         troubles.push_back({.transport = transport, .fault = info.fault});
       }
     }
-    // Later than the quiet time: the reply comes while the next question is under way.
+    // Later than the quiet time: the reply arrives during the next request.
     troubles.push_back({.transport = transport, .fault = BatteryFault::kLate, .late_ms = 110});
     for (const int code : {1, 2, 3, 4, 0x80}) {
       troubles.push_back(
@@ -67,10 +67,10 @@ std::string trouble_name(const ::testing::TestParamInfo<Trouble>& info) {
   return name;
 }
 
-/// How long a link that is troubled at random may take to come through on a busy machine.
+/// Recovery time of a randomly disturbed link on a busy machine.
 class Patience {
  public:
-  /// False when it is over; else a moment later.
+  /// False when the time is over; otherwise waits a moment.
   [[nodiscard]] bool lasts() const {
     sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 1'000);
     return clock_ns(CLOCK_MONOTONIC) < end_ns_;
@@ -82,8 +82,8 @@ class Patience {
 
 class EveryFault : public ::testing::TestWithParam<Trouble> {};
 
-/// Free registers of the simulated battery, and what each may hold: one value, or, after a write
-/// that reported an error, the old one as well.
+/// Free registers of the simulated battery, and their possible values: one, or, after a write that
+/// reported an error, also the old one.
 class Scratch {
  public:
   static constexpr int kFirst = 0x0300;
@@ -105,7 +105,7 @@ class Scratch {
   std::map<int, std::set<std::uint16_t>> values_;
 };
 
-/// One random request; true when it succeeded.
+/// One random request; true if it succeeded.
 bool exchange(ModbusLink& link, Scratch& scratch, std::mt19937& random, std::uint16_t value) {
   const int count = 1 + static_cast<int>(random() % 3);
   const int address =
@@ -123,7 +123,7 @@ bool exchange(ModbusLink& link, Scratch& scratch, std::mt19937& random, std::uin
   const std::uint8_t function = count == 1 ? 6 : 16;
   const bool written = link.write(85, function, static_cast<std::uint16_t>(address), registers,
                                   count) == Status::kOk;
-  // Acknowledging without effect is the one lie that only a read-back can find.
+  // Acknowledgement without effect is the only fault that requires a read-back.
   for (int i = 0; i < count; ++i) scratch.wrote(address + i, registers[i], written);
   return written;
 }
@@ -142,8 +142,8 @@ TEST_P(EveryFault, ALinkNeverReturnsAnotherRegistersValue) {
   for (; all < 30 || (good < 5 && patience.lasts()); ++all) {
     if (exchange(link, scratch, random, static_cast<std::uint16_t>(1'000 + 10 * all))) ++good;
   }
-  EXPECT_GE(good, 5);  // it always comes back
-  // The fault was met; a reply that comes twice is passed over, and one that drips may be in time.
+  EXPECT_GE(good, 5);  // it always recovers
+  // The fault occurred; a repeated reply is skipped, and a slow one may be in time.
   if (GetParam().fault != BatteryFault::kDuplicate && GetParam().fault != BatteryFault::kDrip) {
     EXPECT_LT(good, all);
   }
@@ -161,10 +161,10 @@ void expect_truth(const BatteryMeasurement& m, const std::set<std::int32_t>& in_
   EXPECT_FALSE(m.alarm || m.off_grid);
 }
 
-/// Orders through one variant of the map; each has a power of its own.
+/// Orders through one variant of the map; each has a distinct power.
 void order_in_trouble(const Trouble& trouble, const char* variant) {
   SCOPED_TRACE(variant);
-  // So large that the state of charge stays what it is.
+  // So large that the state of charge does not change.
   constexpr BatteryParameters kLarge{.power_w_max = 4'000, .capacity_wh = 800'000};
   LoopbackBattery loopback(variant, troubled(trouble, 0.15), trouble.transport, kLarge);
   ModbusBattery battery(loopback.link(kResponseTimeoutMs), loopback.map, loopback.clock);
@@ -178,14 +178,14 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
     if (ordered == Status::kOk) {
       in_force = {order.power_w};
     } else {
-      in_force.insert({0, order.power_w});  // neither, taken, or taken back
+      in_force.insert({0, order.power_w});  // neither, accepted, or withdrawn
     }
     BatteryMeasurement m;
     if (battery.read(m) != Status::kOk || m.lost_point != 0) continue;
     expect_truth(m, in_force);
     EXPECT_TRUE(m.dispatch_active || ordered != Status::kOk);
   }
-  ASSERT_EQ(ordered, Status::kOk);  // it always comes back
+  ASSERT_EQ(ordered, Status::kOk);  // it always recovers
   const SimulatedBattery& truth = loopback.stop();
   EXPECT_TRUE(truth.dispatch_active());
   EXPECT_EQ(truth.power_w(), order.power_w);
@@ -204,7 +204,7 @@ struct Verdict {
   Status tcp, rtu;
 };
 
-/// What a fault at every request is called; kOk where this bus does not have it.
+/// Status of a fault at every request; kOk where this bus lacks the fault.
 TEST(ModbusFaults, EachIsToldByItsStatus) {
   constexpr Status kNone = Status::kOk;
   const Verdict verdicts[] = {
@@ -232,7 +232,8 @@ TEST(ModbusFaults, EachIsToldByItsStatus) {
       const Status expected = transport == Transport::kTcp ? verdict.tcp : verdict.rtu;
       if (expected == kNone) continue;
       const std::int32_t timeout_ms = expected == Status::kTimeout ? kResponseTimeoutMs : 5'000;
-      // Both kinds of echo; of a read only the first, a late answer may be the second's.
+      // Both kinds of echo; of a read only the first, because a late answer may belong to the
+      // second.
       for (const int function : verdict.write ? std::vector{6, 16} : std::vector{3}) {
         LoopbackBattery loopback("block", troubled({transport, verdict.fault, 100}, 1), transport);
         ModbusLink link(loopback.link(timeout_ms), {}, loopback.clock);
@@ -249,7 +250,7 @@ TEST(ModbusFaults, EachIsToldByItsStatus) {
   }
 }
 
-/// A device that sends a byte now and then must not hold the control thread.
+/// A device that sends a byte now and then must not block the control thread.
 TEST(ModbusFaults, ADrippingDeviceCannotHoldARequest) {
   for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
     BatteryServerSettings settings = troubled({transport, BatteryFault::kDrip}, 1);

@@ -1,5 +1,5 @@
-// The edge's Modbus driver against the simulated battery, which speaks libmodbus, on loopback:
-// every command, and how trouble is told apart. Faults: modbus_faults_test.
+// Modbus driver of the edge against the simulated battery (libmodbus) on loopback: every command,
+// and the distinction of errors. Faults: modbus_faults_test.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST(ModbusLink, IdentityOfTheSimulatedBatteryFits) {
   ModbusBattery stranger(loopback.link(), loopback.map, loopback.clock);
   battery.close();
   BatteryMeasurement m;
-  EXPECT_EQ(stranger.read(m), Status::kImplausible);  // never read, hence never driven
+  EXPECT_EQ(stranger.read(m), Status::kImplausible);  // never read, hence not driven
 }
 
 TEST(BatteryServer, PortInUseIsOneClearLine) {

@@ -1,4 +1,4 @@
-// A recorded device answers as it did, by address and time, whatever the milliseconds.
+// Recorded device: it answers as before, by address and time, regardless of milliseconds.
 #include "tools/simulators/battery_sim/recorded_device.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# repository.sh SOURCE FOLDER: tools/repository with a throw-away key: apt takes what it signed, as
-# many of twenty machines as the phase says upgrade, and a foreign key is refused. Exit 77 =
+# repository.sh SOURCE FOLDER: tools/repository with a temporary key: apt accepts its signature, the
+# share of twenty machines that upgrade equals the phase, and a foreign key is refused. Exit 77 =
 # skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
@@ -31,7 +31,7 @@ repository --key first@example.org --phased 30 || fail "a newer version: $(cat s
 code=0
 repository --key second@example.org || code=$?
 [ $code -eq 1 ] && grep -q "is signed with another key" said || fail "another key: $(cat said)"
-# What must not get in leaves what is served as it is.
+# A refused package leaves the served ones unchanged.
 export BESS_PACKAGES=$folder/spoilt
 refuses() {  # refuses WHAT LINE OPTIONS...
   local what=$1 line=$2 code=0 before
@@ -78,7 +78,7 @@ if of_two || ! grep -q "+deb12" said; then
   fail "packages of two releases: $(cat said)"
 fi
 
-# A machine that has 1.0, with this machine id; what would apt do?
+# A machine with 1.0 and this machine id; prints apt's action.
 mkdir -p apt/{lists/partial,archives/partial,parts}
 installed() {  # installed NAME VERSION: a paragraph of dpkg's status
   printf '%s\n' "Package: $1" "Status: install ok installed" "Version: $2" "Architecture: amd64" \
@@ -118,8 +118,8 @@ upgrades() {  # of twenty machines
 }
 some=$(upgrades)
 { [ "$some" -gt 0 ] && [ "$some" -lt 14 ]; } || fail "at 30 % $some of 20 machines upgrade"
-# A new machine is not an upgrade: no percentage keeps the newest from it. The suite of full
-# versions does.
+# A new machine is not an upgrade: no percentage withholds the newest version from it. The suite of
+# full versions does.
 cp apt/status apt/status.kept
 awk 'BEGIN { RS = ""; ORS = "\n\n" } !/^Package: bess-edge\n/' apt/status.kept >apt/status
 for suite in stable full; do
@@ -139,7 +139,7 @@ repository --key first@example.org && apt update >said 2>&1
 all=$(upgrades)
 [ "$all" -eq 20 ] || fail "at 100 % $all of 20 machines upgrade"
 
-# A newer one is taken back: the one before is served again, and no package is lost.
+# A newer version is withdrawn: the previous one is served again, and no package is lost.
 made_up_package packages amd64 3.0 >/dev/null
 repository --key first@example.org || fail "a newer one: $(cat said)"
 apt update >said 2>&1

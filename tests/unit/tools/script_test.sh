@@ -1,4 +1,4 @@
-# Sourced: how the tests of scripts begin. $source is the tree, $folder the test's own.
+# Sourced: start of the script tests. $source is the tree, $folder the test's own.
 failures=0
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 need() {  # need PROGRAM...: else the test is skipped

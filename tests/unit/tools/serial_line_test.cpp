@@ -1,6 +1,6 @@
-// The simulated battery on a serial line that several units share: each unit of its map answers,
-// others are not there, and a torn or spoilt request costs no more than itself. mbpoll, which
-// shares nothing with bess, is one of the masters.
+// Simulated battery on a serial line with several units: each unit of its map answers, others are
+// absent, and a torn or corrupt request affects only itself. mbpoll, an independent program, is one
+// of the masters.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -24,7 +24,7 @@ LoopbackBattery serial_battery() {
                          LoopbackBattery::kHouse, kTimeScale);
 }
 
-/// What mbpoll says of one holding register.
+/// mbpoll's output for one holding register.
 std::string poll_register(const LoopbackBattery& loopback, int unit, int address) {
   ChildProcess mbpoll({kMbpoll, "-m", "rtu", "-b", "115200", "-P", "none", "-o", "0.3", "-1", "-0",
                        "-t", "4", "-a", std::to_string(unit), "-r", std::to_string(address),
@@ -93,7 +93,7 @@ TEST_F(SerialRequests, AreTakenOneByOneWhateverTheirLength) {
   EXPECT_EQ(request_.size, 13);
   EXPECT_EQ(request_.write_count(), 2);
   ASSERT_EQ(take("\x11\x07\x4C\x22"sv),
-            SerialRead::kRequest);  // of no known length: silence ends it
+            SerialRead::kRequest);  // of unknown length: silence ends it
   EXPECT_EQ(request_.size, 4);
 }
 

@@ -1,5 +1,5 @@
-// A run that did what a policy decided, step for step, is settled at what evaluate says it earned:
-// costs and wear are counted alike on both sides of the project.
+// A run with a policy's decisions, step for step, settles at the earnings of evaluate: costs and
+// wear are counted equally on both sides of the project.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What a run earned, by hand: four minutes of a battery of 3 kW, once charged and once discharged.
+// Earnings of a run, by hand: four minutes of a battery of 3 kW, once charged and once discharged.
 #include "tools/simulators/settle/settlement.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The simulated battery: exact integration, limits, expiry; for its registers see map_day_test.
+// Simulated battery: exact integration, limits, expiry; for its registers see map_day_test.
 #include "tools/simulators/battery_sim/simulated_battery.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheWeatherLeaves) {
   EXPECT_EQ(battery.commanded_power_w(), 4'000);
 }
 
-/// A day of orders that were drawn: simulated by the second, and by the model's steps.
+/// A day of drawn orders: simulated by the second, and by the model's steps.
 TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
   BatteryParameters real = kHouse;
   real.charge_taper = {.width_frac = 0.1, .share = 0.2};
@@ -78,7 +78,7 @@ TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
     PowerState power;
     std::vector<double> modelled_wh;
     for (int step = 0; step < 720; ++step) {
-      const int trend = (step / 90) % 2 == 0 ? 1 : -1;  // three hours each way, as prices go
+      const int trend = (step / 90) % 2 == 0 ? 1 : -1;  // three hours each way, as with real prices
       const double wanted_w = random() % 4 == 0 ? 0 : trend * 4'000.0;
       simulated.start_dispatch(wanted_w, wanted_w > 0 ? 1.0 : 0.1, 300);
       simulated.advance(after_s(120.0 * (step + 1)));
@@ -100,7 +100,7 @@ TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
   }
 }
 
-/// What the taper leaves falls quicker than a lag follows at first: the ramp must not wait for it.
+/// The limit of the taper falls faster than a lag follows at first: the ramp must not wait for it.
 TEST(SimulatedBattery, ARampTurnsWithinTheTaperAsWell) {
   BatteryParameters battery = kHouse;
   battery.charge_taper = {.width_frac = 0.1, .share = 0.2};
@@ -185,7 +185,7 @@ TEST(SimulatedBattery, RecordHasOneRowAMinuteAndAllTheEnergy) {
   EXPECT_EQ(rows[2].minute_utc_s, kStartS + 120);
   EXPECT_NEAR(rows[0].energy_wh, 10, 1e-9);  // half a minute
   EXPECT_NEAR(rows[1].energy_wh, 20, 1e-9);
-  EXPECT_NEAR(rows[2].energy_wh, 10, 1e-9);  // under way
+  EXPECT_NEAR(rows[2].energy_wh, 10, 1e-9);  // in progress
   EXPECT_EQ(rows[1].commanded_power_w, 1'200);
 }
 

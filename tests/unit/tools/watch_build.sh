@@ -1,6 +1,5 @@
 #!/bin/sh
-# watch_build.sh SOURCE FOLDER: tools/watch_build around builds that do nothing but take time or
-# fail.
+# watch_build.sh SOURCE FOLDER: tools/watch_build around builds that only take time or fail.
 source=$1 folder=$2
 fail() { cat "$folder/said" 2>/dev/null; echo "$*"; exit 1; }
 rm -rf "$folder"
@@ -30,7 +29,7 @@ grep -q '^\[1/2\] compiled, ' said || fail "it does not tell how far it is"
 grep -q '^one.cpp:3:5: error: no such thing' said || fail "the compiler's words are not shown"
 grep -q '^\[1/2\]' said && fail "the steps before a failure are shown"
 
-# On a terminal: one row, drawn again and again.
+# On a terminal: one row, redrawn repeatedly.
 script -qec "'$source/tools/watch_build' log sh slow" /dev/null >said 2>&1 ||
   fail "it fails on a terminal"
 [ "$(grep -c . said)" -le 2 ] || fail "more than one row on a terminal"

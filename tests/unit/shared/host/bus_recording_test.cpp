@@ -1,5 +1,5 @@
-// Recordings of a device as files: what is written is read, and whatever is cut or damaged is one
-// line that names file and line.
+// Device recordings as files: written data is read back, and truncated or damaged data is one line
+// that names file and line.
 #include "shared/host/bus_recording.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ class BusRecording : public ::testing::Test {
     for (const std::string& line : lines) text += line + "\n";
     return folder_.write("device.jsonl", text);
   }
-  /// Reads to the end; the error, empty when there is none.
+  /// Reads to the end; returns the error, empty if there is none.
   std::string read(const std::string& path, CutRecording cut = CutRecording::kRefused) {
     exchanges_.clear();
     std::string error;

@@ -1,4 +1,4 @@
-// Programs that are started: what becomes of a signal when nobody is left to take it.
+// Child processes: handling of a signal after the child has been reaped.
 #include "shared/host/child_process.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,7 @@
 namespace bess {
 namespace {
 
-/// Once it was waited for it has no number any more, and -1 would mean every process of this user:
-/// 0 only asks.
+/// A reaped child has no process id, and -1 would mean every process of this user: 0 only checks.
 TEST(ChildProcess, ASignalToOneThatHasEndedReachesNobodyElse) {
   ChildProcess child({"/bin/cat", "/dev/null"});
   EXPECT_EQ(child.wait(), 0);

@@ -1,5 +1,5 @@
-// Day-ahead answers as servers give them, drawn from days that are known: what is laid out is never
-// another price than the day's, and what is left out is what the answer does not say.
+// Day-ahead answers in the format of servers, drawn from known days: no price differs from the
+// day's, and only prices missing in the answer are left out.
 #include "shared/host/day_ahead_rows.h"
 
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST_P(DayAhead, OfHoursTodayAndQuarterHoursTomorrowOrWithinADay) {
   });
 }
 
-/// Prices repeat in drawn places, over midnight too, and the server leaves out what repeats.
+/// Prices repeat in drawn places, also over midnight, and the server omits repetitions.
 TEST_P(DayAhead, OfMergedRowsIsAssumedAndRight) {
   on_days([](DrawnDays& days, int all) {
     const std::int64_t eight_hours = 8 * kHour;

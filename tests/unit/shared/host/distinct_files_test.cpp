@@ -1,4 +1,4 @@
-// What counts as the same file, under whatever name.
+// Identity of files under different names.
 #include "shared/host/file.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST_F(DistinctFiles, AnOutputThatIsAnInputIsRefusedUnderAnyName) {
 }
 
 TEST_F(DistinctFiles, TwoOutputsThatWillBeOneFileAreRefused) {
-  const std::string later = folder_.file("later.csv");  // is not there yet
+  const std::string later = folder_.file("later.csv");  // does not exist yet
   EXPECT_NE(refusal({{"--csv", later}, {"--days-out", folder_.file("sub/../later.csv")}}, {}), "");
 }
 

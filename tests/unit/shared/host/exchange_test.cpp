@@ -1,5 +1,5 @@
-// What flowed between the records of a log, by hand: an order that begins late, a battery that is
-// full before the next tick, a tick that nobody saw, a clock that was stepped back.
+// Energy between the records of a log, by hand: an order that begins late, a battery that is full
+// before the next tick, a skipped tick, a clock step backwards.
 #include "shared/host/exchange.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kExchangeStart = 1'679'785'200;  // a quarter-hour begins
 const double kOneWayOf90 = std::sqrt(0.9);
 
-/// 8 kWh, read at tick `i` with that power, and ordered that from `after_s` on.
+/// 8 kWh, read at tick `i` with that power, and ordered `power` from `after_s` on.
 ExchangeSample sample_at(int i, std::int32_t power_w, std::int32_t soc_e4, std::int32_t order_w,
                          float after_s = 6) {
   return {.utc_s = kExchangeStart + i * 120,
@@ -29,7 +29,7 @@ struct ExchangeSums {
   double first_quarter_wh = 0;  ///< net, from kExchangeStart
 };
 
-/// Without what the first of them stands for.
+/// Without the interval before the first one.
 ExchangeSums exchange_sums(const std::vector<ExchangeSample>& samples) {
   ExchangeSums sums;
   for_each_exchange(samples, [&](const Exchange& e) {
@@ -60,7 +60,7 @@ TEST(Exchanges, NoneGoesAcrossAQuarterHour) {
   EXPECT_NEAR(sums.first_quarter_wh, 750, 1e-6);
 }
 
-/// The SoC says how much still fitted; the power at the next tick is 0 and would say nothing.
+/// The SoC shows how much still fitted; the power at the next tick is 0 and has no information.
 TEST(Exchanges, ABatteryThatIsFullBeforeTheTickTookWhatFitted) {
   const ExchangeSums sums =
       exchange_sums({sample_at(0, 4'000, 9'700, 4'000), sample_at(1, 4'000, 9'858, 4'000),
@@ -69,7 +69,7 @@ TEST(Exchanges, ABatteryThatIsFullBeforeTheTickTookWhatFitted) {
   EXPECT_NEAR(sums.charged_wh, 0.03 * 8'000 / kOneWayOf90, 0.5);
 }
 
-/// Killed while it charged: the order runs on until the battery's timer ends it.
+/// Killed while it charged: the order continues until the battery's timer ends it.
 TEST(Exchanges, AGapIsToldByTheStateOfCharge) {
   const std::int32_t after_e4 = 5'000 + 158 + 396;  // 120 s, and 300 s more, at 4 kW
   const ExchangeSums sums =
@@ -78,7 +78,7 @@ TEST(Exchanges, AGapIsToldByTheStateOfCharge) {
   const double gap_wh = 0.0396 * 8'000 / kOneWayOf90;
   EXPECT_NEAR(sums.charged_wh, 4'000 / 30.0 + gap_wh, 2);
   EXPECT_NEAR(sums.unseen_wh, gap_wh - 4'000 * 6 / 3'600.0, 2);
-  EXPECT_NEAR(sums.first_quarter_wh, sums.charged_wh, 1e-6);  // at once, not over the hour
+  EXPECT_NEAR(sums.first_quarter_wh, sums.charged_wh, 1e-6);  // immediately, not over the hour
   EXPECT_EQ(sums.discharged_wh, 0);
 }
 
@@ -93,7 +93,7 @@ TEST(Exchanges, AClockThatIsSteppedBackBeginsAnew) {
   const ExchangeSums sums =
       exchange_sums({sample_at(10, 4'000, 5'000, 4'000), sample_at(11, 4'000, 5'158, 4'000),
                      sample_at(5, 4'000, 5'316, 4'000), sample_at(6, 4'000, 5'474, 4'000)});
-  // And what the first stands for.
+  // And the interval before the first one.
   EXPECT_NEAR(sums.charged_wh, 3 * 4'000 / 30.0, 1e-6);
 }
 
@@ -108,12 +108,12 @@ TEST(Exchanges, TheEfficiencyIsThatOfTheLog) {
   EXPECT_NEAR(charge_scale_of({}).charge_efficiency, kOneWayOf90, 1e-9);
 }
 
-/// By the age that the price of a minute had then.
+/// By the age of the price at that time.
 TEST(Exchanges, ASampleKnowsWhenItsOrderWasWritten) {
   ExchangeSample sample{.utc_s = kExchangeStart};
   sample.set_written(kExchangeStart - 60, 5);
   EXPECT_NEAR(sample.written_after_s, 5.5, 1e-6);
-  sample.set_written(kExchangeStart - 60, 90);  // of a price that came late
+  sample.set_written(kExchangeStart - 60, 90);  // of a late price
   EXPECT_EQ(sample.written_after_s, 0);
 }
 

@@ -1,4 +1,4 @@
-// Writing beside and renaming, and what must not be renamed over.
+// Atomic replacement of files by renaming, and targets that must not be replaced.
 #include "shared/host/file.h"
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST_F(File, AFullDeviceIsAnErrorAndStaysADevice) {
   EXPECT_TRUE(fs::is_character_file(full));
 }
 
-/// Somebody else's link in the place of the temporary file must not lead the text anywhere.
+/// Another user's link in place of the temporary file must not redirect the text.
 TEST_F(File, APlantedLinkIsNotFollowed) {
   const std::string victim = folder_.write("victim", "precious");
   fs::create_symlink(victim, path_.string() + ".part." + std::to_string(getpid()));
@@ -120,7 +120,7 @@ TEST_F(File, WhatIsBehindOrMissingOfGzipIsTold) {
   EXPECT_GE(told, whole.size() - 12);
 }
 
-/// 1.2 MB that stand for 1.2 GB: no more than the bound is ever held.
+/// 1.2 MB in place of 1.2 GB: memory never exceeds the bound.
 TEST_F(File, ABombIsBoundedWhileItIsRead) {
   std::string comments;
   while (comments.size() < 1'000'000) comments += "# nothing\n";

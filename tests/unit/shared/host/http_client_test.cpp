@@ -1,5 +1,5 @@
-// The HTTP client against hosts with several addresses of which some are dead, redirects, and
-// servers that ask for less; on a fake resolver.
+// HTTP client with hosts of several addresses, some of them dead, redirects, and servers that ask
+// for fewer requests; on a fake resolver.
 #include "shared/host/http_client.h"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ std::string url_of(const TestServer& server) {
   return "http://127.0.0.1:" + std::to_string(server.port()) + "/";
 }
 
-/// Takes a request and says nothing until somebody gives up.
+/// Accepts a request and gives no answer until a time-out.
 class SilentServer {
  public:
   explicit SilentServer(std::uint16_t port = 0)
@@ -68,7 +68,7 @@ class SilentServer {
   TestServer server_;
 };
 
-/// Takes connections, as the kernel does, and never says a word.
+/// Accepts connections, as the kernel does, without an answer.
 class SilentPlace {
  public:
   SilentPlace(const char* address, std::uint16_t port) {
@@ -157,7 +157,7 @@ TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
   EXPECT_EQ(elsewhere.requests(), 1);
   EXPECT_THAT(seen, Not(HasSubstr("secret")));
   target = request.url;
-  EXPECT_EQ(get(request).status, 302);  // round and round
+  EXPECT_EQ(get(request).status, 302);  // in a loop
 }
 
 TEST(HttpClient, AServerThatAsksForLessIsHeard) {

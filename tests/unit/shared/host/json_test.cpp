@@ -1,4 +1,4 @@
-// JSON out and back in: numbers to the last digit, and complaints that name file and member.
+// JSON output and input: numbers to the last digit, and errors that name file and member.
 #include "shared/host/json.h"
 
 #include <gmock/gmock.h>

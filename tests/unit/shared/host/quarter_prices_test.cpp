@@ -1,4 +1,4 @@
-// What a quarter-hour is paid at, by hand: settled, else the newest of its own minutes.
+// Price of a quarter-hour, by hand: settled, otherwise the newest of its own minutes.
 #include "shared/host/exchanged_days.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(QuarterPrices, AreTheSettledOneElseTheNewestOfTheirMinutes) {
   EXPECT_EQ(prices.find(kPricedQuarter)->eur_per_mwh, 90);
   EXPECT_EQ(prices.find(kPricedQuarter)->state, PriceState::kIndicative);
   EXPECT_EQ(prices.find(kPricedQuarter)->start_utc_s, kPricedQuarter);
-  // Of the next no minute of its own is known, of the one after nothing.
+  // The next has no known minute of its own, the one after nothing at all.
   EXPECT_EQ(prices.find(kPricedQuarter + 900)->eur_per_mwh, 90);
   EXPECT_FALSE(prices.find(kPricedQuarter + 1'800));
   prices.note(kPricedQuarter + 1'080, kPricedQuarter + 1'020, -20);

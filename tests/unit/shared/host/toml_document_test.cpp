@@ -1,5 +1,4 @@
-// The one TOML reader: what it makes of a text, and that every mistake is one line with file and
-// line.
+// TOML reader: its values, and that every mistake is one line with file and line.
 #include "shared/host/toml_document.h"
 
 #include <gmock/gmock.h>
@@ -54,7 +53,7 @@ TEST(TomlDocument, HoldsValuesAndWhereTheyWereWritten) {
   EXPECT_EQ(list[0].find("none"), nullptr);
 }
 
-/// toml++ compares the first character with ranges of white space that it does not all know.
+/// toml++ compares the first character with incomplete ranges of white space.
 TEST(TomlDocument, AContinuedLineMayBeginWithAnyCharacter) {
   for (const char* const letter :
        {"\u00E9", "\u0416", "\u20AC", "\u3042", "\U0001F50B", "\u00A0"}) {
@@ -94,8 +93,7 @@ TEST(TomlDocument, AFileThatCannotBeReadIsNamed) {
   EXPECT_THAT(error, Names(folder.file("")));
 }
 
-/// A device that never ends stands for a file of any size: neither memory nor time may grow with
-/// it.
+/// An endless device represents a file of any size: neither memory nor time may grow with it.
 TEST(TomlDocument, AFileIsReadNoFurtherThanItCouldBeParsed) {
   TomlValue document;
   std::string error;

@@ -1,4 +1,4 @@
-// Virtual and wall time held against each other: which cycles count, and what is the same order.
+// Comparison of virtual and wall time: which control cycles count, and which orders are equal.
 #include "tools/hil_runner/run/agreement.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 #!/bin/sh
-# command_line.sh PROGRAM SCENARIOS: what bess-hil says and returns, for people and for machines.
+# command_line.sh PROGRAM SCENARIOS: output and exit codes of bess-hil, for people and for machines.
 program=$1
 scenarios=$2
 work=$(mktemp -d)
@@ -22,13 +22,13 @@ grep -q '"passed": *1' "$work/a.json" || complain "--json: $(cat "$work/a.json")
 grep -q '<testcase classname="virtual" name="quiet_hour"' "$work/a.xml" ||
   complain "--junit: $(cat "$work/a.xml")"
 
-# A run repeats to the bit.
+# A repeated run is bit-identical.
 signature() { sed 's/.*"signature": *"\([0-9a-f]*\)".*/\1/'; }
 first=$(signature <"$work/a.json")
 second=$("$program" run "$scenarios/quiet_hour.toml" --json | signature)
 [ "$first" = "$second" ] || complain "two runs differ: $first $second"
 
-# A scenario that fails says what was expected, what was seen and when, in one line; exit code 1.
+# A failing scenario reports expectation, observation and time in one line; exit code 1.
 { cat "$scenarios/quiet_hour.toml"; printf '\n[[expect]]\nfrom_min = 10\ncommand = "none"\n'; } \
   >"$work/wrong.toml"
 "$program" run "$work/wrong.toml" --junit "$work/b.xml" >"$work/wrong.txt" 2>"$work/wrong.err" &&
@@ -39,14 +39,14 @@ grep -q "^FAIL .*$told" "$work/wrong.txt" ||
 grep -q '<failure message="expect 1: ' "$work/b.xml" ||
   complain "$(cat "$work/b.xml")"
 
-# A page with pictures: what went wrong by its name, the axis in UTC.
+# A page with pictures: faults by name, the axis in UTC.
 if command -v gnuplot >/dev/null; then
   "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" \
     --report "$work/page.html" >/dev/null || complain "--report"
   for text in 'battery: silence' 'edge_kill' '2023-03-26T00:00:00Z' ' W' 'SoC' 'EUR/MWh'; do
     grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
   done
-  # In a dark room, on a narrow screen, by the keyboard and by ear; a minus is no hyphen.
+  # Dark mode, narrow screens, keyboard and screen reader; a minus is no hyphen.
   "$program" run "$work/wrong.toml" "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" \
     --report "$work/page.html" >/dev/null 2>&1
   for text in 'prefers-color-scheme:dark' 'width=device-width' 'role="region" tabindex="0"' \
@@ -59,7 +59,7 @@ if command -v gnuplot >/dev/null; then
   grep -q '<rect[^>]*fill="#ffffff"' "$work/page.html" && complain "a white ground on a dark page"
 fi
 
-# A file that cannot be read: one line with file, line and the mend; a wrong option: 2.
+# An unreadable file: one line with file, line and correction; a wrong option: 2.
 printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
 "$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was taken"
 grep -q 'bad.toml:2: .*minuts' "$work/bad.err" || complain "$(cat "$work/bad.err")"
@@ -70,7 +70,7 @@ printf 'title = "x"\n[edge]\nguard = "soc_minn = 0.2"\n' >"$work/edge.toml"
 TMPDIR=/nowhere "$program" run "$scenarios/quiet_hour.toml" 2>&1 | grep -q TMPDIR ||
   complain "no TMPDIR"
 
-# Ctrl-C: exit code 3, and nothing is left.
+# Ctrl-C: exit code 3, and no files remain.
 mkdir "$work/tmp"
 TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null \
   2>"$work/stop.err" & run=$!

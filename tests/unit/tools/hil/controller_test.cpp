@@ -1,5 +1,5 @@
-// The controller's start and end in virtual time: what it asks of its world and whom it tells, in
-// which order, and what it does where its world refuses.
+// Start and end of the controller in virtual time: its calls of the world and its observers, their
+// order, and its reaction to refusals.
 #include "edge/app/program/controller.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Virtual time that remembers what it was asked for.
+/// Virtual time that records its calls.
 class WatchedWorld : public VirtualWorld {
  public:
   using VirtualWorld::VirtualWorld;
@@ -116,7 +116,7 @@ TEST(Controller, ReachesBeginsRunsAndEnds) {
   EXPECT_EQ(hour.world->final_mode, Mode::kStopping);
   EXPECT_TRUE(hour.world->complaints.empty());
   ASSERT_EQ(hour.state.records().size(), 3U);
-  // The last order kept its whole step; then the battery was given back.
+  // The last order kept its whole step; then the battery was released.
   const DispatchEvent& last = hour.battery.dispatch_events().back();
   EXPECT_EQ(last.kind, DispatchEvent::Kind::kStop);
   EXPECT_GE(last.utc_ns / kNanosecondsPerSecond, hour.state.records()[1].utc_s + kSecondsPerStep);

@@ -1,5 +1,5 @@
-// bess-hil run --each-part: a part that changes nothing is found, unless the scenario says why,
-// and an excuse of one that does.
+// bess-hil run --each-part: finds a part without effect, unless the scenario gives a reason, and a
+// reason for a part that has an effect.
 #include "tools/hil_runner/run/agreement.h"
 
 #include <gmock/gmock.h>

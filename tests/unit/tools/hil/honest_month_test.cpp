@@ -1,6 +1,6 @@
 // A month of real prices on every shipped map in virtual time, through the edge's own link, frames
-// and registers, with a battery that is slow, noisy and slow near its limits: never stopped for
-// what the battery does.
+// and registers, with a battery that is slow, noisy and slow near its limits: the battery never
+// causes a stop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace bess {
 namespace {
 
-/// Everything that supervision can find.
+/// All findings of the supervision.
 constexpr Reason kFindings[] = {
     Reason::kWrongDirection, Reason::kUncontrolledPower, Reason::kSocMismatch, Reason::kOtherMaster,
     Reason::kOrdersFail,     Reason::kNoAnswer,          Reason::kCapacity,    Reason::kSocJump};

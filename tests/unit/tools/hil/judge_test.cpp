@@ -1,5 +1,4 @@
-// The judge: each invariant finds what breaks it in a record made by hand, and finds nothing in a
-// good one.
+// Judge: each invariant finds its violation in a hand-made record, and nothing in a good one.
 #include <gtest/gtest.h>
 
 #include "shared/scaled_clock.h"
@@ -13,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kStartS = 1'679'788'800;
 
-/// Twenty minutes at 0 W, then given back: nothing to object to.
+/// Twenty minutes at 0 W, then released: no finding.
 struct HandMade {
   Scenario scenario;
   MinuteSeries prices;
@@ -56,7 +55,7 @@ struct HandMade {
   DispatchEvent& order_of(int minute) {
     return evidence.orders[static_cast<std::size_t>(minute / 2)];
   }
-  /// A cycle that wrote an order of such power.
+  /// A control cycle that wrote an order of such power.
   CycleRecord& log_cycle(int minute, std::int32_t power_w) {
     CycleRecord cycle;
     cycle.utc_s = kStartS + 60 * minute;
@@ -67,7 +66,7 @@ struct HandMade {
     return *evidence.log.insert(evidence.log.begin(), cycle);
   }
 
-  /// The rules that are broken, in one text.
+  /// The violated rules, in one text.
   std::string broken() {
     prices = scenario_prices(scenario);
     const WorkFolder folder;
@@ -81,7 +80,7 @@ struct HandMade {
   }
 };
 
-/// What is wrong with a record, and the rules that it breaks.
+/// A defect of a record, and the rules that it violates.
 struct Defect {
   void (*make)(HandMade& run);
   const char* broken;
@@ -166,12 +165,12 @@ TEST(Judge, KnowsReserveBudgetAndCapsAboveTheThresholds) {
   HandMade kept = at_rest(1'600);
   kept.scenario.edge_other = "[[reserve]]\nfrom = \"00:00\"\nto = \"24:00\"\nsoc = 0.5\n";
   EXPECT_EQ(kept.broken(), "");
-  kept.scenario.prices.steps[1].eur_per_mwh = -600;  // it may be charged all the same
+  kept.scenario.prices.steps[1].eur_per_mwh = -600;  // it may still charge
   EXPECT_EQ(kept.broken(), "thresholds");
   HandMade spent = at_rest(1'600, "cycles_per_day_max = 0.2");
   EXPECT_EQ(spent.broken(), "thresholds");
   for (std::size_t minute = 1; minute < 7; minute += 2) {
-    spent.evidence.minutes[minute].soc_frac = 0.57;  // to and fro: 0.21 cycles
+    spent.evidence.minutes[minute].soc_frac = 0.57;  // alternating: 0.21 full cycles
   }
   EXPECT_EQ(spent.broken(), "");
   HandMade barred = at_rest(-600, "reversals_per_hour_max = 1");
@@ -239,7 +238,7 @@ TEST(Judge, SeesABatteryThatLeadsTheConnectionBeyondItsLimits) {
   EXPECT_EQ(run.broken(), "connection");
   run.scenario.house.steps = {{0, 500}, {10, 700}};
   EXPECT_EQ(run.broken(), "");
-  // Beyond it by itself, the house is nobody's fault.
+  // The house load alone beyond it is no violation.
   run.scenario.house.steps = {{0, 4'000}};
   run.evidence.minutes[4].energy_wh = run.evidence.minutes[6].energy_wh =
       run.evidence.minutes[7].energy_wh = 0;
@@ -254,7 +253,7 @@ TEST(Judge, SeesABatteryThatMakesAQuarterHoursPeak) {
   EXPECT_EQ(run.broken(), "connection");
   flow(run, 13, 0);
   EXPECT_EQ(run.broken(), "");
-  // What it took and gave back is not its own.
+  // Energy that it charged and discharged does not count as its own.
   run.scenario.house.steps = {{0, 500}, {10, 3'000}};
   for (std::size_t minute = 10; minute < 15; ++minute) flow(run, minute, -1'000);
   EXPECT_EQ(run.broken(), "");
@@ -272,16 +271,16 @@ TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
   };
   run.evidence.orders.insert(run.evidence.orders.begin() + 5, cut(1'000));
   EXPECT_EQ(run.broken(), "");
-  run.evidence.orders[5] = cut(2'500);  // it may not give
+  run.evidence.orders[5] = cut(2'500);  // it may not discharge
   EXPECT_EQ(run.broken(), "in_time");
   run.evidence.orders[5] = cut(-1'000);
   EXPECT_EQ(run.broken(), "in_time");
-  run.scenario.edge_meter = "peak_w_max = 1000";  // but give back for a peak
+  run.scenario.edge_meter = "peak_w_max = 1000";  // except for a peak
   EXPECT_EQ(run.broken(), "");
 }
 
-/// An order that the tick finds in force is not written again; a rise of the house some seconds
-/// later cuts it before the judge looks.
+/// An order that the tick finds in force is not written again; a rise of the house load some
+/// seconds later cuts it before the judge evaluates it.
 TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
   HandMade run = with_house("import_w_max = 3000");
   run.scenario.invariants = {"order"};
@@ -295,7 +294,7 @@ TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
   run.order_of(10).power_w = 2'500;  // nothing was cut
   EXPECT_EQ(run.broken(), "order");
   run.order_of(10).power_w = 0;
-  run.order_of(8).kind = DispatchEvent::Kind::kExpiry;  // it had run out
+  run.order_of(8).kind = DispatchEvent::Kind::kExpiry;  // it had expired
   EXPECT_EQ(run.broken(), "order");
 }
 
@@ -317,11 +316,11 @@ TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   run.evidence.log[0].measurement.soc_e4 = 5'600;
   EXPECT_EQ(run.broken(), "inputs");
   run.evidence.log[0] = cycle;
-  run.evidence.log[0].has_student_action = true;  // of no context class
+  run.evidence.log[0].has_student_action = true;  // without context class
   EXPECT_EQ(run.broken(), "decision");
 }
 
-/// Half a minute late: a bus with a fault may take so long, one without may not.
+/// 30 s late: a bus with a fault may take that long, a healthy one may not.
 TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   HandMade run;
   run.log_cycle(8, 2'000);

@@ -1,7 +1,7 @@
 // The same days three times: `bess-train log compare` from the log's CSV and the settled prices,
 // `bess-sim settle` from the battery's own record, `bess-train evaluate` from the prices alone. A
-// month, and three days with a gap, a clock change and restarts, each day by itself as well. And
-// the same log replayed, and as a statement.
+// month, and three days with a gap, a clock change and restarts, also each day separately. Also the
+// same log replayed, and as a statement.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,9 +26,8 @@ constexpr double kApart = 0.01;
 constexpr double kCapacityMwh = 0.008;
 constexpr const char* kNames[] = {"rbc:20:120", "compiled", "foresight"};
 
-/// A day without a controller for half an hour and without prices for twelve minutes; the day of
-/// the clock change, with a stop, a kill, and a start before the next tick each; one with none of
-/// it.
+/// A day with 30 min without a controller and 12 min without prices; the day of the clock change,
+/// with a stop, a kill, and a start before the next tick each; one undisturbed day.
 constexpr const char* kThreeDays = R"(title = "Three days"
 time = "virtual"
 start_utc = "2023-03-24T23:00:00Z"
@@ -78,7 +77,7 @@ struct Days {
   std::string from, to;
 };
 
-/// A run in virtual time, and what the three programs make of it.
+/// A run in virtual time, and the results of the three programs.
 class SameDays {
  public:
   explicit SameDays(const std::string& scenario, const std::string& costs = "")
@@ -124,7 +123,7 @@ class SameDays {
     return judged;
   }
 
-  /// On the same prices, in the minutes in which the log has one; the days before give their level.
+  /// On the same prices, in the minutes that the log covers; the days before give their level.
   [[nodiscard]] Judged evaluated(const Days& days) const {
     write_minute_file(folder_.file("traded.csv"), traded(days), "");
     double soc_frac = -1;
@@ -212,7 +211,7 @@ TEST(LogCommands, CompareIsWhatSettleAndEvaluateSayOfAMonth) {
   const SameDays month(std::string(kMonth) + kRealMinutes + "\"\n");
   expect_alike(month, kMarch);
   expect_alike(month, {20'230'326, 20'230'401, "2023-03-26", "2023-03-31"});
-  // The student that drove it would drive it so again.
+  // The same student would drive it the same way again.
   const std::string replayed =
       month.log_command("replay", kMarch, {"--student", "compiled", "--json", "--limit", "0"});
   const Json json = Json::parse(replayed);
@@ -228,7 +227,8 @@ TEST(LogCommands, CompareIsThatOfDaysWithAGapAClockChangeAndRestarts) {
   expect_alike(days, kAllThree);
 }
 
-/// With a contract that lets none of them trade as before; the statement takes it from the battery.
+/// With a contract under which none of them trades as before; the statement takes it from the
+/// battery.
 TEST(LogCommands, TakeTheContractFromAllAlike) {
   const SameDays days(std::string(kThreeDays) + kRealMinutes + kTheirEvents,
                       "import_adder_eur_per_mwh = 20\nexport_fee_eur_per_mwh = 3\n"

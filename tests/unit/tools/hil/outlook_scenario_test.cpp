@@ -1,5 +1,5 @@
 // Scenarios of day-ahead prices with a student by outlook: every fault of the auction is in one,
-// and the rule that plans again finds what is wrong with a break-even price.
+// and the replanning rule finds wrong break-even prices.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::string refusal(const std::string& text) {
   return refusal_of([&] { return scenario_of(text); });
 }
 
-/// What the rule says of a run whose log was changed.
+/// The rule's result for a run with a modified log.
 template <typename Change>
 std::vector<std::string> found_after(const Change& change) {
   Outcome run = run_scenario(read_scenario(kFolder + "good_day.toml"), true, {});
@@ -81,7 +81,7 @@ TEST(OutlookScenarios, TheRuleFindsAPlanOnWhatIsUsual) {
             1U);
 }
 
-/// Of prices that stand an hour too late nothing is right but their number.
+/// Prices that are an hour late are correct in number only.
 TEST(OutlookScenarios, TheRuleFindsPricesThatAreNotTheAuctions) {
   for (const char* name : {"shifted_hour", "hours"}) {
     Scenario scenario = read_scenario(kFolder + name + ".toml");

@@ -1,6 +1,6 @@
 #!/bin/bash
-# real_battery.sh BESS-HIL BESS-SIM [serial]: --real against a simulated battery, which from outside
-# is a real one: refused unless all is said, driven within its limits, released on every way out.
+# real_battery.sh BESS-HIL BESS-SIM [serial]: --real against a simulated battery as an external
+# device: refused unless all options are given, driven within its limits, released on every exit.
 hil=$1 sim=$2
 work=$(mktemp -d)
 children=()
@@ -52,7 +52,7 @@ limits=(--real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-so
         --real-time-scale $scale)
 real=(--real "$address" "${line[@]}" --yes-drive-real-battery "${limits[@]}")
 
-# Nothing of it is guessed.
+# No option is guessed.
 refused() {  # refused TEXT CODE OPTIONS...: one line that holds TEXT
   local text=$1 code=$2
   shift 2
@@ -75,19 +75,19 @@ refused "fault.toml: .*silence" 1 \
 grep -q '^ok    real    short' "$work/run.txt" || complain "no verdict"
 grep -q 'mode=stopping battery=ok' "$work/run.txt" || complain "not told that it was released"
 
-# await TEXT: until the edge of the run that goes on has logged it.
+# await TEXT: until the edge of the current run has logged it.
 await() {
   for _ in {1..1200}; do
     grep -qs -e "$1" "$TMPDIR"/bess-hil-*/edge-*.log && return; sleep 0.05
   done
   complain "the edge never logged \"$1\""
 }
-ends_released() {  # ends_released CODE TEXT: what ended it, and how
+ends_released() {  # ends_released CODE TEXT: the cause and the kind of end
   [ "$1" -eq 3 ] || complain "$2: exit code $1"
   grep -q 'mode=stopping battery=ok' "$work/run.txt" ||
     complain "$2: not told that it was released"
 }
-# A signal ends it at once; so does the key, at a terminal.
+# A signal ends it immediately; so does the key, at a terminal.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
 await 'mode=running'
 kill -INT $run
@@ -96,7 +96,7 @@ ends_released $? "Ctrl-C"
 (await 'mode=running' >&2; printf q) | setsid script -qec "$hil run $work/long.toml ${real[*]}" \
   /dev/null >"$work/run.txt" 2>&1
 ends_released $? "the key"
-# Killed, it takes the edge along, which releases the battery.
+# When killed, it ends the edge too, which releases the battery.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
 await 'mode=running'
 kill -KILL $run
@@ -105,13 +105,13 @@ await 'mode=stopping'
 kill -TERM $battery
 wait $battery
 
-# By the battery's own record: what it was given, and that each of the runs gave it back.
+# By the battery's own record: its orders, and that each run released it.
 awk -F, 'NR > 1 && ($3 > 500 || $3 < -500) { exit 1 }' "$work/events.csv" ||
   complain "beyond 500 W: $(cat "$work/events.csv")"
 grep -q ',order,500,' "$work/events.csv" && grep -q ',order,-500,' "$work/events.csv" ||
   complain "never driven"
 [ "$(tail -n 1 "$work/events.csv" | cut -d, -f2)" = stop ] ||
   complain "not released: $(tail -n 3 "$work/events.csv")"
-# A run that passed, or was ended, leaves nothing; one that was killed could not help it.
+# A run that passed, or was ended, leaves no files; a killed one does.
 [ "$(ls "$TMPDIR" | wc -l)" -eq 1 ] || complain "left behind: $(ls "$TMPDIR")"
 exit 0

@@ -1,5 +1,5 @@
-// A real battery: which scenarios may drive it, what it was told by the bytes on its bus, and when
-// its limits are broken.
+// Real battery: the scenarios that may drive it, its orders by the bytes on its bus, and violations
+// of its limits.
 #include "tools/hil_runner/real/real_options.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Real minutes, and what a run on them is worth by the battery's own record.
+// Real minutes, and the value of a run on them by the battery's own record.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ inline MoneyTerms terms_of(const MinuteSeries& prices) {
   return terms;
 }
 
-/// As `bess-sim settle --record --edge-log --prices` counts it.
+/// As `bess-sim settle --record --edge-log --prices` computes it.
 inline Account settled_by_record(const Evidence& evidence, const MinuteSeries& prices,
                                  std::int64_t from_utc_s, std::int64_t until_utc_s) {
   std::string record = "minute_utc,energy_wh,soc\n";

@@ -1,5 +1,5 @@
-// Scenario files: what is read, what is refused with one clear line, and that the shipped ones
-// leave no fault, no map and no event of the list out.
+// Scenario files: accepted keys, refusals with one clear line, and that the shipped ones cover
+// every listed fault, map and event.
 #include "tools/hil_runner/scenario/scenario.h"
 
 #include <fmt/core.h>
@@ -51,7 +51,7 @@ TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
     }
   }
   for (const BatteryFaultInfo& info : battery_faults()) {
-    // What the battery does, not what the bus makes of it, is the same on both.
+    // The battery's behaviour, apart from effects of the bus, is the same on both.
     const bool is_of_bus = info.fault <= BatteryFault::kBadCrc;
     const bool over_tcp = tried.contains({info.fault, false}) || !info.tcp;
     const bool over_rtu = tried.contains({info.fault, true}) || !info.rtu || !is_of_bus;
@@ -101,7 +101,7 @@ TEST(Scenarios, WhatAMeterCanDoWrongIsInOne) {
   }
 }
 
-/// Lines below a title, and what their refusal names.
+/// Lines below a title, and the codes of their refusal.
 struct Refused {
   std::string lines;
   std::string codes;
@@ -230,7 +230,7 @@ TEST(Scenarios, KeysThatContradictEachOtherOrAreOfNothingHereAreRefused) {
       {fault + "every = 2\nprobability = 0.5\n", "s.toml:4 [battery_fault] every probability"},
       {"[same_without]\n\"event 1\" = \"why\"\n", "s.toml:3 [same_without] event 1 nothing"},
       {"[same_without]\nnothing = \"\"\n", "s.toml:3 [same_without] nothing"},
-      // What begins or ends after the end.
+      // Starts or ends after the end.
       {fault + "from_min = 60\n", "s.toml:4 [battery_fault] from_min 60"},
       {"[price_fault]\nkind = \"null\"\nto_min = 61\n", "s.toml:4 [price_fault] to_min"},
       {"[house]\npower_w = 1\n[meter]\nmap = \"simulator\"\n[meter_fault]\nkinds = [\"frozen\"]\n"

@@ -1,5 +1,5 @@
-// What the scenarios of meter, limits, people, reserve, ramp and history are about decides them:
-// each passes, and without what it is about its own expectations fail.
+// Scenarios of meter, limits, operators, reserve, ramp and history: each passes, and without its
+// subject its own expectations fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-/// What a scenario is about, and how it is taken away; false: it is not about that.
+/// Subject of a scenario, and its removal; false: not its subject.
 struct Subject {
   const char* name;
   bool (*take_away)(Scenario& scenario);
@@ -31,7 +31,7 @@ constexpr Subject kSubjects[] = {
        }
        return erased > 0;
      }},
-    // Of one that lies the limits are not the subject.
+    // For a wrong meter the limits are not the subject.
     {"limits of the connection",
      [](Scenario& s) {
        const bool lies = !s.meter.fault.schedule.faults.empty() || s.has_battery_fault(is_of_grid);
@@ -61,7 +61,7 @@ constexpr Subject kSubjects[] = {
        if (has) s.price_fault.fault = MarketFault::kNone;
        return has;
      }},
-    {"history",  // the days before were as cheap
+    {"history",  // the days before were equally low
      [](Scenario& s) {
        const bool has = s.prices.history_hours > 0;
        if (has) s.prices.steps.erase(s.prices.steps.begin());

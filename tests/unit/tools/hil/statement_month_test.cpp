@@ -1,6 +1,6 @@
-// The statement of a month against the battery's own record of what flowed, and against bess-sim
-// settle: a month of real prices in virtual time with the clock change in it, undisturbed, and with
-// a gap, restarts and a meter that is cut off.
+// Statement of a month against the battery's own record of energy, and against bess-sim settle: a
+// month of real prices in virtual time with the clock change in it, undisturbed, and with a gap,
+// restarts and a meter failure.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,8 +28,8 @@ namespace {
 constexpr std::int32_t kFirstDay = 20'230'301, kLastDay = 20'230'331;
 constexpr double kOfTheMoney = 0.001;
 
-/// From midnight to midnight in Brussels, 31 days less the hour of the clock change; and a cycle
-/// more, which tells the power of the last.
+/// From midnight to midnight in Brussels, 31 days less the hour of the clock change; and one
+/// control cycle more, which has the power of the last.
 constexpr int kMonthMinutes = (31 * 24 - 1) * 60 + 4;
 
 std::string month_of(const std::string& parts) {
@@ -37,8 +37,8 @@ std::string month_of(const std::string& parts) {
          std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kRealMinutes + "\"\n" + parts;
 }
 
-/// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve
-/// hours without the meter, a day of a battery that is slow, noisy and slow near its ends.
+/// 6.5 h without a controller, a stop and a kill with a start soon after, 12 h without the meter, a
+/// day of a battery that is slow, noisy and slow near its ends.
 constexpr const char* kDisturbed = R"([battery]
 map = "alphaess"
 [house]
@@ -75,8 +75,8 @@ at_min = 30001
 does = "edge_start"
 )";
 
-/// Each order's power for as long as it was in force; only what still fits flows. In each direction
-/// by itself, where the record has one number a minute.
+/// Each order's power while it was in force; only energy that fits flows. Separately for each
+/// direction, where the record has one number per minute.
 struct Directions {
   double charged_wh = 0, discharged_wh = 0;
 };
@@ -135,7 +135,7 @@ const Month& undisturbed(const std::string& map) {
   return months.emplace(map, run_month("[battery]\nmap = \"" + map + "\"\n")).first->second;
 }
 
-/// Each reading for two minutes, at the settled price: what a log says at first sight.
+/// Each reading for two minutes, at the settled price: a simple evaluation of the log.
 double by_readings_eur(const Month& month) {
   double eur = 0;
   const std::int64_t begin_utc_s = DayAccount(kFirstDay).start_utc_s();
@@ -162,7 +162,7 @@ void tell(const char* name, const DayAccount& statement, const Month& month) {
       month.record.charged_wh, statement.unseen_kwh());
 }
 
-/// On maps whose SoC is fine, and one that shows whole percents; that know their capacity or not.
+/// On maps with a fine SoC, and one that shows whole percents; with and without a known capacity.
 TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
   for (const std::string map : {"alphaess", "sunspec_124", "huawei_luna2000", "victron_ess3"}) {
     const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
@@ -190,7 +190,7 @@ TEST(StatementOfAMonth, CountsBothDirections) {
   EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
 }
 
-/// From its ring and the notifier's file, by the program, in the few MB that it has.
+/// From its ring and the notifier's file, by the program, in its few MB.
 TEST(StatementOfAMonth, IsWhatTheProgramSays) {
   const Month& month = undisturbed("alphaess");
   const TemporaryFolder folder("/dev/shm");  // each record waits for its disk

@@ -1,5 +1,5 @@
-// Runs in virtual time: they repeat to the bit, the energy is what a hand calculation says, and the
-// process is left as it was.
+// Runs in virtual time: they are bit-identical when repeated, the energy equals a hand calculation,
+// and the process state is unchanged.
 #include "tools/hil_runner/virtual/virtual_time.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(VirtualTime, ARunRepeatsToTheBit) {
   EXPECT_NE(first.signature, run_scenario(shipped_scenario("quiet_hour"), true, {}).signature);
 }
 
-/// Each order's power for as long as it was in force, summed up; only what still fits flows.
+/// Each order's power while it was in force, summed; only energy that fits flows.
 TEST(VirtualTime, TheEnergyOfADayIsWhatAHandCalculationSays) {
   const Scenario scenario = shipped_scenario("a_day_of_2023");
   const Outcome outcome = run_scenario(scenario, true, {});
@@ -45,7 +45,7 @@ TEST(VirtualTime, TheEnergyOfADayIsWhatAHandCalculationSays) {
   for (std::size_t i = 0; i + 1 < orders.size(); ++i) {
     const double hours = static_cast<double>(orders[i + 1].utc_ns - orders[i].utc_ns) / 3.6e12;
     const double wanted_wh = orders[i].power_w * hours;
-    // The device keeps the limits that came with the order: 0.10 and 1.00.
+    // The device keeps the limits of the order: 0.10 and 1.00.
     const double room_wh = (1.0 - soc) * p.capacity_wh / efficiency;
     const double stored_wh = (soc - 0.1) * p.capacity_wh * efficiency;
     const double flows_wh = wanted_wh > 0 ? std::min(wanted_wh, std::max(room_wh, 0.0))
@@ -59,7 +59,7 @@ TEST(VirtualTime, TheEnergyOfADayIsWhatAHandCalculationSays) {
     (m.energy_wh > 0 ? record_charged_wh : record_discharged_wh) += std::abs(m.energy_wh);
   }
   EXPECT_GT(charged_wh, 10'000);
-  // A minute that is charged and discharged in is one number of the record: at each reversal.
+  // A minute with charge and discharge is one number of the record: at each reversal.
   EXPECT_NEAR(record_charged_wh - record_discharged_wh, charged_wh - discharged_wh,
               0.001 * charged_wh);
   EXPECT_NEAR(outcome.evidence.minutes.back().soc_frac, soc, 0.001);

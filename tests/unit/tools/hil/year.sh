@@ -1,6 +1,6 @@
 #!/bin/bash
-# year.sh BESS-HIL: a year in virtual time, twice: judged, and the same to the bit; then once behind
-# a house's meter with limits of power and of quarter-hours. Tells the processor time of each.
+# year.sh BESS-HIL: a year in virtual time, twice: judged, and bit-identical; then once behind a
+# house's meter with limits of power and of quarter-hours. Prints the processor time of each.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cat >"$work/year.toml" <<END

@@ -1,8 +1,8 @@
-"""Every answer of --json and every table of bess-train, held against the schema that it prints, by
+"""Every answer of --json and every table of bess-train against its printed schema, by
 jsonschema.
 
 answers_test.py PROGRAM          commands that take seconds
-answers_test.py PROGRAM --full   and those that prove or distil a student: every one that has --json
+answers_test.py PROGRAM --full   also those that prove or distil a student: every one with --json
 """
 
 import csv
@@ -59,7 +59,7 @@ class Answers(unittest.TestCase):
                                                 "$defs": self.schema["$defs"]})
 
     def answers(self, *arguments, code=0):
-        """What a command answers, each line held; all keys of a kind are always there."""
+        """Answer of a command, each line checked; all keys of a kind are always present."""
         arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
         self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery|log) )?\S+",
                                        " ".join(arguments))[0])
@@ -245,7 +245,7 @@ class Answers(unittest.TestCase):
         self.table(self.file("impact/impact.csv"))
 
     def test_9_nothing_is_left_out(self):
-        """Every command that knows --json was asked, and every kind of answer and table was met."""
+        """Every command with --json was run, and every kind of answer and table occurred."""
         kinds = {name.removeprefix("answer_") for name in self.schema["$defs"]
                  if name.startswith("answer_")}
         tables = {name for name in self.schema["$defs"] if name.endswith(".csv")}

@@ -1,4 +1,4 @@
-// bess-train refuses what nobody can have meant: one clear line with the mend, exit code 2 for a
+// bess-train refuses senseless command lines: one clear line with the correction, exit code 2 for a
 // bad command line and 1 for bad input, and nothing is written.
 #include "tests/support/bad_command_lines.h"
 
@@ -17,7 +17,7 @@ namespace bess {
 namespace {
 
 // GOOD is a minute file, STUDENT a student's, NONE nothing, FOLDER a folder, EMPTY and GARBAGE
-// files, OUT what must not appear.
+// files, OUT a file that must not be created.
 constexpr BadCommandLine kCases[] = {
     // Subcommands.
     {"", 2, "bess-train --help"},

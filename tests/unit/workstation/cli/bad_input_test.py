@@ -1,5 +1,5 @@
-"""Bad inputs that once hung, were taken, or were told in a library's words: each ends with its code
-and one clear line that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
+"""Bad inputs of past defects (hang, acceptance, a library's message): each ends with its code
+and one clear line that names the correction, and leaves no files. bad_input_test.py PROGRAM
 """
 
 import errno
@@ -22,10 +22,9 @@ LOG_COLUMNS = ("utc,soc_e4,battery_power_w,ordered_power_w,reason,mode,price_min
                "price_centi_eur_per_mwh,price_age_s,student_action,battery_status,written,"
                "price_level_centi_q16,outlook,break_even_centi,price_stands_in,stand_in_centi\n")
 LOG_REST = ",running,2026-06-01T00:00:00Z,5000,2,idle,ok,1,327680000,none,0,0,0\n"
-# Arguments, exit code, what the line names: words that stand in it.
+# Arguments, exit code, required words of the line.
 CASES = [
-    # A pipe that nobody writes into, a link to itself, a name that is too long: of every kind of
-    # file.
+    # A pipe without a writer, a link to itself, a name that is too long: for every kind of file.
     ("evaluate --policy rbc --prices pipe", 1, "pipe 10 s"),
     ("config --config loop", 1, "loop"),
     ("rules check --rules loop", 1, "loop"),
@@ -37,15 +36,15 @@ CASES = [
     (f"evaluate --prices market.csv --policy {LONG}", 1, LONG[:50]),
     (f"train --prices market.csv --out {LONG}", 1, LONG[:50]),
     (f"verify --student {LONG}", 1, LONG[:50]),
-    # Said once, and by the right name.
+    # Reported once, and by the right name.
     ("evaluate --policy rbc --prices market.csv --accept gapss", 2, '--accept "gapss"'),
     ("config --config scalar.toml", 1, 'scalar.toml:1 battery table'),
     ("config --config list.toml", 1, 'list.toml:1 battery table'),
-    # Twice: nobody knows which is meant.
+    # Twice: ambiguous.
     ("verify --student twice.json", 1, 'twice.json "version"'),
     ("export --student twice.json --out new.h", 1, 'twice.json "version"'),
     ("runs compare twice", 1, 'twice "prices"'),
-    # Another end of lines, times that are over, addresses that are none.
+    # Other line ends, times in the past, invalid addresses.
     ("evaluate --policy rbc --prices cr.csv", 1, "cr.csv CR"),
     ("prices stats cr.csv", 1, "cr.csv CR"),
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
@@ -53,7 +52,7 @@ CASES = [
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url "
      "http://127.0.0.1:99999/a", 1,
      "http://127.0.0.1:99999/a"),
-    # Told before the work, and by name.
+    # Reported before the work, and by name.
     ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1,
      "--policy nope"),
     ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
@@ -70,10 +69,10 @@ CASES = [
     ("battery fit --out new.toml", 1, "--log --steps"),
     ("battery fit --steps steps.toml", 1, "ramp_w_per_s"),
     ("battery fit --steps single.toml", 1, "single.toml [battery]"),
-    # Not as TOML writes it.
+    # Invalid as TOML.
     ("config --config cr.toml", 1, "cr.toml:1 CR LF"),
     ("rules check --rules single.toml", 1, "single.toml:1 [rule] [[rule]]"),
-    # What was right already, and stays so.
+    # Correct input, which must stay accepted.
     ("evaluate --policy rbc --prices /dev/zero", 1, "/dev/zero 512 MiB"),
     ("evaluate --policy rbc --prices folder", 1, "folder"),
     ("evaluate --policy rbc --prices february.csv", 1, "february.csv:4"),

@@ -1,5 +1,5 @@
-// Price files that no command may use, each through the program: one clear line that names the
-// file, exit code 1 or 2, and no crash.
+// Price files that every command must refuse, each through the program: one clear line that names
+// the file, exit code 1 or 2, and no crash.
 #include <gmock/gmock.h>
 
 #include "tests/support/market_test_support.h"
@@ -84,8 +84,8 @@ TEST_F(BadPrices, EveryCommandLooks) {
   EXPECT_THAT(said({"prices", "stats", bad}), Names(bad + ":1997 -9999 [sentinel]"));
 }
 
-/// What Belgium settled at, what another country did, and where bids end: in every command, to the
-/// digit.
+/// Settled prices of Belgium, those of another country, and the limits of bids: in every command,
+/// to the digit.
 TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
   const struct {
     const char* price;

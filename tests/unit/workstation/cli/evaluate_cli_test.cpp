@@ -1,4 +1,4 @@
-// What evaluate prints and writes, as a user calls them.
+// Output and files of evaluate.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -83,9 +83,9 @@ TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
   const std::string date = last_line.substr(0, last_line.find(','));
   output("--policy rbc tabular --date " + date + " --days-out " + one_day);
   EXPECT_THAT(read_file(one_day), HasSubstr(last_line));
-  EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
+  EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times accounting modes
   EXPECT_THAT(output("--policy rbc --json --date " + date),
-              HasSubstr(R"("profit_standard_error":null)"));  // one day tells nothing of the spread
+              HasSubstr(R"("profit_standard_error":null)"));  // one day gives no spread
 }
 
 TEST_F(EvaluateCli, FittedThresholdsAreTold) {

@@ -1,4 +1,4 @@
-// Every command that writes a file refuses to write over one that it reads, before it reads it.
+// Every command that writes a file refuses to overwrite its input, before it reads it.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ TEST(OutputIsInput, IsRefusedAndTheFileStays) {
   for (const auto& c : cases) {
     SCOPED_TRACE(c.line);
     const TemporaryFolder folder;
-    // A run's and a backtest's outputs have names of their own: the input is one of them.
+    // Outputs of a run and a backtest have fixed names: the input is one of them.
     const std::string in = folder.write("backtest.csv", "precious");
     const std::string link = folder.file("report.html");
     std::filesystem::create_symlink(in, link);

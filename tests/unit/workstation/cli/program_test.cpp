@@ -1,4 +1,4 @@
-// How bess-train ends: exit codes that scripts rely on.
+// Exit codes of bess-train, as scripts use them.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -33,7 +33,7 @@ TEST(Program, BrokenTomlIsOneClearLine) {
     const std::string config = folder.write("broken.toml", mistake.text);
     const auto [exit_code, text] = run_train({"config", "--config", config});
     EXPECT_EQ(exit_code, 1) << text;
-    // What is too long is not even read to its end.
+    // Input over the limit is not read to its end.
     const bool is_too_long = mistake.text.size() > kTomlBytesMax;
     const std::string place = "broken.toml:" + std::to_string(mistake.line);
     EXPECT_THAT(text, Names(is_too_long ? "broken.toml 256 KiB" : place));

@@ -111,7 +111,7 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
 
 using RulesLearnt = RulesCli;
 
-/// Two rules four EUR/MWh apart: consistent, and too steep for so few epochs.
+/// Two rules 4 EUR/MWh apart: consistent, and too steep for so few epochs.
 TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   const std::string config =
       " --config " + folder_.write("a.toml", "[distil]\nepochs = 2\nrepair_rounds = 0\n");

@@ -1,5 +1,4 @@
-// A backtest says what it did: on how many days each month was fitted, and which months were not
-// traded.
+// Backtest report: the number of fitting days of each month, and the untraded months.
 #include "workstation/report/backtest_report.h"
 
 #include <gmock/gmock.h>
@@ -17,8 +16,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two months of three days; each policy earns so much on its second day, and 10 EUR on every other
-/// one.
+/// Two months of three days; each policy earns this amount on its second day, and 10 EUR on every
+/// other one.
 WalkForward traded(const std::string& name, double second_day_eur) {
   WalkForward result{.name = name, .total = {}, .months = {"2023-04", "2023-05"}, .by_month = {}};
   for (const std::string& month : result.months) {
@@ -56,8 +55,8 @@ TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
   EXPECT_THAT(format_backtest_table(fitted), AllOf(Names("120"), Not(Names("90"))));
 }
 
-/// April earned 10 a day more than the first, May 20: of two months the error is 5, whatever the
-/// days say.
+/// April earned 10 a day more than the first, May 20: with two months the error is 5, regardless of
+/// the days.
 TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
   BacktestResults fitted = results(10);
   WalkForward& sdp = fitted.policies[1];
@@ -108,7 +107,7 @@ TEST(BacktestReport, ThePageDrawsAFallWhereThereIsOne) {
   }
 }
 
-/// The second month is traded where the first lies on the other side of a boundary.
+/// The second month is traded although the first is on the other side of a boundary.
 TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
   const PriceRegime* const regimes = price_regimes().data();
   BacktestResults crossing = results(5);

@@ -44,7 +44,7 @@ TEST(Comparison, RowsAreThoseOfTheEvaluations) {
   EXPECT_NEAR(*rows[1].foresight_share, 0.5, 1e-12);
 }
 
-/// 8 MWh, days of 12 and 20 MWh through the battery: 16 MWh a day, 2 a MWh of capacity.
+/// 8 MWh, days of 12 and 20 MWh through the battery: 16 MWh per day, 2 per MWh of capacity.
 TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   NamedEvaluation rule{"rule", evaluation_of({800, 1600}), {}};
   rule.day_reset.days[0].throughput_mwh = 12;
@@ -55,7 +55,7 @@ TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   };
   EXPECT_DOUBLE_EQ(at_reference(0), 150 - 10 * 2);
   EXPECT_DOUBLE_EQ(at_reference(10), 150);
-  EXPECT_DOUBLE_EQ(at_reference(25), 150 + 15 * 2);  // in place of the 25, not on top
+  EXPECT_DOUBLE_EQ(at_reference(25), 150 + 15 * 2);  // instead of the 25, not added
   const std::string table = format_comparison_table({rule});
   EXPECT_THAT(table, HasSubstr("     180.0\n"));
   EXPECT_NE(comparison_csv({rule}).find("share_of_foresight,soc_end_frac_mean\nrule,2,"),
@@ -93,8 +93,9 @@ TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
   EXPECT_THAT(csv, HasSubstr("\nstudent,3,"));
 }
 
-/// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 a MWh.
-/// By hand in day_errors_test.cpp: mean 5, errors 1.958 and 3 by two months, known to within 71 %.
+/// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 per
+/// MWh. By hand in day_errors_test.cpp: mean 5, errors 1.958 and 3 by two months, known to within
+/// 71 %.
 TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
   NamedEvaluation rule{"rule", evaluation_of({0, 0, 0, 0}), {}};
   NamedEvaluation student{"student", evaluation_of({8, 24, 48, 80}), {}};

@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// By which a day from the same charge earns more than one in a chain.
+/// Excess of a day from the same charge over one in a chain.
 constexpr double kGivenAwayEur = 5;
 
 /// Days of 2 MWh of capacity that earned `profits_eur` and moved `throughput_mwh` each.
@@ -46,7 +46,7 @@ TEST(Headline, IsAboutTheCorrectedStudent) {
   EXPECT_EQ(headline.days, 3u);
   EXPECT_DOUBLE_EQ(headline.profit, 60);
   EXPECT_DOUBLE_EQ(headline.foresight_share.value(), 0.5);
-  ASSERT_EQ(headline.gains.size(), 3u);  // who was not evaluated is left out
+  ASSERT_EQ(headline.gains.size(), 3u);  // an unevaluated policy is left out
   EXPECT_EQ(headline.gains[0].against, kPlainName);
   EXPECT_EQ(headline.gains[1].against, "rbc-tuned");
   EXPECT_EQ(headline.gains[2].against, kForesightName);
@@ -74,7 +74,7 @@ TEST(Headline, GainsArePairedAndCountWear) {
   const Headline headline = headline_of(all()).value();
   EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].mean, 20);
   EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].standard_error, 0);  // 20 on each of the days
-  EXPECT_DOUBLE_EQ(headline.gains[1].difference[1].mean, 10);           // 2 MWh a day more, at 10
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[1].mean, 10);           // 2 MWh per day more, at 10
   EXPECT_DOUBLE_EQ(headline.gains[0].difference[1].mean, headline.gains[0].difference[0].mean + 10);
 }
 
@@ -93,13 +93,13 @@ TEST(Headline, ADifferenceIsClaimedBeyondItsIntervalOnly) {
   EXPECT_TRUE(is_shown({-2.1, 1, kUnknown, 1, 65}));
   EXPECT_FALSE(is_shown({1.9, 1, kUnknown, 1, 65}));
   EXPECT_FALSE(is_shown({100, kUnknown, kUnknown, 1, 1}));
-  // Twelve months ask for 2.2 errors, four for 3.2; months that agree by chance claim nothing more.
+  // Twelve months require 2.2 errors, four 3.2; months that agree by chance prove nothing more.
   EXPECT_TRUE(is_shown({2.3, 0.5, 1, 12, 65}));
   EXPECT_FALSE(is_shown({2.3, 0.5, 1, 4, 20}));
   EXPECT_FALSE(is_shown({1.9, 1, 0.1, 12, 65}));
 }
 
-/// A run with rules: what they cost is not the correction's.
+/// A run with rules: their cost is not the correction's.
 TEST(Headline, ThePriceIsSplitBetweenRulesAndCorrection) {
   std::vector<NamedEvaluation> dear = all();
   const std::string none = headline_html(headline_of(dear).value());

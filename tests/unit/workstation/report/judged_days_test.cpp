@@ -1,4 +1,4 @@
-// Which days a figure is about, and what learning saw of later ones.
+// Days of a figure, and the training's use of later ones.
 #include "workstation/report/evaluation_days.h"
 
 #include <gmock/gmock.h>
@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-/// January and February: February's test days come after all learning, January's do not.
+/// January and February: February's test days are after all training, January's are not.
 TEST(JudgedDays, SaysTheRuleTheSpanAndWhatLearningSaw) {
   const JudgedDays test = judged_days(small_market(), Split::kTest);
   EXPECT_THAT(judged_days_text(test), Names("26 9 2 2023-01-26 2023-02-28 2023-02-25 6"));
@@ -25,7 +25,7 @@ TEST(JudgedDays, DaysAfterAllLearningAreSaidToBe) {
   EXPECT_THAT(judged_days_text(later), Names("1 59 2 2023-01-01 2023-02-28 2022-12-25"));
 }
 
-/// Whatever the split is, the text names the days that it really takes.
+/// For any split, the text names the days that it really uses.
 TEST(JudgedDays, TheTextIsThatOfTheSplit) {
   for (const auto& [split, first, last] :
        {std::tuple(Split::kTrain, 1, 20), std::tuple(Split::kValidation, 21, 25),

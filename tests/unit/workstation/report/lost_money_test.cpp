@@ -1,5 +1,5 @@
-// Made-up days on which exactly one cause acts, and days on which all do: the parts add up to what
-// was missed.
+// Lost money on synthetic days with exactly one cause, and on days with all: the parts add up to
+// the missed amount.
 #include "workstation/report/lost_money.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSteps = 720;
 constexpr std::size_t kMorning = 100;
-constexpr std::size_t kEvent = 400;     ///< what is dear or cheap begins
+constexpr std::size_t kEvent = 400;     ///< start of the high or low price
 constexpr std::size_t kEventEnd = 420;  ///< 2.67 MWh later: half a battery has them
 constexpr std::size_t kEvening = 600;
 constexpr double kUsualEurPerMwh = 100;
@@ -33,7 +33,7 @@ class FunctionPolicy final : public Policy {
   Function function_;
 };
 
-/// A day at the usual price but for the event.
+/// A day at the usual price except for the event.
 MarketSteps day_with(double event_eur_per_mwh) {
   MarketSteps market;
   for (std::size_t i = 0; i < kSteps; ++i) {
@@ -64,7 +64,8 @@ MarketSteps hidden_dear_day(int age_min) {
   return market;
 }
 
-/// Sells in the evening; or what it sees as dear, too; in the morning; rests; buys in the event.
+/// Sells in the evening; or at the price that it sees as high, too; in the morning; rests; buys in
+/// the event.
 Action asleep(const MarketStep&, std::size_t i, double) {
   return i >= kEvening ? Action::kDischarge : Action::kIdle;
 }
@@ -165,12 +166,13 @@ TEST(LostMoney, TheCyclesAreUsedUp) {
     return i >= kMorning ? Action::kDischarge : Action::kIdle;
   });
   MarketSteps market = dear_day();
-  for (std::size_t i = kEvent; i < kEventEnd; ++i) {  // so that some of it is worth the cycles
+  for (std::size_t i = kEvent; i < kEventEnd; ++i) {  // so that a part of it pays for its wear
     market.steps[i].paid_eur_per_mwh += static_cast<double>(i);
   }
   const DayLoss loss = loss_of(market, {eager}, 0.5, battery);
   EXPECT_NEAR(loss.missed_eur(), 1.6 * 1300, 0.1 * 1.6 * 1300);
-  // Its cycles went for the usual price; what the last step took beyond the limit is the limit's.
+  // Its full cycles were used at the usual price; the last step beyond the limit counts to the
+  // limit.
   EXPECT_GT(loss.of(LossCause::kTiming), 0.8 * loss.missed_eur());
   EXPECT_NEAR(loss.of(LossCause::kCycleLimit), 0, 0.2 * loss.missed_eur());
   EXPECT_NEAR(sum_of(loss), loss.missed_eur(), 1e-9);

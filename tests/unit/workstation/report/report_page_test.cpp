@@ -34,7 +34,7 @@ TEST(ReportTables, AProofIsClaimedOfTheWholeLatticeOnly) {
   EXPECT_THAT(proof_sentence(certificate), testing::Not(Names("1,000")));
 }
 
-/// Two rules, one of them the guard's alone.
+/// Two rules, one of them only in the guard.
 Certificate ruled_certificate(std::int64_t violations) {
   Certificate certificate;
   certificate.states_checked = kLatticeStateCount;

@@ -67,7 +67,7 @@ TEST(Report, TheNumbersOfItsPicturesLieBesideThePage) {
   }
 }
 
-/// A picture's file has what is drawn: a map's stretches hold the states of its grid, each once.
+/// Contents of a picture's file: a map's stretches contain the states of its grid, each once.
 TEST(Report, TheNumbersOfAMapAreItsStates) {
   const TemporaryFolder folder;
   const FinishedRun run;
@@ -113,7 +113,7 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
   EXPECT_LT(html.size(), 5'000'000u);
 }
 
-/// Of a run whose proof failed nothing is called corrected, and each broken demand leads to its
+/// In a run with a failed proof nothing is called corrected, and each violated demand links to its
 /// state on the map.
 TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   const TemporaryFolder folder;

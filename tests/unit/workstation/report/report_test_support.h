@@ -1,4 +1,4 @@
-// What the report's tests share: two simulated months, policies without training, a tag checker.
+// Report test support: two simulated months, policies without training, a tag checker.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ inline StudentNet untrained_student() {
   return quantise_student(initial_parameters(kStudentShape, 2), small_price_map());
 }
 
-/// As a run evaluates: both ways of counting, the charge at the end valued.
+/// As a run evaluates: both accounting modes, with the value of the final charge.
 inline NamedEvaluation named_evaluation(const std::string& name, Policy& policy) {
   const auto days = small_market().days_of(Split::kTest);
   NamedEvaluation named{name, evaluate(small_market(), days, policy, {}),
@@ -59,7 +59,7 @@ inline int count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// Empty when every tag is closed in order, else the first that is not.
+/// Empty if every tag is closed in order, otherwise the first that is not.
 inline std::string first_unbalanced_tag(const std::string& html) {
   std::vector<std::string> open;
   for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {

@@ -34,7 +34,7 @@ TEST(StepArchive, OfManyTheWorstAndTheNewestAreKept) {
   EXPECT_NE(std::ranges::find(kept, 7u), kept.end());
   EXPECT_NE(std::ranges::find(kept, 3u), kept.end());
   EXPECT_EQ(kept.back(), 399u);
-  EXPECT_EQ(kept[kWorstDaysKept], 400u - (100 - kWorstDaysKept));  // from here on the newest
+  EXPECT_EQ(kept[kWorstDaysKept], 400u - (100 - kWorstDaysKept));  // the newest from here on
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Runs of a battery that pays so much for every exchange that it idles: learnt and proved in
-// seconds.
+// Runs of a battery with such high costs that it idles: trained and proved in seconds.
 #pragma once
 
 #include <stdlib.h>
@@ -15,15 +14,15 @@ namespace bess {
 inline constexpr const char* kIdleCosts =
     "[costs]\nimport_adder_eur_per_mwh = 1000\nimport_percent = 100\n"
     "export_fee_eur_per_mwh = 1000\nexport_percent = 100\n";
-/// Which no price reaches.
+/// Above every price.
 inline constexpr const char* kNoThresholds =
     "[correction]\nlow_price_eur_per_mwh = -501\nhigh_price_eur_per_mwh = 1501\n";
 
 class IdleRun : public TrainCommands {
  protected:
-  IdleRun() { setenv("SOURCE_DATE_EPOCH", "1700000000", 1); }  // or the page tells its hour
+  IdleRun() { setenv("SOURCE_DATE_EPOCH", "1700000000", 1); }  // or the page shows its time
 
-  /// Every file but the times, and whatever was left behind.
+  /// Every file except the times, and any remains.
   static std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -1,5 +1,4 @@
-// The program itself: a run that is killed again and again, meets a full disk, is interrupted or
-// not proved.
+// Run program that is killed repeatedly, meets a full disk, is interrupted or not proved.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -81,20 +80,20 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
     }
     ++finished;
     expect_same(out, expected);
-    fs::remove_all(out);  // begin anew, or the rest of the kills would hit nothing
+    fs::remove_all(out);  // restart, or the rest of the kills would have no effect
     longest_s *= 0.8;     // the machine has become faster, or most of the work was done
   }
   said(arguments(out, {"--resume"}));
   expect_same(out, expected);
 
-  // What was tampered with is done again, and it alone; from there on nothing is left to do.
+  // Only the modified stage is repeated; after that nothing is left to do.
   write_file(out + "/student_weights.h", "// mine");
   fs::remove(out + "/evaluation.csv");
   EXPECT_THAT(said({"run", "--resume", "--out", out}), testing::Not(HasSubstr("steps")))
       << "nothing is learnt again";
   expect_same(out, expected);
 
-  // A configuration that was edited afterwards is not what the run was made with.
+  // A configuration edited afterwards differs from that of the run.
   write_file(out + "/config.toml", "[battery]\npower_w = 5000000\n");
   EXPECT_THAT(said({"report", "--run", out}, 1), Names(out));
 
@@ -143,7 +142,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
   fs::remove_all(out);
   fs::copy(kept, out, fs::copy_options::recursive);
 
-  // Nothing is lost: with a mended configuration its teacher goes on to a proved student.
+  // Nothing is lost: with a corrected configuration its teacher continues to a proved student.
   config_ = written("mended.toml", kIdle + kNoThresholds);
   const std::string repaired = path("repaired");
   EXPECT_THAT(said(arguments(repaired, {"--from-teacher", out})), Names(out + "/teacher.bin"));

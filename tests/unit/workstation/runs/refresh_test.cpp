@@ -1,5 +1,5 @@
-// bess-train refresh, the program itself: killed at its stages it ends with the same bytes; what
-// is adopted takes the run's place, what is worse does not.
+// bess-train refresh: killed at its stages it ends with the same bytes; an adopted candidate
+// replaces the run, a worse one does not.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -48,7 +48,7 @@ class RefreshCommand : public IdleRun {
   }
 };
 
-/// As soon as `file` is there, and before the next stage has got far; false when it ended before.
+/// As soon as `file` exists, and before the next stage has progressed; false if it ended before.
 bool kill_once_there(const std::vector<std::string>& words, const fs::path& file) {
   ChildProcess program(words);
   while (!fs::exists(file) && !program.has_ended()) usleep(300);
@@ -59,8 +59,8 @@ bool kill_once_there(const std::vector<std::string>& words, const fs::path& file
 TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
   EXPECT_THAT(refresh("next.csv").output, Names(path("site")));
   make_run(kIdleProgram, small_series(31));
-  EXPECT_THAT(refresh("next.csv").output, Names("next.csv"));  // is not there yet
-  write_minute_file(path("next.csv"), small_series(36), "");   // learnt to 25 January
+  EXPECT_THAT(refresh("next.csv").output, Names("next.csv"));  // does not exist yet
+  write_minute_file(path("next.csv"), small_series(36), "");   // trained to 25 January
   EXPECT_THAT(said(command("next.csv", true)), Names("2023-01-25 2023-02-05 14"));
   EXPECT_THAT(folders(), testing::ElementsAre("site"));
   write_minute_file(path("next.csv"), small_series(75), "");
@@ -84,18 +84,18 @@ TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
   expect_same(path("site"), whole);
   expect_same(path("site.before-2023-03-16"), before);
 
-  // Between the two names: nothing is at the run's place, and the next call puts it there.
+  // Between the two renames: the run's place is empty, and the next call restores it.
   fs::rename(path("site"), path("site.proposal"));
   said(command("next.csv", true));
   expect_same(path("site"), whole);
   EXPECT_THAT(folders(), testing::ElementsAre("site", "site.before-2023-03-16"));
 
-  // It is a run like any other, wherever it lies.
+  // It is an ordinary run, in any folder.
   said({"report", "--run", path("site")});
   expect_same(path("site"), whole);
 }
 
-/// A month whose settled prices were filed a day late, beside the right minutes.
+/// A month whose settled prices are dated a day late, with correct minutes.
 MinuteSeries settled_a_day_late(const MinuteSeries& series, const char* from, const char* to) {
   MinuteSeries spoilt = series;
   for (std::size_t m = 1440; m < series.size(); ++m) {
@@ -138,7 +138,7 @@ TEST_F(RefreshedByOutlook, BringsItsDayAheadPricesAlong) {
   std::vector<std::string> words = command("next.csv", false);
   words.insert(words.end(), {"--day-ahead", path("outlook.csv")});
   EXPECT_THAT(run(words).output, Names("21600"));
-  fs::remove(path("outlook.csv"));  // it is a run of its own: nothing outside it is needed
+  fs::remove(path("outlook.csv"));  // it is a separate run: nothing outside it is needed
   fs::remove(path("next.csv"));
   const std::string again = refresh("next.csv", false).output;
   EXPECT_THAT(again, AllOf(Names("21600"), Not(HasSubstr("[2/6]"))));
@@ -167,7 +167,7 @@ TEST_F(RefreshedByOutlook, FetchesWhatWasPublishedSince) {
   EXPECT_GT(charts.requests, 0);
 }
 
-// The yardstick's months, learnt in full: minutes of two cores.
+// The benchmark's months, trained in full: minutes of two cores.
 class RefreshedTwice : public RefreshCommand {};
 
 TEST_F(RefreshedTwice, AdoptsOnRealPricesAndRefusesOnSpoiltOnes) {

@@ -1,4 +1,4 @@
-// From the published status to ok, degraded or not running: a table.
+// Health by the published status (ok, degraded, not running): a table.
 #include "edge/records/log/health.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-/// Of a run that is well.
+/// Status of a healthy run.
 struct Well {
   Well() {
     status.totals.cycles = 1;
@@ -35,7 +35,7 @@ TEST(Health, OkUpToTheBounds) {
   EXPECT_TRUE(health.reasons.empty());
 }
 
-/// Each by itself is one reason, which names its numbers, and no two are the same.
+/// Each fault gives one reason, which names its numbers, and no two reasons are equal.
 TEST(Health, EveryTroubleHasItsReason) {
   struct Case {
     void (*spoil)(Well&);

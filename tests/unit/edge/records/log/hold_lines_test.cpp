@@ -1,4 +1,4 @@
-// What the journal says of a hold, and of a meter that is not to be believed: each turn once.
+// Journal lines of a hold, and of a meter in doubt: each change once.
 #include "edge/records/log/event_log.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ constexpr HoldReport kHeld{.held = true, .power_w = -2'000, .until_utc_s = kTick
 constexpr HoldReport kUnreadable{.unreadable = true};
 
 struct Journal {
-  /// Empty: nothing was worth a line.
+  /// Empty: no line.
   std::string after(int cycle, const HoldReport& hold, bool is_in_control = true) {
     CycleRecord record{.utc_s = kTickUtcS + 120 * cycle, .mode = mode};
     record.hold = hold;

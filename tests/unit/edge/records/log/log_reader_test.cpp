@@ -1,4 +1,4 @@
-// Two rings read as one log: a short one in memory that goes on where the disk has stopped.
+// Two rings read as one log: a short one in memory continues where the disk stopped.
 #include "edge/records/log/log_reader.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ class Reader : public ::testing::Test {
     settings_.ring = folder_.file("state.ring").c_str();
     settings_.run_ring = folder_.file("run.ring").c_str();
   }
-  /// A ring of that size that was given these numbers in turn.
+  /// A ring of that size with these record numbers in turn.
   void write(const FixedText<511>& path, std::int64_t capacity, std::uint64_t first,
              std::uint64_t last) {
     RingLog ring;

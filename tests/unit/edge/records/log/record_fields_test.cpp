@@ -1,5 +1,5 @@
-// The table of fields against what is written from it: each field stands in every output that it
-// claims, under its name there and with its own value, and in no other.
+// Field table against its outputs: each field is in every output that it claims, under its name and
+// with its own value, and in no other.
 #include "edge/records/log/record_fields.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Nothing but the flags without which a value does not exist.
+/// Only the flags without which a value does not exist.
 CycleRecord bare_record() {
   CycleRecord r;
   r.has_measurement = r.price.has_row = r.has_student_action = r.is_tripped = r.hold.held = true;
@@ -134,7 +134,7 @@ void expect_in_ring(const Field<CycleRecord>& field, const CycleRecord& record) 
   EXPECT_EQ(field.access.read(back), telling_value(field.access.kind));
 }
 
-/// Becomes any member: an aggregate has as many of them as it can be made of.
+/// Convertible to any member: counts the members of an aggregate.
 struct AnyMember {
   template <typename Member>
   operator Member() const;  // NOLINT: implicit on purpose, never called
@@ -149,7 +149,7 @@ consteval std::size_t count_members() {
   }
 }
 
-/// Of a record whose members of these types are records themselves.
+/// For a record whose members of these types are records themselves.
 template <typename... Parts>
 consteval std::size_t count_leaves() {
   return count_members<CycleRecord>() - sizeof...(Parts) + (count_members<Parts>() + ...);
@@ -162,7 +162,7 @@ TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
                    StandingPrice, ResponseFindings, FollowedOrder, OutlookReport, PricedQuarterHour,
                    PricedQuarterHour>();
   constexpr std::size_t kElsewhere =
-      2;  // the battery's own grid point: what counts of it is in `site`
+      2;  // the battery's own grid meter: its used values are in `site`
   EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);
 }
 
@@ -191,7 +191,8 @@ TEST(RunFields, EachStandsInEveryOutputThatItClaims) {
   }
 }
 
-/// Within a table two fields at one place do not compile; between the tables nothing else looks.
+/// Two fields at one place of a table do not compile; only this test compares the tables with each
+/// other.
 TEST(RecordFields, PlacesAndNamesOfAnOutputAreTakenOnce) {
   for (const Output output :
        {&Places::journal, &Places::csv, &Places::last, &Places::totals, &Places::metrics}) {

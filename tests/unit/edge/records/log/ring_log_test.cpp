@@ -1,5 +1,5 @@
-// The decision log on disk: nothing that was written whole is lost, nothing torn is believed,
-// whatever happens to the newest record and whenever the process dies.
+// Decision log on disk: no complete record is lost and no torn record is accepted, whatever happens
+// to the newest record and whenever the process dies.
 #include "edge/records/log/ring_log.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ RecordBytes bytes_of(const CycleRecord& record, std::uint64_t number) {
   return bytes;
 }
 
-/// Puts the CRC that the bytes now need at their end.
+/// Writes the matching CRC at the end of the bytes.
 void seal(RecordBytes& bytes) {
   Crc32 crc;
   crc.add_bytes(bytes.data(), kRecordBytes - 4);
@@ -37,8 +37,7 @@ void seal(RecordBytes& bytes) {
   }
 }
 
-/// The ring as programs with records of 256 bytes wrote it: their header, and their part of each
-/// record.
+/// The ring of programs with records of 256 bytes: their header, and their part of each record.
 std::string older_ring(std::int64_t capacity, std::int64_t records) {
   const auto put = [](std::string& out, std::uint64_t value, int bytes) {
     for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
@@ -82,14 +81,14 @@ class Ring : public ::testing::Test {
       ASSERT_TRUE(ring.append(full_record(first_cycle + i)));
     }
   }
-  /// Opens it, which must succeed, and has its newest record.
+  /// Opens it, which must succeed, with its newest record.
   CycleRecord newest_in(RingLog& ring, std::int64_t capacity) {
     CycleRecord newest;
     EXPECT_TRUE(ring.open(path_.c_str(), capacity, error_)) << error_.c_str();
     EXPECT_TRUE(ring.newest(newest));
     return newest;
   }
-  /// Cycles that a reader finds, in order.
+  /// Control cycles that a reader finds, in order.
   Cycles cycles() {
     RingLog ring;
     Cycles found;
@@ -101,7 +100,7 @@ class Ring : public ::testing::Test {
     return found;
   }
 
-  /// In memory where there is one: the tests wait for the disk thousands of times.
+  /// In memory if possible: the tests wait for the disk thousands of times.
   const TemporaryFolder folder_{std::filesystem::exists("/dev/shm")
                                     ? std::filesystem::path("/dev/shm")
                                     : std::filesystem::temp_directory_path()};
@@ -114,7 +113,7 @@ TEST(RecordCodec, ZerosAndUnknownCodesAreNoRecord) {
   std::uint64_t number = 0;
   EXPECT_FALSE(decode_record(RecordBytes{}, record, number));
   RecordBytes bytes = bytes_of(full_record(7), 42);
-  bytes[24] = kModeCount;  // a mode of a later program, with a sound CRC
+  bytes[24] = kModeCount;  // a mode of a later version, with a valid CRC
   seal(bytes);
   EXPECT_FALSE(decode_record(bytes, record, number));
 }
@@ -143,7 +142,8 @@ TEST_F(Ring, OneOfAnOlderProgramIsReadAndContinuedInANewFile) {
   EXPECT_EQ(text_of_file(path_ + ".old"), older_ring(5, 3));
 }
 
-/// Half of the new record, half of the old one, at every length: what a cut in the middle leaves.
+/// Half of the new record, half of the old one, at every length: the result of an interrupted
+/// write.
 TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
   append(3, 1, 3);
   const std::string before = text_of_file(path_);
@@ -180,7 +180,7 @@ TEST_F(Ring, AnotherCapacitySetsTheFileAsideAndTakesOver) {
   EXPECT_FALSE(larger.damage().is_any());
 }
 
-/// The process that made the larger log died before it wrote to it.
+/// The process that made the larger log died before writing to it.
 TEST_F(Ring, TheNewestIsInTheNewFileFromItsBeginning) {
   append(5, 1, 4);
   append(9, 5, 0);
@@ -201,7 +201,7 @@ TEST_F(Ring, WhatIsNoLogIsSetAsideAndTold) {
   EXPECT_TRUE(std::filesystem::exists(path_ + ".old"));
 }
 
-/// Numbers are left out where a disk refused records; what stood in their places is not theirs.
+/// Numbers are skipped where a disk refused records; older contents of their places do not count.
 TEST_F(Ring, NumbersMayBeLeftOut) {
   append(5, 1, 4);
   RingLog ring;
@@ -212,7 +212,7 @@ TEST_F(Ring, NumbersMayBeLeftOut) {
   EXPECT_FALSE(ring.damage().is_any());
 }
 
-/// What an opening found lost, as the journal has it; empty = nothing.
+/// Losses found on opening, as in the journal; empty = none.
 std::string damage_line(const std::string& path, std::int64_t capacity) {
   RingLog ring;
   FileMessage error;
@@ -267,7 +267,7 @@ TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
 }
 
 /// One flipped byte anywhere, at places and with masks of a named seed: at most one record is lost,
-/// what is lost is said, and what is left is what was written.
+/// the loss is reported, and the rest is as written.
 TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsTold) {
   constexpr std::int64_t kCapacity = 40;
   std::mt19937 random(20261123);
@@ -299,7 +299,7 @@ TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
   EXPECT_THAT(error_.c_str(), Names(folder_.file("none")));
 }
 
-/// Appends until it is killed; says on `told` when it has begun.
+/// Appends until it is killed; writes to `told` when it has begun.
 [[noreturn]] void append_for_ever(const char* path, int told) {
   RingLog ring;
   FileMessage error;
@@ -311,8 +311,8 @@ TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
   _exit(2);
 }
 
-/// A writer that is killed at random instants: the next one goes on without a gap or a repetition.
-/// Every third is killed at any instant since its birth, the others while they append.
+/// A writer that is killed at random instants: the next one continues without a gap or a
+/// repetition. Every third is killed at any instant since its start, the others while they append.
 TEST_F(Ring, SurvivesKillsAtRandomInstants) {
   std::mt19937 random(20261121);
   std::uint64_t newest_before = 0;

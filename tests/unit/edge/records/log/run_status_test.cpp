@@ -1,5 +1,5 @@
-// What the controller publishes: valid JSON with what `bess-edge status` reads, and a Prometheus
-// text that the rules of the exposition format and of its naming allow.
+// Published status: valid JSON for `bess-edge status`, and a Prometheus text that follows the rules
+// of the exposition format and of its naming.
 #include "edge/records/log/run_status.h"
 
 #include <gmock/gmock.h>
@@ -57,7 +57,7 @@ struct Family {
   std::map<std::string, double> samples;  ///< by labels
 };
 
-/// Reads the text strictly, by the rules that promtool checks.
+/// Strict parser, by the rules of promtool.
 std::map<std::string, Family> parse_prometheus(const std::string& text) {
   std::map<std::string, Family> families;
   EXPECT_TRUE(text.ends_with('\n'));
@@ -88,7 +88,7 @@ std::map<std::string, Family> parse_prometheus(const std::string& text) {
   return families;
 }
 
-/// Any byte that a card forgets is seen by who reads them.
+/// A reader detects any damaged byte.
 TEST(RunStatusTexts, EndWithTheirChecksum) {
   const RunTotals totals = totals_after({good_record()});
   EXPECT_EQ(check_text(prometheus_text(totals), kCommentChecksum), TextState::kIntact);
@@ -98,7 +98,7 @@ TEST(RunStatusTexts, EndWithTheirChecksum) {
   EXPECT_EQ(check_text(json.view(), kJsonChecksum), TextState::kIntact);
 }
 
-/// Any byte that a card forgets, a file of another build, and one that is cut.
+/// Any damaged byte, a file of another build, and a truncated one.
 TEST(StoredStatus, IsReadWholeOrNotAtAll) {
   const TemporaryFolder folder;
   const std::string path = folder.file("status.bin");
@@ -189,7 +189,7 @@ TEST(RunTotals, CountFailuresAndReasons) {
   EXPECT_EQ(totals.battery_failures, 2);
   EXPECT_EQ(totals.price_failures, 2);
   EXPECT_EQ(totals.cycles_by_reason[static_cast<std::size_t>(Reason::kLink)], 2);
-  bad.mode = Mode::kStopping;  // ends the run without asking for a price
+  bad.mode = Mode::kStopping;  // ends the run without a price request
   EXPECT_EQ(totals_after({bad}).price_failures, 0);
 }
 

@@ -1,11 +1,11 @@
-// Hand-made decision records for the tests of what is written from them.
+// Hand-made decision records for the tests of outputs.
 #pragma once
 
 #include "edge/records/log/run_status.h"
 
 namespace bess {
 
-/// Every field its own value, so that a swapped or forgotten one shows.
+/// A distinct value in every field, so that a swapped or forgotten one shows.
 inline CycleRecord full_record(std::int64_t cycle) {
   CycleRecord r;
   r.utc_s = 1'700'000'000 + 120 * cycle;
@@ -150,7 +150,7 @@ inline CycleRecord longest_record() {
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: kReasonCount of them show each name.
+/// Enumerator i of every enumeration, cyclically: kReasonCount of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);
@@ -162,7 +162,7 @@ inline CycleRecord record_with_enumerators(int i) {
   return r;
 }
 
-/// Every total its own value as well.
+/// A distinct value in every total as well.
 inline RunTotals full_totals(const CycleRecord& last) {
   RunTotals t;
   t.cycles = 101;

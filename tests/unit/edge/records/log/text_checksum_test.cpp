@@ -1,4 +1,4 @@
-// Texts that end with their own checksum: every flipped bit is found, and every cut.
+// Texts with their own checksum: every flipped bit and every truncation is found.
 #include "edge/records/log/whole_file.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(TextChecksum, NoFlippedBitAndNoCutIsIntact) {
         std::string bad = good;
         bad[i] = static_cast<char>(bad[i] ^ (1 << bit));
         EXPECT_NE(check_text(bad, form.frame), TextState::kIntact) << i << " " << bit;
-        // Where the text itself is touched, no doubt is left.
+        // A change of the text itself is always found.
         if (i < std::string(form.body).size()) {
           EXPECT_EQ(check_text(bad, form.frame), TextState::kBroken) << i << " " << bit;
         }

@@ -1,4 +1,4 @@
-// Files that are replaced at once, in a folder where others may write as well.
+// Files that are replaced atomically, in a folder that others may write to.
 #include "edge/records/log/whole_file.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(WholeFile, AFolderInTheWayIsAnError) {
   EXPECT_FALSE(is_disk_trouble(errno)) << "the operator's to mend";
 }
 
-/// Makes with an umask as root has it who is careful.
+/// Creates files under a restrictive umask of root.
 class CarefulRoot : public ::testing::Test {
  protected:
   static constexpr uid_t kService = 65'534;

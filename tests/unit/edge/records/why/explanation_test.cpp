@@ -1,5 +1,4 @@
-// Explanations made from a log: who decided, since when, what ends it, and the margins in words and
-// as JSON.
+// Explanations from a log: decider, start, end condition, and the margins in words and as JSON.
 #include "edge/records/why/explanation.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +18,7 @@ using ::testing::Not;
 
 constexpr std::int64_t kTick = 1'763'901'120;  // 2025-11-23T12:32:00Z, 13:32 in Brussels
 
-/// What the built-in student decides at noon at this price, as the loop would log it.
+/// Decision of the built-in student at noon at this price, as the loop would log it.
 CycleRecord decided(std::int64_t cycle, std::int32_t price_centi) {
   CycleRecord r{.utc_s = kTick + cycle * kSecondsPerStep, .cycle = cycle, .mode = Mode::kRunning};
   r.has_measurement = true;
@@ -104,7 +103,7 @@ TEST_F(Why, SinceWhenIsTheBeginningOfTheRun) {
 TEST_F(Why, AHoleInTheLogBeginsAnew) {
   log(decided(0, 5'000));
   log(decided(3, 5'000));
-  log(decided(5, 5'000));  // one cycle that was skipped is no hole
+  log(decided(5, 5'000));  // a single skipped control cycle is no gap
   EXPECT_EQ(explained().cycles, 2);
 }
 

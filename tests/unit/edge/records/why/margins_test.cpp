@@ -1,5 +1,5 @@
-// The margins against the student itself: over whole columns of the lattice for drawn states, at
-// their edges for every context there is, and against the guard in hundredths of EUR/MWh.
+// Margins against the student itself: over whole columns of the lattice for drawn states, at their
+// edges for every context, and against the guard in hundredths of EUR/MWh.
 #include "edge/records/why/margins.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ LatticeState drawn_state(std::mt19937_64& random) {
           .price_eur_per_mwh = drawn(random, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh)};
 }
 
-/// What thresholds and student make of a price together.
+/// Joint decision of thresholds and student at a price.
 Action wish_at(LatticeState state, std::int32_t price_centi, const PriceThresholds& thresholds,
                Policy policy = decide_with_student) {
   if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
@@ -70,7 +70,7 @@ TEST(Margins, AreWholeColumnsOfTheLatticeForDrawnStates) {
   }
 }
 
-/// The student is proved to be monotone, so that its edges are all that can be wrong.
+/// The student is proved to be monotone, so only its edges can be wrong.
 TEST(Margins, TurnWhereTheStudentDoesInEveryContext) {
   std::mt19937_64 random(17'280);
   for (int context = 0; context < kContextCount; ++context) {
@@ -100,7 +100,7 @@ TEST(Margins, TurnWhereTheStudentDoesInEveryContext) {
   }
 }
 
-// Students by hand, with kinks at the places where rounding, ends and thresholds meet.
+// Hand-made students, with kinks where rounding, ends and thresholds meet.
 Action always_charge(const LatticeState&) { return Action::kCharge; }
 Action always_rest(const LatticeState&) { return Action::kIdle; }
 Action always_discharge(const LatticeState&) { return Action::kDischarge; }

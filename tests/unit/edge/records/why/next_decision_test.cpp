@@ -1,4 +1,4 @@
-// What comes next, by hand; and keys that do nothing.
+// Next decision, by hand; and keys without effect.
 #include "edge/records/why/next_decision.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ CycleRecord at_noon(double price_eur) {
   return r;
 }
 
-/// The margins are of the tick that comes: a price on either side of each is another decision.
+/// The margins are for the next tick: a price on either side of each gives another decision.
 TEST(NextDecision, HasTheMarginsOfItsTick) {
   const ControlSettings settings;
   const Margins at = find_next_decision(at_noon(60), kNoon, settings).margins;
@@ -83,7 +83,7 @@ TEST(NextDecision, LooksADayAheadInThePlan) {
   newest.days_since_full = 11;
   const NextDecision next = find_next_decision(newest, kNoon, settings);
   EXPECT_THAT(next_decision_text(next), Names("40.0 % 18:00 22:00 3"));
-  // The clock goes forward in this night: 22:00 on the day before is as far as it looks.
+  // Summer time begins in this night: it looks no further than 22:00 on the day before.
   EXPECT_EQ(next.reserve_changes.size(), 2u);
 }
 
@@ -107,7 +107,7 @@ TEST(KeysWithoutEffect, AreNamedWithTheReason) {
   EXPECT_THAT(keys_without_effect(config).front(), Names("control = false"));
 }
 
-/// One below each bound, and they do something again.
+/// One below each bound, and they have an effect again.
 TEST(KeysWithoutEffect, AtTheirBoundsTheyHaveOne) {
   EdgeConfig config;
   config.control.control = true;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What watches batteries (tools/delivery/monitoring): promtool and amtool read the files and run
+"""Monitoring files (tools/delivery/monitoring): promtool and amtool read the files and run
 the unit tests of the rules.
 
   monitoring_test.py SOURCE

@@ -89,8 +89,7 @@ TEST(ConstraintLayer, WithoutRowsNothingMoves) {
   EXPECT_LT((back - gradient).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// The paper's properties with an operator's rule among them: in a box no discharge; and a total
-/// over states.
+/// The paper's properties and an operator's rule: no discharge in a box; and a total over states.
 std::vector<DifferenceRow> rows_with_rules(const CorrectionOptions& options,
                                            const LatticeAxes& axes) {
   std::vector<DifferenceRow> rows = property_rows(options, axes);

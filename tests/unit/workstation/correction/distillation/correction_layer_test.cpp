@@ -12,7 +12,7 @@ constexpr int kDis = static_cast<int>(Action::kDischarge);
 constexpr int kIdle = static_cast<int>(Action::kIdle);
 constexpr int kCha = static_cast<int>(Action::kCharge);
 
-/// Everything the header promises, on every cell.
+/// All promises of the header, on every cell.
 void expect_properties(const CorrectionOptions& options, const LatticeAxes& axes,
                        const Eigen::MatrixXd& z) {
   constexpr double kTiny = 1e-9;

@@ -20,7 +20,7 @@ Values project(int rows, int columns, const Values& y, const RowBounds& bounds =
   return x;
 }
 
-/// Exact: not by a tolerance.
+/// Exact, without tolerance.
 bool feasible(int rows, int columns, const Values& x, const RowBounds& bounds) {
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
@@ -89,7 +89,8 @@ TEST(Isotonic, HandCases) {
   }
 }
 
-/// Constant input of every size is one level set: rounding of long sums must not split it for ever.
+/// Constant input of every size is one level set: rounding of long sums must not split it
+/// repeatedly.
 TEST(Isotonic, ConstantInputOfAnySize) {
   for (const int side : {16, 64, 256, 700}) {
     SCOPED_TRACE(side);
@@ -100,7 +101,7 @@ TEST(Isotonic, ConstantInputOfAnySize) {
   }
 }
 
-/// A random cut t_i that does not grow with the row: the cells left of it are an upper set.
+/// A random cut t_i that does not increase with the row: the cells left of it are an upper set.
 std::vector<int> random_staircase(int rows, int columns, Random& random) {
   std::vector<int> cut(static_cast<std::size_t>(rows));
   for (int& t : cut) t = static_cast<int>(random.index(columns + 1));

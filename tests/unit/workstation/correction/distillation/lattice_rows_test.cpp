@@ -102,7 +102,7 @@ TEST(LatticeRows, TheCorrectedActionsObey) {
   EXPECT_GT(bound, 5);
 }
 
-/// Through the layer alone a student comes to keep a rule that its teacher breaks.
+/// Through the layer alone a student learns to keep a rule that its teacher breaks.
 TEST(LatticeRows, AStudentLearnsARule) {
   const Teacher teacher =
       network_teacher(Method::kDqn, {-30, 30, 11}, PriceMap(even_price_table()), 7);

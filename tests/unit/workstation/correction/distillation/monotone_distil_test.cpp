@@ -1,5 +1,6 @@
-// Whatever the weights inside the bounds, the integer student is monotone; without them it is not.
-// Distillation inside them learns from its teacher, obeys the thresholds, and repeats to the bit.
+// Monotone distillation: within the bounds the integer student is monotone for any weights; without
+// them it is not. Distillation within them learns from its teacher, obeys the thresholds, and is
+// bit-identical when repeated.
 #include "workstation/correction/distillation/monotone_distil.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +63,7 @@ TEST(Lessons, TellWhatTheTeacherWouldDoAndWhatOthersLose) {
   }
 }
 
-/// States in which the lesson's first choice is against the rules.
+/// States in which the teacher's first choice violates the rules.
 int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOptions& options) {
   const RuleLessons asked(rules, teacher.context.kind);
   const LessonStates lessons = make_lessons(teacher, school().visited, options);
@@ -131,7 +132,7 @@ TEST(MonotoneDistiller, InterruptionReturns) {
   EXPECT_TRUE(distiller.curve().empty());
 }
 
-/// What is left of the rules by a student that is learnt with them quickly.
+/// Remaining rule violations of a student that is trained with them briefly.
 std::vector<DemandCount> counts_with_rules(const std::vector<const char*>& rules) {
   DistilOptions options = school().options;
   options.epochs = 60;
@@ -176,7 +177,7 @@ TEST(CorrectAndProve, ToChargeOrDischargeWithoutARestIsLearntAndProved) {
   counts_with_rules({"is_not = \"idle\"\nhours = \"17:00-20:00\""});
 }
 
-/// Thresholds inside the market's prices, where the teacher would often do something else.
+/// Thresholds inside the market's prices, where the teacher would often act differently.
 TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
   DistilOptions options = school().options;
   options.epochs = 60;
@@ -279,7 +280,7 @@ TEST(SignBounds, OutsideTheStudentIsNot) {
   EXPECT_GT(rising, 0);
 }
 
-/// One wrong sign on each way from an input to the logits is enough to be found.
+/// One wrong sign on each path from an input to the logits is found.
 TEST(SignBounds, AWrongSignAnywhereIsOutside) {
   const SignBounds bounds = SignBounds::monotone();
   Parameters inside = initial_parameters(kStudentShape, 3);

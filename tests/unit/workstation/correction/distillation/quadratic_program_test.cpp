@@ -89,7 +89,7 @@ TEST(QuadraticProgram, HessianIsTheMetric) {
   EXPECT_THROW(QuadraticProgram(indefinite, constraints_of(2, {}, {})), std::invalid_argument);
 }
 
-/// What makes x the solution of a convex program, whoever found it.
+/// Optimality conditions of a convex program, for a solution of any solver.
 void expect_optimal(const TestProgram& program, const QuadraticProgram& solver, double tolerance) {
   const auto& [normals, bounds, equalities] = program.constraints;
   const Vector& x = solver.x();
@@ -132,7 +132,7 @@ TEST(QuadraticProgram, SolutionsAreOptimal) {
   EXPECT_GT(let_go, 100) << "rows are let go on the way";
 }
 
-/// Numbers of another size, of the rows and of all: nothing depends on units.
+/// Scaled numbers, of the rows and of all: the result does not depend on units.
 TEST(QuadraticProgram, UnitsDoNotMatter) {
   Random random(302);
   for (int round = 0; round < 50; ++round) {
@@ -158,8 +158,7 @@ TEST(QuadraticProgram, UnitsDoNotMatter) {
   }
 }
 
-/// A peer that shares nothing with it: an interior-point method. Of 1,000 programs five have 512
-/// variables.
+/// Independent peer: an interior-point method. Of 1,000 programs five have 512 variables.
 TEST(QuadraticProgram, AgreesWithCvxopt) {
   Random random(304);
   std::vector<TestProgram> programs;
@@ -183,7 +182,7 @@ TEST(QuadraticProgram, AgreesWithCvxopt) {
 }
 
 /// Weighted by the certificate the rows sum to 0 >= a positive number; and without any one of them
-/// the others have a point.
+/// the others have a feasible point.
 void expect_certificate(const TestProgram& program, const QuadraticProgram& solver) {
   const auto& [normals, bounds, equalities] = program.constraints;
   Vector sum = Vector::Zero(program.g.size());
@@ -213,7 +212,7 @@ void expect_certificate(const TestProgram& program, const QuadraticProgram& solv
     rest.constraints.normals.resize(static_cast<int>(kept.size()), normals.cols());
     rest.constraints.normals.setFromTriplets(entries.begin(), entries.end());
     rest.constraints.bounds = Eigen::Map<const Vector>(kept.data(), static_cast<int>(kept.size()));
-    rest.constraints.equalities = 0;  // the sign of its weight says which side of it clashes
+    rest.constraints.equalities = 0;  // the sign of its weight shows which side conflicts
     QuadraticProgram of_the_rest = rest.solver();
     EXPECT_EQ(of_the_rest.solve(rest.g), QuadraticOutcome::kSolved) << "without " << left_out.row;
   }
@@ -248,7 +247,7 @@ TEST(QuadraticProgram, ContradictionsByHand) {
   }
 }
 
-/// A positive sum of feasible rows, turned round and asked for more than it can be.
+/// A positive sum of feasible rows, negated and with a bound beyond its range.
 TEST(QuadraticProgram, ContradictionsAreNamed) {
   Random random(305);
   for (int round = 0; round < 200; ++round) {
@@ -319,7 +318,7 @@ TEST(QuadraticProgram, BackwardIsTheDerivative) {
   EXPECT_GT(compared, 500);
 }
 
-/// A tight row without a multiplier: the mean of both sides, as the central difference.
+/// An active row without a multiplier: the mean of both sides, as in the central difference.
 TEST(QuadraticProgram, BackwardAtAKink) {
   struct Case {
     const char* name;

@@ -1,5 +1,5 @@
-// Rules in the distillation: rows that imply what is allowed, corners that decide a box, lessons
-// that obey.
+// Rules in the distillation: rows that imply the allowed actions, corners that decide a box,
+// training states that obey.
 #include "workstation/correction/distillation/monotone_distil.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-/// Any scores that keep the rows have an allowed action, and every set but "all" asks for
+/// Any scores that satisfy the rows have an allowed action, and every set but "all" demands
 /// something.
 TEST(ScoreRows, ImplyTheActions) {
   Random random(3);
@@ -37,8 +37,8 @@ TEST(ScoreRows, ImplyTheActions) {
   }
 }
 
-/// A monotone student that keeps the corners of a rule keeps all of its box; corners that are left
-/// out show.
+/// A monotone student that satisfies the corners of a rule satisfies its whole box; omitted corners
+/// show.
 TEST(RuleLessons, CornersDecideABoxOfAMonotoneStudent) {
   const RuleSet rules = parse_rules(
       "[[rule]]\nname = \"a\"\nprice_min = 0\nprice_max = 300\nsoc_max = 0.5\nat_least = \"idle\"\n"

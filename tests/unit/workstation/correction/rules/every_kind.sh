@@ -1,9 +1,9 @@
 #!/bin/sh
-# every_kind.sh SOURCE BUILD FOLDER [PRICES]: students of every kind of rule that
-# the manual documents, learned and proved; prints their proofs, and what they cost with
-# its error: projected, then learnt. PRICES: a minute file; without it a simulated year. The rules
-# of a file of kinds/ together, one seed; with BESS_THOROUGH=1 three seeds. Fails when a student is
-# not proved, after all are told.
+# every_kind.sh SOURCE BUILD FOLDER [PRICES]: students with every kind of rule that
+# the manual documents, trained and proved; prints their proofs, and their cost with its
+# error: projected, then trained. PRICES: a minute file; without it a simulated year. The rules of a
+# file of kinds/ together, one seed; with BESS_THOROUGH=1 three seeds. Fails after all reports if a
+# student is not proved.
 source=$(cd "$1" && pwd) build=$(cd "$2" && pwd) folder=$3
 [ -z "$4" ] || set -- "$1" "$2" "$3" "$(realpath "$4")"
 train=$build/bess-train

@@ -1,5 +1,5 @@
-// Rules that cannot be obeyed together are refused, naming them and one state; what rules imply
-// beyond their boxes is what brute force over all monotone ways says.
+// Contradictory rules are refused, naming them and one state; the consequences of rules beyond
+// their boxes equal brute force over all monotone policies.
 #include "workstation/correction/rules/rule_conflicts.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ std::string named(const std::string& name, const std::string& lines) {
   return "[[rule]]\nname = \"" + name + "\"\n" + lines + "\n";
 }
 
-/// Empty where the rules can be obeyed together.
+/// Empty if the rules are consistent.
 std::string complaint(const std::string& text, ContextKind kind = ContextKind::kLevel,
                       const PriceThresholds& thresholds = {}) {
   return refusal_of([&] { require_consistent(parse_rules(text, "test.toml"), thresholds, kind); });
@@ -36,7 +36,8 @@ TEST(Conflicts, BothRulesAndAStateAreNamed) {
   EXPECT_THAT(text, Names("test.toml:1 \"always charge\" \"night\" test.toml:6 01:00"));
 }
 
-/// "At least" reaches down to lower prices and charges, "at most" up: boxes far apart may clash.
+/// "At least" extends to lower prices and charges, "at most" to higher ones: distant boxes may
+/// conflict.
 TEST(Conflicts, WhatIsImpliedClashesToo) {
   const std::string dear =
       named("dear", "price_min = 200\nprice_max = 300\nsoc_min = 0.6\nat_least = \"idle\"");
@@ -110,11 +111,10 @@ TEST(Conflicts, OppositeDirectionsAreRefused) {
               Names("\"up\" \"down\""));
 }
 
-/// Straight from the definition: a state's range is bound by every rule whose box holds a
-/// comparable state.
-// Any set is decided beforehand: those that pass have a policy, those that are refused have none.
+/// By definition: a state's range is bounded by every rule whose box holds a comparable state. Any
+/// set is decided beforehand: those that pass have a policy, those that are refused have none.
 
-/// Rules of few boxes, so that all states of a box of the grid below are alike.
+/// Rules of few boxes, so that all states of a grid box below are equivalent.
 class Cells {
  public:
   static constexpr int kPrices[] = {-500, -499, -100, 100,
@@ -137,8 +137,7 @@ class Cells {
     }
   }
 
-  /// Sets of a chain and its order: when nothing more can be struck out, what is left can be chosen
-  /// from.
+  /// Sets of a chain and its order: when no element can be removed any more, a selection exists.
   [[nodiscard]] bool have_a_policy() {
     for (bool changed = true; changed;) {
       changed = false;
@@ -158,7 +157,7 @@ class Cells {
 
  private:
   static constexpr int kCount = kPriceCells * kSocCells * kHours * kClasses;
-  /// By RuleInput; of the minute nothing depends.
+  /// By RuleInput; nothing depends on the minute.
   static constexpr int kStride[] = {0, kPriceCells* kSocCells, kPriceCells* kSocCells* kHours,
                                     kPriceCells, 1};
   static int count_of(RuleInput input) {

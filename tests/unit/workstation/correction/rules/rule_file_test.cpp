@@ -1,4 +1,4 @@
-// The rule file: what is read, what is written back, and what is refused with which mend.
+// Rule file: accepted keys, written rules, and refusals with their corrections.
 #include "workstation/correction/rules/rule_file.h"
 
 #include <gmock/gmock.h>

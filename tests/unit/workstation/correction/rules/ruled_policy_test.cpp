@@ -1,5 +1,4 @@
-// A policy that obeys: the nearest action that is left, nothing else changed, and its money
-// counted.
+// Ruled policy: the nearest allowed action, nothing else changed, and its money counted.
 #include "workstation/correction/rules/ruled_policy.h"
 #include "tests/support/carried_over.h"
 #include "workstation/correction/rules/properties.h"
@@ -66,7 +65,7 @@ TEST(RuledPolicy, OnlyDemandsOnSingleStatesAreProjected) {
   EXPECT_FALSE(can_be_projected(one_rule("never_rises_with = \"minute\"").rules[0]));
 }
 
-/// Rises with price: breaks property 3 in the pairs around its threshold, and property 1.
+/// Rises with price: violates property 3 in the pairs around its threshold, and property 1.
 class Backwards final : public Policy {
  public:
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double) const override {

@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// Integers of one array of a header, in order, whatever its nesting.
+/// Integers of one array of a header, in order, at any nesting.
 std::vector<int> array_in(const std::string& header, const std::string& name) {
   std::size_t at = header.find("bess_student_" + name + '[');
   if (at == std::string::npos) return {};
@@ -105,7 +105,7 @@ TEST(Export, HeaderSaysWhatItWasProvedFor) {
   }
 }
 
-/// The header without its numbers and where it breaks their lines: what the exporter itself writes.
+/// The header without its numbers and line breaks: the text of the exporter.
 std::string form_of(std::string header) {
   const std::size_t provenance = header.find("#define BESS_STUDENT_PROVENANCE");
   header.erase(provenance, header.find('\n', provenance) - provenance);
@@ -122,7 +122,7 @@ TEST(Export, CommittedHeaderIsWhatTheExporterWrites) {
   expect_self_checks(header, net);
 }
 
-/// What the compiler says to these words, with the header in a folder that it looks into.
+/// The compiler's output for these options, with the header's folder in its include path.
 Said compiled(const TemporaryFolder& folder, const std::string& header,
               std::vector<std::string> words) {
   write_file(folder.file("student_weights.h"), header);
@@ -130,8 +130,7 @@ Said compiled(const TemporaryFolder& folder, const std::string& header,
   return answer_of(words);
 }
 
-/// Compiles the header in a C and a C++ program and runs both; `provenance` is what both must find
-/// in it.
+/// Compiles the header in a C and a C++ program and runs both; both must find `provenance` in it.
 void expect_header_compiles(const std::string& header, const std::string& provenance) {
   const TemporaryFolder folder;
   std::string literal;
@@ -164,7 +163,7 @@ void expect_header_compiles(const std::string& header, const std::string& proven
   }
 }
 
-/// The workstation's replay and the edge's are of two programs: one number holds them together.
+/// The replays of workstation and edge are separate programs: one number compares them.
 TEST(Export, TheSignatureIsTheOneOfTheBuild) {
   for (const std::string folder :
        {BESS_COMMITTED_STUDENT_DIR, BESS_SOURCE_DIR "/tests/data/golden/outlook_student"}) {
@@ -184,7 +183,7 @@ TEST(Export, ProvenanceIsSafe) {
   expect_header_compiles(header, harmless + "\"a\" 'b' one?two?\?\?\?\? C:\\new\\x41\\");
 }
 
-/// By the assertion about what `names` say.
+/// By the assertion about the content of `names`.
 void expect_header_is_refused(const std::string& header, const std::string& names) {
   const TemporaryFolder folder;
   const std::string source = folder.write("a.cpp", "#include \"shared/nn/exported_student.h\"\n");
@@ -194,7 +193,7 @@ void expect_header_is_refused(const std::string& header, const std::string& name
   EXPECT_THAT(outcome.text, Names("exported_student.h " + names));
 }
 
-/// Training days and cycles may be missing; they are never made up.
+/// Training days and cycles may be missing; they are never invented.
 TEST(Export, TheTrainingDaysAreToldAndAHeaderOfBeforeHasNone) {
   EXPECT_THAT(format_weight_header(crowded_student()),
               HasSubstr("#define BESS_STUDENT_TRAINED_FROM \"2024-02-29\"\n"
@@ -253,7 +252,7 @@ const ProvedStudent& ruled_student() {
   return std::get<ProvedStudent>(verdict);
 }
 
-/// Whatever stands behind the rules' first line is added; all before it is the header without
+/// Everything from the rules' first line on is added; the text before it is the header without
 /// rules.
 TEST(Export, RulesAreAddedToTheHeader) {
   const std::string header = format_weight_header(ruled_student());
@@ -272,7 +271,7 @@ TEST(Export, AHeaderWithRulesIsCAndCppAndAnswersItsGoldenPoints) {
   expect_header_compiles(format_weight_header(ruled_student()), kCrowdedProvenance);
 }
 
-/// The edge's own guard, with rules in its header, against what the exporter says of it.
+/// The edge's own guard, with rules in its header, against the exporter's statement.
 TEST(Export, TheEdgeDecidesWithRulesAsTheSignatureSays) {
   const TemporaryFolder folder;
   const std::string source = folder.write("a.cpp", R"(
@@ -299,7 +298,7 @@ int main() {
             decision_signature_line(crowded_student().file()));
 }
 
-/// A row or an entry of the table that is changed or left out does not compile.
+/// A changed or omitted row or table entry does not compile.
 TEST(Export, DamagedRulesDoNotCompile) {
   const std::string good = format_weight_header(ruled_student());
   const auto edited = [&good](const std::string& from, const std::string& to) {
@@ -314,8 +313,8 @@ TEST(Export, DamagedRulesDoNotCompile) {
   expect_header_is_refused(edited(first, ""), "BESS_STUDENT_RULES_HASH");
 }
 
-/// The points that are shipped tell every field of every rule from its neighbours, so that a
-/// machine that looks rules up otherwise is found out at its start.
+/// The exported points distinguish every field of every rule from its neighbours, so that a machine
+/// with a different rule look-up fails at its start.
 TEST(RuleHeader, TheGoldenPointsTellEveryField) {
   const std::vector<GuardRule> rules = parse_rules(kHeaderRules, "test.toml").guard_rules();
   const std::vector<RulePoint> points = rule_check_points(rules);
@@ -378,7 +377,7 @@ TEST(ExportCommand, WritesAProvedStudent) {
                                    folder.file("out") + " " + student)));
 }
 
-/// The file claims a proof; the prover runs again and counts what breaks it.
+/// The file claims a proof; the prover runs again and counts violations.
 TEST(ExportCommand, RefusesViolations) {
   const TemporaryFolder folder;
   const std::string student = folder.file("student.json");

@@ -1,4 +1,4 @@
-// A student as the edge runs it: with what its guard enforces, and nothing more.
+// Student as the edge runs it: with the rules of its guard, and nothing more.
 #include "workstation/correction/student/exported_policy.h"
 
 #include <gtest/gtest.h>

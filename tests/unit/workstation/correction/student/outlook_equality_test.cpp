@@ -1,6 +1,6 @@
-// The workstation's half of the equality with the edge
+// Workstation side of the equality with the edge
 // (tests/unit/edge/outlook/outlook_decisions_test.cpp): the same drawn weeks through market,
-// publication, book of plans and student file.
+// publication, plan cache and student file.
 //   BESS_THOROUGH=1 BESS_UPDATE_GOLDEN=1 build/student_test --gtest_filter='OutlookEquality.*'
 #include <gtest/gtest.h>
 

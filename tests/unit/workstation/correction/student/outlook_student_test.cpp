@@ -1,6 +1,6 @@
-// A student by outlook on its way through the chain: learnt by a program that plans on day-ahead
-// prices, monotone in its break-even price by construction, kept in files, and exported with the
-// integers of its plan.
+// Student by outlook in the chain: trained by a program that plans on day-ahead prices, monotone in
+// its break-even price by construction, stored in files, and exported with the integers of its
+// plan.
 #include <gmock/gmock.h>
 
 #include "shared/host/file.h"
@@ -72,8 +72,8 @@ TEST(OutlookStudent, EarnsMostOfWhatItsTeacherDoes) {
             0.9 * earned(teacher).profit_eur_per_day_per_mwh());
 }
 
-// The plan holds the break-even price from rising with SoC, and the net's action never falls with
-// it nor rises with SoC: so as a whole it does not rise with SoC either, nor with the price.
+// The plan's break-even price never rises with SoC, and the net's action never falls with it nor
+// rises with SoC: so the whole never rises with SoC, nor with the price.
 TEST(OutlookStudent, AsAWholeNeverRisesWithSocOrPrice) {
   const auto policy = exported_policy(student());
   for (std::size_t i = 5000; i < school().market.steps.size(); i += 977) {

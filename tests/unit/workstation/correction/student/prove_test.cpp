@@ -1,5 +1,5 @@
-// The prover's word: what it says yes and no to, that nobody else can say yes, and what a proof
-// that failed names: what is broken, where, and what to change.
+// Prover: its yes and no, its exclusive right to a yes, and what a failed proof names: the
+// violation, its state, and the change.
 #include "workstation/correction/student/prove.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@
 namespace bess {
 namespace {
 
-// Nobody else makes one,
+// No other code makes one,
 static_assert(!std::is_default_constructible_v<ProvedStudent>);
 static_assert(!std::is_aggregate_v<ProvedStudent>);
 static_assert(!std::is_constructible_v<ProvedStudent, StudentFile>);
@@ -50,7 +50,7 @@ TEST(Prove, AProvedStudentCarriesTheCertificateOfTheWholeLattice) {
   EXPECT_TRUE(certificate.counterexamples.empty());
 }
 
-/// Whatever a file claims, its weights are looked at.
+/// Weights are checked, whatever the file claims.
 TEST(Prove, AForgedCertificateIsReplacedByWhatIsFound) {
   const StudentFile forged{LinearNet{.charge_below = 0}.net(), flawless_claim(), "never charges"};
   ASSERT_TRUE(forged.certificate.covers_lattice_without_violation());
@@ -105,7 +105,7 @@ TEST(Certificate, CoversTheLatticeOnlyAsAWhole) {
 
 using testing::AllOf;
 
-/// Counted in the first context alone: quick, and no less broken.
+/// Counted in the first context only: faster, and equally wrong.
 StudentFile counted(const StudentNet& net, const PriceThresholds& thresholds,
                     const RuleSet& rules) {
   return {net,
@@ -116,7 +116,7 @@ StudentFile counted(const StudentNet& net, const PriceThresholds& thresholds,
           ""};
 }
 
-/// LinearNet charges below 0, idles to 1000 and discharges from there: each demand is broken by a
+/// LinearNet charges below 0, idles to 1000 and discharges from there: each demand is violated in a
 /// known state.
 TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
   RuleSet rules = one_rule("price_max = 1400\nat_least = \"idle\"", "never sell");
@@ -136,7 +136,7 @@ TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
   EXPECT_THAT(text, Names("June: 1 \"never sell\" 1400 EUR/MWh"));
 }
 
-/// Where what asks the opposite is far away, room is not what is missing.
+/// Where the opposite demand is far away, room is not the problem.
 TEST(FailedProof, OnlyAnOppositeThatIsNearIsGivenMoreRoom) {
   for (const auto& [price_min, is_near] : {std::pair{-450, true}, std::pair{-250, false}}) {
     RuleSet rules = one_rule("price_min = -450\nprice_max = 300\nis = \"idle\"", "rest");

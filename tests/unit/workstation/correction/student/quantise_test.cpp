@@ -157,7 +157,7 @@ TEST(Quantise, AbsurdWeightsAreRefused) {
   }
 }
 
-/// The sums fit, the activations do not: int16 would clip what float does not.
+/// The sums fit, the activations do not: int16 would clip values that float does not.
 TEST(Quantise, SaturatingActivationsAreRefused) {
   const PriceMap map(even_price_table());
   for (const int layer : {1, 2}) {

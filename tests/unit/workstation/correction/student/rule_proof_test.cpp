@@ -1,5 +1,5 @@
-// The proof of an operator's rules: each predicate against brute force from its definition, on nets
-// that keep it and on nets that break it alone.
+// Proof of an operator's rules: each predicate against brute force from its definition, on nets
+// that satisfy it and on nets that violate only it.
 #include "workstation/correction/student/rule_proof.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kFirstContextAlone = kContextCount;  ///< stride: the first context alone
 
-/// Every action of a context and of those beside it, by enumeration.
+/// Every action of a context and of its neighbours, by enumeration.
 class Actions {
  public:
   Actions(const StudentNet& net, const LatticeState& context) {
@@ -46,7 +46,7 @@ class Actions {
   std::array<ActionGrid, 3> beside_;
 };
 
-/// Of one context, straight from the definition.
+/// For one context, by definition.
 std::int64_t brute_force(const Rule& rule, const Actions& actions, const LatticeState& context) {
   std::int64_t found = 0;
   for (int soc = 0; soc < kSocCount; ++soc) {
@@ -71,7 +71,7 @@ std::int64_t brute_force(const Rule& rule, const Actions& actions, const Lattice
   return found;
 }
 
-/// Each demand in a shape of its own: a predicate that is left out, or looks elsewhere, miscounts
+/// Each demand with a distinct shape: a predicate that is omitted, or looks elsewhere, miscounts
 /// some.
 std::vector<const char*> rule_shapes() {
   return {"is = \"idle\"\nprice_min = -20\nprice_max = 700\nsoc_min = 0.1\nsoc_max = 0.8",
@@ -153,19 +153,20 @@ TEST(RuleProof, CountsAreThoseOfTheDefinitions) {
     EXPECT_EQ(certificate.violations(), sum);
   }
   for (std::size_t r = 0; r < seen.size(); ++r) {
-    // The box at 05:00 does not hold in the first context; each other shape is broken by some net.
+    // The box at 05:00 does not hold in the first context; each other shape is violated by some
+    // net.
     const bool is_elsewhere = rules.rules[r].box.quarter_hour_first == 20;
     EXPECT_EQ(seen[r] > 0, !is_elsewhere) << rules.rules[r].text();
   }
 }
 
-/// Over a sample of contexts: hours, classes and the last values of an input, which have no next
-/// one.
+/// Over a sample of contexts: hours, classes and the last values of an input, which have no
+/// successor.
 TEST(RuleProof, CountsOfManyContextsAddUp) {
   const RuleSet rules = all_shapes();
   StudentNet net = seeded_net(5);
   constexpr int kStride =
-      5759;  // the last is at the end of the day and of the classes: no next one
+      5759;  // the last is at the end of the day and of the classes: no successor
   const Certificate two =
       verify_student(net, {.rules = rules, .context_stride = kStride, .threads = 2});
   const Certificate one =

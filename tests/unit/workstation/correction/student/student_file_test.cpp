@@ -33,7 +33,7 @@ std::string seeded_text() {
   return read_file(folder.file("student.json"));
 }
 
-/// Text with the value of `key` replaced; the values of a student file stand one per line.
+/// Text with the value of `key` replaced; the values of a student file are one per line.
 std::string with(std::string text, const std::string& key, const std::string& value) {
   const std::size_t begin = text.find('"' + key + "\":\t") + key.size() + 4;
   const std::size_t end = text.find('\n', begin);
@@ -46,7 +46,7 @@ std::string without(std::string text, const std::string& key) {
   return text.erase(begin, text.find('\n', begin) + 1 - begin);
 }
 
-/// Text in which the certificate, too, stands on one line.
+/// Text with the certificate on one line too.
 std::string one_line_certificate(std::string text) {
   const std::size_t begin = text.find("\"certificate\"");
   const std::size_t end = text.find('}', begin);
@@ -79,7 +79,7 @@ TEST(StudentFile, RoundTrip) {
   }
 }
 
-/// A rule of the student, one of the guard alone, and what a proof counted of both.
+/// A rule of the student, one of the guard alone, and the counts of a proof of both.
 StudentFile ruled_student(std::int64_t violations) {
   StudentFile student = seeded_student();
   student.certificate = {.thresholds = {-450, 1200}, .states_checked = kLatticeStateCount};
@@ -89,7 +89,7 @@ StudentFile ruled_student(std::int64_t violations) {
   return student;
 }
 
-/// A run reads its students from their files: what it shows of the rules comes from there.
+/// A run reads its students from their files, including the rules that it shows.
 TEST(StudentFile, CountsOfRulesRoundTrip) {
   const TemporaryFolder folder;
   for (const std::int64_t violations : {0, 23'994}) {
@@ -107,7 +107,7 @@ TEST(StudentFile, CountsOfRulesRoundTrip) {
   }
 }
 
-/// They had the sum of all rules alone.
+/// They only had the sum of all rules.
 TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
   const TemporaryFolder folder;
   for (const std::int64_t violations : {0, 5}) {
@@ -120,7 +120,7 @@ TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
   }
 }
 
-/// What the header tells people; a file of before knows less.
+/// Comment of the header; an older file has less information.
 TEST(StudentFile, DaysAndCyclesAreToldWhereTheyAreKnown) {
   const TemporaryFolder folder;
   const auto loaded = [&](const StudentFile& student) {
@@ -144,7 +144,7 @@ TEST(StudentFile, DaysAndCyclesAreToldWhereTheyAreKnown) {
   EXPECT_THROW(loaded(student), UserError);
 }
 
-/// Written before a file had counts: the thresholds stood beside the weights.
+/// Files older than the counts: the thresholds were stored next to the weights.
 TEST(StudentFile, Version1IsStillRead) {
   const StudentFile student =
       load_student(BESS_SOURCE_DIR "/tests/checks/fuzz/seeds/student_file_fuzz/version_1.json");

@@ -9,7 +9,7 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kContextStates = std::int64_t{kSocCount} * kPriceCount;
-/// One context of the whole lattice: enough for nets that see price and SoC alone.
+/// One context of the whole lattice: enough for nets that only depend on price and SoC.
 constexpr int kOneContext = kContextCount;
 
 TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
@@ -79,7 +79,7 @@ Counts counts_of(const Certificate& c) {
   return {c.violations_of(1), c.violations_of(2), c.violations_of(3)};
 }
 
-/// Straight from the definitions, over one context.
+/// By the definitions, over one context.
 template <typename Decide>
 Counts brute_force(Decide decide, LatticeState state, int low, int high) {
   std::vector<int> action;
@@ -101,7 +101,7 @@ Counts brute_force(Decide decide, LatticeState state, int low, int high) {
   return counts;
 }
 
-/// A kept state must itself break a property, or begin a pair that does.
+/// A stored state must itself violate a property, or begin a pair that does.
 bool is_violation(const StudentNet& net, const LatticeState& state, const VerifyOptions& options) {
   const Action action = net.decide(state);
   const PriceThresholds& thresholds = options.thresholds;

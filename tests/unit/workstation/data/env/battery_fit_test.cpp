@@ -1,4 +1,4 @@
-// What a log shows of a battery whose parameters are known, as its controller would have read it.
+// Log of a battery with known parameters, as its controller would have read it.
 #include "workstation/data/env/battery_fit.h"
 
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ BatteryParameters real_battery() {
   return battery;
 }
 
-/// Whole watts and hundredths of a percent, as its registers have them. Where it says what the cold
-/// leaves, its controller cuts the orders.
+/// Whole watts and hundredths of a percent, as in its registers. Where it shows its limit in the
+/// cold, its controller cuts the orders.
 std::vector<LoggedCycle> log_of(const BatteryParameters& battery, int days, std::uint64_t seed,
                                 bool says_limits = false) {
   constexpr int kPartsOfACycle = 24;
@@ -41,7 +41,7 @@ std::vector<LoggedCycle> log_of(const BatteryParameters& battery, int days, std:
     const std::int64_t utc_s = std::int64_t{k} * kSecondsPerStep;
     cycles.push_back({utc_s, std::round(1e4 * soc_frac) / 1e4,
                       std::round(power_w + battery.standby_w + 4 * random.normal()), 0});
-    if (random.uniform() < 0.03) {  // an hour and more one way, as prices go
+    if (random.uniform() < 0.03) {  // more than an hour each way, as with real prices
       const double share = random.uniform() < 0.7 ? 1 : 0.5;
       ordered_w = share * battery.power_w_max * (static_cast<int>(random.index(3)) - 1);
     }
@@ -130,7 +130,7 @@ TEST(BatteryFit, TheLogOfAnotherBatteryIsRefused) {
   EXPECT_THROW(fit_battery(cycles, smaller), UserError);
   EXPECT_THROW(fit_battery(cycles, BatteryParameters{}), UserError) << "megawatts";
   BatteryParameters larger = kHouse;
-  larger.capacity_wh = 16'000;  // cells that keep twice of what they get
+  larger.capacity_wh = 16'000;  // cells that store twice their input
   EXPECT_THROW(fit_battery(cycles, larger), UserError);
 }
 

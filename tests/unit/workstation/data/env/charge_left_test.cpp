@@ -1,4 +1,4 @@
-// What the charge at the end is worth, by hand; and that no one earns by ending empty.
+// Value of the final charge, by hand; ending empty gains nothing.
 #include "workstation/data/env/charge_left.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-/// 8 MWh; each entry a day's SoC at its start and at its end, and no profit.
+/// 8 MWh; each entry is a day's SoC at its start and at its end, without profit.
 Evaluation carried_over(const std::vector<std::pair<double, double>>& days) {
   Evaluation evaluation;
   evaluation.capacity_mwh = 8;
@@ -39,7 +39,7 @@ TEST(ChargeLeft, SurplusIsSoldAndWhatIsMissingBoughtBack) {
   EXPECT_THROW(value_charge_left(missing, battery, 100), std::logic_error) << "twice";
 }
 
-/// The exchange that values it wears and costs as any other does, also at another wear.
+/// The valuing exchange has wear and costs like any other, also at another wear.
 TEST(ChargeLeft, ItsExchangeCostsWhatOthersCost) {
   BatteryParameters battery;
   battery.wear_eur_per_mwh = 10;
@@ -52,14 +52,14 @@ TEST(ChargeLeft, ItsExchangeCostsWhatOthersCost) {
               2 * std::sqrt(0.9) * (100 - 5 - 30) / 8, 1e-9);
 }
 
-/// Days that do not follow each other, as the bound trades them: it enters the second one charged.
+/// Non-consecutive days, as the bound trades them: it starts the second one charged.
 TEST(ChargeLeft, ChargeThatWasBoughtOnOtherDaysIsNoGift) {
   Evaluation bound = carried_over({{0.5, 0.1}, {1.0, 0.1}});
   value_charge_left(bound, {}, 100);
   EXPECT_NEAR(bound.days[1].charge_value_eur, -1.3 * 8 / std::sqrt(0.9) * 100, 1e-9);
 }
 
-/// Sells all that it has.
+/// Sells all of its charge.
 class SellingPolicy final : public Policy {
  public:
   [[nodiscard]] Action decide(const MarketStep&, std::size_t, double) const override {
@@ -67,7 +67,7 @@ class SellingPolicy final : public Policy {
   }
 };
 
-/// At one price all the time: who sells the charge of the start and buys it back has the losses.
+/// At a constant price: selling the initial charge and buying it back costs the losses.
 TEST(ChargeLeft, EndingEmptyEarnsNothingAtAFlatPrice) {
   MinuteSeries series = flat_series("2023-01-31T23:00:00Z", 2 * kMinutesPerDay, 80);
   series.indicative.assign(series.size(), 80);

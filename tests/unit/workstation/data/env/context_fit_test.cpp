@@ -1,4 +1,4 @@
-// The context classes of a market: what they are fitted on, and what they say.
+// Context classes of a market: their fit, and their output.
 #include "workstation/data/env/context_fit.h"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ TEST(ContextFit, LevelsOfTheTrainingDaysLieInside) {
 TEST(ContextFit, AnotherYearsLevelsDoNotMoveTheClasses) {
   MinuteSeries later = small_series();
   const std::size_t half =
-      later.size() / 2;  // a February of other prices, days 1 to 20 of January kept
+      later.size() / 2;  // a February of other prices, days 1 to 20 of January unchanged
   for (std::size_t m = half; m < later.size(); ++m) later.indicative[m] += 5;
   MinuteSeries january = small_series(31);
   const auto fit = [](const MinuteSeries& series) {

@@ -1,4 +1,4 @@
-// The errors of a mean over days, by hand.
+// Errors of a mean over days, by hand.
 #include "workstation/data/env/day_errors.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-/// Tables of Abramowitz and Stegun, 26.10; of one degree it is the tangent.
+/// Tables of Abramowitz and Stegun, 26.10; for one degree it is the tangent.
 TEST(StudentT, IsThatOfTheTables) {
   EXPECT_NEAR(student_t_within(0.95, 1), std::tan(0.95 * std::numbers::pi / 2), 1e-7);
   EXPECT_NEAR(student_t_within(0.95, 2), 4.303, 5e-4);
@@ -33,7 +33,7 @@ TEST(DayErrors, ByHand) {
   EXPECT_DOUBLE_EQ(errors.by_month, std::sqrt(2.0 / 1 * (36 + 36)) / 4);
   EXPECT_EQ(errors.months, 2);
   EXPECT_EQ(errors.days, 4);
-  // The same is the deviation of the months' means, 2 and 8, over the root of two.
+  // Likewise the deviation of the months' means, 2 and 8, over the root of two.
   EXPECT_DOUBLE_EQ(errors.by_month, std::sqrt(18.0) / std::sqrt(2.0));
 }
 
@@ -48,7 +48,7 @@ TEST(DayErrors, OfMonthsOfUnequalLengthByHand) {
   EXPECT_DOUBLE_EQ(errors.by_month, std::sqrt(1.5 * (9 + 16 + 1)) / 6);
 }
 
-/// A January of another year is another month; the order of the days says nothing.
+/// The same month of another year is another month; the order of the days has no effect.
 TEST(DayErrors, AMonthIsOfItsYear) {
   EXPECT_EQ(day_errors({{"2023-01-26", 1}, {"2024-01-26", 2}}).months, 2);
   const std::vector<DayValue> days{
@@ -66,7 +66,7 @@ TEST(DayErrors, WhatCannotBeKnownIsNot) {
   const DayErrors one_month = day_errors({{"2023-01-26", 1}, {"2023-01-27", 3}});
   EXPECT_DOUBLE_EQ(one_month.plain, 1);
   EXPECT_TRUE(std::isnan(one_month.by_month));
-  EXPECT_NEAR(interval_half_width(one_month, 0.95), 12.706, 5e-4);  // all that is known
+  EXPECT_NEAR(interval_half_width(one_month, 0.95), 12.706, 5e-4);  // everything that is known
 }
 
 /// Three degrees of four months, nineteen of twenty days; the wider one holds.

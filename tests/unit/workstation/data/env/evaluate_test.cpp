@@ -1,4 +1,4 @@
-// The money is recounted from the records with nothing but the prices and the states of charge.
+// The money is recomputed from the records with only the prices and the states of charge.
 #include "workstation/data/env/evaluate.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Evaluate, ProfitCyclesAndSwitchesRecountedFromTheRecords) {
   }
 }
 
-/// Charges and discharges by turns.
+/// Alternating charge and discharge.
 class AlternatingPolicy final : public Policy {
  public:
   [[nodiscard]] Action decide(const MarketStep&, std::size_t index, double) const override {
@@ -171,8 +171,8 @@ TEST(Foresight, CarriedOverItPlansAcrossMidnight) {
 }
 
 // At a constant negative price the best plan burns energy in the losses, as fast as the power
-// allows: with E_c bought and E_d given back, E_c + E_d = P * 24 h and the store ends full,
-// eta E_c - E_d / eta = 0.5 C. What a bound must never show is more than that.
+// allows: with E_c bought and E_d discharged, E_c + E_d = P * 24 h and the store ends full, eta E_c
+// - E_d / eta = 0.5 C. The bound must not exceed that.
 TEST(Foresight, AtAConstantNegativePriceItEarnsNoMoreThanTheLossesAllow) {
   const double eta = std::sqrt(0.9);
   const double bought_mwh = (4 * 24 + 0.5 * 8 * eta) / (1 + 0.9);

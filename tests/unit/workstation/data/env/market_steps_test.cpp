@@ -1,5 +1,5 @@
-// The market as a controller meets it: delay, age, no look-ahead, settlement, splits and the two
-// days of the year that are longer or shorter.
+// Market as a controller sees it: delay, age, no look-ahead, settlement, splits and the two days of
+// the year that are longer or shorter.
 #include "workstation/data/env/market_steps.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace bess {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-/// The indicative price of a minute is its index, so what was observed says which row it was.
+/// The indicative price of a minute is its index, so that an observation shows its row.
 MinuteSeries numbered_series(std::string_view start_utc, int minutes) {
   MinuteSeries series = flat_series(start_utc, minutes, 50);
   for (std::size_t m = 0; m < series.size(); ++m) series.indicative[m] = static_cast<double>(m);
@@ -38,7 +38,7 @@ TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
   }
 }
 
-/// The edge refuses such a row, so nobody may learn from it.
+/// The edge refuses such a row, so it must not be in the training data.
 TEST(MarketSteps, ARowBeyondBeliefIsPassedOverAsTheEdgeDoes) {
   MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
   series.indicative[101] = 100'000.01;

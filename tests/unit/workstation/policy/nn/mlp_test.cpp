@@ -90,7 +90,7 @@ TEST(MlpInitial, KinksCrossTheUnitCubeAndLaterLayersAreBounded) {
   const Parameters parameters = initial_parameters(shape, 6);
   const ConstMlp mlp(shape, parameters.data());
   for (Eigen::Index i = 0; i < shape.hidden1; ++i) {
-    // Smallest and largest value of the unit over the cube: the kink lies between.
+    // Smallest and largest value of the unit over the cube: the kink is between them.
     const float low = mlp.b1[i] + mlp.w1.row(i).cwiseMin(0.0F).sum();
     const float high = mlp.b1[i] + mlp.w1.row(i).cwiseMax(0.0F).sum();
     EXPECT_LE(low, 1e-6F) << i;

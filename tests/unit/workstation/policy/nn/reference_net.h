@@ -1,6 +1,6 @@
-// The network and the two losses once more, in double, one row at a time with plain loops, written
-// from the papers and sharing no code with what they check. Also random minibatches, drawn so that
-// float and double cannot part ways: no sample lies on a kink of a ReLU or a tie of an argmax.
+// Reference net: the network and the two losses in double, one row at a time with plain loops,
+// written from the papers without shared code. Also random minibatches, drawn so that float and
+// double cannot diverge: no sample is on a kink of a ReLU or a tie of an argmax.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ inline Doubles inputs_of(const float* x) { return Doubles(x, x + kNetworkInputs)
 struct ReferenceLoss {
   double loss = 0;         ///< mean over the batch
   double edge_mass = 0;    ///< C51: mean target mass on the two end atoms
-  double low_clipped = 0;  ///< C51: atoms that fell below the support
+  double low_clipped = 0;  ///< C51: atoms below the support
   double high_clipped = 0;
   Doubles gradient;
 };
@@ -169,7 +169,7 @@ inline ReferenceLoss reference_c51(const Support& support, double gamma, const R
     for (std::size_t a = 0; a < kActionCount; ++a) values[a] += double{t.next_advantage[a]};
     const std::size_t best = largest_of(values);
     const double discount = t.terminal != 0 ? 0.0 : gamma;
-    // Atom z of the residual stands for the value A(s', a*) + z: Algorithm 1 moves the whole of it.
+    // Atom z of the residual represents the value A(s', a*) + z: Algorithm 1 moves the whole of it.
     const Doubles m = reference_projection(
         support, reference_softmax(next, best * count, count),
         double{t.reward} + discount * double{t.next_advantage[best]}, discount, &result);
@@ -257,7 +257,7 @@ Doubles finite_differences(const MlpShape& shape, const Doubles& parameters, con
   return gradient;
 }
 
-/// Parameters with a head that is stronger than at the start, so that distributions have a shape.
+/// Parameters with a stronger head than at the start, so that distributions have a shape.
 inline Parameters random_parameters(const MlpShape& shape, std::uint64_t seed, float head_scale) {
   Parameters parameters = initial_parameters(shape, seed);
   parameters.tail(static_cast<Eigen::Index>(shape.outputs) * (shape.hidden2 + 1)) *= head_scale;
@@ -268,7 +268,7 @@ struct BatchRecipe {
   std::size_t group[kActionCount];
   double reward_deviation;
   double terminal_share = 0.15;
-  double advantage_deviation = 0;  ///< of what a residual adds to, in the next state
+  double advantage_deviation = 0;  ///< base values of a residual, in the next state
 };
 
 /// Shuffled random transitions with `recipe.group[a]` samples of action a. `support` for C51.

@@ -1,4 +1,4 @@
-// The packet kernels against products in double, over shapes that are not whole panels, blocks or
+// Packet kernels against products in double, over shapes that are not whole panels, blocks or
 // packets.
 #include "workstation/policy/nn/tile_kernels.h"
 
@@ -98,7 +98,7 @@ TEST_P(Kernels, AddOuterProducts) {
 
 TEST_P(Kernels, Exponentials) {
   for (const float scale : {0.0F, 1.0F, 30.0F, 1e4F}) {
-    Matrix z = Matrix::Constant(padded + 1, 1, 1e30F);  // what stands in the padding does not count
+    Matrix z = Matrix::Constant(padded + 1, 1, 1e30F);  // contents of the padding have no effect
     z.col(0).segment(1, shape.lanes) = scale * random_matrix(shape.lanes, 1);
     const Eigen::ArrayXd logits = z.col(0).segment(1, shape.lanes).cast<double>().array();
     const Eigen::ArrayXd expected = (logits - logits.maxCoeff()).exp();

@@ -1,4 +1,4 @@
-// The baselines do what they say: thresholds as given, tuned ones best where they were tuned,
+// Baselines against their definitions: thresholds as given, tuned ones best where they were tuned,
 // foresight above all, and the fast sweep equal to the plain one.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The figures of the common yardstick, computed independently of this program [SPEC 8]: real
-// settled quarter-hours of January to May 2023 with rebuilt minutes, test days.
+// Benchmark figures, computed independently of this program [SPEC 8]: real settled quarter-hours of
+// January to May 2023 with reconstructed minutes, test days.
 #include <gtest/gtest.h>
 
 #include "tests/support/market_series.h"
@@ -43,7 +43,7 @@ TEST(BenchmarkFigures, RuleTabularAndForesightOnTestDays) {
     EXPECT_NEAR(by_rule.profit_eur_per_day_per_mwh(), s.rule, 1.0) << label;
     EXPECT_NEAR(by_tabular.profit_eur_per_day_per_mwh(), s.tabular, 6.0) << label;
     EXPECT_NEAR(by_foresight.profit_eur_per_day_per_mwh(), s.foresight, 1.0) << label;
-    if (s.carry_soc) continue;  // one plan for the whole series: no bound day by day
+    if (s.carry_soc) continue;  // one plan for the whole series: no bound for single days
     for (std::size_t d = 0; d < days.size(); ++d) {
       EXPECT_GE(by_foresight.days[d].profit_eur, by_rule.days[d].profit_eur - 0.01) << label;
       EXPECT_GE(by_foresight.days[d].profit_eur, by_tabular.days[d].profit_eur - 0.01) << label;

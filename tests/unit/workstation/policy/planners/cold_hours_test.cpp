@@ -1,5 +1,5 @@
-// Cold hours: who plans and who is paid know the same. A battery that is cold all day is one of
-// less power, to the last bit of every plan; one that is cold at night is better planned for.
+// Cold hours in plan and evaluation: a battery that is cold all day is one of less power, to the
+// last bit of every plan; planning for one that is cold at night gains.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(ColdHours, NoMoreFlowsAndWhoeverKnowsThemEarnsMore) {
     }
     EXPECT_EQ(night_w, 0.6 * cold.power_w_max) << name;
     EXPECT_EQ(day_w, cold.power_w_max) << name;
-    if (std::string(name) != "mpc") {  // a naive forecast need not be better for what it knows
+    if (std::string(name) != "mpc") {  // a naive forecast need not gain from this knowledge
       EXPECT_GT(knows, trade(name, {}, cold).profit_eur_per_day_per_mwh()) << name;
     }
     EXPECT_LT(knows, trade(name, {}, {}).profit_eur_per_day_per_mwh()) << name;

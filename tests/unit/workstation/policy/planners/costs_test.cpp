@@ -1,5 +1,5 @@
-// Costs that differ between taking and giving count wherever money does, and a planner that knows
-// them does not earn less for it.
+// Costs that differ between taking and giving count in all accounting, and a planner with these
+// costs does not earn less.
 #include <gtest/gtest.h>
 
 #include "tests/support/small_market.h"
@@ -20,7 +20,7 @@ BatteryParameters costly_battery() {
   return battery;
 }
 
-/// Fitted with `planned`, run with what is really charged.
+/// Fitted with `planned`, run with the real costs.
 Evaluation evaluate_planned(const std::string& name, const BatteryParameters& planned) {
   const auto policy = make_baseline(name, small_steps(), planned);
   return evaluate(small_steps(), small_steps().days_of(Split::kTest), *policy,
@@ -75,7 +75,7 @@ TEST(Costs, TheReferenceWearTakesThePlaceOfTheConfiguredOne) {
                 at_10.profit_eur_per_day_per_mwh(), 1e-9)
         << configured;
   }
-  // A cycle is twice the capacity through the battery.
+  // A full cycle is twice the capacity through the battery.
   EXPECT_NEAR(at_10.days[0].throughput_mwh, at_10.days[0].cycles * 2 * 8, 1e-9);
 }
 

@@ -1,6 +1,5 @@
-// The plan in integers is the program's: its break-even prices divide charging from discharging
-// where the program's own values do, and a policy's book of plans gives them whatever is asked
-// first.
+// Integer plan against the program: its break-even prices separate charging from discharging where
+// the program's own values do, and a policy's plan cache returns them in any order of requests.
 #include "workstation/policy/planners/outlook_integers.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +74,7 @@ TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
   }
 }
 
-// Steps of one time need not be one step: with another price it is another.
+// Steps of the same time need not be the same step: with another price it is another.
 TEST_F(OutlookIntegers, WhatTheProgramKeepsIsOfTheVeryStepThatIsAsked) {
   program_.prepare(steps_, {steps_.days.begin() + 28, steps_.days.begin() + 31}, 2);
   OutlookProgram::Plan plan, kept_plan, other_plan;

@@ -1,5 +1,5 @@
-// The program with an outlook: it plans on what was published and on nothing else, knows its own
-// sums, and earns where day-ahead prices tell something.
+// Program by outlook: it plans on published prices only, its sums agree, and it earns where
+// day-ahead prices have information.
 #include "workstation/policy/planners/outlook_program.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 namespace bess {
 namespace {
 
-/// What the auction of the last hours knows best: day-ahead prices that ARE what will be settled,
-/// by hour.
+/// Upper bound of the auction's information: day-ahead prices that equal the settled prices, by
+/// hour.
 DayAheadSeries perfect_day_ahead(const OutlookMarket& market) {
   DayAheadSeries series = market.day_ahead;
   for (std::size_t q = 0; q < series.size(); q += 4) {
@@ -28,7 +28,7 @@ DayAheadSeries perfect_day_ahead(const OutlookMarket& market) {
   return series;
 }
 
-/// The first moment from which other day-ahead prices of `delivery` and later change what is done.
+/// The first moment from which other day-ahead prices of `delivery` and later change an action.
 class OutlookLookAhead : public testing::Test {
  protected:
   OutlookLookAhead()
@@ -37,7 +37,7 @@ class OutlookLookAhead : public testing::Test {
         days_(steps_.days.begin() + 26, steps_.days.begin() + 30),
         policy_(steps_, {steps_.days.begin(), steps_.days.begin() + 24}, {}) {}
 
-  /// Prices of the local day `delivery` and later, turned over.
+  /// Prices of the local day `delivery` and later, reversed.
   [[nodiscard]] DayAheadSeries turned_from(const LocalDate& delivery) const {
     DayAheadSeries turned = market_.day_ahead;
     for (std::size_t q = 0; q < turned.size(); ++q) {
@@ -65,14 +65,14 @@ TEST_F(OutlookLookAhead, SeesTomorrowFromOneOClockOnAndNotBefore) {
   const std::int64_t one_o_clock = utc_of("2025-03-29T12:00:00Z");
   EXPECT_FALSE(changes_before(steps_, turned, one_o_clock));
   EXPECT_TRUE(changes_before(steps_, turned, one_o_clock + 8 * 3600));
-  // To the minute: the last decision before and the first one after see what they must.
+  // To the minute: the last decision before and the first one after use the right prices.
   const auto at = [&](const MarketSteps& market, const char* utc) {
     const auto step = std::ranges::find(market.steps, utc_of(utc), &MarketStep::utc_s);
     return step->day_ahead_eur_per_mwh(utc_of("2025-03-30T10:00:00Z"));
   };
   EXPECT_TRUE(std::isnan(at(steps_, "2025-03-29T11:58:00Z")));
   EXPECT_FALSE(std::isnan(at(steps_, "2025-03-29T12:02:00Z")));
-  // One minute to and one past one o'clock, as keys: the decision at 13:00 knows, or does not.
+  // 12:59 and 13:01, as keys: the decision at 13:00 knows, or does not.
   const MarketSteps early = market_.steps(12 * 60 + 59);
   const MarketSteps late = market_.steps(13 * 60 + 1);
   EXPECT_FALSE(std::isnan(at(early, "2025-03-29T12:00:00Z")));
@@ -80,7 +80,7 @@ TEST_F(OutlookLookAhead, SeesTomorrowFromOneOClockOnAndNotBefore) {
   EXPECT_FALSE(std::isnan(at(late, "2025-03-29T12:02:00Z")));
 }
 
-// Later prices and levels of the same day are not there yet: turning over what comes changes
+// Later prices and levels of the same day are not known yet: reversing future prices changes
 // nothing before.
 TEST_F(OutlookLookAhead, KnowsNothingOfLaterPricesAndLevels) {
   MinuteSeries moved = market_.minutes;
@@ -99,7 +99,7 @@ TEST_F(OutlookLookAhead, DecidesTheSameWhereverItIsAskedFirst) {
   std::vector<StepRecord> once, again;
   evaluate(steps_, days_, policy_, kCarriedOver, &once);
   const OutlookPolicy fresh(steps_, {steps_.days.begin(), steps_.days.begin() + 24}, {});
-  for (std::size_t i = once.size(); i-- > 0;) {  // backwards, each with a plan of its own
+  for (std::size_t i = once.size(); i-- > 0;) {  // backwards, each with a separate plan
     if (i % 371 != 0) continue;
     const auto step = std::ranges::find(steps_.steps, once[i].utc_s, &MarketStep::utc_s);
     ASSERT_EQ(fresh.decide(*step, 0, once[i].soc_frac), once[i].action) << i;
@@ -139,7 +139,7 @@ double outlook_gain(const OutlookMarket& market, const DayAheadSeries& day_ahead
       .mean;
 }
 
-// What is published tells the day: prices that are right by the hour are worth a lot, prices of
+// Published prices predict the day: prices that are right by the hour are worth a lot, prices of
 // another market next to nothing, in either direction.
 TEST(OutlookProgram, EarnsAsMuchAsDayAheadPricesTell) {
   const OutlookMarket market = outlook_market({2025, 2, 1}, 75);
@@ -149,7 +149,7 @@ TEST(OutlookProgram, EarnsAsMuchAsDayAheadPricesTell) {
   EXPECT_LT(std::fabs(untold), 25);
 }
 
-// The least squares of usual(), on prices that are made of a day-ahead price and a constant.
+// The least squares of usual(), on prices that are a day-ahead price plus a constant.
 TEST(OutlookProgram, FindsWhatPricesAreMadeOf) {
   OutlookMarket market = outlook_market({2025, 2, 1}, 40);
   const DayAheadSeries& day_ahead = market.day_ahead;

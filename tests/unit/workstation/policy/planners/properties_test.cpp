@@ -1,6 +1,6 @@
-// What must hold for every battery and every policy, whatever the prices: energy is conserved, the
-// money is the energy times the price, nobody acts on what was not published, and a price that
-// never moves is no reason to move energy to and fro.
+// Invariants of every battery and every policy at any prices: energy is conserved, the money is the
+// energy times the price, no action uses unpublished prices, and a constant price is no reason to
+// cycle energy.
 #include <gtest/gtest.h>
 
 #include "tests/support/carried_over.h"
@@ -77,7 +77,7 @@ TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
     for (const char* name : {"rbc:60:140", "tabular", "mpc", "foresight"}) {
       if (n >= 3 && std::string(name) == "tabular") continue;  // fits for a tenth of a second
       std::vector<StepRecord> records;
-      // Days next to each other, so that each step follows from the one before it.
+      // Consecutive days, so that each step follows from the previous one.
       const std::vector<MarketDay> days(small_steps().days.begin() + 20,
                                         small_steps().days.begin() + 25);
       const auto policy = make_baseline(name, small_steps(), battery);
@@ -89,7 +89,7 @@ TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
 }
 
 /// Whether moving the indicative prices from some minute on, and every settled price, changes a
-/// decision that was made before the moved prices could be seen.
+/// decision made before the moved prices were visible.
 bool looks_ahead(Policy& policy, const MinuteSeries& series, const MarketOptions& options) {
   const std::size_t moved_from = series.size() / 2 + 7;
   MinuteSeries moved = series;
@@ -114,7 +114,7 @@ TEST(Properties, NoPolicyLooksAhead) {
   }
 }
 
-/// Reads what will be paid: exactly what no controller can know.
+/// Reads the price to be paid, which no controller can know.
 class PeekingPolicy final : public Policy {
  public:
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double) const override {
@@ -150,8 +150,8 @@ TEST(Properties, AConstantPositivePriceMovesEnergyOnceAtMost) {
   }
 }
 
-// At -50 EUR/MWh the 10 % that a cycle loses is paid for: an optimum without wear burns it, and
-// rightly so (evaluate_test). Wear above it ends the churning.
+// At -50 EUR/MWh the 10 % loss of a full cycle is paid for: an optimum without wear burns it,
+// correctly (evaluate_test). Wear above it ends the cycling.
 TEST(Properties, AConstantNegativePriceChurnsOnlyForTheLossesItIsPaidFor) {
   for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc", "foresight"}) {
     EXPECT_LE(energy_exchanged_mwh(name, -50, 5), 4.3) << name;

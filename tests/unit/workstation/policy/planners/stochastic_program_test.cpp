@@ -1,4 +1,4 @@
-// The stochastic program reaches the figures of the spikes [SPEC 8] and knows what it must know.
+// Stochastic program: it reaches the figures of the prototypes [SPEC 8] and uses its information.
 #include "workstation/policy/planners/stochastic_program.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ double profit(const MarketSteps& market, Split split, bool carry_soc, double lev
 
 TEST(StochasticProgram, EarnsOnTheYardstickWhatTheSpikesEarn) {
   const MarketSteps market = make_market_steps(read_yardstick(), {});
-  // By hour alone, as the spike is; by level at least as much, for values are found for each level.
+  // By hour alone, as the prototype; by level at least as much, because values are found for each
+  // level.
   EXPECT_NEAR(profit(market, Split::kValidation, false, 0), 464.6, 6);
   EXPECT_NEAR(profit(market, Split::kValidation, true, 0), 450.9, 6);
   EXPECT_GT(profit(market, Split::kValidation, false, 0.6), 491.7);

@@ -1,6 +1,5 @@
-// What using a battery does to it in the environment: its capacity fades by what goes through it,
-// a direction that has begun is kept for its minimum run, and the daily cycle limit holds against
-// every policy.
+// Use of a battery in the environment: its capacity fades with throughput, a direction is kept for
+// its minimum run, and the daily cycle limit holds for every policy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +57,7 @@ TEST(MinimumRun, ADirectionIsKeptAndNothingElseIs) {
   EXPECT_EQ(trade(slow).profit_eur_per_day_per_mwh(), trade({}).profit_eur_per_day_per_mwh());
 }
 
-/// Plans under a limit of cycles are dear to make: two days of them.
+/// Plans under a limit of full cycles are expensive: two days of them.
 std::vector<MarketDay> limited_days(const MarketSteps& market) {
   auto days = market.days_of(Split::kTest);
   days.resize(2);
@@ -76,7 +75,7 @@ TEST(CycleLimit, NoOrderAfterItIsReachedUntilMidnight) {
     for (const DayResult& day : e.days) {
       EXPECT_LT(day.cycles, 1.5 + step_cycles) << name << ' ' << day.date;
     }
-    EXPECT_GT(e.cycles_per_day(), 1.2) << name;  // a new day starts afresh
+    EXPECT_GT(e.cycles_per_day(), 1.2) << name;  // a new day starts at zero
   }
 }
 
@@ -94,7 +93,7 @@ TEST(CycleLimitPlans, SaveTheCyclesForTheBestHours) {
   }
   const double rolling = profit(*make_baseline("mpc", market, battery));
   EXPECT_LT(rolling, foresight);
-  // Fitted without knowing of the limit they run into it before the evening.
+  // Fitted without the limit they reach it before the evening.
   BatteryParameters unlimited = battery;
   unlimited.cycles_per_day_max = 0;
   EXPECT_GT(rolling, profit(*make_baseline("mpc", market, unlimited)));

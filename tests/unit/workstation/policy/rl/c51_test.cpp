@@ -9,7 +9,7 @@ namespace {
 
 // ---- Projection -----------------------------------------------------------------------------
 
-/// Projects, and sees that nothing lands in the padding.
+/// Projects, and checks that nothing is written to the padding.
 std::vector<float> project(const Support& support, const std::vector<float>& p, float reward,
                            float discount) {
   CategoricalProjection projection(support, 2);

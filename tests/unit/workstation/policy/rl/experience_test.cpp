@@ -14,7 +14,7 @@ constexpr double kRewardTolerance = 1e-6;
 
 // ---- One transition by hand -----------------------------------------------------------------
 
-/// One training day of one step after which nothing follows, or of two.
+/// One training day of one step without a successor, or of two.
 MarketSteps one_day(Horizon horizon) {
   return market_by_hand(
       {{Split::kTrain, horizon == Horizon::kDay ? std::vector<int>{0} : std::vector<int>{0, 1}}});
@@ -92,18 +92,18 @@ TEST(Transitions, RewardsAreTheMoneyOfTheAccounting) {
     ASSERT_TRUE(soc >= battery.soc_min_frac && soc <= battery.soc_max_frac);
     const double cost_eur =
         exchange_cost_eur(battery, moved.power_w / 1e6 / 30, step.paid_eur_per_mwh);
-    ASSERT_NEAR(t.reward, -cost_eur * 30 / 1e4, 1e-7);  // EUR a step -> 1e4 EUR/h
+    ASSERT_NEAR(t.reward, -cost_eur * 30 / 1e4, 1e-7);  // EUR per step -> 1e4 EUR/h
   }
 }
 
-// ---- Which transitions there are ------------------------------------------------------------
+// ---- Transitions ------------------------------------------------------------
 
-/// Pairs of the steps from each first to its last, and a terminal one behind where the day ends.
+/// Pairs of the steps from each first to its last, and a terminal one where the day ends.
 std::vector<std::pair<int, int>> blocks(const std::vector<std::pair<int, int>>& of, bool terminal) {
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [first, last] : of) {
     for (int step = first; step < last; ++step) pairs.emplace_back(step, step + 1);
-    if (terminal && last != 17) pairs.emplace_back(last, -1);  // behind 17 is a hole in the day
+    if (terminal && last != 17) pairs.emplace_back(last, -1);  // a gap in the day follows 17
   }
   return pairs;
 }
@@ -180,7 +180,7 @@ class Counterfactual : public testing::Test {
 };
 
 TEST_F(Counterfactual, ThreeActionsShareStepAndSoc) {
-  const auto transitions = drawn(3001, {});  // the last group is cut short
+  const auto transitions = drawn(3001, {});  // the last group is truncated
   ASSERT_EQ(transitions.size(), 3001u);
   std::set<int> steps;
   double low = 1;

@@ -52,7 +52,7 @@ TEST_P(LearnerOf, ThreadsChangeOnlyTheRounding) {
     EXPECT_NEAR(many.compute_gradient(batch).loss, loss, 1e-6 * loss) << threads;
     EXPECT_LT(relative_l2(many.gradient(), to_doubles(one.gradient())), 2e-6) << threads;
   }
-  // Adam divides by small moments, so rounding grows; still far below what was learnt.
+  // Adam divides by small moments, so rounding grows; still far below the learnt values.
   const Parameters start = Learner(GetParam(), kSupport, kGamma, 9, 1).online();
   const Parameters single = after_steps(1, 9, 20);
   const Parameters twin = after_steps(2, 9, 20);

@@ -1,4 +1,4 @@
-// Two small markets: one by hand, with a price of its own for every step, and one simulated.
+// Two small markets: one by hand, with a distinct price for every step, and one simulated.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -47,17 +47,17 @@ inline MarketSteps market_by_hand(const std::vector<DayByHand>& days) {
   return market;
 }
 
-/// Training days that follow each other, end at a validation day, a missing day and a hole.
+/// Consecutive training days that end at a validation day, a missing day and a gap.
 inline MarketSteps uneven_market() {
   return market_by_hand({{Split::kTrain, {0, 1, 2, 3}},         // steps 0..3, next day follows
                          {Split::kTrain, {4, 5, 6, 7}},         // steps 4..7, then validation
                          {Split::kValidation, {8, 9, 10, 11}},  // steps 8..11
                          {Split::kTrain, {12, 13, 14, 15}},     // steps 12..15, then nothing
-                         {Split::kTrain, {20, 21, 23, 24}},     // steps 16..19, a hole in it
+                         {Split::kTrain, {20, 21, 23, 24}},     // steps 16..19, with a gap
                          {Split::kTest, {25, 26, 27, 28}}});    // steps 20..23
 }
 
-/// Straight line over the lattice: every step's price is told apart.
+/// Straight line over the lattice: the price of every step is distinct.
 inline PriceMap straight_price_map() {
   return PriceMap::fit({double{kLatticePriceMinEurPerMwh}, double{kLatticePriceMaxEurPerMwh}});
 }
@@ -68,8 +68,7 @@ inline int step_of_input(float price_input) {
   return static_cast<int>(std::lround(price / 10));
 }
 
-/// On a way through the steps; full and empty are where two actions are worth the same to the last
-/// bit.
+/// On a path through the steps; at full and empty two actions have identical values.
 inline void expect_same_decisions(const Policy& a, const Policy& b,
                                   std::span<const MarketStep> steps) {
   const BatteryParameters battery;
@@ -83,7 +82,7 @@ inline void expect_same_decisions(const Policy& a, const Policy& b,
   }
 }
 
-/// The bytes of a teacher's file under a checksum that is right.
+/// The bytes of a teacher's file under a valid checksum.
 inline std::string resealed(std::string bytes) {
   bytes.resize(bytes.size() - sizeof(std::uint32_t));
   Crc32 crc;

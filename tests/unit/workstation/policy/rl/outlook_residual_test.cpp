@@ -1,5 +1,5 @@
-// A network on the shoulders of the program that plans on day-ahead prices: it begins as that
-// program, is rewarded with what it has wrong, and knows nothing earlier than the program does.
+// Residual on the program that plans on day-ahead prices: it starts as that program, is rewarded
+// with the program's error, and has no earlier information.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -28,7 +28,7 @@ TrainOptions small_options() {
   return options;
 }
 
-/// Waits for as many looks and then says stop.
+/// Requests a stop after this number of checks.
 std::function<bool()> after(long looks) {
   return [looks]() mutable { return looks-- <= 0; };
 }
@@ -45,7 +45,7 @@ const TrainResult& learnt() {
   static const TrainResult result = train_teacher(market(), {}, small_options(), after(1000));
   return result;
 }
-/// As before the first step, but that the last layer's weights are so much of drawn ones.
+/// As before the first step, except that the last layer's weights are a multiple of drawn ones.
 Teacher beginner(float share = 0) {
   Teacher teacher = learnt().teacher;
   const Parameters drawn = initial_parameters(teacher.shape, 7);
@@ -58,7 +58,7 @@ Teacher beginner(float share = 0) {
 /// It changes some of the program's decisions.
 Teacher opinionated() { return beginner(3); }
 
-/// What students are taught of two training days.
+/// Training states of students from two training days.
 Matrix taught(const Teacher& teacher) {
   MarketSteps two = market();
   two.days.resize(2);
@@ -128,7 +128,7 @@ TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepBesideWhatEveryActionHasO
     new_plans += renews;
     if (i % 23 != 0 && !renews) continue;
     OutlookProgram::Plan next_plan = renews ? program.plan_of(step[i + 1]) : plan;
-    std::optional<double> centre;  // what is taken off
+    std::optional<double> centre;  // the baseline that is subtracted
     for (const double soc : {0.1, 0.4321, 1.0}) {
       const auto here = program.action_values(step[i], soc, plan);
       for (int a = 0; a < kActionCount; ++a) {
@@ -184,7 +184,7 @@ TEST(OutlookResidual, ResumedItGivesTheSameFileToTheByte) {
   const TrainOptions options = small_options();
   const CheckpointOptions first{folder.file("a.checkpoint"), false, "this run"};
   const TrainResult part = train_teacher(market(), {}, options, after(40), first);
-  ASSERT_EQ(part.curve.size(), 1U);  // in the midst of the steps
+  ASSERT_EQ(part.curve.size(), 1U);  // between the steps
   const TrainResult resumed =
       train_teacher(market(), {}, options, after(1000), {first.path, true, "this run"});
   save_teacher(folder.file("whole.bin"), learnt().teacher);
@@ -193,7 +193,7 @@ TEST(OutlookResidual, ResumedItGivesTheSameFileToTheByte) {
   EXPECT_EQ(resumed.curve.back().loss, learnt().curve.back().loss);
 }
 
-// Days behind the last one that is learnt from or judged by: turned over, they change no byte.
+// Days after the last one used for training or validation: reversing them changes no byte.
 TEST(OutlookResidual, LearnsNothingFromLaterDays) {
   MinuteSeries moved = prices().minutes;
   DayAheadSeries turned = prices().day_ahead;
@@ -225,7 +225,7 @@ TEST(OutlookResidual, ItsFileIsReadBackAndOneOfAnOlderVersionIsNone) {
   save_teacher(path, read);
   EXPECT_EQ(read_file(path), bytes);
   EXPECT_EQ(bytes[8], 4);
-  Teacher alone = teacher;  // of the program alone an older bess-train reads it, too
+  Teacher alone = teacher;  // an older bess-train also reads one of the program alone
   alone.method = Method::kSdp;
   alone.shape = {};
   alone.parameters = {};

@@ -19,7 +19,7 @@ TEST(PriceMap, OfAnyPricesIncreasesAndIsClampedOutside) {
   const struct {
     const char* name;
     std::vector<double> prices;
-    bool inside;  ///< all prices lie within the lattice, so the map reaches 0 and 1
+    bool inside;  ///< all prices are within the lattice, so the map reaches 0 and 1
   } cases[] = {{"one price", {55.5}, true},
                {"one price many times", {7, 7, 7}, true},
                {"two prices", {-20, 300}, true},
@@ -65,7 +65,7 @@ TEST(PriceMap, ResolutionLiesWherePricesAre) {
   EXPECT_NEAR(map(100), 0.5 * 0.3 + 0.5 * 0.5, 0.01);  // half the line, half the median
 }
 
-/// What a header tells of the prices that its student learnt on.
+/// Header text on the training prices of its student.
 TEST(PriceMap, KeepsTheQuartilesOfItsPrices) {
   std::vector<double> prices = normal_prices(100, 80, 20'000);
   for (std::size_t i = 0; i < prices.size(); i += 9) prices[i] *= 12;  // far beyond the lattice

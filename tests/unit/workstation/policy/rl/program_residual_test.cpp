@@ -1,5 +1,4 @@
-// A network on the stochastic program's shoulders: it begins as the program, and learns what the
-// program has wrong.
+// Residual on the stochastic program: it starts as the program, and learns the program's error.
 #include "workstation/policy/rl/program_residual.h"
 
 #include <memory>
@@ -30,7 +29,7 @@ Teacher program_teacher() {
   return program_teacher(market(), map, market_program());
 }
 
-/// As it is before the first step.
+/// As before the first step.
 Teacher beginner(Method method, const Support& support) {
   Teacher teacher = program_teacher();
   teacher.method = method;
@@ -87,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Networks, BeforeTheFirstStep,
                                          Beginning{Method::kC51, {-1.7F, 1.7F, 3}},
                                          Beginning{Method::kDqn, {-1, 1, 51}}));
 
-// ---- What it is rewarded with ----------------------------------------------------------------
+// ---- Rewards ----------------------------------------------------------------
 
 TEST(ProgramResidual, RewardIsTheProgramsErrorInOneStep) {
   const auto& program = market_program();
@@ -96,7 +95,7 @@ TEST(ProgramResidual, RewardIsTheProgramsErrorInOneStep) {
   const TrainingMarket plain(market(), map, {}, Horizon::kContinuing, {});
   const double unit = learned_per_eur({});
   const MarketStep* step = market().of(market().days_of(Split::kTrain)[0]).data();
-  std::vector<double> centres;  // what is taken off, the same for all of a day
+  std::vector<double> centres;  // the subtracted baseline, equal for a whole day
   for (std::size_t i = 0; i < 700; i += 7) {
     for (const double soc : {0.1, 0.1003, 0.4321, 0.998, 1.0}) {
       const auto here = program->action_values(StochasticProgram::situation_of(step[i]), soc);
@@ -141,8 +140,8 @@ TEST(ProgramResidual, RewardsAreCentredWhereTheProgramTradesAndSoIsMidnight) {
 
 // ---- Learning --------------------------------------------------------------------------------
 
-/// Each quarter-hour shows 20 or 80 EUR/MWh, by chance; what is paid is that price, or what is left
-/// of it to 100.
+/// Each quarter-hour shows 20 or 80 EUR/MWh, by chance; the paid price is that one, or its
+/// complement to 100.
 MarketSteps two_prices(bool inverted) {
   MarketSteps steps = market();
   Random random(72);
@@ -186,7 +185,7 @@ TEST(ProgramResidual, LearnsWhatTheProgramHasWrong) {
     (void)learner.step(batch, 1e-3, 1);
   }
   teacher.parameters = learner.online();
-  // It pays 80 where the program expects 20: 4 MW lose 240 EUR/h by charging, and earn as much by
+  // It pays 80 where the program expects 20: 4 MW lose 240 EUR/h by charging, and earn the same by
   // discharging.
   Matrix x(kNetworkInputs, 1);
   write_input(network_context(*cheap, map, context), 0.5, x.data());

@@ -25,12 +25,12 @@ class TeacherFile : public testing::Test {
     save_teacher(path, teacher_of(method));
     return read_file(path);
   }
-  /// Loads `bytes` from the file and returns the UserError; empty when it loaded.
+  /// Loads `bytes` from the file and returns the UserError; empty if it loaded.
   std::string said_of(std::string_view bytes) const {
     write_file(path, bytes);
     return refusal_of([&] { (void)load_teacher(path); });
   }
-  /// `bytes` of a file with another value at a place, under a checksum that is right.
+  /// `bytes` of a file with another value at a place, under a valid checksum.
   static std::string changed(std::string bytes, std::size_t at, std::int32_t value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
     return resealed(bytes);
@@ -122,7 +122,7 @@ TEST_F(TeacherFile, CutFlippedAndOtherBytesAreRefused) {
   }
 }
 
-/// A file of version 2 has nothing between what it was made of and its parameters.
+/// A file of version 2 has nothing between its origin and its parameters.
 TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
   Teacher teacher = teacher_of(Method::kDqn);
   std::string bytes = saved(Method::kDqn);
@@ -147,7 +147,7 @@ TEST_F(TeacherFile, OtherVersionNamesBoth) {
 constexpr std::size_t kMethodAt = 12, kSupportMinAt = 16, kSupportMaxAt = 20, kSupportCountAt = 24,
                       kShapeAt = 28, kTableAt = 44;
 
-/// The checksum is right, the contents are not: another program's or a later one's file.
+/// The checksum is valid, the contents are not: a file of another program or a later version.
 TEST_F(TeacherFile, SoundChecksumOverImpossibleContentsIsRefused) {
   const struct {
     const char* what;
@@ -175,7 +175,7 @@ TEST_F(TeacherFile, SoundChecksumOverImpossibleContentsIsRefused) {
   }
 }
 
-/// Until November 2026 a teacher could have inputs beside the student's: a bit each.
+/// Until November 2026 a teacher could have inputs in addition to the student's: a bit each.
 TEST_F(TeacherFile, WithInputsOfItsOwnIsRefusedByThatName) {
   const std::string sound = saved(Method::kC51);
   EXPECT_EQ(said_of(changed(sound, kMethodAt, 0)), "") << "none: as before";

@@ -55,8 +55,8 @@ TrainResult train(const TrainOptions& options) {
   return train_teacher(small_market(), {}, options, interrupted);
 }
 
-/// Answers the question whether a run is interrupted: after so many looks, each before a step or
-/// before a day of a validation.
+/// Interruption query of a run: true after this number of checks, each before a step or before a
+/// day of a validation.
 auto interrupted_after(long looks) {
   return [asked = 0L, looks]() mutable { return asked++ >= looks; };
 }
@@ -218,7 +218,7 @@ TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
   expect_refused(sound + "x", "appended");
 }
 
-/// Days 21 to 25 of five months, which bring so much each, of a battery of 1 MWh.
+/// Days 21 to 25 of five months with these earnings each, of a battery of 1 MWh.
 Evaluation earned_on_validation_days(const std::vector<double>& eur) {
   Evaluation evaluation;
   evaluation.capacity_mwh = 1;
@@ -236,7 +236,7 @@ double gain_at_least(const std::vector<double>& gains, long looks) {
 
 TEST(KeptStep, TheLowerEndIsTheMeanLessStudentsTTimesTheWiderError) {
   EXPECT_NEAR(gain_at_least({1, 3}, 1), 2 - 12.706, 1e-3);      // one month: s.e. 1, t(1)
-  EXPECT_NEAR(gain_at_least({1, 3}, 2), 2 - 25.452, 1e-3);      // half of the 5 % for each look
+  EXPECT_NEAR(gain_at_least({1, 3}, 2), 2 - 25.452, 1e-3);      // half of the 5 % for each check
   EXPECT_NEAR(gain_at_least({2, 2, 2, 2, 2, 2}, 6), 2, 1e-12);  // every day the same
   const double mixed = gain_at_least({1, 3, 1, 3, 2, 3, 1, 3, 1, 2}, 6);
   const double by_month =
@@ -269,8 +269,8 @@ TEST(KeptStep, OfThoseThatAreShownTheOneThatEarnedMost) {
   for (const auto& c : cases) EXPECT_EQ(kept_point(c.curve).step, c.kept) << c.name;
 }
 
-/// A training that gains nothing: noise of the days, and of the month, drawn anew and added up from
-/// look to look as weights that wander do.
+/// A training without gain: noise of the days, and of the month, redrawn and accumulated from check
+/// to check like a random walk of the weights.
 long kept_by_chance(Random& random) {
   constexpr long kLooks = 6;
   std::vector<CurvePoint> curve{{0, 0, 0, 0}};

@@ -1,5 +1,5 @@
-// A fold holds nothing later than the month it trades, and nothing of that month is fitted on; a
-// look-ahead that is planted is found.
+// Walk-forward folds: no data later than the traded month, and no fit on that month; a planted
+// look-ahead is found.
 #include "workstation/report/backtest/walk_forward.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ FoldPolicy fitted(const char* name) {
 TEST(Folds, HoldTheirWindowAndTheirMonthAndNothingElse) {
   const MarketSteps market = four_months();
   const Folds folds = make_folds(market, {kWindowDays});
-  ASSERT_EQ(folds.traded.size(), 3U);  // of January to April, January has nothing before it
+  ASSERT_EQ(folds.traded.size(), 3U);  // of January to April, January has no predecessor
   ASSERT_EQ(folds.skipped.size(), 1U);
   EXPECT_EQ(folds.skipped[0].month, "2023-01");
   for (const Fold& fold : folds.traded) {
@@ -68,7 +68,7 @@ TEST(Folds, OfSevenDaysAndALagLeaveTheDaysBetweenAlone) {
                                    fold.market.of(fitted_on.back()).front().utc_s;
     EXPECT_NEAR(static_cast<double>(between_s) / 86'400, 31, 0.05) << fold.month;
   }
-  for (std::size_t f = 1; f < weekly.traded.size(); ++f) {  // no day is left out or traded twice
+  for (std::size_t f = 1; f < weekly.traded.size(); ++f) {  // no day is omitted or traded twice
     EXPECT_GT(weekly.traded[f].market.days_of(Split::kTest).front().date(),
               weekly.traded[f - 1].market.days_of(Split::kTest).back().date());
   }
@@ -87,7 +87,7 @@ TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
   for (std::size_t d = 0; d < once.total.days.size(); ++d) {
     EXPECT_EQ(once.total.days[d].profit_eur, again.total.days[d].profit_eur);
   }
-  // The second month starts where the first one ended: traded alone from there it brings the same.
+  // The second month starts where the first one ended: traded alone from there it earns the same.
   const Fold& second = folds.traded[1];
   const auto policy = make_baseline("sdp", second.market, {});
   const Evaluation alone = evaluate(second.market, second.market.days_of(Split::kTest), *policy,
@@ -95,7 +95,7 @@ TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
   EXPECT_EQ(alone.profit_eur_per_day_per_mwh(), once.by_month[1].profit_eur_per_day_per_mwh());
 }
 
-/// What is decided in the first traded month before `until_utc_s`.
+/// Decisions in the first traded month before `until_utc_s`.
 std::vector<Action> actions_before(const MinuteSeries& series, const FoldPolicy& make,
                                    std::int64_t until_utc_s) {
   const Folds folds = make_folds(make_market_steps(series, {}), {kWindowDays});
@@ -104,8 +104,8 @@ std::vector<Action> actions_before(const MinuteSeries& series, const FoldPolicy&
                         {});
 }
 
-/// Moves all prices from an instant in the middle of a traded month on, for `instants` instants in
-/// a row, and tells whether any decision changes that was taken before they could be seen.
+/// Moves all prices from an instant in the middle of a traded month on, for `instants` consecutive
+/// instants, and returns whether any decision changes that was made before they were visible.
 bool looks_ahead(const FoldPolicy& make, int instants) {
   const MinuteSeries series = small_series(65);
   std::int64_t noon_utc_s = 0;

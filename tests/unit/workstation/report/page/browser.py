@@ -1,5 +1,5 @@
-"""A headless Chromium, driven through its debugging pipe (Chrome DevTools Protocol): nothing to
-install besides it.
+"""A headless Chromium, driven through its debugging pipe (Chrome DevTools Protocol), without
+further dependencies.
 
 Used by pages_test.py. One Browser is one process with a profile of its own; one Page is one tab of
 it.
@@ -17,11 +17,11 @@ import time
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync",
          "--disable-dev-shm-usage", "--hide-scrollbars", "--remote-debugging-pipe"]
-TIME_OUT_S = 120  # far above what a busy machine needs
+TIME_OUT_S = 120  # far more than a busy machine needs
 
 
 def chromium():
-    """Path of the program; None where it is not installed."""
+    """Path of the program; None if it is not installed."""
     return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
@@ -57,7 +57,7 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def call(self, method, params=None, session=None):
-        """The result of a command; events that come in between are kept in `events`."""
+        """The result of a command; events in between are stored in `events`."""
         self.last_id += 1
         message = {"id": self.last_id, "method": method, "params": params or {}}
         if session:
@@ -100,7 +100,7 @@ class Page:
         self.browser.call("Target.closeTarget", {"targetId": self.target})
 
     def bring_to_front(self):
-        """Only the tab in front draws."""
+        """Only the front tab draws."""
         self.call("Page.bringToFront")
 
     def call(self, method, params=None):

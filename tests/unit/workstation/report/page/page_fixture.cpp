@@ -1,5 +1,5 @@
-// page_fixture FOLDER: report.html of a run with rules in FOLDER and of one whose proof failed in
-// FOLDER/failed; and in FOLDER/expected.json what the C++ answers as the students of the first.
+// page_fixture FOLDER: writes report.html of a run with rules to FOLDER and of one whose proof
+// failed to FOLDER/failed; and to FOLDER/expected.json the C++ answers of the first run's students.
 #include <memory>
 #include <random>
 
@@ -42,9 +42,9 @@ Json answers_of(const StudentNet& net) {
   return answers;
 }
 
-/// Of every kind that a map shows in its own way: a box at some hours, one of the guard's, one
-/// beyond the lattice, a direction that two maps show, one that a single map does. Counted in a
-/// sample of the contexts, and told as if it were the whole lattice: quick.
+/// One rule of every kind with a distinct display on a map: a box at some hours, one of the guard,
+/// one beyond the lattice, a direction on two maps, one on a single map. Counted in a sample of the
+/// contexts, and shown as the whole lattice, for speed.
 StudentFile with_rules(const StudentNet& net, const std::string& first) {
   const RuleSet rules =
       parse_rules("[[rule]]\nname = \"a rule whose name is forty letters long\"\n" + first +

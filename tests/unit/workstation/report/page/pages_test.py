@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """pages_test.py FIXTURE_PROGRAM BESS_TRAIN: each page that bess-train writes, in a headless
-Chromium: it is drawn in whole, without complaint, and nothing hangs over at 1280 and 390 px; the
+Chromium: it is drawn completely, without errors, and nothing overflows at 1280 and 390 px; the
 student on it decides as the edge's; and the cells of the backtest's tables are those of its JSON.
 
-Exit code 77 where Chromium is not installed (tools/setup --test installs it).
+Exit code 77 if Chromium is not installed (tools/setup --test installs it).
 """
 import json
 import os
@@ -20,7 +20,7 @@ BESS_TRAIN = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else ""
 RUNS = ("", "failed")  # folders of a run with rules and of one that failed its proof
 DRAWN = ("[...document.querySelectorAll('canvas.map')]"
          ".every((canvas) => canvas.dataset.complete === 'true')")
-# Columns of the backtest's first table: the JSON's key, how a figure is shown.
+# Columns of the backtest's first table: the JSON's key, and the format of a figure.
 BACKTEST = (("profit_eur_per_day_per_mwh", ".1f"),
             ("profit_standard_error", ".1f"),
             ("profit_standard_error_by_month", ".1f"),
@@ -65,7 +65,7 @@ class Pages(unittest.TestCase):
         for width in (1280, 390):
             page.resize(width, 900)
             page.wait(drawn)
-            # Laid out anew some time after the resize; what hangs over never gets there.
+            # The layout follows the resize after some time; an overflow would persist.
             page.wait(f"document.documentElement.scrollWidth === {width}")
         self.assertEqual(page.complaints(), [], path)
         return page

@@ -1,4 +1,4 @@
-// How signals end the program: each handler in a process of its own.
+// Signals that end the program: each handler in a process of its own.
 #include "workstation/runs/chain/folder_lock.h"
 
 #include <gtest/gtest.h>

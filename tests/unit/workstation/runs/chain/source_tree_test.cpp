@@ -23,7 +23,7 @@ TEST(SourceTree, IsFoundFromAnyFolderInIt) {
 }
 
 TEST(SourceTree, AFolderThatOnlyLooksLikeItIsNone) {
-  const TemporaryFolder folder;  // what an export into the wrong folder would have left behind
+  const TemporaryFolder folder;  // remains of an export into the wrong folder
   write_file(folder.file("edge/generated/student_weights.h"), "");
   EXPECT_EQ(header_in_tree_around(folder.file(".")), std::nullopt);
   EXPECT_EQ(header_in_tree_around("/"), std::nullopt);

@@ -1,5 +1,5 @@
-// A fleet in the simulated market: without impact it is today's, to the bit; with impact prices
-// follow by hand, are seen when they are published, and nothing looks ahead.
+// Fleet in the simulated market: without impact it is bit-identical to the existing environment;
+// with impact prices follow by hand, are seen when they are published, and nothing looks ahead.
 #include "workstation/runs/impact/fleet_market.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ std::int64_t start_utc_s() {
   return local_midnight_utc_s(kFirstDay);
 }
 
-/// Today's environment: the simulated market's minute file, and the policy evaluated on it; by the
-/// longest delay with a battery that has losses, taper, response, standby and a limit on cycles.
+/// Existing environment: the simulated market's minute file, and the policy evaluated on it; at the
+/// longest delay with a battery with losses, taper, response, standby and a limit on full cycles.
 TEST(FleetMarket, OneBatteryWithoutImpactIsTodaysEnvironmentToTheBit) {
   for (const int delay_min : {1, 2, 5}) {
     const DrawnMarket drawn = draw_market(start_utc_s(), 12, 5);
@@ -96,7 +96,7 @@ TEST(FleetMarket, PricesByHandOfThreeFormulas) {
   EXPECT_NEAR(price(kMeanWithAlpha, 200, -180), (180 + 76) / 2.0, 0.006);
 }
 
-/// Discharges from `from_min` on, and remembers what it saw.
+/// Discharges from `from_min` on, and stores its observations.
 class Probe final : public Policy {
  public:
   explicit Probe(std::int64_t from_utc_s) : from_utc_s_(from_utc_s) {}
@@ -112,7 +112,7 @@ class Probe final : public Policy {
 
 DrawnMarket one_day() { return draw_market(start_utc_s(), 1, 3); }
 
-/// What it gives from 01:02 on is first in the row of 01:02, which a delay of 2 shows at 01:04.
+/// Its discharge from 01:02 on is first in the row of 01:02, which a delay of 2 shows at 01:04.
 TEST(FleetMarket, TheFleetSeesWhatItDidWhenThatIsPublished) {
   FleetOptions options{.battery = {}, .observation_delay_min = 2};
   const auto quiet = std::make_shared<Probe>(INT64_MAX);
@@ -132,7 +132,7 @@ TEST(FleetMarket, TheFleetSeesWhatItDidWhenThatIsPublished) {
   EXPECT_NEAR(run.imbalance_mw[4] - one_day().paths[4].imbalance_mw.back(), 300 * 13 / 15.0, 1e-9);
 }
 
-/// Half of the fleet decides in odd minutes; of the other half an order may change by a quarter.
+/// Half of the fleet decides in odd minutes; in the other half an order may change by a quarter.
 TEST(FleetMarket, ClocksAreLateAndStepsAreSmall) {
   FleetOptions options{.battery = {}, .fleet_mw = 100};
   const auto late = std::make_shared<Probe>(0);
@@ -142,12 +142,12 @@ TEST(FleetMarket, ClocksAreLateAndStepsAreSmall) {
   EXPECT_EQ(late->seen[0].observed_age_min, 1);
   EXPECT_EQ(later->seen[0].utc_s, start_utc_s() + 6 * 60) << "nothing was published before";
   EXPECT_EQ(later->seen[0].observed_age_min, 5);
-  // Given from minute 1 on, by steps: 1/4 1/4 1/2 1/2 3/4 3/4 and then all, of half the fleet.
+  // Discharged from minute 1 on, in steps: 1/4 1/4 1/2 1/2 3/4 3/4 and then all, of half the fleet.
   const double given_mw = 50 * (2 * (0.25 + 0.5 + 0.75) + 8) / 15;
   EXPECT_NEAR(run.imbalance_mw[0] - one_day().paths[0].imbalance_mw.back(), given_mw, 1e-9);
 }
 
-/// Later quarter-hours turned over change nothing that was decided before.
+/// Reversing later quarter-hours changes no earlier decision.
 TEST(FleetMarket, NothingLooksAhead) {
   DrawnMarket market = draw_market(start_utc_s(), 6, 9);
   FleetOptions options{.battery = {}, .fleet_mw = 200};
@@ -197,7 +197,7 @@ TEST(ImpactStudy, RowsAreMeansOverSeedsAndAShyFleetTradesLess) {
   plan.seeds = 1;
   const std::vector<ImpactRow> first = study_impact(plan, {.battery = {}});
   EXPECT_TRUE(std::isnan(first[0].standard_error));
-  // Of two seeds the error is half of what they differ by.
+  // Of two seeds the error is half of their difference.
   EXPECT_NEAR(std::fabs(first[0].mean.eur_per_mw_day - rows[0].mean.eur_per_mw_day),
               rows[0].standard_error, 1e-6);
 }

@@ -1,5 +1,5 @@
-// A log by hand: half an hour of charging at 50 EUR/MWh and half an hour of discharging at 250, at
-// 4 kW, 2 kWh each way; what it earned, what a rule would have, another student, and bad logs.
+// Log by hand: 30 min of charging at 50 EUR/MWh and 30 min of discharging at 250, at 4 kW, 2 kWh
+// each way; its earnings, those of a rule and another student, and bad logs.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
@@ -32,7 +32,7 @@ std::string row(int tick, int price_eur, int power_w, int ordered_w, const char*
                      power_w, student, ordered_w, reason);
 }
 
-/// Each reading is of the order of the tick before.
+/// Each reading belongs to the order of the previous tick.
 std::string hour_of_trade() {
   std::string log = kHead;
   for (int tick = 1; tick <= 15; ++tick) log += row(tick, 50, 4'000, tick < 15 ? 4'000 : -4'000);
@@ -76,7 +76,7 @@ TEST_F(Log, EarnsByQuarterHoursLessTheContract) {
   EXPECT_THAT(page, HasSubstr("on top of what is taken</th><td>45 EUR/MWh</td>"));
 }
 
-/// The first quarter-hour at 90 in place of 50: 1 kWh, 4 cents less.
+/// The first quarter-hour at 90 instead of 50: 1 kWh, 4 cents less.
 TEST_F(Log, IsPaidAtTheSettledPrice) {
   const std::vector<SettledQuarter> settled = read_settled(
       folder_.write("settled.csv",
@@ -93,7 +93,7 @@ TEST_F(Log, IsPaidAtTheSettledPrice) {
                UserError);
 }
 
-/// A rule decides on 50 in ticks 1 to 15 and on 250 in 16 to 31; the step of tick 15 lies in the
+/// A rule decides on 50 in ticks 1 to 15 and on 250 in 16 to 31; the step of tick 15 is in the
 /// third quarter-hour, and is paid at 250. A step of 4 kW is 1/7500 MWh.
 TEST_F(Log, ARuleIsPaidByTheSameQuarterHours) {
   const std::vector<NamedEvaluation> all =
@@ -105,7 +105,7 @@ TEST_F(Log, ARuleIsPaidByTheSameQuarterHours) {
   EXPECT_NEAR(battery.paid_eur, 0.4, 1e-9);
   EXPECT_EQ(battery.charge_eur, 0);
   EXPECT_NEAR(rule.paid_eur, (16 * 250 - 14 * 50 - 250) / 7'500.0, 1e-9);
-  // 15 steps in and 16 out from a half: what is missing is bought at the mean of 14 x 50, 17 x 250.
+  // 15 steps in and 16 out from a half: the difference is bought at the mean of 14 x 50, 17 x 250.
   const double mean = (14 * 50 + 17 * 250) / 31.0, way = std::sqrt(0.9);
   EXPECT_NEAR(rule.charge_eur, (15 * way - 16 / way) / way / 7'500 * mean, 1e-9);
   EXPECT_EQ(rest.paid_eur, 0);
@@ -124,7 +124,8 @@ TEST_F(Log, WithoutAUsablePriceAllRest) {
 }
 
 /// Below -500 EUR/MWh every proved student charges, above 1500 it discharges: three of the ten
-/// cheap cycles were idle. What they charge more is given back at the mean of -600 and 1600.
+/// low-price control cycles were idle. Their extra charge is discharged at the mean of -600 and
+/// 1600.
 TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   std::string text = kHead;
   for (int tick = 1; tick <= 10; ++tick)
@@ -140,7 +141,7 @@ TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   EXPECT_THAT(replay.text(), HasSubstr("idle      -> charge         3\n"));
   EXPECT_EQ(replay.others.front().utc_s, kStart + kSecondsPerStep);
   EXPECT_EQ(replay.others.front().now, Action::kCharge);
-  student.context.kind = ContextKind::kOutlook;  // of which this log has nothing
+  student.context.kind = ContextKind::kOutlook;  // which this log does not cover
   EXPECT_THROW(replay_log(log.log, {}, student), UserError);
   EXPECT_THROW(replay_log(read(hour_of_trade()).log, {20'200'101, 20'200'131}, student), UserError);
 }

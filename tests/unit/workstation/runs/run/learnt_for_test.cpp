@@ -1,5 +1,5 @@
-// A model tells what it was learnt for, wherever its file lies: evaluate warns of other costs,
-// another battery and another price regime.
+// Training conditions of a model, wherever its file is: evaluate warns of other costs, another
+// battery and another price regime.
 #include "workstation/runs/run/learnt_for.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ using testing::Not;
 constexpr std::int64_t kDay_s = 86'400;
 constexpr std::int64_t kPicasso_s = 1'732'575'600;
 
-/// What a command tells on the standard error.
+/// Standard error of a command.
 std::string warnings(const std::string& arguments) { return said_by_command(arguments).errors; }
 
 class LearntFor : public testing::Test {
@@ -37,7 +37,7 @@ class LearntFor : public testing::Test {
   void learn() const {
     warnings("train --prices " + prices_ + " --out " + teacher_ + " --steps 20 --config " + dear_);
   }
-  /// A file of days that begin elsewhere.
+  /// A file of days with another start.
   [[nodiscard]] std::string prices_from(std::int64_t start_utc_s, int days = 59) const {
     MinuteSeries series = small_series(days);
     series.start_utc_s = start_utc_s;
@@ -85,7 +85,7 @@ TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
   EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices), Names("2024 PICASSO"));
 }
 
-/// Two months of which the last six days are PICASSO's: what is fitted before them is told of.
+/// Two months of which the last six days belong to PICASSO: a fit before them is reported.
 TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
   const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const auto told = Names("2024 PICASSO");
@@ -102,7 +102,7 @@ TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
               AllOf(Names("2024-11 2024-10-02"), told, Not(HasSubstr("2025-01 "))));
 }
 
-/// A run's days 26 to 30 lie behind the boundary, and nothing else does.
+/// Only days 26 to 30 of a run are after the boundary.
 TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
   const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const std::string config = folder_.write("small.toml", "[train]\nmethod = \"sdp\"\n");
@@ -115,7 +115,7 @@ TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), Names("2024-11-01 2024-11-25 PICASSO"));
 }
 
-/// Each month's teacher is learnt from the days before it, says so, and is kept.
+/// Each month's teacher is trained on the days before it, reports so, and is stored.
 TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   const std::string out = folder_.file("backtest");
   const std::string command = "backtest --prices " + prices_ +

@@ -1,4 +1,5 @@
-// What a proposal says of two students: whose money, which decisions differ, and when it is worse.
+// Comparison of two students in a proposal: their money, their different decisions, and when one is
+// worse.
 #include "workstation/runs/run/refresh.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +42,7 @@ TEST(FoldDays, StandInARecordAndComeBack) {
 TEST(Proposal, CountsTheDecisionsThatDifferWhereTheRunsStudentIs) {
   const MarketSteps market = fold_of_a_month();
   const Proposal proposal = judge_refit(trader(50, 150), trader(50, 160), market, {});
-  std::size_t between = 0;  // where the one sells and the other rests, whatever the charge
+  std::size_t between = 0;  // where one sells and the other rests, at any charge
   for (const MarketDay& day : market.days_of(Split::kTest)) {
     for (const MarketStep& step : market.of(day)) {
       const auto price = lattice_price_of(price_centi_of(step.observed_eur_per_mwh));

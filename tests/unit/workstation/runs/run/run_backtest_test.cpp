@@ -1,5 +1,4 @@
-// The walk-forward figure that stands beside a run: of its own prices, seed and keys, or none and
-// why.
+// Walk-forward figure of a run: of its own prices, seed and keys, or none, with the reason.
 #include "workstation/runs/run/run_backtest.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What a run's folder refuses, and what it fills in, before anything is written.
+// Run folder: refusals, and defaults, before anything is written.
 #include "workstation/runs/run/run_plan.h"
 #include "workstation/correction/student/student_file.h"
 
@@ -29,10 +29,10 @@ class RunPlanning : public testing::Test {
     request_.common.threads = 3;
     request_.common.config_path = folder_.write("my.toml", "[battery]\npower_w = 5000000\n");
     const RunPlan plan = plan_run(request_);
-    save_run_record(plan.folder, plan.record);  // as `run` begins
+    save_run_record(plan.folder, plan.record);  // as `run` starts
   }
 
-  /// Of which nothing is given but the folder.
+  /// Only the folder is given.
   static RunRequest resumed(const fs::path& out) {
     RunRequest request;
     request.out = out;
@@ -72,7 +72,7 @@ TEST_F(RunPlanning, OtherPricesAreRefused) {
   EXPECT_THAT(refusal(other), Names("prices crc32 --out"));
 }
 
-/// Day-ahead prices make it one by outlook, and are part of what it is made of.
+/// Day-ahead prices make it one by outlook, and are part of its inputs.
 TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
   const auto priced = [&](const char* name, double eur_per_mwh) {
     const MinuteSeries series = small_series();
@@ -123,7 +123,7 @@ TEST_F(RunPlanning, WhatIsNotGivenIsTheFolders) {
   EXPECT_EQ(plan.series.settled, read_minute_file(prices_).settled);
 }
 
-/// It was undone without a word: what a run is made of stands in run.json.
+/// A silent change is an error: the inputs of a run are in run.json.
 TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
@@ -147,7 +147,7 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   EXPECT_EQ(read_file(file), edited) << "left as it is";
 }
 
-/// A model of before does not say what it was learnt for: then the run beside it does.
+/// An older model does not contain its training conditions: then the run next to it does.
 TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
@@ -169,7 +169,7 @@ TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
   EXPECT_TRUE(learnt_for_of("rbc-tuned").empty());
 }
 
-/// A key that came after the model was learnt is told when it is set, not for being new.
+/// A key newer than the model is reported when it is set, not for being new.
 TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
   RunConfig config;
   Entries here = circumstances_of(config_entries(config));
@@ -183,8 +183,8 @@ TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
   EXPECT_THAT(learnt_otherwise(before, here), Names("[market] day_ahead_published_min 840"));
 }
 
-/// A whole folder excludes all others in it; single files are made side by side, each by one
-/// program.
+/// A lock on a whole folder excludes all others in it; single files are made in parallel, each by
+/// one program.
 TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
   const fs::path folder = request_.out;
   using Of = FolderLock::Of;

@@ -1,4 +1,4 @@
-// Finished runs as figures: the table of runs, the days that it is made of, and the facts of a run.
+// Finished runs as figures: the table of runs, its days, and the facts of a run.
 #include "workstation/runs/run/run_report.h"
 
 #include <fmt/core.h>
@@ -24,7 +24,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Three days of which the first earned `profit_eur`; thirds do not end in binary.
+/// Three days, the first of which earned `profit_eur`; thirds do not end in binary.
 Evaluation evaluation_of(double profit_eur) {
   Evaluation evaluation;
   evaluation.capacity_mwh = BatteryParameters{}.capacity_wh / 1e6;
@@ -57,8 +57,7 @@ TEST(EvaluationDays, ReadBackToTheBit) {
                UserError);
 }
 
-/// The page's, the summary's, the JSON's and the table of runs': one figure, carried over, to the
-/// digit.
+/// The same figure, carried over, in page, summary, JSON and table of runs, to the digit.
 TEST(RunSummaries, TheSameFigureStandsEverywhere) {
   RunSummary run = run_of("1", 24.7);
   run.record.figures->last_learnt_day = "2023-01-25";
@@ -100,8 +99,8 @@ TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
               AllOf(Names("runs/seed-2 +2.0 seed"), HasSubstr("1 | 2"), Not(Names("0badcafe"))));
 }
 
-/// Rules are said, not printed as the file's text; a key that only a later run has is a difference
-/// too.
+/// Rules are described, not printed as the file's text; a key that only a later run has is a
+/// difference too.
 TEST(RunSummaries, RulesOfEitherRunAreADifference) {
   const char* const rules = "[[rule]]\nname = \"rest\"\nhours = \"23:00-06:00\"\nis = \"idle\"\n";
   for (const bool first_has_them : {true, false}) {
@@ -117,7 +116,7 @@ TEST(RunSummaries, RulesOfEitherRunAreADifference) {
   }
 }
 
-/// What each rule cost is a part of a price, no rival; violations are told apart by demand.
+/// Each rule's cost is a part of a price, no competitor; violations are listed by demand.
 TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
   RunSummary run = run_of("1", 24);
   run.evaluations.insert(run.evaluations.begin() + 1,
@@ -134,7 +133,7 @@ TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
   const RulePrices prices = rule_prices_of(run.evaluations).value();
   ASSERT_EQ(prices.rules.size(), 1U);
   EXPECT_EQ(prices.rules[0].meaning, "rest");
-  // Of three days one differs, by EUR a day over 8 MWh.
+  // One of three days differs, by EUR per day over 8 MWh.
   EXPECT_NEAR(prices.rules[0].difference[0].mean, -8 / 3.0 / 8, 1e-12);
   EXPECT_NEAR(prices.correction.difference[0].mean, 8 / 3.0 / 8, 1e-12);
   EXPECT_NEAR(prices.total.difference[0].mean, 0, 1e-12);

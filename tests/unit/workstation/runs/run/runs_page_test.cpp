@@ -1,4 +1,4 @@
-// Many runs on one page: finished ones with figures, and what became of the others.
+// Many runs on one page: finished ones with figures, and the state of the others.
 #include "workstation/runs/run/runs_page.h"
 
 #include <gmock/gmock.h>

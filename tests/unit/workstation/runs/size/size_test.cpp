@@ -1,5 +1,5 @@
-// What a battery would earn: a cell comes out as `evaluate` counts it at its own size, money is
-// shared, billed and paid back as by hand, and a plan that is wrong is told where.
+// Earnings of a battery by size: a cell equals `evaluate` at its own size; money is shared, billed
+// and paid back as by hand; and an error of a plan is reported with its place.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 std::string output_of(const std::string& arguments) { return said_by_command(arguments).output; }
 
-/// Minutes [from, until) of `series` are not there.
+/// Minutes [from, until) of `series` are missing.
 void leave_out(MinuteSeries& series, std::int64_t from_utc_s, std::int64_t until_utc_s) {
   for (std::size_t m = 0; m < series.size(); ++m) {
     if (series.utc_s(m) < from_utc_s || series.utc_s(m) >= until_utc_s) continue;
@@ -33,8 +33,9 @@ void leave_out(MinuteSeries& series, std::int64_t from_utc_s, std::int64_t until
 constexpr const char* kContract =
     "import_adder_eur_per_mwh = 12\nexport_percent = 5\nwear_eur_per_mwh = 6\n";
 
-/// January to the 25th is what February is fitted on, by `size` and by `evaluate --fit`: a fold's
-/// training days are then those of a file. By hour alone, since the trailing level would see more.
+/// January to the 25th is the fit for February, by `size` and by `evaluate --fit`: a fold's
+/// training days are then those of a file. By hour alone, because the trailing level would see
+/// more.
 TEST(Size, ACellIsWhatEvaluateCountsAtItsOwnSize) {
   const TemporaryFolder folder;
   MinuteSeries both = small_series();
@@ -131,7 +132,7 @@ TEST(Size, ABatteryPaysBackWhileItAges) {
   EXPECT_NEAR(life.pay_back_years, (2 + 1 / 48.0) / 12, 1e-9);
   cell.price_eur = 1000;
   EXPECT_TRUE(std::isnan(life_of(cell, {12, 0, 97.5}).pay_back_years));
-  // By cycles alone: 1,000 of them in a month take 10 % of what is left.
+  // By full cycles alone: 1,000 of them in a month take 10 % of the rest.
   cell.cycles_per_day = 1000 * 12 / 365.25;
   life = life_of(cell, {0, 10, 80});
   EXPECT_NEAR(life.years, 3 / 12.0, 1e-9) << "90 %, 81 %, 72.9 %";

@@ -1,5 +1,5 @@
-// From classes of sites to packages and an inventory, with a tools/package that is played: what is
-// made, what is left alone, and what is refused. tests/system/guest/classes has the real one.
+// From classes of sites to packages and an inventory, with a simulated tools/package: results,
+// unchanged files, and refusals. tests/system/guest/classes has the real one.
 #include "workstation/runs/sweep/class_packages.h"
 
 #include <gmock/gmock.h>
@@ -37,7 +37,7 @@ class ClassPackages : public testing::Test {
     write_file(package, kPackaging);
     fs::permissions(package, fs::perms::owner_all);
   }
-  /// A site whose class's student is `header`, which is written; empty: it has none.
+  /// A site whose class's student is `header`, which is written; empty: none.
   CollectedSite site(const std::string& id, const std::string& of, const std::string& header) {
     CollectedSite one{{id, "", 4000, 8000, of}, 1, header.empty() ? 0 : 1, 406.25};
     if (header.empty()) return one;

@@ -1,4 +1,4 @@
-// What a sweep came to, from results made by hand: tables of tasks, settings and sites.
+// Sweep results, from hand-made tasks: tables of tasks, settings and sites.
 #include "workstation/runs/sweep/collected.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class Collected : public testing::Test {
  protected:
-  /// Published: earned `eur` a day with 8 MWh, on two days.
+  /// Published: earned `eur` per day with 8 MWh, on two days.
   void publish(int task, double eur) {
     const std::filesystem::path result = folder_.result(task);
     Evaluation days;

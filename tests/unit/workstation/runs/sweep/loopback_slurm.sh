@@ -1,8 +1,8 @@
-# loopback_slurm.sh: sourced. A real Slurm of two nodes on this machine, with a munge of its own:
-#   start_slurm FOLDER PORT   in FOLDER/slurm, from PORT on; skips the test where it cannot
-#   start_slurmctld, start_slurmd NODE, kill_hard NAME   what bad days take down and bring back
+# loopback_slurm.sh: sourced. A real Slurm of two nodes on this machine, with a separate munge:
+#   start_slurm FOLDER PORT   in FOLDER/slurm, from PORT on; skips the test if it cannot
+#   start_slurmctld, start_slurmd NODE, kill_hard NAME   failures and recoveries
 #   wait_until SECONDS WHAT COMMAND...   until it succeeds
-# Every program that is started here ends with the script, by its own number.
+# Every program that is started here ends with the script, by its process id.
 PATH=$PATH:/usr/sbin
 
 skip() {
@@ -66,7 +66,7 @@ start_slurm() {
     --pid-file="$slurm/munge/pid" --log-file="$slurm/munge.log" \
     --seed-file="$slurm/munge/seed" >"$slurm/munged.txt" 2>&1 &
   echo $! >"$slurm/munged.started"
-  # The least that Slurm needs: no accounting, no cgroups, two nodes by their ports.
+  # The minimum for Slurm: no accounting, no cgroups, two nodes by their ports.
   cat >"$slurm/slurm.conf" <<CONF
 ClusterName=loopback
 SlurmctldHost=localhost(127.0.0.1)

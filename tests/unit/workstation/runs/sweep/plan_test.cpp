@@ -1,4 +1,4 @@
-// Points, sites and plans: what is a task, how it is numbered, what is refused before the first.
+// Points, sites and plans: tasks, their numbers, and refusals before the first.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""A fleet as it may be sold: sites with the powers and capacities of catalogues, for sweep plan.
+"""Plausible fleet: sites with the powers and capacities of catalogues, for sweep plan.
 
     tests/unit/workstation/runs/sweep/plausible_fleet.py [SITES [measured]] > sites.csv
 
-Homes are a maker's capacities with the inverters that are sold for them, the rest cabinets and
-containers; five contracts and two pairs of thresholds. With `measured` each capacity is what an
-aged battery has left, 85 to 100 % of the catalogue's, and so hardly two sites have one C-rate.
+Homes are a manufacturer's capacities with the inverters sold for them, the rest cabinets and
+containers; five contracts and two pairs of thresholds. With `measured` each capacity is that of an
+aged battery, 85 to 100 % of the catalogue's, so hardly two sites share a C-rate.
 Drawn by the seed "plausible fleet".
 """
 import random
 import sys
 
-# Usable kWh, kW, how often of a hundred and four.
+# Usable kWh, kW, number out of 104.
 CATALOGUE = [
     ([13.5], [5, 11.5], 15),
     ([5, 10, 15, 20, 30], [2.5, 5, 10], 14),

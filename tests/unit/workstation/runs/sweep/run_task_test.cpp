@@ -1,5 +1,5 @@
-// Tasks whose work costs nothing: what is published and when, and what is left when they are killed
-// at any moment, run twice at once, or may not write.
+// Tasks with trivial work: published files and their order, and the remains when they are killed at
+// any moment, run twice in parallel, or may not write.
 #include "workstation/runs/sweep/collected.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #!/bin/sh
 # same_bytes.sh PROGRAM FOLDER
-#   The same plan of six real tasks by GNU parallel and on a real Slurm of two nodes here, both
+#   The same plan of six real tasks by GNU parallel and on a real Slurm of two local nodes, both
 #   killed and resumed on the way: every file that a task leaves and every table is the same, byte
 #   for byte. Needs parallel, and as root slurm-wlm and munge; without them it is skipped.
 set -eu
@@ -17,7 +17,7 @@ folder=$(cd "$folder" && pwd)
 start_slurm "$folder" 17816
 cd "$folder"
 
-# Processes of tasks, by the sweep that they are of.
+# Processes of tasks, by their sweep.
 pids_of() { pgrep -f "^$program sweep task $folder/$1 [0-9]"; }
 one_runs() { [ "$(pids_of "$1" | wc -l)" -ge 1 ]; }
 two_run() { [ "$(pids_of "$1" | wc -l)" -ge 2 ]; }
@@ -79,10 +79,10 @@ sleep 3
 echo "-- a node is down: what it ran is requeued, and begins two minutes later"
 scontrol update nodename=n1 state=down reason=test
 sleep 1
-scontrol update nodename=n1 state=resume || true  # or it came back by itself
+scontrol update nodename=n1 state=resume || true  # or it recovered by itself
 squeue
-# What whoever looks after Slurm does: it holds what it could not start, and drains a node that
-# knows more than a slurmctld that forgot.
+# Administration of Slurm: requeues tasks that could not start, and drains a node that knows more
+# than a slurmctld with lost state.
 look_after() {
   squeue --noheader --array --states=pending --format='%i %r' | while read -r job reason; do
     case $reason in *held*) scontrol release "$job" || true ;; esac
@@ -115,7 +115,7 @@ grep -q '6 tasks, 6 proved' collected_there.txt
 diff -r --exclude=times.json here/tasks there/tasks
 cmp here/settings.csv there/settings.csv
 for out in here there; do
-  sed 's/,[^,]*$//' $out/tasks.csv >$out.csv  # without the seconds that each took
+  sed 's/,[^,]*$//' $out/tasks.csv >$out.csv  # without the duration of each
 done
 cmp here.csv there.csv
 [ -z "$(find here/log there/log -name '0*')" ] || { ls here/log there/log; exit 1; }

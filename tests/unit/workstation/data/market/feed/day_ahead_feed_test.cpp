@@ -1,4 +1,4 @@
-// Day-ahead prices as others publish them: documents, answers and tables; the download; and the
+// Day-ahead prices of public sources: documents, answers and tables; the download; and the
 // commands.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ std::string error_of(const std::string& text) {
 TEST(DayAheadRows, HoursOfA44AreRepeatedAndMarked) {
   const JoinedDayAhead day =
       joined(a44(a44_point(1, "71.82") + a44_point(3, "-5") + a44_point(24, "9")));
-  ASSERT_EQ(day.series.size(), 96u);  // A03: what is left out repeats the one before
+  ASSERT_EQ(day.series.size(), 96u);  // A03: an omitted position repeats the previous one
   EXPECT_EQ(day.series.start_utc_s, utc_of("2025-05-31T22:00:00Z"));
   EXPECT_EQ(day.series.eur_per_mwh[0], 71.82);
   EXPECT_EQ(day.series.eur_per_mwh[7], 71.82);
@@ -92,7 +92,7 @@ TEST(DayAheadRows, EnergyChartsOfHoursAndItsDamages) {
   EXPECT_EQ(day.series.eur_per_mwh[11], 12);
   EXPECT_EQ(joined(charts("1748728800,1748732400", "1,\"2\"")).series.size(), 4u);
   const JoinedDayAhead apart = joined(charts("1748728800,1748736000", "1,2"));
-  EXPECT_EQ(apart.series.size(), 12u);  // merged, or one is missing: not trained on
+  EXPECT_EQ(apart.series.size(), 12u);  // merged, or one is missing: not used for training
   EXPECT_TRUE(std::isnan(apart.series.eur_per_mwh[4]));
   EXPECT_EQ(apart.assumed, 4u);
 }
@@ -177,7 +177,7 @@ TEST(DayAheadRows, TablesOfHoursQuarterHoursAndClockChanges) {
   const JoinedDayAhead own = joined(table_of_day({2025, 10, 1}, 900, false));
   EXPECT_EQ(own.series.resolution_min[0], 15);
   EXPECT_EQ(own.repeated_hours, 0u);
-  // Semicolons and decimal commas; and the file that was written, once more.
+  // Semicolons and decimal commas; and the written file, read again.
   const JoinedDayAhead commas =
       joined("Datetime;Price\n2025-06-01T00:00:00+02:00;1,5\n2025-06-01T00:15:00+02:00;-2\n");
   EXPECT_EQ(commas.series.eur_per_mwh[0], 1.5);
@@ -242,7 +242,7 @@ TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
     said(arguments, 1);
     EXPECT_FALSE(std::filesystem::exists(path("bad.csv")));
   }
-  // Of the other kind: each says what to do.
+  // Of the other kind: each error names the remedy.
   const std::string document = written("a44.xml", a44(a44_point(1, "5")));
   EXPECT_THAT(run({"prices", "import", document, "--out", path("bad.csv")}).output,
               Names("a44.xml \"Publication_MarketDocument\" --day-ahead"));
@@ -264,8 +264,7 @@ TEST_F(DayAheadCli, FetchWritesAFileOrNothing) {
   said(fetch);
 }
 
-// The planted look-ahead: every price filed a day early says today what only tomorrow's auction
-// will.
+// The planted look-ahead: every price dated a day early reveals tomorrow's auction today.
 TEST_F(DayAheadCli, AnOutlookFiledUnderTheWrongDayIsRefused) {
   said({"prices", "simulate", "--days", "90", "--out", path("market.csv.gz"), "--day-ahead-out",
         path("da.csv")});

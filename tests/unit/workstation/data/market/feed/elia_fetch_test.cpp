@@ -1,5 +1,6 @@
-// The download against a server like Elia's, on good days and with one quirk at a time: the file is
-// whole, or there is none and one line says why, and what cannot succeed is not asked for again.
+// Download from a server like Elia's, on good days and with one fault at a time: the file is
+// complete, or there is none and one line gives the reason, and requests that cannot succeed are
+// not repeated.
 #include "workstation/data/market/feed/elia_fetch.h"
 
 #include <gmock/gmock.h>
@@ -66,7 +67,7 @@ class EliaFetch : public testing::Test {
     std::filesystem::remove(wanted.out);
     std::filesystem::remove_all(fetch_cache_folder(wanted));
   }
-  /// What an ordinary server leads to.
+  /// Result of an ordinary server.
   std::string whole() {
     const FakeElia elia;
     FetchRequest wanted = request(elia);
@@ -155,7 +156,7 @@ Quirk on_rows(const std::function<void(Rows&)>& change, bool of_minutes = true) 
   };
 }
 
-/// Cut; empty, as an earlier version kept them; or with a gap that was allowed before.
+/// Truncated; empty, as an earlier version kept them; or with a gap that was allowed before.
 TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
   Rows rows = elia_rows({.dataset = "ods046"}, utc_of("2023-03-24T23:00:00Z"),
                         utc_of("2023-03-26T22:00:00Z"));
@@ -169,7 +170,7 @@ TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
     });
     const FetchRequest wanted = request(elia);
     EXPECT_THAT(error_of(wanted), Names("404 ods047"));
-    EXPECT_TRUE(waits_.empty());  // another try cannot mend a 404
+    EXPECT_TRUE(waits_.empty());  // a retry cannot fix a 404
     EXPECT_EQ(windows_kept(wanted), 1u);
     for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
       EXPECT_EQ(read_file(entry.path()), kept);
@@ -247,9 +248,9 @@ TEST_F(EliaFetch, TheServersWordsAreOneQuietLine) {
   EXPECT_THAT(text, testing::Not(HasSubstr(std::string(200, 'x'))));
 }
 
-// ---- Quirks ---------------------------------------------------------------------------------
+// ---- Faults ---------------------------------------------------------------------------------
 
-/// For the minutes' rows alone.
+/// For the minutes' rows only.
 Quirk on_minutes(const Quirk& quirk) {
   return [quirk](const Ask& ask, Answer& answer) {
     if (ask.minutes() && !ask.wants_total) quirk(ask, answer);
@@ -332,12 +333,12 @@ void move(const Ask& ask, Answer& answer) {
 struct QuirkCase {
   const char* name;
   Quirk quirk;
-  const char* names;  ///< what the error names; empty where the file is whole
+  const char* names;  ///< named in the error; empty if the file is complete
   int requests;       ///< for minutes, that are needed
 };
 
-/// Spellings of files are in market_rows_test and own_csv_test; cuts by length, chunk and packing
-/// in http_whole_test.
+/// Spellings of files are in market_rows_test and own_csv_test; truncation by length, chunk and
+/// compression in http_whole_test.
 std::vector<QuirkCase> quirks() {
   const auto same = [](const std::string& text) { return text; };
   const auto cut_in_a_line = [](const Ask&, Answer& a) {
@@ -386,7 +387,7 @@ std::vector<QuirkCase> quirks() {
        "4 188 ods047 2023-03-25T10:00:00Z 2023-03-25T11:00:00Z --allow-gaps", 1},
       {"nothing but the names of columns", on_rows([](auto& rows) { rows.clear(); }),
        "2820 ods046 2023-03-24T23:00:00Z 2023-03-26T22:00:00Z", 1},
-      // Spellings that no download has.
+      // Spellings that no download uses.
       {"times without offset", with_instead("+00:00", ""), "ods046:2 \"2023-03-24T23:00:00\"", 2},
       {"an hour off, and saying so", with_instead("+00:00", "+01:00"),
        "60 2820 2023-03-26T21:00:00Z", 3},

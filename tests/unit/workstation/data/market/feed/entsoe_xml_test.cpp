@@ -72,7 +72,7 @@ TEST(EntsoeXml, TwoPricesAreNotOne) {
   EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
 }
 
-/// An entity of the document's own, which is not expanded.
+/// An entity defined by the document, which is not expanded.
 std::string replaced_entity() {
   std::string text = document(point(1, "&price;", "A04"));
   return text.insert(text.find("<Balancing"), "<!DOCTYPE x [<!ENTITY price \"3\">]>\n");

@@ -1,4 +1,4 @@
-// A local server that answers like energy-charts.
+// Local server with the answers of energy-charts.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ inline std::string charts(const std::string& seconds, const std::string& prices,
          "],\"unit\":\"" + unit + "\",\"deprecated\":false}";
 }
 
-/// Answers like energy-charts: hours of the asked local days.
+/// Answers like energy-charts: hours of the requested local days.
 class FakeCharts {
  public:
   explicit FakeCharts(int failures = 0) : failures_(failures) {
@@ -46,7 +46,7 @@ class FakeCharts {
 
  private:
   std::atomic<int> failures_;
-  LocalServer server_;  ///< the last: it stops before what its thread uses
+  LocalServer server_;  ///< last, so that it stops before the members its thread uses
 };
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// Whether an answer is whole, by HTTP/1 and by HTTP/2 behind nghttpx, in the clear and packed: one
-// that is must be taken, one that was cut must be worth another try.
+// Completeness of an answer, by HTTP/1 and by HTTP/2 behind nghttpx, plain and compressed: a
+// complete one must be accepted, a truncated one must be retried.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <zlib.h>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A proxy that speaks HTTP/2 over TLS to its clients and HTTP/1.1 to the server behind it.
+/// A proxy with HTTP/2 over TLS to its clients and HTTP/1.1 to the server.
 class Http2Front {
  public:
   static constexpr const char* kProgram = "/usr/sbin/nghttpx";
@@ -63,7 +63,7 @@ enum class Packing { kNone, kGzip, kDeflate };
 enum class Framing { kLength, kChunks, kClosing };
 enum class Fault { kNone, kCutTransfer, kCutInside };
 
-/// The bytes that say `text` by a Content-Encoding.
+/// The bytes of `text` with a Content-Encoding.
 std::string packed(const std::string& text, Packing packing) {
   if (packing == Packing::kNone) return text;
   constexpr int kGzipWindow = 31, kZlibWindow = 15, kMemory = 8;
@@ -86,7 +86,7 @@ std::string packed(const std::string& text, Packing packing) {
 std::string answer_of(const std::string& text, Packing packing, Framing framing, Fault fault,
                       std::mt19937& draws) {
   std::string body = packed(text, packing);
-  // Nothing but the end is cut from time to time; the text before it is never a whole one.
+  // Only the end is cut in some cases; the text before it is never complete.
   const auto cut = [&] { return body.size() / 2 + draws() % (body.size() / 2 - 40); };
   if (fault == Fault::kCutInside) body.resize(cut());
   std::string head = "HTTP/1.1 200 OK\r\nConnection: close\r\n";
@@ -103,7 +103,7 @@ std::string answer_of(const std::string& text, Packing packing, Framing framing,
   return head + "\r\n" + body;
 }
 
-/// Long and without a pattern, so that half of what is packed is half of the text.
+/// Long and without a pattern, so that half of the compressed data is half of the text.
 std::string digits(std::mt19937& draws) {
   std::string text;
   while (text.size() < 4'000) text += std::to_string(draws());
@@ -116,7 +116,7 @@ struct TextCase {
   bool tells_its_end;
 };
 
-/// What is said to a client that takes packed answers, and to one that takes none.
+/// Answer to a client with compression, and to one without.
 struct Said {
   std::string packed, plain;
   bool answer(TestConnection& connection, const std::string& request) const {
@@ -126,8 +126,8 @@ struct Said {
   }
 };
 
-/// Every packing, framing, text and fault at `url`, whose answers come from `said`. A server that
-/// packs in any case leaves a text without an end of its own unclear.
+/// Every compression, framing, text and fault at `url`, whose answers come from `said`. A server
+/// that always compresses leaves a text without an end of its own ambiguous.
 void expect_all(const std::string& url, Said& said, bool may_close) {
   std::mt19937 draws(7);
   const std::string row = "time;price\n2025-06-01T10:00:00Z;" + digits(draws);
@@ -182,7 +182,7 @@ TEST(HttpWhole, ByHttp2) {
     return said.answer(connection, request);
   });
   const Http2Front front(server.port());
-  expect_all(front.url(), said, false);  // a proxy takes the end of a connection for the body's
+  expect_all(front.url(), said, false);  // a proxy takes a closed connection for the end
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The program itself, killed while it downloads, at each request: an earlier file stays until the
-// new one is whole, and the next run goes on and cleans up.
+// Download program, killed at each request: an earlier file stays until the new one is complete,
+// and the next run continues and cleans up.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Holds one request of the program, so that it is interrupted while it waits for the answer.
+/// Delays one request of the program, so that it is interrupted while it waits for the answer.
 class Gate {
  public:
   /// The `number`-th request from now on, 1 the next, is not answered before let_go().
@@ -52,7 +52,7 @@ class Gate {
   std::mutex mutex_;
   std::condition_variable changed_;
   int openings_ = 0;
-  int passing_ = 0;  ///< requests before the one that is held
+  int passing_ = 0;  ///< requests before the delayed one
   bool is_closed_ = false;
   bool is_reached_ = false;
 };
@@ -85,7 +85,7 @@ TEST_F(KilledFetch, AtEachWindowKeepsThoseBefore) {
   const fs::path out = folder_ / "prices.csv.gz";
   write_file(out, "of before");
   for (int kept = 1; kept < kWindows; ++kept) {
-    gate_.hold(2);  // one new window comes, the next does not
+    gate_.hold(2);  // one new window arrives, the next does not
     ChildProcess fetch(command(out));
     ASSERT_TRUE(gate_.is_reached_within(std::chrono::seconds(60)));
     fetch.signal(SIGKILL);

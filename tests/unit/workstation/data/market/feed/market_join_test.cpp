@@ -1,4 +1,4 @@
-// Joining rows: order, duplicates, gaps, and what stands for a missing settled price.
+// Joining rows: order, duplicates, gaps, and the replacement of a missing settled price.
 #include "workstation/data/market/feed/market_join.h"
 
 #include <gmock/gmock.h>

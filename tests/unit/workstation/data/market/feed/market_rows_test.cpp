@@ -1,4 +1,4 @@
-// The readers: every spelling of Elia's downloads, and one clear line for what cannot be read.
+// Market readers: every spelling of Elia's downloads, and one clear line for unreadable rows.
 #include "workstation/data/market/feed/market_rows.h"
 
 #include <gmock/gmock.h>

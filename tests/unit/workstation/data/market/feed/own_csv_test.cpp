@@ -1,5 +1,5 @@
-// CSV of one's own: columns and separators are found, times are what they say and nothing else, and
-// what could mean two things is refused by its line.
+// Own CSV files: columns and separators are found, times are interpreted exactly, and ambiguous
+// input is refused by its line.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -21,11 +21,11 @@ const OwnForm kBelgian = form("dd/mm/yyyy", WallClock::kLocal);
 
 struct OwnCase {
   std::string text;
-  const char* names;  ///< what the error names, its place first; of a form that is read, the form
+  const char* names;  ///< named in the error, its place first; the form of an accepted one
   OwnForm own{};
 };
 
-/// All say 10.5 at 2025-01-31T00:15Z and nothing half an hour before.
+/// All mean 10.5 at 2025-01-31T00:15Z and nothing half an hour before.
 TEST(OwnCsv, FormsThatAreRead) {
   const std::vector<OwnCase> cases{
       {"datetime_utc,price_eur_mwh\n2025-01-31T00:15:00Z,10.5\n2025-01-31T00:00:00Z,\n", "tidy"},
@@ -160,7 +160,8 @@ TEST(OwnCsv, AnHourThatComesTwiceIsNotGuessed) {
               Names("own.csv:4 \"26/10/2025 02:00\""));
 }
 
-/// A random series in a random form, with gaps, doubles and any order of rows, is the same again.
+/// A random series in a random form, with gaps, duplicates and any order of rows, reads back the
+/// same.
 TEST(OwnCsv, DrawnFormsComeBack) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
@@ -205,7 +206,7 @@ TEST(OwnCsv, DrawnFormsComeBack) {
                                   separator, separator, number, line_end));
       rows.emplace_back(utc_s, price);
     }
-    // Belgian clocks need the order in the hour that comes twice; here it is one way or the other.
+    // Belgian clocks need the order in the repeated hour; here it is one way or the other.
     if (clock == 2) {
       if (one_of(2) == 0) std::ranges::reverse(lines), std::ranges::reverse(rows);
     } else {

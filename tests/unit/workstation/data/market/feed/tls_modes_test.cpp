@@ -1,5 +1,5 @@
-// The download over TLS from servers that are set up wrongly: one line says what, nothing is
-// written, and what cannot succeed is asked once.
+// Download over TLS from misconfigured servers: one line names the cause, nothing is written, and
+// requests that cannot succeed are made once.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -25,7 +25,7 @@ bool say_404(TestConnection& connection, const std::string&) {
   return connection.answer("", "HTTP/1.1 404 Not Found\r\n");
 }
 
-/// Takes connections, answers the first byte of each with the same words, and closes it.
+/// Accepts connections, answers the first byte of each with the same text, and closes it.
 class ClosingServer {
  public:
   explicit ClosingServer(std::string words) : fd_(bind_socket(place_)) {
@@ -93,7 +93,7 @@ TEST_F(TlsModes, ACertificateThatHoldsIsBelieved) {
   EXPECT_THAT(error_of(certificate), Names("404 1 ods046"));
 }
 
-/// Each is told in its own words.
+/// Each has a distinct message.
 TEST_F(TlsModes, CertificatesThatDoNotHold) {
   std::set<std::string> told;
   const auto refused = [&](const DatedCertificate& certificate, const char* names) {

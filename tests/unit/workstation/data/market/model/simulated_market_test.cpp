@@ -1,4 +1,4 @@
-// The simulated market against the real one. Targets: figures of Elia's ods047, 1 January to 23 May
+// Simulated market against the real one. Targets: figures of Elia's ods047, 1 January to 23 May
 // 2023 (13,650 quarter-hours), and of the two ods161 days 6 September 2024 and 8 April 2025.
 #include "workstation/data/market/model/simulated_market.h"
 

@@ -1,4 +1,4 @@
-// The day-ahead file, days of 92 and 100 quarter-hours, and what is known of it when.
+// Day-ahead file: days of 92 and 100 quarter-hours, and what is known of it when.
 #include "workstation/data/market/series/day_ahead.h"
 
 #include <gmock/gmock.h>
@@ -93,7 +93,7 @@ TEST(DayAhead, IsKnownFromOneOClockOfTheDayBefore) {
   EXPECT_TRUE(std::isnan(known.known_eur_per_mwh(utc_of("2025-06-02T22:00:00Z"), one_o_clock)));
   EXPECT_EQ(known.next_known_utc_s(delivery, delivery + 3'600, utc_of("2025-06-01T08:00:00Z")),
             one_o_clock);
-  // Another hour, and the hour of winter.
+  // Another hour, and the hour of winter time.
   const DayAheadPublication later(days_of_prices({2025, 1, 1}, {2025, 1, 3}), 14 * 60 + 30);
   const std::int64_t winter = utc_of("2025-01-02T10:00:00Z");
   EXPECT_TRUE(std::isnan(later.known_eur_per_mwh(winter, utc_of("2025-01-01T13:29:59Z"))));
@@ -159,7 +159,7 @@ SimulatedYear simulated_year(std::uint64_t seed) {
   return {simulate_day_ahead(quarter_hours, seed), minutes_on_quarter_hours(quarter_hours, seed)};
 }
 
-// A file shifted by a day to the early side would tell today what tomorrow costs.
+// A file dated a day early would reveal tomorrow's prices today.
 TEST(DayAheadPlausibility, AFileShiftedByADayIsCaught) {
   const SimulatedYear year = simulated_year(3);
   EXPECT_THAT(names_of(shifted_day_ahead(year.day_ahead, year.settled)), testing::IsEmpty());
@@ -172,8 +172,8 @@ TEST(DayAheadPlausibility, AFileShiftedByADayIsCaught) {
   }
 }
 
-// Belgium, May 2024 to June 2025: correlation with what was settled 0.21 and 0.38 (of both years),
-// of days' means 0.52 and 0.67; of prices an hour apart 0.94 and 0.92, a day apart 0.70 and 0.76.
+// Belgium, May 2024 to June 2025: correlation with settled prices 0.21 and 0.38 (of both years), of
+// days' means 0.52 and 0.67; of prices an hour apart 0.94 and 0.92, a day apart 0.70 and 0.76.
 TEST(SimulatedDayAhead, HasTheRealCorrelations) {
   const auto lagged = [](const std::vector<double>& x, std::size_t lag) {
     double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;

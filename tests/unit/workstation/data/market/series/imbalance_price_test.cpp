@@ -1,5 +1,5 @@
-// The price formula: cases from published rows (ods047), and all 13,650 of them where the sample is
-// there.
+// Price formula: cases from published rows (ods047), and all 13,650 of them if the sample is
+// present.
 #include "workstation/data/market/series/imbalance_price.h"
 
 #include <gtest/gtest.h>

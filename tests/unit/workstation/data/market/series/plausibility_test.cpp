@@ -1,4 +1,4 @@
-// What is implausible about prices, and that honest ones are not.
+// Implausible prices, and acceptance of real ones.
 #include "workstation/data/market/series/plausibility.h"
 
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST(Plausibility, ExtremesThatMarketsHaveHadAreTakenAndTold) {
   }
 }
 
-/// Minus 999 again and again is what an instrument writes: said, and still taken.
+/// Repeated -999 is an instrument's error value: reported, and still accepted.
 TEST(Plausibility, ManyOfWhatMayAlsoStandForNoPriceAreToldAndTaken) {
   EXPECT_THAT(names_of(implausible(with_settled(-999, 2))), IsEmpty());
   const std::vector<Finding> findings = implausible(with_settled(-999, 8));
