@@ -240,7 +240,7 @@ void expect_none_wrong(const char* title, const CommissionSettings& settings, do
 TEST(CommissionGrid, RefusesTheSlowAndNoOther) {
   expect_none_wrong("room both ways", {}, 0.5, every_of(5, 1));
 }
-TEST(CommissionGrid, WithoutRoomItWarnsOfWhatItCannotTell) {
+TEST(CommissionGrid, WithoutRoomItWarnsOfWhatItCannotMeasure) {
   expect_none_wrong("nearly full", {}, 0.97, every_of(17, 5));
 }
 TEST(CommissionGrid, OfALargerBatteryThatMayTakeAMinute) {

@@ -88,7 +88,7 @@ TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
 }
 
 /// 4029 W were once measured for 500, and "the sign is right".
-TEST(Commission, RefusesMorePowerThanOrderedAndEndsItAtOnce) {
+TEST(Commission, RefusesMorePowerThanOrderedAndEndsItImmediately) {
   for (const double gain : {8.06, 1.5, -8.0}) {
     CommissionSite site({.gain = gain});
     const std::int64_t start_ns = site.clock.now_ns;
@@ -199,7 +199,7 @@ TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
   EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
 }
 
-TEST(Commission, AnAlarmThatComesMeanwhileEndsIt) {
+TEST(Commission, AnAlarmDuringTheCheckEndsIt) {
   struct Alarming : FakeBattery {
     using FakeBattery::FakeBattery;
     Status read(BatteryMeasurement& m) {
@@ -276,7 +276,7 @@ TEST(Commission, RefusesWrongSignsAndAnInterruptAndAnAlarmWithoutOrderingAnythin
   interrupted.expect_refused(CommissionVerdict::kInterrupted);
 }
 
-TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
+TEST(Commission, RefusesABatteryThatFollowsAnotherController) {
   CommissionSite site;
   site.battery.physics.start_dispatch(1'000, 1.0, 3'600);
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kForeignOrder);
@@ -312,7 +312,7 @@ TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
   EXPECT_EQ(result.release_status, Status::kTimeout);
 }
 
-TEST(Commission, FeedsTheWatchdogMeanwhile) {
+TEST(Commission, RefreshesTheWatchdog) {
   CommissionSite site;
   site.battery.refresh_s = 9;
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);

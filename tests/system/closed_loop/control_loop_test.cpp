@@ -249,7 +249,7 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
   return 99;
 }
 
-TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
+TEST(ClosedLoop, AKillAfterEachCycleHidesNoFault) {
   const auto inverted = [](FakeBattery& battery, int) { battery.inverted = true; };
   const auto every_other = [](FakeBattery& battery, int cycle) {
     battery.inverted = cycle % 2 == 1;

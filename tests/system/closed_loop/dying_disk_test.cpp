@@ -372,7 +372,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesTheOneBefore) {
   }
 }
 
-TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheBoot) {
+TEST_F(DyingDiskWords, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
   for (const bool is_full : {true, false}) {
     lose_folder(site_.folder.file("run"));
     ASSERT_NO_FATAL_FAILURE(start_and_run(true));
@@ -423,7 +423,7 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
 }
 
 /// The folder is suddenly empty: known state is written to it.
-TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
+TEST_F(DyingDisk, UnmountedDuringARunItContinuesInTheFolderBelow) {
   ASSERT_NO_FATAL_FAILURE(start_and_run(true));
   disk_.unmount();
   await_cycles(2, "mode", "running", 8);

@@ -134,7 +134,7 @@ void expect_told(const Outcome& o, int every) {
   EXPECT_LE(o.cycles_to_find, every == 3 ? 0 : 34);
 }
 
-TEST_P(EveryMapsOrders, WhoEndsOrReplacesThemIsFoundAlsoWhenHeComesAndGoes) {
+TEST_P(EveryMapsOrders, AnotherControllerIsFoundAlsoWhenIntermittent) {
   const Shows map = what_it_shows(GetParam());
   for (const Interference& what : kInterferences) {
     if (!shows(map, what.kind)) continue;  // a refresh may hide it
@@ -265,7 +265,7 @@ const std::vector<Innocent> kInnocents = {
      }},
 };
 
-TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
+TEST_P(EveryMapsOrders, UnintendedEndsAreNotFound) {
   for (const Innocent& innocent : kInnocents) {
     SCOPED_TRACE(innocent.name);
     SupervisedSite site(GetParam());

@@ -119,7 +119,7 @@ TEST_P(EveryMapState, RawExtremesAreNoValues) {
   EXPECT_GE(refused, 2) << "SoC and power at least";
 }
 
-TEST_P(EveryMapState, EveryAlarmStopsAndEveryWarningIsTold) {
+TEST_P(EveryMapState, EveryAlarmStopsAndEveryWarningIsReported) {
   HeldDevice device(GetParam());
   ASSERT_EQ(device.read(), Status::kOk);
   EXPECT_FALSE(device.measured().alarm);
@@ -185,7 +185,7 @@ TEST_P(EveryMapState, WhatAModelLacksIsDoneWithout) {
 }
 
 /// A single refused register must not affect its neighbours.
-TEST_P(EveryMapState, WhatAModelHasIsSeenBesideWhatItLacks) {
+TEST_P(EveryMapState, PresentRegistersAreReadNextToMissingOnes) {
   const RegisterMap map = load_shipped_map(GetParam());
   for (int lacking = 0; lacking < map.points.size(); ++lacking) {
     if (!map.points[lacking].optional) continue;

@@ -108,7 +108,7 @@ struct Trial {
   Loop loop;
 };
 
-TEST(MeterLiars, AnHonestMeterIsNeverAccused) {
+TEST(MeterLiars, ACorrectMeterIsNeverAccused) {
   constexpr int kDays = 30;
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     int accused = 0;
@@ -141,7 +141,7 @@ double earned_eur(const MovingHouse::Habits& habits, bool judges) {
 }
 
 /// Doubts and possible ratios reduce power where the limits are near: in most houses very little.
-TEST(MeterLiars, AnHonestMeterCostsLittle) {
+TEST(MeterLiars, ACorrectMeterCostsLittle) {
   for (const MovingHouse::Habits& habits : kMovingHouses) {
     const double believed_eur = earned_eur(habits, false);
     const double judged_eur = earned_eur(habits, true);

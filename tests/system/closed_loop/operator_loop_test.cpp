@@ -21,7 +21,7 @@ struct Site : FakePlant {
   HoldMailbox holds;
 };
 
-TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
+TEST(LoopWithAHold, AnUnreadableOneIsReportedAndNotFollowed) {
   Site site;
   site.set_price(-20'000);
   site.holds.publish({.unreadable = true});
@@ -40,7 +40,7 @@ TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
   EXPECT_TRUE(site.battery.orders.empty());
 }
 
-TEST(LoopWithAReserve, KeepsItWhateverThePriceAndTellsTheBattery) {
+TEST(LoopWithAReserve, KeepsItAtAnyPriceAndSetsItOnTheBattery) {
   ControlSettings settings{.control = true, .guard = {}};
   settings.reserve.push_back({.soc_e4 = 4'000});
   Site site(settings);
@@ -88,7 +88,7 @@ TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
   EXPECT_EQ(site.cycle().days_since_full, 0);
 }
 
-TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
+TEST(LoopWithFullCharges, ARestartContinuesTheCount) {
   ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
   settings.full_charge_every_days = 3;
   Site site(settings);

@@ -113,7 +113,7 @@ TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
   EXPECT_GE(cycles, 55);
 }
 
-TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
+TEST_F(Notify, AKilledControllerIsReportedOnceAndItsReturn) {
   start_site(3'000);
   use_mail();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});

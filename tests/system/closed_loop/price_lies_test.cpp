@@ -75,7 +75,7 @@ struct Hung : FakePlant {
   Hung() { set_price(9'000); }
 };
 
-TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
+TEST(PriceLies, AFrozenPriceIsReportedAndInvalidAfterThreeHours) {
   Hung hung;
   CycleRecord record;
   for (int cycle = 0; cycle < 92; ++cycle) {
@@ -96,7 +96,7 @@ TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
 }
 
 /// 20 runs of ten minutes: each restores the log of the previous one.
-TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
+TEST(PriceLies, ARestartDoesNotResetAFrozenPrice) {
   Hung hung;
   CycleRecord record;
   for (int run = 0; run < 20; ++run) {

@@ -58,7 +58,7 @@ class PriceProcesses : public ::testing::Test {
   std::unique_ptr<ChildProcess> prices_;
 };
 
-TEST_F(PriceProcesses, WhateverHappensToTheFetcherTheLoopGoesOn) {
+TEST_F(PriceProcesses, WhateverHappensToTheFetcherTheLoopContinues) {
   const unsigned seed = 20'261'127;
   std::mt19937 random(seed);
   const auto drawn = [&](double from, double to) {

@@ -174,7 +174,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
 }
 
 /// systemd's side of a service: ready, alive every control cycle, stopping.
-TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
+TEST_F(Processes, SystemdIsNotifiedOfStartCyclesAndStop) {
   const std::string name = site_.folder.file("notify");
   const int systemd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
@@ -257,7 +257,7 @@ TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
 }
 
 /// As for an upgrade: SIGHUP, and a new process continues the order.
-TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartGoesOn) {
+TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartContinues) {
   start_site();
   const ChildProcess prices({BESS_PRICES_PROGRAM, "--config", config_});  // it outlasts the change
   ChildProcess before = controller();
@@ -278,7 +278,7 @@ TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartGoesOn) {
 }
 
 /// A killed controller's order, ended by a command before its watchdog does.
-TEST_F(SlowProcesses, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
+TEST_F(SlowProcesses, ReleaseEndsAnOrphanedOrder) {
   start_site();
   ChildProcess edge = controller();
   const std::string order = line_with_power(edge);

@@ -255,7 +255,7 @@ double number_of(const std::string& key, const std::string& text) {
   return at == std::string::npos ? NAN : std::atof(text.c_str() + at + key.size() + 3);
 }
 
-TEST_F(RecordCommand, StepsOfACommissionTellDelayRampAndLag) {
+TEST_F(RecordCommand, StepsOfACommissionShowDelayRampAndLag) {
   SimulatedSite site(12);  // a slow clock: a bus delay of 10 ms blurs 0.1 s
   site.start_battery({"--map", shipped_map("simulator"), "--battery",
                       site.folder.write("real.toml",

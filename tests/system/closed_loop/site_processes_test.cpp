@@ -134,7 +134,7 @@ TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
 }
 
 /// Wrong meters of bess-sim, reported by journal, status and log.
-TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
+TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsReportedAndLost) {
   start(own_meter("simulator", {"--meter-fault", "grid-scaled", "--meter-fault-from-s", "480"}),
         {-600, 1'600});
   commission(meter_section("import_w_max = 9000\n"));

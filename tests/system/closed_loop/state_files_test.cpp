@@ -196,7 +196,7 @@ class StateFiles : public SiteTest {
   std::mt19937 random_{kSeed};
 };
 
-TEST_F(StateFiles, WhateverACardForgetsNothingIsForgottenOrBelieved) {
+TEST_F(StateFiles, NoDamageOfACardLosesOrFakesState) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
   for (int i = 0; i < few_or_all(4, 150); ++i) {
     const StateFile& file = kFiles[random_() % std::size(kFiles)];
@@ -231,7 +231,7 @@ TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
 }
 
 /// Wear of the state folder's card, if it reports any: in status, metrics and mail.
-TEST_F(StateFiles, AWornCardIsToldByEverybody) {
+TEST_F(StateFiles, AWornCardIsReportedByAllPrograms) {
   const TemporaryFolder root;
   setenv("BESS_ROOT", root.file("").c_str(), 1);
   write_card(root, site_.folder.file("state"),

@@ -114,7 +114,7 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
 
 /// The identity check every ten minutes also reads the capacity, and ends the reading: whichever is
 /// first, the reported cause stays while it lasts. Then the battery is driven again.
-TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
+TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReportedReason) {
   for (int phase = 0; phase < 5; ++phase) {
     SupervisedSite site(GetParam());
     RegisterMap& map = site.device.test.map;
@@ -140,7 +140,7 @@ TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
   }
 }
 
-TEST_P(EveryMapSupervised, LessThanOrderedIsToldWithinTwoCycles) {
+TEST_P(EveryMapSupervised, LessThanOrderedIsReportedWithinTwoCycles) {
   SupervisedSite site(GetParam());
   trade_both_ways(site);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(site.cycle().weak_answers, 0);
@@ -216,7 +216,7 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
 
 /// Paused between two control cycles, continued twenty minutes later: the watchdog has ended the
 /// order, and it stays ended until a new price is decided on.
-TEST_P(EveryMapSupervised, AProcessThatWasStoppedDoesNotGoOnWithItsOldOrder) {
+TEST_P(EveryMapSupervised, AProcessThatWasPausedDoesNotContinueItsOldOrder) {
   constexpr std::int64_t kStoppedS = 1'230;
   SupervisedSite site(GetParam());
   if (site.device.test.map.watchdog.kind == Watchdog::Kind::kNone) {

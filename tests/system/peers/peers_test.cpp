@@ -158,7 +158,7 @@ class Peers : public PeerTest, public ::testing::WithParamInterface<Setup> {
   std::unique_ptr<ChildProcess> line_;
 };
 
-TEST_P(Peers, EachOrderStandsInTheDispatchBlockRegisterByRegister) {
+TEST_P(Peers, EachOrderIsInTheDispatchBlockRegisterByRegister) {
   for (const Situation& situation : {kCharge, kIdle, kDischarge}) {
     SCOPED_TRACE(situation.name);
     run_edge(situation, SIGKILL);  // the order stays in force

@@ -76,7 +76,7 @@ class SecondMasterPeer : public PeerTest, public ::testing::WithParamInterface<S
   SimulatedSite site_{kScale};
 };
 
-TEST_P(SecondMasterPeer, IsFoundAndTheBatteryGivenBack) {
+TEST_P(SecondMasterPeer, IsFoundAndTheBatteryReleased) {
   const std::string config = start_site();
   ChildProcess edge({edge_program(), "--config", config});
   ASSERT_NE(line_with(edge, {" written=1"}, 4), "");

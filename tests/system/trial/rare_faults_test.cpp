@@ -41,7 +41,7 @@ constexpr double kToldPercent = WrongEnergy::kToldE6 / 1e4;
 
 class RareFault : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RareFault, IsToldAndTripsBeforeTwiceTheBound) {
+TEST_P(RareFault, IsReportedAndTripsBeforeTwiceTheBound) {
   for (const FaultTimes& times : rhythms()) {
     for (const Orders orders : kRareOrders) {
       for (const double soc_frac : {0.15, 0.45, 0.85}) {

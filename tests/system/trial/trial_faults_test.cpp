@@ -149,7 +149,7 @@ TEST_P(SocFaultOfTheTrial, IsFoundWithOrdersOfEitherSign) {
 INSTANTIATE_TEST_SUITE_P(Faults, SocFaultOfTheTrial, ::testing::ValuesIn(kSocFaults),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(TrialFaults, WhatLeavesOrComesBesidesOrdersOfEitherSignIsTold) {
+TEST(TrialFaults, EnergyBeyondOrdersOfEitherSignIsReported) {
   for (const Orders orders : {Orders::kAlternating, Orders::kPairs}) {
     const FaultResult drained =
         try_fault({.fault = &trial_fault("hidden_drain_1_kw"), .orders = orders});
@@ -168,7 +168,7 @@ TEST(TrialFaults, WhatLeavesOrComesBesidesOrdersOfEitherSignIsTold) {
 /// Faults that nothing shows within two hours, see edge/core/supervision/README.md.
 constexpr std::string_view kUnseen[] = {"soc_at_least_9_percent", "limit_0_w_shown"};
 
-TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrTold) {
+TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrReported) {
   for (const TrialFault& fault : trial_faults()) {
     bool is_seen = false;
     for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero,

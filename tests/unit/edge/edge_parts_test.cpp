@@ -16,7 +16,7 @@ TEST(BuiltInStudent, ComputesEverySelfCheckOfItsHeader) {
   EXPECT_EQ(count_student_self_check_failures(), 0);
 }
 
-TEST(Ticks, LieOnTheTwoMinuteGridStrictlyAhead) {
+TEST(Ticks, AreOnTheTwoMinuteGridStrictlyAhead) {
   EXPECT_EQ(next_tick_utc_s(0), 120);
   EXPECT_EQ(next_tick_utc_s(119), 120);
   EXPECT_EQ(next_tick_utc_s(120), 240);

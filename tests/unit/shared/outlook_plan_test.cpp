@@ -80,7 +80,7 @@ TEST_F(OutlookPlanTest, AtFlatPricesItIsTheUsualPriceAndFallsWithSoc) {
   EXPECT_LT(at(flat, noon_utc_s_, 9500), half - 500);
 }
 
-TEST_F(OutlookPlanTest, ADearEveningMakesStoredEnergyDearBeforeItAndNotBehindIt) {
+TEST_F(OutlookPlanTest, AHighEveningPriceRaisesTheBreakEvenPriceBeforeItOnly) {
   OutlookDays days = flat_days(noon_utc_s_, 8000);
   const std::int64_t evening = noon_utc_s_ + 7 * kSecondsPerHour;
   const std::int32_t before = at(plan(days), noon_utc_s_, 5500);

@@ -87,7 +87,7 @@ TEST(SocLatches, OpenOnlySomeWayBackInside) {
 }
 
 /// 180 days of one price regime, and a day on either side of each boundary.
-TEST(TrainingPeriod, IsToldOfWhenItIsOldOrOfAnotherRegime) {
+TEST(TrainingPeriod, IsReportedWhenItIsOldOrOfAnotherRegime) {
   const struct {
     const char *last, *today, *told;
   } cases[] = {

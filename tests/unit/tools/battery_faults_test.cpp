@@ -128,7 +128,7 @@ TEST(BatteryFaults, BalancingBurnsPowerWhileItIsFull) {
 }
 
 /// Twelve minutes of 4 kW from 50 %: shown and true change, as a share of a healthy battery's.
-TEST(BatteryFaults, DisplaysLieAsTheirNamesSay) {
+TEST(BatteryFaults, DisplayFaultsMatchTheirNames) {
   struct Row {
     BatteryFault fault;
     std::int32_t shown_power_w;

@@ -115,7 +115,7 @@ TEST_F(FetchFromSimulatedAuction, TakesRepeatedHoursAsHours) {
   EXPECT_EQ(got().eur_per_mwh[96 + 51], two_days().eur_per_mwh[96 + 48]);
 }
 
-TEST_F(FetchFromSimulatedAuction, SlowIsGivenUpAndTheServerStopsAllTheSame) {
+TEST_F(FetchFromSimulatedAuction, ASlowServerTimesOutAndStillStops) {
   const AuctionView auction(parse_auction_rows(read_file(path("da.csv")), "da.csv"),
                             {.start_utc_s = kStartS, .fault = AuctionFault::kSlow});
   const MarketView view(parse_minute_csv(kMinutes, "minutes"), 0);

@@ -71,7 +71,7 @@ MinuteSeries three_days() {
   return series;
 }
 
-TEST(MarketView, PagesLieBehindEachOther) {
+TEST(MarketView, PagesFollowEachOther) {
   const MarketView view(three_days(), 0);
   const std::int64_t now_ns = utc_ns("2023-03-27T12:00:00Z");
   const std::string first = view.records({.limit = 100}, now_ns);

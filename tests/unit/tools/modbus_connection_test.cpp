@@ -53,7 +53,7 @@ class Listener {
   int fd_;
 };
 
-TEST(ModbusConnection, ADeadBatteryIsNotHammered) {
+TEST(ModbusConnection, ADeadBatteryIsRetriedSlowly) {
   const Listener battery(-1);  // the port is in use, without a listener
   ModbusLink link(battery.link(100), {}, ScaledClock{});
   std::uint16_t soc = 0;

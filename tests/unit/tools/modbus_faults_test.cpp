@@ -205,7 +205,7 @@ struct Verdict {
 };
 
 /// Status of a fault at every request; kOk where this bus lacks the fault.
-TEST(ModbusFaults, EachIsToldByItsStatus) {
+TEST(ModbusFaults, EachIsReportedByItsStatus) {
   constexpr Status kNone = Status::kOk;
   const Verdict verdicts[] = {
       {BatteryFault::kSilence, false, Status::kTimeout, Status::kTimeout},

@@ -28,7 +28,7 @@ TEST(ModbusLink, TheWatchdogEndsAnOrderThatIsNotRefreshed) {
   EXPECT_EQ(m.power_w, 0);
 }
 
-TEST(ModbusLink, NobodyThereAndWrongUnitAreToldApart) {
+TEST(ModbusLink, NoServerAndWrongUnitAreDistinguished) {
   BatteryLinkSettings link;
   {
     LoopbackBattery loopback("block");

@@ -80,7 +80,7 @@ TEST_F(RecordedDeviceTest, AReadBeforeAndOneAfterAnOrderStayApart) {
   }
 }
 
-TEST_F(RecordedDeviceTest, WhoeverAsksMoreOftenHearsTheSameAgainAndWhoAsksLessMissesSome) {
+TEST_F(RecordedDeviceTest, MoreFrequentReadsRepeatValuesAndRareOnesMissSome) {
   for (int i = 0; i < 10; ++i) record(60 * i, 3, 10, 1, "\"values\":[" + std::to_string(i) + "]");
   load();
   EXPECT_EQ(value_at(0), 0);
@@ -128,7 +128,7 @@ TEST_F(RecordedDeviceTest, FailuresAndRefusalsComeBackInTheirTime) {
   EXPECT_EQ(ask(361, 3, 10, {0}).latency_us, 5'000);
 }
 
-TEST_F(RecordedDeviceTest, AWriteOfOtherValuesIsTold) {
+TEST_F(RecordedDeviceTest, AWriteOfOtherValuesIsReported) {
   record(0, 16, 10, 2, "\"values\":[1,4000]");
   load();
   EXPECT_EQ(ask(0, 16, 10, {1, 4'000}).outcome, BusOutcome::kAnswered);

@@ -20,7 +20,7 @@ constexpr std::int64_t after_s(double seconds) {
   return kStartNs + static_cast<std::int64_t>(seconds * 1e9);
 }
 
-TEST(SimulatedBattery, TellsOfEveryOrderAndOfHowItEnded) {
+TEST(SimulatedBattery, ReportsEveryOrderAndItsEnd) {
   using enum DispatchEvent::Kind;
   SimulatedBattery battery(kHouse, 0.5, kStartNs);
   battery.start_dispatch(1'000, 1.0, 300);
@@ -55,7 +55,7 @@ TEST(SimulatedBattery, KnowsItsColdHoursByItsOwnClock) {
   EXPECT_EQ(battery.power_w(), 4'000);
 }
 
-TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheWeatherLeaves) {
+TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheDeratingAllows) {
   SimulatedBattery battery(kHouse, 0.5, kStartNs);
   battery.set_derating(0.5);
   battery.start_dispatch(4'000, 1.0, 300);

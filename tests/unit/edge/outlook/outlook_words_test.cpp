@@ -46,7 +46,7 @@ class OutlookWords : public InMarketZone, public testing::Test {
   std::int64_t noon_utc_s_ = utc_from_civil({2025, 6, 11, 13, 0, 0});  // 15:00 local
 };
 
-TEST_F(OutlookWords, WhyNamesTheDearAndTheCheapHourAhead) {
+TEST_F(OutlookWords, WhyNamesTheHighestAndTheLowestHourAhead) {
   EXPECT_THAT(text_of(decided(noon_utc_s_, 9'240)),
               Names("planned 92.40 EUR/MWh 07:00 180.20 16:00 2.10"));
 }

@@ -7,7 +7,7 @@ namespace bess {
 namespace {
 
 /// A reaped child has no process id, and -1 would mean every process of this user: 0 only checks.
-TEST(ChildProcess, ASignalToOneThatHasEndedReachesNobodyElse) {
+TEST(ChildProcess, ASignalToAnEndedChildReachesNoOtherProcess) {
   ChildProcess child({"/bin/cat", "/dev/null"});
   EXPECT_EQ(child.wait(), 0);
   EXPECT_TRUE(child.has_ended());

@@ -183,7 +183,7 @@ TEST_F(DayAheadRows, AConstantDayIsNoResult) {
   }
 }
 
-TEST_F(DayAheadRows, WhatIsNoPriceIsNoneAndWhatIsNoAnswerIsTold) {
+TEST_F(DayAheadRows, InvalidPricesAreOmittedAndInvalidAnswersReported) {
   const DayAheadAnswer nan = parse_day_ahead_json(
       R"({"unix_seconds":[1749600000,"x",1749600900,1749601800],"price":[NaN,2,"3",null]})");
   EXPECT_EQ(nan.trouble, "");

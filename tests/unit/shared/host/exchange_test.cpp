@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kExchangeStart = 1'679'785'200;  // a quarter-hour begins
 const double kOneWayOf90 = std::sqrt(0.9);
 
-/// 8 kWh, read at tick `i` with that power, and ordered `power` from `after_s` on.
+/// 8 kWh, read at tick `i` with that power, and ordered `order_w` from `after_s` on.
 ExchangeSample sample_at(int i, std::int32_t power_w, std::int32_t soc_e4, std::int32_t order_w,
                          float after_s = 6) {
   return {.utc_s = kExchangeStart + i * 120,
@@ -70,7 +70,7 @@ TEST(Exchanges, ABatteryThatIsFullBeforeTheTickTookWhatFitted) {
 }
 
 /// Killed while it charged: the order continues until the battery's timer ends it.
-TEST(Exchanges, AGapIsToldByTheStateOfCharge) {
+TEST(Exchanges, AGapIsFilledByTheStateOfCharge) {
   const std::int32_t after_e4 = 5'000 + 158 + 396;  // 120 s, and 300 s more, at 4 kW
   const ExchangeSums sums =
       exchange_sums({sample_at(0, 4'000, 5'000, 4'000), sample_at(1, 4'000, 5'158, 4'000),
@@ -89,7 +89,7 @@ TEST(Exchanges, ATickThatWasMissedUnderOneOrderIsSeenAtBothEnds) {
   EXPECT_EQ(sums.unseen_wh, 0);
 }
 
-TEST(Exchanges, AClockThatIsSteppedBackBeginsAnew) {
+TEST(Exchanges, AClockStepBackwardsStartsAgain) {
   const ExchangeSums sums =
       exchange_sums({sample_at(10, 4'000, 5'000, 4'000), sample_at(11, 4'000, 5'158, 4'000),
                      sample_at(5, 4'000, 5'316, 4'000), sample_at(6, 4'000, 5'474, 4'000)});

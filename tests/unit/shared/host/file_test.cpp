@@ -93,7 +93,7 @@ TEST_F(File, GzipIsReadByItsContentInOneMemberOrMore) {
   }
 }
 
-TEST_F(File, WhatIsBehindOrMissingOfGzipIsTold) {
+TEST_F(File, TrailingOrMissingGzipDataIsReported) {
   const std::string whole = packed(folder_, "minutes of a day, and some more of them\n");
   for (const std::string& rest :
        {std::string("x"), std::string("2023-01-01T00:00:00Z,1,2\n"), std::string(512, '\0')}) {

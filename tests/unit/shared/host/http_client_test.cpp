@@ -100,7 +100,7 @@ TEST_F(HostOfManyAddresses, OneThatConnectsAndHangsInTlsCostsOneTimeOut) {
   EXPECT_LT(again_s, 1.5);  // the time to connect is 2 s
 }
 
-TEST_F(HostOfManyAddresses, OneThatBreaksOffIsPassedOver) {
+TEST_F(HostOfManyAddresses, OneThatBreaksOffIsSkipped) {
   use({"127.0.0.1", "127.0.0.2", "127.0.0.3"});
   TestServer mute(no_answer, tls_at("127.0.0.1", good_.port()));
   const TestServer plain(
@@ -160,7 +160,7 @@ TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
   EXPECT_EQ(get(request).status, 302);  // in a loop
 }
 
-TEST(HttpClient, AServerThatAsksForLessIsHeard) {
+TEST(HttpClient, AServerThatAsksForLessIsObeyed) {
   TestServer server([](TestConnection& connection, const std::string&) {
     return connection.answer("slow down", "HTTP/1.1 429 No\r\nRetry-After: 600\r\n");
   });
@@ -181,7 +181,7 @@ TEST(HttpClient, StopsWhenItIsAskedTo) {
   EXPECT_LT(took_s, 3);
 }
 
-TEST(HttpClient, AnUnknownNameIsTold) {
+TEST(HttpClient, AnUnknownNameIsReported) {
   fake_resolver::set("gone.example", {});
   EXPECT_EQ(get({.url = "http://gone.example/", .limits = {.deadline_s = 4}}).kind,
             Kind::kUnreachable);

@@ -62,7 +62,7 @@ TEST(Json, OneWholeValueIsRead) {
   EXPECT_TRUE(Json::parse("\xEF\xBB\xBF[]").value().is_list());
 }
 
-TEST(Json, ValuesAreLookedAtWithoutFear) {
+TEST(Json, ValuesOfAnyTypeAreSafeToRead) {
   const Json json = Json::parse(R"({"a": {"b": "c"}, "d": [1, 2.5, "x", false], "e": 4})");
   EXPECT_STREQ(json.value()["a"]["b"].text(), "c");
   EXPECT_FALSE(json.value()["none"]["b"]["c"].exists());

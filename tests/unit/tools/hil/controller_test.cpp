@@ -122,7 +122,7 @@ TEST(Controller, ReachesBeginsRunsAndEnds) {
   EXPECT_GE(last.utc_ns / kNanosecondsPerSecond, hour.state.records()[1].utc_s + kSecondsPerStep);
 }
 
-TEST(Controller, AsksAndTellsNobodyWhereItMayNotRun) {
+TEST(Controller, MakesNoCallsWhereItMayNotRun) {
   QuietHour hour;
   hour.world->may_open = false;
   EXPECT_TRUE(hour.controller->reach());
@@ -142,7 +142,7 @@ TEST(Controller, SaysWhereItLookedForABatteryThatIsNotThere) {
   EXPECT_THAT(hour.world->complaints[0], Names("127.0.0.1:1 85"));
 }
 
-TEST(Controller, SaysThatNoPriceIsThereAndStartsAllTheSame) {
+TEST(Controller, ReportsAMissingPriceAndStartsNevertheless) {
   QuietHour hour("", true, {.fault = MarketFault::kHttp500, .every = 1, .from_s = -1e6});
   EXPECT_TRUE(hour.controller->reach());
   EXPECT_TRUE(hour.controller->begin());

@@ -259,7 +259,7 @@ TEST(Judge, SeesABatteryThatMakesAQuarterHoursPeak) {
   EXPECT_EQ(run.broken(), "");
 }
 
-TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
+TEST(Judge, AttributesAnOrderThatTheSiteCutToTheEdge) {
   HandMade run = with_house("import_w_max = 3000");
   run.scenario.invariants = {"order", "in_time"};
   run.order_of(8).power_w = 2'000;
@@ -281,7 +281,7 @@ TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
 
 /// An order that the tick finds in force is not written again; a rise of the house load some
 /// seconds later cuts it before the judge evaluates it.
-TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
+TEST(Judge, AttributesAnOrderInForceThatWasCutImmediatelyToTheEdge) {
   HandMade run = with_house("import_w_max = 3000");
   run.scenario.invariants = {"order"};
   run.log_cycle(10, 2'000);

@@ -65,7 +65,7 @@ TEST(OutlookScenarios, TheRuleFindsACent) {
   ASSERT_EQ(found.size(), 1U);
 }
 
-TEST(OutlookScenarios, TheRuleFindsWhoKnowsTomorrowBeforeOne) {
+TEST(OutlookScenarios, TheRuleFindsKnowledgeOfTomorrowBeforeOne) {
   const auto found = found_after([](CycleRecord& cycle) {
     if (cycle.outlook.known_quarter_hours <= 96) ++cycle.outlook.known_quarter_hours;
   });

@@ -30,7 +30,7 @@ RealBattery battery() {
           .soc_max_frac = 0.7};
 }
 
-TEST(RealBattery, IsNotDrivenByWhatOnlyASimulatedOneBears) {
+TEST(RealBattery, IsNotDrivenByScenariosForSimulatedOnes) {
   const std::map<std::string, std::string> reasons = {{"bus_silence", "silence"},
                                                       {"edge_killed", "edge_kill"},
                                                       {"edge_handed_over", "edge_hand_over"},
@@ -49,7 +49,7 @@ TEST(RealBattery, IsNotDrivenByWhatOnlyASimulatedOneBears) {
   }
 }
 
-TEST(RealBattery, PutsItsLimitsInPlaceOfTheScenarios) {
+TEST(RealBattery, UsesItsLimitsInsteadOfTheScenarios) {
   const Scenario scenario = on_real_battery(shipped("quiet_hour"), battery());
   EXPECT_EQ(scenario.time_scale, 1);
   EXPECT_EQ(scenario.battery.physics.power_w_max, 500);
@@ -81,7 +81,7 @@ TEST(RealBattery, LimitsAreBrokenByOrderByFlowAndBySoc) {
   EXPECT_EQ(beyond_limits(cycle, battery()), "");
 }
 
-TEST(RealBattery, AReadingStandsForTheCycleThatItEnds) {
+TEST(RealBattery, AReadingBelongsToTheCycleThatItEnds) {
   const CycleRecord cycle{
       .utc_s = 1'200, .has_measurement = true, .measurement = {.soc_e4 = 5'000, .power_w = 600}};
   const std::vector<MinuteRecord> minutes = measured_minutes({cycle, {.utc_s = 1'320}});
@@ -106,7 +106,7 @@ std::string write_line(const char* clock, int start, int power, int seconds, con
       clock, outcome, start, power, seconds);
 }
 
-TEST(RealBattery, WhatItWasToldIsReadOffItsBus) {
+TEST(RealBattery, ItsOrdersAreReadFromItsBus) {
   const TemporaryFolder folder;
   const std::string first = folder.write(
       "first.jsonl", kHead + write_line("00:00:05.000000", 1, 31'500, 300, "") +

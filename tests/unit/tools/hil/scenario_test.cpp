@@ -113,7 +113,7 @@ void expect_refused(const std::vector<Refused>& rows) {
   }
 }
 
-TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
+TEST(Scenarios, AMistakeIsReportedWithItsLine) {
   EXPECT_THAT(refusal("minutes = 60\n"), Names("title"));
   expect_refused({
       {"minuts = 3\n", "s.toml:2"},
@@ -135,7 +135,7 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
   });
 }
 
-TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
+TEST(Scenarios, AMistakeOfTheSiteIsReportedWithItsLine) {
   const std::string site = "[house]\npower_w = 500\n[meter]\nmap = \"simulator\"\n";
   EXPECT_EQ(refusal("title = \"x\"\n" + site), "");
   expect_refused({
@@ -157,7 +157,7 @@ TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
   });
 }
 
-TEST(Scenarios, WhatIsWrongOfWhatPeopleSayIsSaidWithItsLine) {
+TEST(Scenarios, AMistakeInOperatorEventsIsReportedWithItsLine) {
   const std::string event = "[[event]]\nat_min = 1\n";
   expect_refused({
       {event + "does = \"hold\"\nfor_min = 9\n", "s.toml:2 [[event]] power_w"},

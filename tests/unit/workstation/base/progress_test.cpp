@@ -9,7 +9,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(ProgressLine, TellsDoneRateAndWhatIsLeft) {
+TEST(ProgressLine, ShowsDoneRateAndTheRest) {
   EXPECT_EQ(
       progress_line("verify", "contexts", {.done = 120, .total = 420, .rate_per_s = 10}, "", 80),
       "verify: 120/420 contexts (10/s, ETA 30 s)");

@@ -145,7 +145,7 @@ TEST_F(BadTrainCommandLine, ABareCommandShowsItsHelp) {
   EXPECT_EQ(bare.exit_code, 2);
 }
 
-TEST_F(BadTrainCommandLine, TheVersionTellsCommitCompilerAndInstructions) {
+TEST_F(BadTrainCommandLine, TheVersionShowsCommitCompilerAndInstructions) {
   const CommandResult version = run_train({"--version"});
   EXPECT_THAT(version.output, testing::MatchesRegex(
                                   "bess-train [0-9.]+\ncommit [-0-9a-z]+, (g\\+\\+|clang) [0-9].*, "

@@ -88,7 +88,7 @@ TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
               HasSubstr(R"("profit_standard_error":null)"));  // one day gives no spread
 }
 
-TEST_F(EvaluateCli, FittedThresholdsAreTold) {
+TEST_F(EvaluateCli, FittedThresholdsAreReported) {
   EXPECT_THAT(output("--policy rbc-quartile"), Names("rbc-quartile: 23.6304 189.462"));
   EXPECT_THAT(output("--policy rbc --json"), Names("11 179 EUR/MWh"));
 }

@@ -56,7 +56,7 @@ class RulesCli : public testing::Test {
   std::filesystem::path prices_ = folder_.file("prices.csv.gz");
 };
 
-TEST_F(RulesCli, CheckSaysWhomEachExampleBinds) {
+TEST_F(RulesCli, CheckShowsWhatEachExampleBinds) {
   std::string files;
   for (const char* name : kExampleRules) files += " " + example_rule_path(name);
   const std::string by_level = rules_output("check --rules" + files);
@@ -76,7 +76,7 @@ TEST_F(RulesCli, CheckRefusesAContradiction) {
   EXPECT_THROW(rules_output("check --rules " + file + " --policy rbc"), UserError) << "no prices";
 }
 
-TEST_F(RulesCli, CheckCountsWhatAPolicyBreaks) {
+TEST_F(RulesCli, CheckCountsViolationsOfAPolicy) {
   const std::string file = rule_file(
       "[[rule]]\nname = \"dear\"\nprice_min = 100\nat_least = \"idle\"\nprice_max = 1400\n"
       "[[rule]]\nname = \"kept\"\nprice_min = 100\nat_most = \"idle\"\n");
@@ -93,7 +93,7 @@ TEST_F(RulesCli, CheckCountsWhatAPolicyBreaks) {
   EXPECT_GT(number(kept, "visited"), 0);
 }
 
-TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
+TEST_F(RulesCli, PriceShowsEachRuleAloneAndAllTogether) {
   const std::string file = rule_file(
       "[[rule]]\nname = \"no trade\"\nis = \"idle\"\nprice_min = -499\nprice_max = 1499\n"
       "[[rule]]\nname = \"far\"\nprice_min = 1400\nat_most = \"idle\"\n"

@@ -43,7 +43,7 @@ BacktestResults results(double second_day_eur) {
           "made by hand"};
 }
 
-TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
+TEST(BacktestReport, ShowsTheFittingDaysOfEachMonth) {
   BacktestResults fitted = results(5);
   EXPECT_THAT(format_backtest_table(fitted), Names("90 120"));
   EXPECT_THAT(backtest_csv(fitted),
@@ -57,7 +57,7 @@ TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
 
 /// April earned 10 a day more than the first, May 20: with two months the error is 5, regardless of
 /// the days.
-TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
+TEST(BacktestReport, ShowsErrorsByMonthNextToThePlainOnes) {
   BacktestResults fitted = results(10);
   WalkForward& sdp = fitted.policies[1];
   for (std::size_t d = 0; d < 6; ++d) {
@@ -76,7 +76,7 @@ TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
               HasSubstr("<td data-label=\"Gain by month\">5.0</td>"));
 }
 
-TEST(BacktestReport, DaysFromTheSameSocStandInAllThreeWhenAskedFor) {
+TEST(BacktestReport, DaysFromTheSameSocAreInAllThreeOnRequest) {
   BacktestResults asked = results(5);
   const TemporaryFolder folder;
   write_backtest_page(asked, folder.file(""));
@@ -131,7 +131,7 @@ TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
   EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("\"marks\":[]"));
 }
 
-TEST(BacktestReport, MarksStandWhereARegimeBeginsAmongTheDays) {
+TEST(BacktestReport, MarksAreWhereARegimeBeginsAmongTheDays) {
   EXPECT_EQ(regime_marks({"2024-11-24", "2024-11-27", "2025-10-01"}).line(),
             R"([[1,"PICASSO"],[2,"day-ahead in quarter-hours"]])");
   EXPECT_EQ(regime_marks({"2024-11-26", "2024-11-27"}).line(), "[]") << "it began before";

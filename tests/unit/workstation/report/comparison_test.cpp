@@ -96,7 +96,7 @@ TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
 /// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 per
 /// MWh. By hand in day_errors_test.cpp: mean 5, errors 1.958 and 3 by two months, known to within
 /// 71 %.
-TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
+TEST(Comparison, BothErrorsAreNextToProfitAndGain) {
   NamedEvaluation rule{"rule", evaluation_of({0, 0, 0, 0}), {}};
   NamedEvaluation student{"student", evaluation_of({8, 24, 48, 80}), {}};
   const char* const dates[] = {"2023-01-30", "2023-01-31", "2023-02-27", "2023-02-28"};

@@ -135,7 +135,7 @@ TEST(LostMoney, EachCauseAlone) {
   }
 }
 
-TEST(LostMoney, TheMomentIsTheDecisionsNotTheDearOneItself) {
+TEST(LostMoney, TheMomentIsThatOfTheDecisionNotOfTheHighPrice) {
   FunctionPolicy sleeps(asleep), sells_early(early);
   const DayLoss loss = loss_of(dear_day(), {sleeps});
   const LossMoment& moment = loss.moment[static_cast<std::size_t>(LossCause::kDearMissed)];

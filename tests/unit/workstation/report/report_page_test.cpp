@@ -49,7 +49,7 @@ TEST(ReportTables, AProofIncludesTheRules) {
   EXPECT_THAT(proof_sentence(ruled_certificate(7)), Names("7 \"rest\""));
 }
 
-TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
+TEST(ReportTables, RulesAreShownWithTheirScopeAndViolations) {
   const Certificate plain = ruled_certificate(1000);
   const Certificate corrected = ruled_certificate(0);
   RulePrices prices{};
@@ -64,7 +64,7 @@ TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
   EXPECT_EQ(rules_html(&without, &without, ContextKind::kLevel, nullptr), "");
 }
 
-TEST(ReportTables, AFailedProofNamesDemandStateAndMend) {
+TEST(ReportTables, AFailedProofNamesDemandStateAndRemedy) {
   const BrokenDemand broken{{"rest", "always: the action is idle", true, true, 10, 1'234},
                             "charge at class 3 <",
                             "leave more room"};

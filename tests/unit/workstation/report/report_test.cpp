@@ -56,7 +56,7 @@ std::string markup_of(std::string html) {
   return html;
 }
 
-TEST(Report, TheNumbersOfItsPicturesLieBesideThePage) {
+TEST(Report, TheNumbersOfItsPicturesAreNextToThePage) {
   const TemporaryFolder folder;
   const FinishedRun run;
   for (const std::string& name : write_report(run.inputs(), folder.file("run"))) {

@@ -100,7 +100,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   EXPECT_THAT(said({"runs", "compare", whole, out}), Names(whole + " " + out + " +0.0"));
 }
 
-TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
+TEST_F(KilledRun, InterruptedItReportsHowToContinueAndKeepsTheTrainingSoFar) {
   config_ = written("long.toml",
                     "[train]\nmethod = \"c51\"\nsteps = 10000000\nvalidate_every = 1\n"
                     "batch_size = 16\n");
@@ -117,7 +117,7 @@ TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
   }
 }
 
-TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
+TEST_F(KilledRun, AFailedProofIsReportedWithEveryRoundAndNotRepeated) {
   config_ = written("fail.toml", kIdle +
                                      "[correction]\nlow_price_eur_per_mwh = 200\n"
                                      "high_price_eur_per_mwh = 201\n");

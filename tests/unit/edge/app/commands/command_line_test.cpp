@@ -46,7 +46,7 @@ TEST(EdgeWords, EveryCommandHasHelpWithExitCodes) {
   EXPECT_THAT(said_to({"--version"}).text, StartsWith("bess-edge "));
 }
 
-TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
+TEST(EdgeWords, ATypingErrorIsReportedWithASuggestion) {
   const std::pair<std::vector<std::string>, const char*> slips[] = {
       {{"stat"}, "stat status --help bess-edge"},
       {{"stauts"}, "stauts status"},
@@ -75,7 +75,7 @@ TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
   }
 }
 
-TEST(EdgeWords, WhatACommandNeedsIsToldBeforeAFileIsRead) {
+TEST(EdgeWords, MissingArgumentsAreReportedBeforeAFileIsRead) {
   const std::pair<std::vector<std::string>, const char*> incomplete[] = {
       {{"status", "--json", "--prometheus"}, "--json --prometheus"},
       {{"hold", "100"}, "--for --release"},

@@ -170,7 +170,7 @@ TEST_F(Questions, StatusSaysWhomToCall) {
 }
 
 /// Status published by the controller. Old training days are a warning and do not affect health.
-TEST_F(Questions, StatusTellsTheTrainingDays) {
+TEST_F(Questions, StatusShowsTheTrainingDays) {
   const auto published = [&](const char* from, const char* until) {
     RunIdentity identity;
     identity.trained_from = from;

@@ -66,7 +66,7 @@ bool is_published(const HoldWatch& watch, const Hold& hold) {
   return false;
 }
 
-TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
+TEST(HoldWatch, KnowsTheFileImmediatelyAndFollowsIt) {
   const TemporaryFolder folder;
   const std::string path = folder.write("hold", line_of(kHold));
   const auto watch = std::make_unique<HoldWatch>();
@@ -98,7 +98,7 @@ class TwoHolds : public ::testing::Test {
   const Hold other_{.power_w = 3, .until_utc_s = 4};
 };
 
-TEST_F(TwoHolds, TheYoungerWordCounts) {
+TEST_F(TwoHolds, TheNewerHoldCounts) {
   EXPECT_EQ(reading(), HoldReading{});
   put(paths_.state, line_of(kHold), 1);
   EXPECT_EQ(reading(), HoldReading{.hold = kHold}) << "memory is empty after a boot";

@@ -17,7 +17,7 @@ struct NoteCase {
   const char* codes;
 };
 
-TEST(LevelNote, SaysHowTheLevelWasComeBy) {
+TEST(LevelNote, NamesTheSourceOfTheLevel) {
   using enum LevelSource;
   const NoteCase cases[] = {
       {{.start = {kLevel, kLog}, .hours_wanted = 72}, "-84.20"},

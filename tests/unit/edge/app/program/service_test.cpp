@@ -128,7 +128,7 @@ CycleRecord record_with_missed_ticks(std::int32_t missed_ticks) {
   return record;
 }
 
-TEST(ServiceNotify, SpeaksToAFileSocketAndToAnAbstractOne) {
+TEST(ServiceNotify, SendsToAFileSocketAndToAnAbstractOne) {
   const TemporaryFolder folder;
   const std::string abstract = "@bess-test-" + std::to_string(getpid());
   for (const std::string& name : {folder.file("notify"), abstract}) {

@@ -16,7 +16,7 @@ struct ThresholdCase {
 };
 
 /// The text depends on who decides between them: the guard alone, the student alone, or neither.
-TEST(ThresholdNote, NamesBothAndWhoAnswersBetweenThem) {
+TEST(ThresholdNote, NamesBothAndWhoDecidesBetweenThem) {
   const ThresholdCase cases[] = {
       {{-120, 640}, {-120, 640}, "-120 640"},
       {{-501, 1501}, {-501, 1501}, "-501 1501"},  // outside the lattice

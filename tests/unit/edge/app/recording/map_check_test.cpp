@@ -154,7 +154,7 @@ TEST_F(MapCheckTest, AScaleOfTheStateOfChargeWithinItsRangeShows) {
   EXPECT_THAT(findings(), Names("10th scale capacity"));
 }
 
-TEST_F(MapCheckTest, AStateOfChargeThatStandsStillShows) {
+TEST_F(MapCheckTest, AFrozenStateOfChargeShows) {
   load();
   drive(0);
   EXPECT_EQ(named(), "soc");
@@ -187,7 +187,7 @@ TEST_F(MapCheckTest, WhatWasNeverAnsweredIsNamed) {
   EXPECT_THAT(finding("capacity"), AllOf(Names("1"), testing::Ne(never_asked)));
 }
 
-TEST_F(MapCheckTest, AnIdentityCheckThatFailsIsToldWithItsHint) {
+TEST_F(MapCheckTest, AFailedIdentityCheckIsReportedWithItsHint) {
   load("min = 0, max = 10000, hint", "min = 5000, max = 10000, hint");
   add(3, 0, {435, 0, 0, 8'000});
   EXPECT_THAT(finding("soc"), Names("4350"));

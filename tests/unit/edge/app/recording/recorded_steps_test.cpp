@@ -73,7 +73,7 @@ class RecordedStepsTest : public ::testing::Test {
   int ordered_w_ = 0;
 };
 
-TEST_F(RecordedStepsTest, TellDelayRampAndLagWithinThreePercent) {
+TEST_F(RecordedStepsTest, ShowDelayRampAndLagWithinThreePercent) {
   const PowerResponse cases[] = {
       {.delay_s = 2, .ramp_w_per_s = 500, .time_constant_s = 3},
       {.delay_s = 4, .ramp_w_per_s = 0, .time_constant_s = 5},

@@ -79,7 +79,7 @@ TEST_F(Recording, HidesWhatIsPrivateAndWhatTheMapDoesNotName) {
   EXPECT_THAT(masked(elsewhere).values(), ElementsAre(0));
 }
 
-TEST(RecordingMask, KeepsTheWalkOverModelsAndWhatLiesInThem) {
+TEST(RecordingMask, KeepsTheWalkOverModelsAndTheirContents) {
   const RegisterMap map = load_shipped_map({"sunspec_124", ""});
   RecordingMask mask(map, -1);
   const auto kept = [&](std::uint16_t address, std::vector<std::uint16_t> values) {
@@ -95,7 +95,7 @@ TEST(RecordingMask, KeepsTheWalkOverModelsAndWhatLiesInThem) {
   EXPECT_THAT(kept(static_cast<std::uint16_t>(40'070 + soc.address), {4'350}), ElementsAre(4'350));
 }
 
-TEST_F(Recording, IsWholeUnderItsNameAndBesideItUntilThen) {
+TEST_F(Recording, IsCompleteUnderItsNameAndAPartFileUntilThen) {
   const std::string path = folder_.file("device.jsonl");
   ExchangeRecorder recorder;
   ASSERT_TRUE(recorder.start(path.c_str(), head_, map_, clock_, error_)) << error_.c_str();

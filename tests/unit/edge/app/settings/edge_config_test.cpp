@@ -74,7 +74,7 @@ TEST_F(ConfigFile, ReadsEveryUnit) {
 
 /// They bound the effect of a wrong price source, and real prices never come near:
 /// edge/prices/record/README.md.
-TEST_F(ConfigFile, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
+TEST_F(ConfigFile, CyclesAndReversalsAreBoundedByDefault) {
   load_good(valid_text());
   EXPECT_EQ(config_->control.cycles_per_day_max_e4, 60'000);
   EXPECT_EQ(config_->control.reversals_per_hour_max, 20);
@@ -136,7 +136,7 @@ TEST_F(ConfigFile, StateLogAndMetricsPathsAreRelativeToTheFile) {
 }
 
 /// A relative path on the command line must be prefixed only once.
-TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateBesideIt) {
+TEST_F(ConfigFile, ARelativeConfigurationKeepsItsStateNextToIt) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::create_directory(folder_.file("etc"));
   folder_.write("etc/edge.toml", valid_text());
@@ -226,7 +226,7 @@ TEST_F(ConfigFile, EveryMistakeIsOneClearLineWithItsPlace) {
   }
 }
 
-TEST_F(ConfigFile, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
+TEST_F(ConfigFile, ReadsThePriceLevelOfAFirstStart) {
   load_good(valid_text());
   EXPECT_EQ(config_->price.history.hours, 72);
   EXPECT_TRUE(config_->price.history.url.empty());

@@ -28,7 +28,7 @@ bool load_pieces(const Pieces& pieces, EdgeConfig& config, std::string& error) {
   return load_edge_config(folder.write("edge.toml", toml_of(pieces)), config, error);
 }
 
-TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
+TEST(PeopleConfig, WithoutKeysNothingIsRequested) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_pieces({}, config, error)) << error;
@@ -36,7 +36,7 @@ TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
   EXPECT_EQ(config.control.full_charge_every_days, 0);
 }
 
-TEST(PeopleConfig, ReadsWhatPeopleWant) {
+TEST(PeopleConfig, ReadsTheRequestsOfTheOperator) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\n",
@@ -103,7 +103,7 @@ TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
   }
 }
 
-TEST(WishesNote, SaysWhatIsWantedAndNothingElse) {
+TEST(WishesNote, ListsTheRequestsAndNothingElse) {
   set_market_time_zone();
   constexpr std::int64_t kNow = 1'679'875'320;  // 02:02 in Brussels
   ControlSettings control;

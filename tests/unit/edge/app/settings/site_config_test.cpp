@@ -67,14 +67,14 @@ TEST(SiteConfig, TheBatterysGridPointIsReadWithItsMeasurements) {
   EXPECT_TRUE(std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end());
 }
 
-TEST(SiteConfig, TheLimitsFileLiesBesideTheConfiguration) {
+TEST(SiteConfig, TheLimitsFileIsNextToTheConfiguration) {
   const Loaded loaded("[limits]\nfile = \"limit\"\non_timeout = \"idle\"\n");
   ASSERT_TRUE(loaded.is_good) << loaded.error;
   EXPECT_EQ(loaded.config->site.limit_file, loaded.folder.file("limit"));
   EXPECT_TRUE(loaded.config->site.settings.idle_after_timeout);
 }
 
-TEST(SiteConfig, EveryMistakeSaysItsMend) {
+TEST(SiteConfig, EveryMistakeNamesItsCorrection) {
   const std::pair<std::string, const char*> mistakes[] = {
       {"[meter]\nimport_w_max = 1000\n", "[meter] map"},
       {"[meter]\nmap = \"none.toml\"\n", "none.toml share/bess/meters"},

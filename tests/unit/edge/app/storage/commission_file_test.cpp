@@ -112,7 +112,7 @@ class CommissionCopies : public CommissionFile {
   std::string text_;
 };
 
-TEST_F(CommissionCopies, AnyFlippedByteOfAnyPlaceIsToldAndMended) {
+TEST_F(CommissionCopies, AnyFlippedByteOfAnyCopyIsReportedAndRepaired) {
   expect_all_whole();
   for (const char* place : kPlaces) {
     for (std::size_t i = 0; i < text_.size(); i += 7) {

@@ -32,7 +32,7 @@ class FileOwner : public ::testing::Test {
   FileMessage error_;
 };
 
-TEST_F(FileOwner, AStrangersLockIsRefusedWithTheMend) {
+TEST_F(FileOwner, AnotherUsersLockIsRefusedWithTheRemedy) {
   const std::string path = strangers("bess-127.0.0.1_502_unit_85.lock");
   InstanceLock lock;
   EXPECT_FALSE(lock.take(path.c_str(), "the battery", error_));
@@ -40,7 +40,7 @@ TEST_F(FileOwner, AStrangersLockIsRefusedWithTheMend) {
   EXPECT_EQ(access(path.c_str(), F_OK), 0) << "not ours to remove";
 }
 
-TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
+TEST_F(FileOwner, AnotherUsersStatusOrLogIsRefusedBeforeTheStart) {
   for (const char* name : {"status.bin", "decisions.ring"}) {
     const TemporaryFolder state;
     EdgeConfig config;
@@ -55,7 +55,7 @@ TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
 }
 
 /// Anyone who may open a file can hold its lock, and so prevent the controller from starting.
-TEST_F(FileOwner, NobodyElseMayOpenTheLock) {
+TEST_F(FileOwner, NoOtherUserMayOpenTheLock) {
   const std::string path = folder_.write("lock", "");
   ASSERT_EQ(chmod(path.c_str(), 0666), 0);  // as an older version made it
   ASSERT_EQ(chmod(folder_.file("").c_str(), 0755), 0);

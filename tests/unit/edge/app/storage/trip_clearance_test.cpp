@@ -74,7 +74,7 @@ class TwoPlaces : public ::testing::Test {
   BothPlaces paths_;
 };
 
-TEST_F(TwoPlaces, TheWordOfEitherIsEnough) {
+TEST_F(TwoPlaces, AnEntryInEitherIsEnough) {
   EXPECT_FALSE(is_trip_cleared(paths_, kTrip));
   for (const FixedText<639>* path : {&paths_.state, &paths_.run}) {
     ASSERT_TRUE(clear_trip_of(path->c_str(), kTrip));
@@ -85,7 +85,7 @@ TEST_F(TwoPlaces, TheWordOfEitherIsEnough) {
   }
 }
 
-TEST_F(TwoPlaces, WhatCannotBeReadIsNoWordAndIsWrittenAnew) {
+TEST_F(TwoPlaces, AnUnreadableFileIsNoEntryAndIsRewritten) {
   folder_.write("state", "nonsense");
   EXPECT_TRUE(read_cleared(paths_.state.c_str()).unreadable);
   EXPECT_FALSE(is_trip_cleared(paths_, kTrip));

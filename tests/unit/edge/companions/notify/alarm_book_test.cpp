@@ -23,7 +23,7 @@ class AlarmBook {
   std::vector<Alarm> alarms_;
 };
 
-TEST(Alarms, ATroubleIsToldOnceAndItsEndOnce) {
+TEST(Alarms, AFaultIsReportedOnceAndItsEndOnce) {
   AlarmBook book(300);
   int told = 0;
   for (int s = 0; s < 3'600; s += 30) {
@@ -50,7 +50,7 @@ TEST(Alarms, ATroubleIsToldOnceAndItsEndOnce) {
   EXPECT_TRUE(book.alarms().empty());
 }
 
-TEST(Alarms, WhatPassesSoonIsNotTold) {
+TEST(Alarms, AShortFaultIsNotReported) {
   AlarmBook book(300);
   for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(book.observe({kLink}, s).empty());
   for (int s = 300; s <= 1'200; s += 30) EXPECT_TRUE(book.observe({}, s).empty());
@@ -69,7 +69,7 @@ TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
   EXPECT_EQ(told, 1);
 }
 
-TEST(Alarms, ARestartRepeatsNothingAndTellsTheEnd) {
+TEST(Alarms, ARestartRepeatsNothingAndReportsTheEnd) {
   AlarmBook before(300);
   before.observe({kLink, kPrices}, 0);
   EXPECT_EQ(before.observe({kLink, kPrices}, 300).size(), 2U);
@@ -90,7 +90,7 @@ TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
   EXPECT_EQ(book.observe({}, 800).size(), 1U);
 }
 
-TEST(Alarms, WithoutPatienceEverythingIsToldAtOnce) {
+TEST(Alarms, WithoutADelayEverythingIsReportedImmediately) {
   AlarmBook book(0);
   EXPECT_EQ(book.observe({kLink}, 10).size(), 1U);
   EXPECT_TRUE(book.observe({kLink}, 10).empty());

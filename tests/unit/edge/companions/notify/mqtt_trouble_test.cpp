@@ -42,7 +42,7 @@ class MqttTrouble : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(MqttTrouble, AGoodCertificateIsTakenAndEachBadOneIsToldByItsCause) {
+TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   const DatedCertificate other("IP:127.0.0.1", -kDayS, kDayS, "another CA");
   const DatedCertificate renewed("IP:127.0.0.1", -kDayS, kDayS);  // of the same name, another key

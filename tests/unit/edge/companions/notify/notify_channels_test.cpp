@@ -95,7 +95,7 @@ TEST_F(Channels, FortyFiveSecondsAreFortyFiveSeconds) {
 
 /// The broker hangs, disappears and returns: each event arrives once and in order, and the command
 /// continues to run.
-TEST_F(Channels, ABrokerThatComesAndGoesIsToldEverythingOnce) {
+TEST_F(Channels, AnIntermittentBrokerReceivesEverythingOnce) {
   use_command();
   Running running(*this);
   running.broker.freeze();
@@ -199,7 +199,7 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
 }
 
 /// Without storage, alarms are still reported, and so is the storage fault.
-TEST_F(Channels, ANotifierThatCannotLockStillTells) {
+TEST_F(Channels, ANotifierThatCannotLockStillReports) {
   const std::string file =
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
                                      settings_.program + "\"\n");

@@ -158,7 +158,7 @@ TEST(ChildProgram, WhatDoesNotEndIsKilledWithItsChildren) {
   EXPECT_THAT(run_program({"/no/such"}, "", 100).trouble, HasSubstr("cannot be started: No such"));
 }
 
-TEST(ChildProgram, IsHeardWithItsErrors) {
+TEST(ChildProgram, IsReadWithItsErrors) {
   const ProgramResult result =
       run_and_hear({"sh", "-c", "echo said; echo first >&2; echo last >&2; exit 7"}, 10);
   EXPECT_EQ(result.output, "said\n");
@@ -289,7 +289,7 @@ TEST_F(AlarmCommand, NothingInATextIsReadByTheShell) {
   EXPECT_FALSE(std::filesystem::exists(folder_.file("owned")));
 }
 
-TEST_F(AlarmCommand, ThatFailsHangsOrIsNoneIsTold) {
+TEST_F(AlarmCommand, ThatFailsHangsOrIsMissingIsReported) {
   EXPECT_THAT(run("exit 3"), HasSubstr("exit code 3"));
   EXPECT_THAT(run("/no/such/program"), HasSubstr("exit code 127"));
   settings_.command_ms_max = 200;

@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
+TEST_F(Rounds, AnAlarmIsReportedOnceAndItsEndOnceAlsoOverRestarts) {
   use_command();
   set_status("degraded", kReason);
   for (int s = 0; s <= 1'200; s += 30) round_of_its_own(settings_, kNow + s);  // each a restart
@@ -30,7 +30,7 @@ TEST_F(Rounds, AnAlarmIsToldOnceAndItsEndOnceAlsoOverRestarts) {
 
 /// Raised and cleared in a drawn order, while the command fails and the notifier restarts at
 /// random: each alarm and each end is reported once, alternating, and none is missing.
-TEST_F(Rounds, AnyOrderOfAlarmsIsToldOnceForEachRaiseAndEachClear) {
+TEST_F(Rounds, AnyOrderOfAlarmsIsReportedOnceForEachRaiseAndEachClear) {
   constexpr std::uint32_t kSeed = 20'261'128;
   constexpr int kKinds = 4;
   const std::string kinds = "ABCD";
@@ -92,7 +92,7 @@ TEST_F(Rounds, TheQueueForTheCommandIsBounded) {
   EXPECT_EQ(pending().front().key, "ab");
 }
 
-TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
+TEST_F(Rounds, TheDayIsReportedWhenTheNextBegins) {
   use_command();
   settings_.program = write_script("bess-edge", R"(case "$*" in
 "earned today --json --config edge.toml") cat )" + folder_.file("today") +

@@ -87,7 +87,7 @@ class PageSettingsTest : public ::testing::Test {
   PageSettings settings_;
 };
 
-TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
+TEST_F(PageSettingsTest, AMistakeNamesFileLineAndCorrection) {
   EXPECT_EQ(error_of("port = 80\nhosts = [\"a.example\"]\n"), "");
   EXPECT_EQ(error_of(""), "");
   const std::pair<const char*, const char*> bad[] = {

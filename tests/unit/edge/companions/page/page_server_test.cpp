@@ -165,7 +165,7 @@ TEST_F(PageServerTest, AForeignNameIsNotAnswered) {
 }
 
 /// A controller that gives no answer is reported, without affecting other parts.
-TEST_F(PageServerTest, AnAbsentControllerIsTold) {
+TEST_F(PageServerTest, AnAbsentControllerIsReported) {
   PageSettings settings = site_.settings();
   settings.program = site_.folder.file("not there");
   serve(settings);
@@ -182,7 +182,7 @@ TEST_F(PageServerTest, WhatIsNoJsonIsNoAnswer) {
 }
 
 /// While a command runs the previous answer remains, with its age; then there is none.
-TEST_F(PageServerTest, AHangingControllerIsTold) {
+TEST_F(PageServerTest, AHangingControllerIsReported) {
   const std::string hangs = site_.folder.file("hangs");
   PageSettings settings = with_program("[ ! -e '" + hangs + "' ] || sleep 60\necho '{}'\n");
   settings.refresh_s = 1;
@@ -200,7 +200,7 @@ TEST_F(PageServerTest, AHangingControllerIsTold) {
   EXPECT_NE(trouble(waited), "");
 }
 
-TEST_F(PageServerTest, ManyWhoLookAtOnceAskTheControllerOnce) {
+TEST_F(PageServerTest, ManyParallelReadersAskTheControllerOnce) {
   PageSettings settings = with_program("echo \"$1\" >> " + site_.folder.file("asked") +
                                        "\nexec " BESS_EDGE_PROGRAM " \"$@\"\n");
   settings.refresh_s = 600;
@@ -223,7 +223,7 @@ TEST_F(PageServerTest, ManyWhoLookAtOnceAskTheControllerOnce) {
 
 /// Sixty connections of one address, silent, with half a header, or with a byte now and then: the
 /// page is served nevertheless.
-TEST_F(PageServerTest, HalfOpenConnectionsKeepNobodyWaiting) {
+TEST_F(PageServerTest, HalfOpenConnectionsDelayNoClient) {
   using std::chrono::steady_clock;
   serve();
   std::vector<std::unique_ptr<FileDescriptor>> rude;

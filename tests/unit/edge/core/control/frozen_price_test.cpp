@@ -20,7 +20,7 @@ class Rows {
   std::int64_t minute_utc_s = kFirstMinute;
 };
 
-TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
+TEST(FrozenPrice, IsReportedAfterHalfAnHourAndNoPriceAfterThree) {
   Rows rows;
   rows.add(15, 5'550);
   EXPECT_EQ(rows.frozen.price().unchanged_s, 28 * 60);
@@ -73,7 +73,7 @@ TEST(FrozenPrice, AnOutageCountsAsOneStepAndAFewMinutes) {
   EXPECT_TRUE(rows.frozen.is_frozen());
 }
 
-TEST(FrozenPrice, ARestartDoesNotThawIt) {
+TEST(FrozenPrice, ARestartDoesNotResetIt) {
   Rows rows;
   for (int run = 0; run < 6; ++run) {
     FrozenPrice next{FrozenPriceSettings{}};
@@ -114,7 +114,7 @@ Rows rows_among(int values, int each, int rows) {
   return r;
 }
 
-TEST(FrozenPrice, ToAndFroAmongFourValuesIsToldAfterTwoHoursAndNoneAfterSevenAndAHalf) {
+TEST(FrozenPrice, FourAlternatingValuesAreReportedAfterTwoHoursAndNoPriceAfterSevenAndAHalf) {
   for (const int values : {2, 3, 4}) {
     for (const int each : {1, 2, 7}) {
       EXPECT_FALSE(rows_among(values, each, 60).frozen.is_frozen()) << values << ' ' << each;
@@ -127,7 +127,7 @@ TEST(FrozenPrice, ToAndFroAmongFourValuesIsToldAfterTwoHoursAndNoneAfterSevenAnd
   EXPECT_FALSE(rows_among(5, 7, 2'000).frozen.is_frozen());
 }
 
-TEST(FrozenPrice, AFifthValueThawsItAndTheOthersCountFromWhenTheyWereAlone) {
+TEST(FrozenPrice, AFifthValueResetsItAndTheOthersCountFromWhenTheyWereAlone) {
   Rows rows = rows_among(4, 1, 226);  // ends with the second of the four
   rows.add(1, 9'999);
   EXPECT_FALSE(rows.frozen.is_frozen() || rows.frozen.is_no_price());
@@ -137,7 +137,7 @@ TEST(FrozenPrice, AFifthValueThawsItAndTheOthersCountFromWhenTheyWereAlone) {
   EXPECT_TRUE(rows.frozen.is_frozen());
 }
 
-TEST(FrozenPrice, WhatStoodStillForHoursAndMovesIsNoToAndFro) {
+TEST(FrozenPrice, APriceThatMovesAfterHoursIsNotAlternating) {
   for (const int rows_frozen : {16, 91, 1'000}) {
     Rows rows;
     for (int i = 0; i < 40; ++i) rows.add(1, 5'000 + i % 3);

@@ -46,7 +46,7 @@ TEST(GuardRules, CapThePowerBothWays) {
          {.power_w = 2'000'000'000});
 }
 
-TEST(GuardRules, StandAboveThresholdsAndFullCharges) {
+TEST(GuardRules, OverrideThresholdsAndFullCharges) {
   GuardInputs in = ruled(Action::kIdle, {kNoCharge, 1000});
   in.price_centi_eur_per_mwh = -50'000;
   expect(in, 0, Reason::kRule);
@@ -55,7 +55,7 @@ TEST(GuardRules, StandAboveThresholdsAndFullCharges) {
   expect(in, 0, Reason::kRule, {.full_charge_power_w = 2'000});
 }
 
-TEST(GuardRules, StandBelowHoldsLimitsAndStopReasons) {
+TEST(GuardRules, YieldToHoldsLimitsAndStopReasons) {
   GuardInputs in = ruled(Action::kIdle, {action_bit(Action::kDischarge), 1000});
   expect(in, -4'000, Reason::kRule);
   in.reserve_soc_e4 = 6'000;

@@ -41,7 +41,7 @@ int given_back_after(const std::function<Fate(int)>& fate, bool yields = true, i
   return 0;
 }
 
-TEST(LostOrders, WhoComesAndGoesIsFoundAsWell) {
+TEST(LostOrders, AnIntermittentControllerIsFoundAsWell) {
   for (const Fate lost : {Fate::kReplaced, Fate::kEnded}) {
     const auto every = [lost](int k) {
       return [lost, k](int i) { return i % k == 0 ? lost : Fate::kHolds; };
@@ -93,7 +93,7 @@ TEST(LostOrders, AnOrderThatWasSeenToHoldCanStillBeLost) {
   EXPECT_EQ(orders.replaced(), 1);
 }
 
-TEST(LostOrders, WhatNobodyMeantIsNoFinding) {
+TEST(LostOrders, UnintendedEndsAreNoFinding) {
   struct Case {
     const char* name;
     std::int32_t ordered_w;
@@ -166,7 +166,7 @@ TEST(LostOrders, InsistsForAnHourAndAfterThatOnlyAgainstFew) {
   EXPECT_EQ(given_back_after(every(3), false), 0) << "two of three orders hold: it goes on";
 }
 
-TEST(LostOrders, TheNextTryIsGivenUpSoonerUntilOrdersHaveHeld) {
+TEST(LostOrders, TheNextTryEndsSoonerUntilOrdersHaveLasted) {
   LostOrders orders{ResponseSettings{}};
   int i = 0;
   const auto lose_until_given_up = [&] {

@@ -56,7 +56,7 @@ struct Connection {
   }
 };
 
-TEST(MeterWitness, OneContradictionIsTakenBackAtOnceAndForgiven) {
+TEST(MeterWitness, OneContradictionIsWithdrawnImmediatelyAndForgiven) {
   Connection c;
   c.cycles(6);
   c.order(4'000);
@@ -140,7 +140,7 @@ TEST(MeterWitness, AFindingIsTestedAfterItsPauseAndEnds) {
   EXPECT_EQ(c.witness.power_w_max(c.utc_s), kAnyPowerW);
 }
 
-TEST(MeterWitness, OneThatStillLiesIsPausedForLongerEachTime) {
+TEST(MeterWitness, OneThatStaysWrongIsPausedForLongerEachTime) {
   Connection c;
   c.meter = [](double w) { return -w; };
   c.cycles(4);
@@ -196,7 +196,7 @@ TEST(MeterWitness, NothingIsJudgedOfABatteryInItsOwnModeOrWithoutPower) {
   EXPECT_EQ(at_rest.witness.trust().doubt, 0);
 }
 
-TEST(MeterWitness, MayBeToldNotToJudge) {
+TEST(MeterWitness, CanBeDisabled) {
   Connection c;
   c.witness = MeterWitness({.judges = false});
   c.meter = [](double) { return 400.0; };

@@ -148,7 +148,7 @@ TEST(FullCharge, OffNeverWantsAnything) {
   EXPECT_EQ(charge.wish(-50'000, {}), FullChargeWish::kNone);
 }
 
-TEST(FullCharge, ARestartGoesOnCounting) {
+TEST(FullCharge, ARestartContinuesTheCount) {
   set_market_time_zone();
   const std::int32_t today = local_day_number(local_minute_of(kNow));
   EXPECT_EQ(last_full_day_of(kNow, 6), today - 6);
@@ -168,7 +168,7 @@ GuardDecision decide(const GuardInputs& in, const GuardSettings& settings = kSet
   return SafetyGuard(settings).decide(in);
 }
 
-TEST(GuardOfHolds, StandsForTheStudentTheThresholdsAndTheNeedOfAPrice) {
+TEST(GuardOfHolds, ReplacesTheStudentTheThresholdsAndTheNeedOfAPrice) {
   GuardInputs in = healthy();
   in.held = true;
   in.held_power_w = -1'500;
@@ -246,7 +246,7 @@ TEST(GuardOfTheReserve, SaysEmptyBelowSocMin) {
   expect(decide(in), 0, Reason::kSocEmpty);
 }
 
-TEST(GuardOfFullCharges, StandsForTheStudentBetweenTheThresholds) {
+TEST(GuardOfFullCharges, ReplacesTheStudentBetweenTheThresholds) {
   GuardInputs in = healthy(Action::kDischarge);
   in.full_charge = FullChargeWish::kNoDischarge;
   expect(decide(in), 0, Reason::kFullCharge);

@@ -55,7 +55,7 @@ TEST(RecalledTime, WithoutAnOrderIsTheClocks) {
   EXPECT_EQ(elapsed_s(own, record_at(1'440, 4'000, 117)), 120);
 }
 
-TEST(RecalledTime, GoesOnAheadAfterAStep) {
+TEST(RecalledTime, ContinuesAheadAfterAStep) {
   RecalledTime time;
   time.steady_s(record_at(1'200, 4'000, 117), kLeadS);
   time.steady_s(record_at(1'320, 4'000, 307), kLeadS);

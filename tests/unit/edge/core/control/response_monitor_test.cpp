@@ -98,7 +98,7 @@ TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
   EXPECT_EQ(after_first_readings(-1'000, 1'900, 117), Reason::kWrongDirection);
 }
 
-TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {
+TEST(ResponseMonitor, LessThanOrderedIsReportedWithoutAStop) {
   MonitoredSite site;
   for (int i = 0; i < 8; ++i) site.step(4'000, 1'200);
   EXPECT_EQ(site.monitor.trip(), std::nullopt);
@@ -165,7 +165,7 @@ TEST(ResponseMonitor, LimitsThatAllowNothingAreCounted) {
   EXPECT_EQ(site.monitor.findings().locked_readings, 0);
 }
 
-TEST(ResponseMonitor, ASlowRampIsToldAndNoFault) {
+TEST(ResponseMonitor, ASlowRampIsReportedAndNoFault) {
   ResponseMonitor monitor{ResponseSettings{}};
   double power_w = 0;
   for (int i = 0; i < 40; ++i) {
@@ -310,7 +310,7 @@ TEST(ResponseMonitor, AnOrderThatIsReadTwiceOnItsWayIsOnItsWay) {
 }
 
 /// 30 W/s, read at -2488 W and ordered back a minute later, when it had got to -4000 W.
-TEST(ResponseMonitor, WhatWasOnItsWayGoesOnUntilTheNextOrder) {
+TEST(ResponseMonitor, ATransitionContinuesUntilTheNextOrder) {
   for (const bool is_on_its_way : {true, false}) {
     ShortCycles cycles;
     for (int i = 0; i < 4; ++i) {

@@ -58,7 +58,7 @@ TEST(ReversalCap, WithoutACapNothingIsBarred) {
 }
 
 /// A restart must not allow a wrong source another hour's reversals.
-TEST(ReversalCap, ARestartGoesOnCounting) {
+TEST(ReversalCap, ARestartContinuesTheCount) {
   Orders before(3);
   for (const std::int32_t power_w : {1, -1, 1, -1}) before.order(power_w);
   ReversalCap after(3);

@@ -169,7 +169,7 @@ TEST(SafetyGuard, PriceAgeAndQuarterHour) {
   EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
 }
 
-TEST(SafetyGuard, WhatAnOldPriceHasBecomeStandsInForItsTimeAlone) {
+TEST(SafetyGuard, TheEstimateOfAnOldPriceCountsForItsTimeOnly) {
   GuardSettings settings;
   settings.stand_in_s_max = 3'600;
   const SafetyGuard guard(settings);
@@ -197,7 +197,7 @@ TEST(SafetyGuard, WhatAnOldPriceHasBecomeStandsInForItsTimeAlone) {
   EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kNoPrice);
 }
 
-TEST(SafetyGuard, APriceOfTwoQuarterHoursAgoMayStandInHoweverYoung) {
+TEST(SafetyGuard, APriceOfTwoQuarterHoursAgoMayBeEstimatedAtAnyAge) {
   GuardSettings settings;
   settings.price_age_s_max = 1'800;
   settings.stand_in_s_max = 600;

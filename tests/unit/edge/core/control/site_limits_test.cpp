@@ -43,7 +43,7 @@ TEST(QuarterHourEnergy, WhatWasNotMeasuredCountsAsTheCapOrMore) {
   EXPECT_EQ(gap.at(kQuarter + 31).battery_ws, 31 * 1'000);
 }
 
-TEST(QuarterHourEnergy, ARestartGoesOnFromTheLog) {
+TEST(QuarterHourEnergy, ARestartContinuesFromTheLog) {
   QuarterHourEnergy energy(2'500, 30);
   energy.restore(kQuarter + 120, 100, 20);
   energy.add(kQuarter + 140, 300, 0);
@@ -196,7 +196,7 @@ TEST(SiteLimits, AnOutsideLimitEndsByItself) {
   EXPECT_EQ(t.site.report(kQuarter + 60).limit_status, Status::kOk);
 }
 
-TEST(SiteLimits, AControllerThatMustSpeakLeavesTheBatteryIdleWhenItDoesNot) {
+TEST(SiteLimits, AMissingRequiredLimitLeavesTheBatteryIdle) {
   SiteSettings settings = limited();
   settings.idle_after_timeout = true;
   SiteUnderTest t(settings);

@@ -83,7 +83,7 @@ TEST(SocMonitor, AnEndExcusesNoMoreThanACountCanBeWrongBy) {
   EXPECT_LE(empty.readings_until(has_tripped, discharge), 25);
 }
 
-TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
+TEST(SocMonitor, ASocThatIsRecalibratedAtItsEndsIsHealthy) {
   for (const double error : {-0.08, -0.04, 0.04, 0.08}) {
     CountedBattery battery(0.5);
     double wrong = 0;  // current error of the count
@@ -104,7 +104,7 @@ TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
   }
 }
 
-TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
+TEST(SocMonitor, ALossAtRestIsReportedShownOrHidden) {
   CountedBattery hidden(0.6);
   hidden.flow = [](double) { return -1'000.0; };
   hidden.meter = [](double, double) { return 0.0; };
@@ -127,7 +127,7 @@ TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
 }
 
 /// One cause, one line: 60 % too much charge is not also a gain.
-TEST(SocMonitor, ASocOfAnotherScaleIsNoGainBesides) {
+TEST(SocMonitor, ASocOfAnotherScaleIsNotAlsoAGain) {
   CountedBattery scaled(0.1);
   scaled.count = [](double stored) { return 0.1 + (stored - 0.1) * 1.7; };
   bool is_told = false;
@@ -233,7 +233,7 @@ struct SeldomBattery {
   }
 };
 
-TEST(SeldomSoc, HonestIsLeftAloneWhateverIsOrdered) {
+TEST(SeldomSoc, AHealthyOneIsAcceptedWhateverIsOrdered) {
   std::mt19937_64 random(5);
   for (const std::int32_t refresh_s : {90, 110, 120, 180, 300, 600}) {
     SeldomBattery battery(refresh_s);

@@ -116,7 +116,7 @@ TEST(Supervision, YieldsToAnotherMasterForAsLongAsItOrders) {
   EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
-TEST(Supervision, InsistsOnItsOrdersWhereItIsTold) {
+TEST(Supervision, InsistsOnItsOrdersWhenConfigured) {
   SupervisionSettings settings = kSettings;
   settings.yields_to_other_master = false;
   Supervision supervision(settings);

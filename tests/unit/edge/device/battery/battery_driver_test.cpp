@@ -138,7 +138,7 @@ TEST_F(DriverTest, AnotherMastersValueIsSeenAndNotFedAgainst) {
 }
 
 /// Device registers: 10 enable, 11 power, 12 time.
-TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
+TEST_F(DriverTest, AnOrderThatEndsEarlyIsReportedByItsTraces) {
   struct Case {
     const char* name;
     std::vector<std::pair<int, int>> registers;
@@ -173,7 +173,7 @@ TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
   }
 }
 
-TEST_F(DriverTest, AnotherModeThanTheReleasesIsSomebodysIntention) {
+TEST_F(DriverTest, AnotherModeThanTheReleasesComesFromAnotherController) {
   MapUnderTest& t = with({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
                           {"release = [", "release = [\"mode = 1\", "},
                           {"active = [", "active = [\"mode = 3\", "}});
@@ -338,7 +338,7 @@ TEST_F(DriverTest, ItCanAlwaysLetGoOfWhatItKnew) {
   EXPECT_EQ(t.device.holding[10], 0);
 }
 
-TEST_F(DriverTest, AStrangerIsReleasedOnlyWhenAPersonInsists) {
+TEST_F(DriverTest, AForeignOrderIsReleasedOnlyOnRequest) {
   MapUnderTest& t = with(kIdentity);
   t.device.set(20, {8});
   EXPECT_EQ(t.driver->release(), Status::kImplausible);
@@ -374,7 +374,7 @@ TEST_F(DriverTest, HalfACommandIsTakenBack) {
   EXPECT_THAT(t.device.take_writes(), SizeIs(3));
 }
 
-TEST_F(DriverTest, ADroppedConnectionIsMendedWithinTheCycle) {
+TEST_F(DriverTest, ADroppedConnectionIsRestoredWithinTheCycle) {
   MapUnderTest& t = with();
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.failing_writes = 1;
@@ -508,7 +508,7 @@ TEST_F(DriverTest, EnableHappensOnceAndWhatItChangedIsRestored) {
   EXPECT_EQ(t.device.holding[20], 5);
 }
 
-TEST_F(DriverTest, AShortenedTimerIsFedAtOnce) {
+TEST_F(DriverTest, AShortenedTimerIsRefreshedImmediately) {
   MapUnderTest& t =
       with({{"refresh_s = 120", "refresh_s = 120\nremaining = \"status\""},
             {"names = { busy = 0, ready = 7 }, min = 0, max = 9", "min = 0, max = 999"}});

@@ -58,7 +58,7 @@ TEST(ModbusWire, ASignalIsNoLostConnection) {
   EXPECT_EQ(frame.size, 0);
 }
 
-TEST(ModbusWire, TheSpeedsOfSerialLinesAndNoneBeside) {
+TEST(ModbusWire, OnlyTheSpeedsOfSerialLines) {
   for (const std::int32_t baud :
        {1'200, 2'400, 4'800, 9'600, 19'200, 38'400, 57'600, 115'200, 230'400}) {
     EXPECT_TRUE(is_serial_speed(baud)) << baud;

@@ -45,7 +45,7 @@ void meet(MapUnderTest& t, bool is_stranger) {
 
 class StrangeDevices : public ::testing::TestWithParam<MapVariant> {};
 
-TEST_P(StrangeDevices, AreMetWithoutACrash) {
+TEST_P(StrangeDevices, CauseNoCrash) {
   for (const MapVariant& other : kShippedMapVariants) {
     SimulatedDevice theirs(other.map, other.variant);
     ASSERT_EQ(theirs.test.read(), Status::kOk);
@@ -68,7 +68,7 @@ TEST_P(StrangeDevices, ThatAreStartingOrEmptyAreLeftAlone) {
   }
 }
 
-TEST_P(StrangeDevices, ThatAreMadAreMetWithoutACrash) {
+TEST_P(StrangeDevices, ThatAreErraticCauseNoCrash) {
   std::mt19937 random(520'011);
   for (int trial = 0; trial < 20; ++trial) {
     SimulatedDevice mad(GetParam().map, GetParam().variant);

@@ -281,7 +281,7 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
   loaded(map_with("duration_minutes", "11"));
 }
 
-TEST_F(MapFormat, EveryMistakeHasItsMend) {
+TEST_F(MapFormat, EveryMistakeHasItsCorrection) {
   const struct {
     std::string before, after, codes;
   } mistakes[] = {

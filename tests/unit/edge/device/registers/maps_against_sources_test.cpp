@@ -156,7 +156,7 @@ TEST(AlphaEssSoc, ACeilingOfAHundredPercentIsNone) {
 
 /// evcc solaredge-hybrid: the meter's W counts export as positive (scale -1); the recording in its
 /// issue 15445 has -91 W. Kostal's counts import: 307 with exponent 1 on a January evening (18358).
-TEST(SunSpecMeter, SignsGridPowerAsTheMakerDoes) {
+TEST(SunSpecMeter, SignsGridPowerAsTheManufacturerDoes) {
   struct Recording {
     const char* variant;
     std::uint16_t raw;

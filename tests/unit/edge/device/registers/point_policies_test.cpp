@@ -27,7 +27,7 @@ std::string beyond(const RegisterPoint& p) {
   return p.slack >= p.value_max - p.value_min ? "cut" : "cut within " + std::to_string(p.slack);
 }
 
-TEST(PointPolicies, StandInTheTable) {
+TEST(PointPolicies, AreInTheTable) {
   std::ostringstream table;
   table << "# Points of the register maps\n\n"
            "Treatment of values that cannot be read or are out of range. *required*: no "

@@ -112,7 +112,7 @@ TEST(HuaweiLuna2000, PowerIsCutToTheRatedOneAndRefreshedEvery30s) {
                                               fc6(47'246, 0), fc6(47'100, 1)));
 }
 
-TEST(HuaweiLuna2000, PermissionDeniedIsToldApart) {
+TEST(HuaweiLuna2000, PermissionDeniedIsDistinguished) {
   MapUnderTest t(shipped_map("huawei_luna2000"), fill_huawei);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.exception = 0x80;

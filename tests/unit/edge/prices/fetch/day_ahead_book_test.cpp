@@ -181,7 +181,7 @@ std::vector<Spoilt> spoilt_answers() {
 INSTANTIATE_TEST_SUITE_P(All, BookOfToday, testing::ValuesIn(spoilt_answers()),
                          [](const auto& info) { return info.param.name; });
 
-TEST_F(Book, RowsThatAreMergedAreAssumedAskedAgainAndBelievedWhenTheyStay) {
+TEST_F(Book, MergedRowsAreAssumedFetchedAgainAndAcceptedWhenTheyStay) {
   std::vector<DayAheadRow> merged = both();
   std::erase_if(merged, [&](const DayAheadRow& row) {
     return row.utc_s > days_.tomorrow_utc_s + 2 * kHour &&

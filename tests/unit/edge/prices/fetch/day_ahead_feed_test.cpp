@@ -110,7 +110,7 @@ class Schedule : public Feed {
   DayAheadBook book_;
 };
 
-TEST_F(Schedule, AsksAtOnceForTodayThenAtTenToOneForTomorrow) {
+TEST_F(Schedule, FetchesTodayImmediatelyThenTomorrowAtTenToOne) {
   EXPECT_LE(next(local(3, 0), 0, 0), local(3, 0));
   know_until(outlook_days_around(now_).tomorrow_utc_s);
   EXPECT_EQ(next(local(3, 0), local(2, 0), 0), local(12, 50));

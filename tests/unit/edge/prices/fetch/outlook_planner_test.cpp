@@ -115,7 +115,7 @@ TEST_F(Planner, NothingIsOfferedBeyondMidnight) {
   EXPECT_EQ(at(days_.tomorrow_utc_s, 8'000).source, OutlookSource::kMissing);
 }
 
-TEST_F(Planner, TellsWhatIsPublishedAndWhenItIsDearest) {
+TEST_F(Planner, ReportsPublishedPricesAndTheirMaximum) {
   plan(tick_, 8'000, days_);
   const OutlookReport found = at(tick_, 8'000);
   int known = 0;

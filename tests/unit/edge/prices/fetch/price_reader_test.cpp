@@ -63,7 +63,7 @@ TEST_F(PriceReaderTest, AFailureKeepsTheRowAndNamesItself) {
   EXPECT_EQ(report.price_centi_eur_per_mwh, 4'200);
 }
 
-TEST_F(PriceReaderTest, ALieIsNoRow) {
+TEST_F(PriceReaderTest, AFalseRowIsNoRow) {
   const PriceRow lies[] = {{.minute_utc_s = minute_now() + 3'600, .price_centi_eur_per_mwh = 1},
                            {.minute_utc_s = minute_now() + 7, .price_centi_eur_per_mwh = 1},
                            {.minute_utc_s = -60, .price_centi_eur_per_mwh = 1},
@@ -118,7 +118,7 @@ TEST_F(PriceReaderTest, AnotherVersionAndDamageAreNoPrices) {
   }
 }
 
-TEST_F(PriceReaderTest, OneThatIsSilentForCyclesIsTold) {
+TEST_F(PriceReaderTest, OneThatIsSilentForCyclesIsReported) {
   // Simulated time is fast enough for three control cycles in a moment.
   const ScaledClock fast{.anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC) - kNanosecondsPerSecond,
                          .anchor_utc_s = minute_now(),

@@ -48,7 +48,7 @@ TEST(UnitWatch, CentsAreFound) {
 }
 
 /// As on a sunny Sunday: 135 min within 0.5 EUR, in whole cents.
-TEST(UnitWatch, SmallHonestPricesAreNot) {
+TEST(UnitWatch, SmallRealPricesAreNot) {
   EXPECT_EQ(
       minutes_until_doubtful(135, [](int m) { return std::round(40 * std::sin(m / 3.0)) / 100; }),
       -1);
@@ -56,7 +56,7 @@ TEST(UnitWatch, SmallHonestPricesAreNot) {
   EXPECT_EQ(minutes_until_doubtful(5'000, usual), -1);
 }
 
-TEST(UnitWatch, HonestRandomWalksAreNot) {
+TEST(UnitWatch, RandomWalksAreNot) {
   std::mt19937 random(20'261'127);
   std::normal_distribution<double> step(0, 15);
   for (int walk = 0; walk < 50; ++walk) {

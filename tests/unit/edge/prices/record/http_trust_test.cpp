@@ -28,7 +28,7 @@ TEST(HttpTrust, LoopbackIsANumberOfThisMachine) {
   }
 }
 
-TEST(HttpTrust, ALoginIsWhatStandsBeforeTheHost) {
+TEST(HttpTrust, ALoginIsTheTextBeforeTheHost) {
   EXPECT_TRUE(holds_login("http://user:password@a.example/"));
   EXPECT_TRUE(holds_login("http://user@a.example"));
   EXPECT_FALSE(holds_login("http://a.example/u@v?q=a@b"));

@@ -13,7 +13,7 @@ constexpr PriceRow row_at(std::int64_t minute, std::int32_t price_centi) {
   return {.minute_utc_s = 60 * minute, .price_centi_eur_per_mwh = price_centi};
 }
 
-TEST(StepHold, ASmallStepIsTakenAndTheExactLimitIsSmallAndALieBeforeItIsForgotten) {
+TEST(StepHold, ASmallStepIsAcceptedUpToTheLimitAndClearsThePendingRow) {
   for (const bool has_lied : {false, true}) {
     for (const std::int32_t price : {10'001, 12'000, -220'000, 240'000}) {
       StepHold hold;
@@ -39,7 +39,7 @@ TEST(StepHold, ALargeStepIsHeldUntilALaterRowConfirmsIt) {
   EXPECT_FALSE(hold.has_held());
 }
 
-TEST(StepHold, LiesThatDisagreeAreNeverTaken) {
+TEST(StepHold, ContradictoryRowsAreNeverAccepted) {
   StepHold hold;
   for (int minute = 11; minute < 60; ++minute) {
     const std::int32_t price = minute % 2 == 0 ? 900'000 : -900'000;

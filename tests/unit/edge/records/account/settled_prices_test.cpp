@@ -49,7 +49,7 @@ TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {
 }
 
 /// A damaged card: every byte of the file, in sequence.
-TEST(SettledPrices, ADamagedFileIsNotBelieved) {
+TEST(SettledPrices, ADamagedFileIsRejected) {
   SettledPrices prices;
   put(prices, {{kSettledQuarter, 131.07, kAsValidated}, {kSettledQuarter + 900, 5, kAsPublished}});
   const std::string text = prices.text();

@@ -106,7 +106,7 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
 }
 
 /// The CSV is a pipe without a reader: the log thread blocks in write(2), as on a blocked card.
-TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
+TEST_F(Log, ABlockedDiskNeverBlocksTheControlThread) {
   EventLogSettings s = settings();
   const std::string pipe_path = folder_.file("pipe");
   s.csv = pipe_path.c_str();
@@ -131,7 +131,7 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   close(reader);
 }
 
-TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
+TEST_F(Log, AFullDiskIsReportedAndDoesNotStopTheStart) {
   EventLogSettings s = settings();
   s.csv = "/dev/full";
   ::testing::internal::CaptureStdout();
@@ -165,7 +165,7 @@ void make_room() {
 
 /// No file can be created: the first records are lost, and everything works as soon as there is
 /// room.
-TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
+TEST_F(Log, AStartWithoutRoomContinuesAndWritesOnceThereIs) {
   const int code = exit_code_with_room_for(0, [&] {
     const auto log = std::make_unique<EventLog>();
     if (!log->open(settings(), RunIdentity{}, error_)) return 1;
@@ -183,7 +183,7 @@ TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
 }
 
 /// A larger log has no room: the existing one continues, with its contents.
-TEST_F(Log, ALogThatCannotGrowGoesOnAtItsSize) {
+TEST_F(Log, ALogThatCannotGrowContinuesAtItsSize) {
   {
     const auto log = opened(settings());
     log->write(record_of(1));

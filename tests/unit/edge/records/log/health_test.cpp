@@ -107,7 +107,7 @@ TEST(Health, EveryTroubleHasItsReason) {
 }
 
 /// A controller that hangs on a full disk must not look as if only the disk were full.
-TEST(Health, TheAgeIsToldBesideTheDisk) {
+TEST(Health, TheAgeIsReportedInAdditionToTheDisk) {
   Well well;
   well.in.cycles_behind = 10;
   well.in.age_ms = 481'000;

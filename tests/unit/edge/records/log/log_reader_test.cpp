@@ -48,7 +48,7 @@ class Reader : public ::testing::Test {
   FileMessage error_;
 };
 
-TEST_F(Reader, WhatOnlyMemoryHasGoesOnBehindTheDisk) {
+TEST_F(Reader, RecordsInMemoryFollowThoseOnDisk) {
   write(settings_.ring, 100, 1, 20);
   write(settings_.run_ring, 8, 18, 30);
   ASSERT_TRUE(reader_.open(settings_, error_)) << error_.c_str();

@@ -166,7 +166,7 @@ TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
   EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);
 }
 
-TEST(RecordFields, EachStandsInEveryOutputThatItClaims) {
+TEST(RecordFields, EachIsInEveryOutputThatItClaims) {
   for (const auto& field : kRecordFields) {
     SCOPED_TRACE(field.name);
     CycleRecord record = bare_record();
@@ -181,7 +181,7 @@ TEST(RecordFields, EachStandsInEveryOutputThatItClaims) {
   }
 }
 
-TEST(RunFields, EachStandsInEveryOutputThatItClaims) {
+TEST(RunFields, EachIsInEveryOutputThatItClaims) {
   for (const auto& field : kRunFields) {
     SCOPED_TRACE(field.name);
     RunTotals totals;

@@ -188,7 +188,7 @@ TEST_F(Ring, TheNewestIsInTheNewFileFromItsBeginning) {
   EXPECT_EQ(newest_in(ring, 9).cycle, 4);
 }
 
-TEST_F(Ring, WhatIsNoLogIsSetAsideAndTold) {
+TEST_F(Ring, AFileThatIsNoLogIsSetAsideAndReported) {
   write_file(path_, std::string(kHeaderBytes + 5 * kRecordBytes, 'x'));
   RingLog reader;
   EXPECT_FALSE(reader.open_to_read(path_.c_str(), error_));
@@ -229,7 +229,7 @@ std::string flipped(std::string bytes, std::size_t at, unsigned char mask) {
   return bytes;
 }
 
-TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
+TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsRepaired) {
   append(5, 1, 7);
   const std::string whole = text_of_file(path_);
   for (const std::size_t begin : {std::size_t{0}, std::size_t{2'048}}) {
@@ -242,7 +242,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsMended) {
   }
 }
 
-TEST_F(Ring, WithoutAnyHeaderTheRecordsSayHowTheyLie) {
+TEST_F(Ring, WithoutAHeaderTheRecordsShowTheirLayout) {
   append(5, 1, 7);
   std::string headless = text_of_file(path_);
   headless.replace(0, kHeaderBytes, kHeaderBytes, '\xff');
@@ -268,7 +268,7 @@ TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
 
 /// One flipped byte anywhere, at places and with masks of a named seed: at most one record is lost,
 /// the loss is reported, and the rest is as written.
-TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsTold) {
+TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsReported) {
   constexpr std::int64_t kCapacity = 40;
   std::mt19937 random(20261123);
   for (const std::int64_t written : {std::int64_t{12}, std::int64_t{40}, std::int64_t{97}}) {

@@ -41,7 +41,7 @@ TEST(WholeFile, APlantedLinkDoesNotLeadTheNewLogAway) {
   EXPECT_EQ(text_of_file(victim), "precious");
 }
 
-TEST(WholeFile, WhatAKilledProgramLeftBesideIsReplaced) {
+TEST(WholeFile, TheTemporaryFileOfAKilledProgramIsReplaced) {
   const TemporaryFolder folder;
   const std::string path = folder.file("status.json");
   folder.write("status.json.new", "half of a longer te");
@@ -86,7 +86,7 @@ class CarefulRoot : public ::testing::Test {
   mode_t umask_before_;
 };
 
-TEST_F(CarefulRoot, WhoMayEnterTheFolderMayReadWhatIsLeftThere) {
+TEST_F(CarefulRoot, FilesAreReadableForAllWhoMayEnterTheFolder) {
   EXPECT_EQ(mode_of(make("for_all", 0755)), 0644U);
   EXPECT_EQ(mode_of(make("for_the_group", 0750)), 0640U);
   EXPECT_EQ(mode_of(make("for_one", 0700)), 0600U);

@@ -70,7 +70,7 @@ TEST_F(Why, TheStudentsOrderWithItsMargins) {
   EXPECT_FALSE(explanation.is_other_student);
 }
 
-TEST_F(Why, EachNumberOfTheMarginsStandsInTextAndJson) {
+TEST_F(Why, EachNumberOfTheMarginsIsInTextAndJson) {
   for (const std::int32_t price_centi : {-60'000, -50'000, -100, 5'000, 12'345, 90'000, 160'000}) {
     log(decided(0, price_centi));
     const Explanation explanation = explained();
@@ -100,7 +100,7 @@ TEST_F(Why, SinceWhenIsTheBeginningOfTheRun) {
   EXPECT_EQ(explained(7).cycles, 3) << "what came later does not count";
 }
 
-TEST_F(Why, AHoleInTheLogBeginsAnew) {
+TEST_F(Why, AGapInTheLogStartsAgain) {
   log(decided(0, 5'000));
   log(decided(3, 5'000));
   log(decided(5, 5'000));  // a single skipped control cycle is no gap
@@ -137,7 +137,7 @@ TEST_F(Why, ATripHoldsUntilItIsCleared) {
   EXPECT_THAT(text, Names("safe soc_mismatch 2025-11-23 13:22"));
 }
 
-TEST_F(Why, WithoutAPriceNothingIsMadeUp) {
+TEST_F(Why, WithoutAPriceNothingIsInvented) {
   CycleRecord r{.utc_s = kTick, .mode = Mode::kHolding, .reason = Reason::kNoPrice};
   log(r);
   const Explanation explanation = explained();

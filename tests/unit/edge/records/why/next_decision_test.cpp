@@ -63,7 +63,7 @@ TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).utc_s, kNoon + 240);
 }
 
-TEST(NextDecision, NamesWhatStandsAboveTheStudent) {
+TEST(NextDecision, NamesTheOverrideOfTheStudent) {
   CycleRecord late = at_noon(60);
   late.reason = Reason::kPriceAge;
   EXPECT_THAT(next_decision_text(find_next_decision(late, kNoon, {})), Names("price_age"));

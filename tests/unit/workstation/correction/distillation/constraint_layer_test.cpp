@@ -103,7 +103,7 @@ std::vector<DifferenceRow> rows_with_rules(const CorrectionOptions& options,
   return rows;
 }
 
-TEST(ConstraintLayer, RulesHoldBesideTheProperties) {
+TEST(ConstraintLayer, RulesHoldTogetherWithTheProperties) {
   Random random(403);
   const CorrectionOptions options;
   const LatticeAxes axes = even_axes(12, 6);

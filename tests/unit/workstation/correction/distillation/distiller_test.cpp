@@ -125,7 +125,7 @@ TEST(PolicyLoss, HandCases) {
               -std::log(3.0) + (std::log(2.0) + 2 * std::log(4.0)) / 3, 1e-14);
 }
 
-TEST(PolicyLoss, LogSoftmaxStandsHugeLogits) {
+TEST(PolicyLoss, LogSoftmaxHandlesHugeLogits) {
   Eigen::MatrixXd huge(3, 2);
   huge << 1e4, -1e4, 0, 0, -1e4, 1e4;
   const Eigen::MatrixXd log_p = log_softmax(huge);

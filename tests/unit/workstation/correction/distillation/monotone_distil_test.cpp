@@ -47,7 +47,7 @@ const School& school() {
   return school;
 }
 
-TEST(Lessons, TellWhatTheTeacherWouldDoAndWhatOthersLose) {
+TEST(Lessons, HaveTheTeachersActionAndTheLossOfOthers) {
   const LessonStates& lessons = school().lessons;
   ASSERT_EQ(lessons.inputs.cols(), lessons.teacher_frac.cols());
   ASSERT_GT(lessons.inputs.cols(), school().visited.cols());
@@ -77,7 +77,7 @@ int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOpt
   return broken;
 }
 
-TEST(Lessons, ObeyTheRulesWhateverTheTeacher) {
+TEST(Lessons, ObeyTheRulesForAnyTeacher) {
   const RuleSet rules = load_rules({example_rule_path("quiet_hours")});
   for (const Method method : {Method::kSdp, Method::kC51, Method::kDqn}) {
     SCOPED_TRACE(method_name(method));

@@ -38,7 +38,7 @@ TEST(Conflicts, BothRulesAndAStateAreNamed) {
 
 /// "At least" extends to lower prices and charges, "at most" to higher ones: distant boxes may
 /// conflict.
-TEST(Conflicts, WhatIsImpliedClashesToo) {
+TEST(Conflicts, ImpliedDemandsConflictToo) {
   const std::string dear =
       named("dear", "price_min = 200\nprice_max = 300\nsoc_min = 0.6\nat_least = \"idle\"");
   EXPECT_THAT(
@@ -90,7 +90,7 @@ TEST(Conflicts, WhatTheGuardEnforcesIsHeldAgainstTheBareBoxes) {
       "");
 }
 
-TEST(Conflicts, ARuleThatBindsNobodyIsRefused) {
+TEST(Conflicts, ARuleWithoutEffectIsRefused) {
   EXPECT_THAT(complaint(named("far", "price_min = 2000\nis = \"idle\"")),
               Names("\"far\" enforce = true"));
   EXPECT_THAT(

@@ -65,7 +65,7 @@ TEST(RuleFile, EveryDemandIsReadAndSaid) {
   }
 }
 
-TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
+TEST(RuleFile, AMistakeNamesLineKeyAndCorrection) {
   const DemandCase cases[] = {
       {"", "test.toml is_not"},
       {"enforce = true", "test.toml is_not"},
@@ -143,7 +143,7 @@ TEST(RuleFile, FilesAddUpAndTheExamplesAreGood) {
   EXPECT_THROW(load_rules({"no/such/file.toml"}), UserError);
 }
 
-TEST(Rules, ThresholdsStandForThoseOfTheConfiguration) {
+TEST(Rules, ThresholdsReplaceThoseOfTheConfiguration) {
   const RuleSet set = one_rule("discharge_at_or_above = 2000");
   EXPECT_EQ(set.thresholds({-400, 1400}), (PriceThresholds{-400, 2000}));
   EXPECT_EQ(one_rule("charge_at_or_below = 7").thresholds({-400, 1400}),

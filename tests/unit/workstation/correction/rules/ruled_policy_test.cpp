@@ -73,7 +73,7 @@ class Backwards final : public Policy {
   }
 };
 
-TEST(RuleWatch, CountsWhatAFloatPolicyBreaks) {
+TEST(RuleWatch, CountsViolationsOfAFloatPolicy) {
   const RuleSet all = with_properties(one_rule("price_max = 50\nat_least = \"idle\""), {50, 1500});
   RuleWatch watch(std::make_shared<Backwards>(), all, {}, 1, 1);
   run(watch);

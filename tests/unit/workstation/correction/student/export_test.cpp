@@ -194,7 +194,7 @@ void expect_header_is_refused(const std::string& header, const std::string& name
 }
 
 /// Training days and cycles may be missing; they are never invented.
-TEST(Export, TheTrainingDaysAreToldAndAHeaderOfBeforeHasNone) {
+TEST(Export, TheTrainingDaysAreWrittenAndAnOlderHeaderHasNone) {
   EXPECT_THAT(format_weight_header(crowded_student()),
               HasSubstr("#define BESS_STUDENT_TRAINED_FROM \"2024-02-29\"\n"
                         "#define BESS_STUDENT_TRAINED_UNTIL \"2024-12-31\"\n"
@@ -315,7 +315,7 @@ TEST(Export, DamagedRulesDoNotCompile) {
 
 /// The exported points distinguish every field of every rule from its neighbours, so that a machine
 /// with a different rule look-up fails at its start.
-TEST(RuleHeader, TheGoldenPointsTellEveryField) {
+TEST(RuleHeader, TheGoldenPointsDistinguishEveryField) {
   const std::vector<GuardRule> rules = parse_rules(kHeaderRules, "test.toml").guard_rules();
   const std::vector<RulePoint> points = rule_check_points(rules);
   const auto differs = [&](const std::vector<GuardRule>& others) {

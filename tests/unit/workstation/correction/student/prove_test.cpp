@@ -118,7 +118,7 @@ StudentFile counted(const StudentNet& net, const PriceThresholds& thresholds,
 
 /// LinearNet charges below 0, idles to 1000 and discharges from there: each demand is violated in a
 /// known state.
-TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
+TEST(FailedProof, NamesTheRuleAStateItsActionAndTheRemedy) {
   RuleSet rules = one_rule("price_max = 1400\nat_least = \"idle\"", "never sell");
   rules.rules.push_back(
       one_rule("price_max = 1450\nsoc_min = 0.5\nat_least = \"idle\"", "b").rules[0]);

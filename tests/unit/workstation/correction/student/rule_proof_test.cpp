@@ -211,7 +211,7 @@ TEST(RuleProof, WhatDoesNotBindTheStudentIsNotCounted) {
   }
 }
 
-TEST(RuleProof, AStudentThatNobodyCheckedForItsRulesIsNotCovered) {
+TEST(RuleProof, AStudentWithUncheckedRulesIsNotCovered) {
   Certificate claim{.states_checked = kLatticeStateCount};
   EXPECT_TRUE(claim.covers_lattice_without_violation());
   claim.rules = one_rule("is = \"idle\"");

@@ -121,7 +121,7 @@ TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
 }
 
 /// Comment of the header; an older file has less information.
-TEST(StudentFile, DaysAndCyclesAreToldWhereTheyAreKnown) {
+TEST(StudentFile, DaysAndCyclesAreShownWhereTheyAreKnown) {
   const TemporaryFolder folder;
   const auto loaded = [&](const StudentFile& student) {
     save_student(folder.file("student.json"), student);

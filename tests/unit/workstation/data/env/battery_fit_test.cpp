@@ -112,7 +112,7 @@ TEST(BatteryFit, WhatABatteryDoesNotDoIsNotFound) {
   EXPECT_NEAR(fit.discharge_efficiency->value, kHouse.discharge_efficiency, 0.003);
 }
 
-TEST(BatteryFit, AShortLogWithHolesTellsWhatItCanAndNoMore) {
+TEST(BatteryFit, AShortLogWithGapsShowsOnlyWhatItCan) {
   std::vector<LoggedCycle> cycles = log_of(real_battery(), 14, 5);
   Random random(6);
   std::erase_if(cycles, [&](const LoggedCycle&) { return random.uniform() < 0.2; });

@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-TEST(ContextFit, LevelsOfTheTrainingDaysLieInside) {
+TEST(ContextFit, LevelsOfTheTrainingDaysAreInside) {
   const MarketSteps& market = small_steps();
   const ContextClasses classes = fit_context_classes(market, ContextKind::kLevel);
   ASSERT_TRUE(classes.is_valid());
@@ -54,7 +54,7 @@ TEST(ContextFit, AConstantMarketHasClassesToo) {
   EXPECT_TRUE(classes.is_valid());
 }
 
-TEST(ContextFit, TheLevelOfAClassLiesInIt) {
+TEST(ContextFit, TheLevelOfAClassIsInIt) {
   const ContextClasses classes = fit_context_classes(small_steps(), ContextKind::kLevel);
   for (int c = 1; c <= kContextClassCount; ++c) {
     const double level = class_level_eur_per_mwh(classes, c);

@@ -59,7 +59,7 @@ TEST(ColdHours, AllDayTheyAreABatteryOfLessPower) {
   }
 }
 
-TEST(ColdHours, NoMoreFlowsAndWhoeverKnowsThemEarnsMore) {
+TEST(ColdHours, NoMoreFlowsAndKnowledgeOfThemEarnsMore) {
   const BatteryParameters cold = with_cold(kNights);
   for (const char* name : {"sdp", "mpc", "foresight"}) {
     std::vector<StepRecord> records;

@@ -36,7 +36,7 @@ TEST(Costs, PlannersThatKnowThemMoveLessAndEarnAtLeastAsMuch) {
   }
 }
 
-TEST(Costs, NobodyEarnsMoreThanForesight) {
+TEST(Costs, NoPolicyEarnsMoreThanForesight) {
   const Evaluation bound = evaluate_planned("foresight", costly_battery());
   for (const char* name : {"rbc-tuned", "sdp"}) {
     for (const BatteryParameters& planned : {BatteryParameters{}, costly_battery()}) {

@@ -122,7 +122,7 @@ class PeekingPolicy final : public Policy {
   }
 };
 
-TEST(Properties, WhoeverIsFedTheFutureIsCaught) {
+TEST(Properties, APolicyWithFuturePricesIsFound) {
   const MinuteSeries series = small_series();
   PeekingPolicy peeking;
   EXPECT_TRUE(looks_ahead(peeking, series, {}));

@@ -19,7 +19,7 @@ double profit(const MarketSteps& market, Split split, bool carry_soc, double lev
       .profit_eur_per_day_per_mwh();
 }
 
-TEST(StochasticProgram, EarnsOnTheYardstickWhatTheSpikesEarn) {
+TEST(StochasticProgram, EarnsOnTheBenchmarkWhatThePrototypesEarn) {
   const MarketSteps market = make_market_steps(read_yardstick(), {});
   // By hour alone, as the prototype; by level at least as much, because values are found for each
   // level.
@@ -62,7 +62,7 @@ TEST(StochasticProgram, KnowingTheWearItEarnsMoreNetOfIt) {
   EXPECT_GT(profit(small_steps(), Split::kTest, true, 0.6, worn), without + 1);
 }
 
-TEST(StochasticProgram, TellsTheRowsQuarterHour) {
+TEST(StochasticProgram, UsesTheRowsQuarterHour) {
   for (const int delay : {0, 1, 2}) {
     const MarketSteps market = make_market_steps(small_series(), {.observation_delay_min = delay});
     const StochasticProgram program(market, market.days_of(Split::kTrain), {});

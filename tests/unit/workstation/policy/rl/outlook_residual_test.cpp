@@ -111,7 +111,7 @@ TEST(OutlookResidual, IsRewardedAndTaughtTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(taught_alone, visited_inputs(teacher, three, {}, options));
 }
 
-TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepBesideWhatEveryActionHasOfIt) {
+TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepLessTheCommonPart) {
   const Teacher& teacher = learnt().teacher;
   const OutlookProgram& program = *teacher.outlook;
   const TrainingMarket shaped(market(), teacher.price_map, {}, Horizon::kContinuing,
@@ -167,7 +167,7 @@ TEST(OutlookResidual, LearnsFromTheInputsThatItDecidesBy) {
   }
 }
 
-TEST(OutlookResidual, StandsInTheCurveBehindTheProgramAndIsNeverWorse) {
+TEST(OutlookResidual, FollowsTheProgramInTheCurveAndIsNeverWorse) {
   ASSERT_EQ(learnt().curve.size(), 2U);
   EXPECT_EQ(learnt().curve[0].step, 0);
   OutlookPolicy program(learnt().teacher.outlook);

@@ -59,7 +59,7 @@ TEST(PriceMap, OfAnyPricesIncreasesAndIsClampedOutside) {
   }
 }
 
-TEST(PriceMap, ResolutionLiesWherePricesAre) {
+TEST(PriceMap, ResolutionIsWherePricesAre) {
   const PriceMap map = PriceMap::fit(normal_prices(100, 30, 20'000));
   EXPECT_GT(map(110) - map(90), 5 * (map(910) - map(890)));
   EXPECT_NEAR(map(100), 0.5 * 0.3 + 0.5 * 0.5, 0.01);  // half the line, half the median

@@ -123,7 +123,7 @@ TEST_F(TeacherFile, CutFlippedAndOtherBytesAreRefused) {
 }
 
 /// A file of version 2 has nothing between its origin and its parameters.
-TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
+TEST_F(TeacherFile, AnOlderOneIsReadWithoutTrainingConditions) {
   Teacher teacher = teacher_of(Method::kDqn);
   std::string bytes = saved(Method::kDqn);
   const std::size_t count_at = bytes.find(teacher.provenance) + teacher.provenance.size();

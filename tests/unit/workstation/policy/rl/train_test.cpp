@@ -168,7 +168,7 @@ TEST(Train, InterruptedInTheMiddleKeepsTheBestSoFar) {
   EXPECT_GT(result.best_step, 0);
 }
 
-TEST(Train, DaysThatLackAreNamedWithTheMend) {
+TEST(Train, MissingDaysAreNamedWithTheRemedy) {
   const struct {
     const char* name;
     LocalDate first;

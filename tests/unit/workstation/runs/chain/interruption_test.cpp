@@ -14,7 +14,7 @@ namespace {
 
 using testing::ExitedWithCode;
 
-TEST(Interruption, EndsAtOnceAndSaysWhatIsKept) {
+TEST(Interruption, EndsImmediatelyAndReportsWhatIsKept) {
   EXPECT_EXIT(
       {
         end_when_interrupted("months are kept");

@@ -86,7 +86,7 @@ TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
 }
 
 /// Two months of which the last six days belong to PICASSO: a fit before them is reported.
-TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
+TEST_F(LearntFor, AFitBeforeABoundaryIsReportedAfterIt) {
   const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const auto told = Names("2024 PICASSO");
   const std::string test = "evaluate --prices " + prices + " --policy ";
@@ -103,7 +103,7 @@ TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
 }
 
 /// Only days 26 to 30 of a run are after the boundary.
-TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
+TEST_F(LearntFor, ARunWithTestDaysAfterABoundaryReportsIt) {
   const std::string prices = prices_from(kPicasso_s - 25 * kDay_s, 30);
   const std::string config = folder_.write("small.toml", "[train]\nmethod = \"sdp\"\n");
   const std::string out = folder_.file("run");
@@ -140,7 +140,7 @@ TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   EXPECT_GT(of_teacher["profit_eur_per_day_per_mwh"].number().value(), 0);
 }
 
-TEST(OldPrices, AreToldOfByTheClock) {
+TEST(OldPrices, AreReportedByTheClock) {
   const MinuteSeries series = small_series(30);
   const std::int64_t end_utc_s = series.utc_s(series.size());
   EXPECT_EQ(old_prices(series, end_utc_s - 40 * kDay_s), "");
@@ -151,7 +151,7 @@ TEST(OldPrices, AreToldOfByTheClock) {
   EXPECT_THAT(old_prices(series, kPicasso_s), Names("PICASSO"));
 }
 
-TEST_F(LearntFor, ARunOnOldPricesSaysSoUnlessTheyAreMadeUp) {
+TEST_F(LearntFor, ARunOnOldPricesReportsItUnlessTheyAreSimulated) {
   interruption() = true;  // it ends with its first stage
   for (const bool made_up : {false, true}) {
     write_minute_file(prices_, small_series(30), made_up ? kSimulatedProvenance : "");

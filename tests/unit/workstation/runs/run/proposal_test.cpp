@@ -27,7 +27,7 @@ MarketSteps fold_of_a_month() {
                         "2023-02-15 to 2023-03-16, 30 days before");
 }
 
-TEST(FoldDays, StandInARecordAndComeBack) {
+TEST(FoldDays, AreInARecordAndReadBack) {
   const auto days = parse_fold_days("2023-02-15 to 2023-03-16, 30 days before");
   ASSERT_TRUE(days);
   EXPECT_EQ(days->name(), "2023-02-15 to 2023-03-16, 30 days before");

@@ -106,7 +106,7 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
   EXPECT_EQ(named.record.config(named.folder).train.context, ContextKind::kLevel);
 }
 
-TEST_F(RunPlanning, TheSameRunIsGoneOnWithOnlyWhenAsked) {
+TEST_F(RunPlanning, TheSameRunIsResumedOnlyOnRequest) {
   EXPECT_THAT(refusal(request_), Names("--resume --out"));
   request_.resume = true;
   EXPECT_EQ(refusal(request_), "");
@@ -148,7 +148,7 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
 }
 
 /// An older model does not contain its training conditions: then the run next to it does.
-TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
+TEST_F(RunPlanning, AModelTrainedForOthersIsReported) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
   const fs::path model = request_.out / "student.json";
@@ -170,7 +170,7 @@ TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
 }
 
 /// A key newer than the model is reported when it is set, not for being new.
-TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
+TEST_F(RunPlanning, AModelOlderThanAKeyIsNotReported) {
   RunConfig config;
   Entries here = circumstances_of(config_entries(config));
   Entries before = here;

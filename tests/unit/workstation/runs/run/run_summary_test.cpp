@@ -58,7 +58,7 @@ TEST(EvaluationDays, ReadBackToTheBit) {
 }
 
 /// The same figure, carried over, in page, summary, JSON and table of runs, to the digit.
-TEST(RunSummaries, TheSameFigureStandsEverywhere) {
+TEST(RunSummaries, TheSameFigureIsEverywhere) {
   RunSummary run = run_of("1", 24.7);
   run.record.figures->last_learnt_day = "2023-01-25";
   for (NamedEvaluation& named : run.evaluations) value_charge_left(named.carried_over, {}, 87.3);
@@ -117,7 +117,7 @@ TEST(RunSummaries, RulesOfEitherRunAreADifference) {
 }
 
 /// Each rule's cost is a part of a price, no competitor; violations are listed by demand.
-TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
+TEST(RunSummaries, ARunWithRulesShowsTheCostAndViolationsOfEach) {
   RunSummary run = run_of("1", 24);
   run.evaluations.insert(run.evaluations.begin() + 1,
                          {{kPlainName, evaluation_of(48), evaluation_of(48)},
@@ -139,7 +139,7 @@ TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
   EXPECT_NEAR(prices.total.difference[0].mean, 0, 1e-12);
 }
 
-TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
+TEST(RunSummaries, AnEditedEvaluationIsRejected) {
   const TemporaryFolder folder;
   const RunFolder run{folder.file("run")};
   const std::string days = evaluation_days_csv(evaluations_of(24));
@@ -157,7 +157,7 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
   }
 }
 
-TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
+TEST(RunSummaries, AnUnfinishedRunIsNamedWithTheRemedy) {
   const TemporaryFolder folder;
   const RunFolder run{folder.file("run")};
   const auto refusal = [&] { return refusal_of([&] { load_run_summary(run); }); };

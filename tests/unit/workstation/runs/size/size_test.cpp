@@ -171,7 +171,7 @@ TEST(Size, TheBestPaysBackSoonest) {
   EXPECT_EQ(&best_of(cells), &cells[0]);
 }
 
-TEST(Size, APlanThatIsWrongIsToldWhere) {
+TEST(Size, AWrongPlanIsReportedWithItsPlace) {
   const TemporaryFolder folder;
   const auto complaint = [&](const std::string& text) {
     return refusal_of([&] { (void)read_size_plan(folder.write("plan.toml", text), {}); });

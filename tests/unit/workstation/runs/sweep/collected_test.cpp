@@ -39,7 +39,7 @@ class Collected : public testing::Test {
                                 {4, {{"seed", "2"}, {"distil.fidelity", "10"}}}};
 };
 
-TEST_F(Collected, ARowATaskWithWhatBecameOfIt) {
+TEST_F(Collected, OneRowPerTaskWithItsResult) {
   publish(1, 80);
   write_file(folder_.result(3) / run_file::kUnprovedStudent, "{}");
   write_file(folder_.result(3) / run_file::kRecord, "{}");

@@ -186,7 +186,7 @@ TEST_F(SweepPlans, RoundedRatesShareAStudentOnlyWhereThePlanSaysSo) {
   }
 }
 
-TEST_F(SweepPlans, WhatIsWrongWithASiteIsToldWithItsLine) {
+TEST_F(SweepPlans, AMistakeOfASiteIsReportedWithItsLine) {
   const auto with = [&](const std::string& csv) {
     request_.sites = root_.write("sites.csv", csv);
     return refusal("");
@@ -197,7 +197,7 @@ TEST_F(SweepPlans, WhatIsWrongWithASiteIsToldWithItsLine) {
   EXPECT_THAT(with("id,battery\na,none.toml\n"), HasSubstr("none.toml"));
 }
 
-TEST(ConfigKeys, EachSaysWhoReadsItAndLearningKeysMakeAClass) {
+TEST(ConfigKeys, EachNamesItsReaderAndLearningKeysMakeAClass) {
   const RunConfig base;
   const auto entries = config_entries(base);
   const std::vector<ConfigKey> keys = config_keys();

@@ -67,7 +67,7 @@ TEST(DayAheadRows, HoursOfA44AreRepeatedAndMarked) {
   EXPECT_EQ(quarters.series.resolution_min[1], 15);
 }
 
-TEST(DayAheadRows, BrokenDocumentsAreToldByPlaceAndValue) {
+TEST(DayAheadRows, BrokenDocumentsAreReportedByPlaceAndValue) {
   const std::string whole = a44(a44_point(1, "1"));
   const std::pair<std::string, const char*> cases[] = {
       {a44(a44_point(1, "x")), "da:3 \"x\""},
@@ -185,7 +185,7 @@ TEST(DayAheadRows, TablesOfHoursQuarterHoursAndClockChanges) {
   EXPECT_EQ(format_day_ahead_csv(joined(written).series, ""), written);
 }
 
-TEST(DayAheadRows, BrokenTablesAndAnswersAreToldByPlace) {
+TEST(DayAheadRows, BrokenTablesAndAnswersAreReportedByPlace) {
   const std::string head = "datetime_utc,price_eur_mwh\n2025-06-01T00:00:00Z,1\n";
   const std::pair<std::string, const char*> cases[] = {
       {"datetime_utc,load\n", "da price_eur_mwh"},

@@ -105,7 +105,7 @@ TEST_F(EliaFetch, TodayIsOfTheNearRealTimeDatasetsAndWhatHasNotEndedIsDropped) {
   EXPECT_THAT(prices.description, Names(std::to_string(1440 - 1026 + 96 - 68)));
 }
 
-TEST_F(EliaFetch, WaitsAsToldAndElseLongerAndLonger) {
+TEST_F(EliaFetch, WaitsAsRequestedOtherwiseLongerAndLonger) {
   FakeElia elia([](const Ask& ask, Answer& answer) {
     if (ask.dataset != "ods046" || ask.wants_total || ask.number > 5) return;
     if (ask.number < 3) answer.status = "429 Many";
@@ -119,7 +119,7 @@ TEST_F(EliaFetch, WaitsAsToldAndElseLongerAndLonger) {
   EXPECT_THAT(waits_, ElementsAre(7, 9, 4, 8, 16));
 }
 
-TEST_F(EliaFetch, GivesUpInTheEndAndGoesOnWhereItStopped) {
+TEST_F(EliaFetch, GivesUpInTheEndAndResumesWhereItStopped) {
   std::atomic<bool> broken{true};
   FakeElia elia([&broken](const Ask& ask, Answer& answer) {
     if (broken && ask.dataset == "ods047" && ask.number > 1) answer.status = "502 Gateway";

@@ -172,7 +172,7 @@ TEST(MarketJson, RecordsExportsAndVersion1) {
   }
 }
 
-TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
+TEST(MarketJson, ADuplicateMemberIsRefused) {
   const std::string row =
       R"("datetime":"2025-08-17T00:15:00Z","resolutioncode":"PT15M","imbalanceprice":5)";
   const auto complaint = [](const std::string& text) {

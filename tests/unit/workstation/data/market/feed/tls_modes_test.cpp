@@ -87,7 +87,7 @@ class TlsModes : public testing::Test {
   ScratchFolder folder_;
 };
 
-TEST_F(TlsModes, ACertificateThatHoldsIsBelieved) {
+TEST_F(TlsModes, AValidCertificateIsAccepted) {
   const DatedCertificate certificate("IP:127.0.0.1", -kDay_s, kDay_s);
   trust(certificate);
   EXPECT_THAT(error_of(certificate), Names("404 1 ods046"));

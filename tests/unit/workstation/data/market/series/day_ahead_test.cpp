@@ -45,7 +45,7 @@ TEST(DayAhead, ComesBackFromItsFileToTheBit) {
   EXPECT_EQ(format_day_ahead_csv(read, "by hand\nof a test"), text);
 }
 
-TEST(DayAhead, DamagedRowsAreToldByLine) {
+TEST(DayAhead, DamagedRowsAreReportedByLine) {
   const auto error_of = [](const std::string& rows) {
     return user_error_of([&] { parse_day_ahead_csv(kDayAheadHeader + rows, "day.csv"); });
   };
@@ -100,7 +100,7 @@ TEST(DayAhead, IsKnownFromOneOClockOfTheDayBefore) {
   EXPECT_FALSE(std::isnan(later.known_eur_per_mwh(winter, utc_of("2025-01-01T13:30:00Z"))));
 }
 
-TEST(DayAhead, ALaterPublicationIsBelievedAndAnEarlierOneIsNot) {
+TEST(DayAhead, ALaterPublicationIsAcceptedAndAnEarlierOneIsNot) {
   DayAheadSeries series = days_of_prices({2025, 6, 1}, {2025, 6, 2});
   series.published_utc_s[40] = utc_of("2025-05-31T12:10:00Z");
   series.published_utc_s[41] = utc_of("2025-05-30T06:00:00Z");
@@ -121,7 +121,7 @@ std::vector<std::string> names_of(const std::vector<Finding>& findings) {
   return names;
 }
 
-TEST(DayAheadPlausibility, HonestPricesHaveNoFindingAndMistakesHaveTheirs) {
+TEST(DayAheadPlausibility, RealPricesHaveNoFindingAndMistakesHaveTheirs) {
   using testing::ElementsAre;
   const DayAheadSeries honest = days_of_prices({2025, 6, 1}, {2025, 6, 8});
   EXPECT_THAT(names_of(implausible_day_ahead(honest)), ElementsAre());

@@ -26,7 +26,7 @@ std::vector<std::string> names_of(const std::vector<Finding>& findings) {
 
 MinuteSeries ordinary() { return parse_minute_csv(ordinary_text(), "ordinary"); }
 
-TEST(Plausibility, HonestPricesRaiseNothing) {
+TEST(Plausibility, RealPricesRaiseNothing) {
   EXPECT_THAT(names_of(implausible(read_yardstick())), IsEmpty());
   EXPECT_THAT(names_of(implausible(ordinary())), IsEmpty());
   EXPECT_THAT(names_of(implausible(random_series("2023-01-01T00:00:00Z", 40'000, 7))), IsEmpty());
@@ -67,7 +67,7 @@ MinuteSeries with_settled(double eur_per_mwh, std::size_t quarter_hours) {
   return series;
 }
 
-TEST(Plausibility, ExtremesThatMarketsHaveHadAreTakenAndTold) {
+TEST(Plausibility, ExtremesThatMarketsHaveHadAreAcceptedAndReported) {
   for (const double price : {-999.0, 9'998.0, 15'000.0, -15'000.0}) {
     EXPECT_THAT(names_of(implausible(with_settled(price, 1))), IsEmpty()) << price;
   }
@@ -87,7 +87,7 @@ TEST(Plausibility, ExtremesThatMarketsHaveHadAreTakenAndTold) {
 }
 
 /// Repeated -999 is an instrument's error value: reported, and still accepted.
-TEST(Plausibility, ManyOfWhatMayAlsoStandForNoPriceAreToldAndTaken) {
+TEST(Plausibility, ManyPossibleErrorValuesAreReportedAndAccepted) {
   EXPECT_THAT(names_of(implausible(with_settled(-999, 2))), IsEmpty());
   const std::vector<Finding> findings = implausible(with_settled(-999, 8));
   ASSERT_EQ(findings.size(), 1u);
