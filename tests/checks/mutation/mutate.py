@@ -456,32 +456,32 @@ def main():
     parser.add_argument("what", choices=what)
     parser.add_argument("--out", default=os.path.join(ROOT, "build-mutation"),
             help="default: build-mutation")
-    parser.add_argument("--jobs", type=int, default=2, help="compilations beside each other")
+    parser.add_argument("--jobs", type=int, default=2, help="parallel compilations")
     parser.add_argument("--ccache", action="store_true", help="compile through ccache")
     parser.add_argument("--text-only", action="store_true",
             help="write the mutated tree, do not build it")
-    parser.add_argument("--sample", type=int, default=0, help="only so many, drawn by --seed")
-    parser.add_argument("--each", type=int, default=0, help="only so many of each room")
+    parser.add_argument("--sample", type=int, default=0, help="number of mutants, drawn by --seed")
+    parser.add_argument("--each", type=int, default=0, help="number of mutants of each room")
     parser.add_argument("--rooms", type=rooms_of, default=ROOMS,
-            help="only these, separated by commas: " + ", ".join(ROOMS))
+            help="only these rooms, separated by commas: " + ", ".join(ROOMS))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--survivors", default="",
-            help="a file for those whose reason survivors.txt does not know")
-    parser.add_argument("--only", default="", help="only those whose line holds this text")
-    parser.add_argument("--keys", default="", help="only those whose keys this file lists")
+            help="output file for survivors without a reason in survivors.txt")
+    parser.add_argument("--only", default="", help="only mutants whose line contains this text")
+    parser.add_argument("--keys", default="", help="only mutants whose keys are in this file")
     parser.add_argument("--also-in", default="",
-            help="only those that the mutated tree in this folder has too")
+            help="only mutants that the tree in this folder also has")
     parser.add_argument("--than", default="", help="compare: the other tree's folder")
     parser.add_argument("--kinds", default="",
-            help="by these alone, in this order: scenario, edge_test, ...")
+            help="only these kinds of test, in this order: scenario, edge_test, ...")
     parser.add_argument("--seconds", type=seconds_of, default=(-1.0, 1e9),
-            help="by tests that take so long alone: 0-4 for a first look, then --resume --again "
+            help="only tests of this duration in s: 0-4 for a first run, then --resume --again "
                  "--seconds 4- for who is left")
-    parser.add_argument("--at-least", type=float, default=0, help="percent that must be caught")
+    parser.add_argument("--at-least", type=float, default=0, help="required percentage found")
     parser.add_argument("--results", default="results.jsonl",
-            help="the file in --out that keeps what was found")
-    parser.add_argument("--resume", action="store_true", help="go on with what was found before")
-    parser.add_argument("--again", action="store_true", help="with --resume: survivors once more")
+            help="file of results in --out")
+    parser.add_argument("--resume", action="store_true", help="continue with the previous results")
+    parser.add_argument("--again", action="store_true", help="with --resume: run survivors again")
     options = parser.parse_args()
     options.out = os.path.abspath(options.out)
     os.makedirs(options.out, exist_ok=True)

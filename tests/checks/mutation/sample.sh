@@ -33,8 +33,8 @@ run "$1" --rooms core/loop >"$1/said"
 grep -q '^| all | 10 | 0 | 5 | 0 | 5 | 50.0 % |' "$1/said" || fail "$(cat "$1/said")"
 [ "$(grep -c '^survived:    edge/core/loop/x.h | f | [13579] -> -$' "$1/left")" = 5 ] ||
   fail "the survivors: $(cat "$1/left")"
-! run "$1" --rooms core/loop --at-least 51 >/dev/null 2>&1 || fail "half is taken for 51 %"
-! run "$1" --rooms core/lop >/dev/null 2>"$1/said" || fail "a room that is none is taken"
+! run "$1" --rooms core/loop --at-least 51 >/dev/null 2>&1 || fail "half passes as 51 %"
+! run "$1" --rooms core/lop >/dev/null 2>"$1/said" || fail "an unknown room is accepted"
 grep -q '"core/lop" is none of core/control' "$1/said" || fail "$(cat "$1/said")"
 
 # Another tree, which only has core/loop and whose test finds the odd numbers: the mutants drawn are
@@ -52,7 +52,7 @@ python3 -B "$here/mutate.py" draw --out "$1" --also-in "$1-there" --sample 6 --s
 run "$1" --keys "$1/keys" >/dev/null
 run "$1-there" --keys "$1/keys" >/dev/null
 ! python3 -B "$here/mutate.py" compare --out "$1" --than "$1-there" >"$1/said" ||
-  fail "what is lost is not: $(cat "$1/said")"
+  fail "the lost mutants: $(cat "$1/said")"
 odd=$(grep -c '[13579] -> -$' "$1/keys")
 grep -q "^| core/loop | 6 | 0 | 0 | $odd | $((6 - odd)) | 0 |" "$1/said" ||
   fail "$(cat "$1/said")"
@@ -60,6 +60,6 @@ grep -q "^| core/loop | 6 | 0 | 0 | $odd | $((6 - odd)) | 0 |" "$1/said" ||
   fail "$(cat "$1/said")"
 python3 -B "$here/mutate.py" compare --out "$1" --than "$1" >/dev/null || fail "lost to itself"
 echo 'edge/core/loop/x.h | f | none -> -' >>"$1/keys"
-! run "$1" --keys "$1/keys" >/dev/null 2>"$1/said" || fail "a key of no mutant is taken"
+! run "$1" --keys "$1/keys" >/dev/null 2>"$1/said" || fail "an unknown key is accepted"
 grep -q 'keys: this tree has no "edge/core/loop/x.h | f | none -> -"' "$1/said" ||
   fail "$(cat "$1/said")"

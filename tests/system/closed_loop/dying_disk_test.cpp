@@ -263,7 +263,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   expect_all_agree(false);
   const Said cleared = ask({"clear", "--yes"});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
-  EXPECT_THAT(cleared.text, HasSubstr(site_.folder.file("run"))) << "where alone it is kept";
+  EXPECT_THAT(cleared.text, HasSubstr(site_.folder.file("run"))) << "the only copy";
   await_cycles(2, "mode", "running", 8);
   expect_all_agree(false);
   end_run();
@@ -365,7 +365,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesTheOneBefore) {
       EXPECT_EQ(said.exit_code, 1) << said.text;
       EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
     }
-    EXPECT_EQ(hold({"--release"}).exit_code, is_full ? 0 : 1) << "what goes needs no room";
+    EXPECT_EQ(hold({"--release"}).exit_code, is_full ? 0 : 1) << "a removal needs no room";
     EXPECT_EQ(text_of_file(disk_.file("hold")), is_full ? "" : hold_before);
     EXPECT_EQ(text_of_file(disk_.file("limit")), limit_before);
     mend_disk(is_full);

@@ -227,7 +227,7 @@ TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
     std::ofstream(site_.folder.file(path)) << "{\"version\": 1, \"al";
   }
   EXPECT_THAT(notify(), Names("notify/told.json notify_run/told.json"));
-  EXPECT_EQ(mails(), before + 1) << "told again rather than never";
+  EXPECT_EQ(mails(), before + 1) << "reported again rather than never";
 }
 
 /// Wear of the state folder's card, if it reports any: in status, metrics and mail.

@@ -48,7 +48,7 @@ make_arm64_base() {
   done
   [ "$(id -u)" = 0 ] || skip "making its base needs root"
   mkdir -p "$folder"
-  "$source/tools/sysroot" --boot || skip "no sysroot and kernel; the lines above say why"
+  "$source/tools/sysroot" --boot || skip "no sysroot and kernel; see the lines above"
   [ -f "$folder/key" ] || ssh-keygen -q -t ed25519 -N "" -f "$folder/key"
   [ ! -d "$base" ] || return 0
   if [ ! -f "$folder/arm64.tar" ]; then
@@ -138,7 +138,7 @@ boot() {
     on true 2>/dev/null && return 0
     sleep 2
   done
-  die "the machine does not answer; $folder/console has what it wrote"
+  die "the machine does not answer; its output is in $folder/console"
 }
 cut_power() {
   [ -n "$emulator" ] || return 0

@@ -13,7 +13,7 @@ def pytest_addoption(parser):
     group = parser.getgroup("bess", "where the edge runs, and whether a real battery is driven")
     group.addoption("--place", choices=("local", "emulated", "guest", "pi"), default="local")
     group.addoption("--programs",
-                    help="folder of bess-edge and bess-sim, in place of places.yaml's")
+                    help="folder of bess-edge and bess-sim, instead of that in places.yaml")
     group.addoption("--real", metavar="CONFIG",
                     help="settings of bess-edge for a real battery, a path on the place")
     group.addoption("--yes-drive-real-battery", action="store_true",

@@ -47,7 +47,7 @@ class AbortKey:
             return self
         self.before = termios.tcgetattr(self.terminal)
         tty.setcbreak(self.terminal)
-        os.write(self.terminal, b"\r\ndriving the battery: press Q to end it at once\r\n")
+        os.write(self.terminal, b"\r\ndriving the battery: press Q to end it immediately\r\n")
         return self
 
     def __exit__(self, *_):

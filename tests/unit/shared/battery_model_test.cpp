@@ -124,7 +124,7 @@ TEST(RealBattery, TapersInAStraightLineTowardsItsBound) {
   EXPECT_EQ(power_w(0.89, 4e6), 4e6);
   EXPECT_NEAR(power_w(0.95, 4e6), 0.6 * 4e6, 1);
   EXPECT_NEAR(power_w(0.999, 4e6), 0.208 * 4e6, 1);
-  EXPECT_EQ(power_w(0.95, 1e6), 1e6) << "less than is left is given whole";
+  EXPECT_EQ(power_w(0.95, 1e6), 1e6) << "less than the rest is allowed in full";
   EXPECT_NEAR(power_w(0.125, -4e6), -0.75 * 4e6, 1);
   EXPECT_EQ(power_w(0.95, -4e6), -4e6) << "each bound has its own direction";
 }

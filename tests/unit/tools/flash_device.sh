@@ -21,13 +21,13 @@ small=$(losetup -f --show small.disk)
 flash() { "$source/tools/flash" device "$@" >said 2>&1; }
 
 flash os.img "$card" --yes || fail "writing: $(cat said)"
-grep -q "os.img" said || fail "reading back is not told: $(cat said)"
+grep -q "os.img" said || fail "the read-back is not reported: $(cat said)"
 cmp -s -n "$(stat -c %s os.img)" os.img "$card" || fail "the card holds something else"
 head -c 4096 card.disk >before
 code=0
 echo no | "$source/tools/flash" device os.img "$card" >said 2>&1 || code=$?
 [ $code -eq 1 ] && cmp -s -n 4096 before card.disk ||
-  fail "it does not take no for an answer: $(cat said)"
+  fail "it ignores the answer no: $(cat said)"
 
 refuses() {  # refuses WHAT LINE ARGUMENTS...
   local what=$1 line=$2 code=0

@@ -117,7 +117,7 @@ refuses() {  # refuses WHAT LINE ARGUMENTS...: exit code 1, one line, nothing le
   flash "$@" --out none.img || code=$?
   [ $code -eq 1 ] || fail "$what: exit code $code"
   [ "$(wc -l <said)" -eq 1 ] && grep -qF -- "$line" said || fail "$what: $(cat said)"
-  [ ! -e none.img ] && [ ! -e none.img.new ] || fail "$what: something is left"
+  [ ! -e none.img ] && [ ! -e none.img.new ] || fail "$what: files remain"
 }
 head -c 100000 /dev/urandom >noise.img
 head -c $(($(stat -c %s trixie.img.xz) / 2)) trixie.img.xz >cut.img.xz
@@ -209,7 +209,7 @@ flash lacking.img --out none2.img --package "$package" || code=$?
 unset http_proxy
 [ $code -eq 1 ] && grep -q -- "--debs" said ||
   fail "no network, exit code $code: $(cat said)"
-[ ! -e none2.img ] && [ ! -e none2.img.new ] || fail "no network: something is left"
+[ ! -e none2.img ] && [ ! -e none2.img.new ] || fail "no network: files remain"
 echo "-----BEGIN OPENSSH PRIVATE KEY-----" >key.pub
 refuses "a private key" "key.pub" bookworm.img --package "$package"
 

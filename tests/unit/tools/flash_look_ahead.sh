@@ -34,22 +34,22 @@ echo 0 >check_code
 echo '{"health": "ok"}' >status
 touch runs
 look_ahead
-[ $code -eq 0 ] || fail "a machine that is well: exit code $code, $(cat err)"
+[ $code -eq 0 ] || fail "a healthy machine: exit code $code, $(cat err)"
 
 echo 'bess-edge: edge.toml:3: no such key' >status
 look_ahead
-[ $code -eq 1 ] || fail "settings that are refused: exit code $code"
-grep -q "somebody else speaks" err || fail "what the new program said is lost: $(cat err)"
+[ $code -eq 1 ] || fail "refused settings: exit code $code"
+grep -q "somebody else speaks" err || fail "the new program's output is lost: $(cat err)"
 rm runs  # no controller: the new program connects to battery and price itself, which may be absent
 echo 1 >check_code
 look_ahead
 [ $code -eq 0 ] || fail "no controller: exit code $code"
-grep -q "not content yet" err || fail "a check that fails is not told: $(cat err)"
+grep -q "not content yet" err || fail "a failed check is not reported: $(cat err)"
 grep -q -- "^--config edge.toml --check$" asked || fail "it was not checked: $(cat asked)"
 
 settings=absent.toml look_ahead
 [ $code -eq 0 ] || fail "no settings: exit code $code"
-[ ! -s asked ] || fail "no settings, and yet asked: $(cat asked)"
+[ ! -s asked ] || fail "no settings, but a query: $(cat asked)"
 
 [ $failures -eq 0 ] || exit 1
 rm -rf "$folder"

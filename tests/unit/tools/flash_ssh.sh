@@ -76,7 +76,7 @@ printf 'phase=confirmed\nversion=2.0\n' >machine/state
 flash --package "$package" --config edge.toml || fail "an installation: $(cat said)"
 grep -q -- "--force-confold /var/tmp/bess-edge-" machine/installed ||
   fail "apt-get was not asked: $(cat machine/installed)"
-grep -q "2.0" said || fail "the confirmation is not told: $(cat said)"
+grep -q "2.0" said || fail "the confirmation is not reported: $(cat said)"
 [ "$(cat machine/settings)" = "control = false" ] || fail "the settings were not sent"
 
 rm machine/installed

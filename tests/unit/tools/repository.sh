@@ -102,10 +102,10 @@ apt() {
 gpg --batch --export second@example.org >other.gpg
 sources other.gpg
 if apt update -o APT::Update::Error-Mode=any >said 2>&1; then
-  fail "apt takes a repository of a foreign key"
+  fail "apt accepts a repository with a foreign key"
 fi
 sources repository/bess.gpg
-apt update >said 2>&1 || fail "apt does not take the repository: $(tail -n 2 said)"
+apt update >said 2>&1 || fail "apt refuses the repository: $(tail -n 2 said)"
 upgrades() {  # of twenty machines
   local number=0 id
   for id in $(seq 1 20); do
@@ -124,7 +124,7 @@ cp apt/status apt/status.kept
 awk 'BEGIN { RS = ""; ORS = "\n\n" } !/^Package: bess-edge\n/' apt/status.kept >apt/status
 for suite in stable full; do
   sources repository/bess.gpg $suite
-  apt update >said 2>&1 || fail "apt does not take $suite: $(tail -n 2 said)"
+  apt update >said 2>&1 || fail "apt refuses $suite: $(tail -n 2 said)"
   apt install -s bess-edge 2>/dev/null |
     sed -n "s/^Inst bess-edge (\([^ ]*\).*/$suite \1/p" >>new_machines
 done
@@ -145,7 +145,7 @@ repository --key first@example.org || fail "a newer one: $(cat said)"
 apt update >said 2>&1
 apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(3.0 ' || fail "3.0 is not served"
 repository --key first@example.org --back || fail "back: $(cat said)"
-apt update >said 2>&1 || fail "apt does not take the index before: $(tail -n 2 said)"
+apt update >said 2>&1 || fail "apt refuses the previous index: $(tail -n 2 said)"
 apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(2.0 ' || fail "2.0 is not served again"
 apt install -s bess-edge=1.0 >said 2>&1 || fail "the version before is gone: $(tail -n 1 said)"
 code=0

@@ -17,16 +17,16 @@ exit 1
 END
 
 WATCH_BUILD_EVERY_S=1 "$source/tools/watch_build" log sh slow >said 2>&1 ||
-  fail "a build that succeeds is called failed"
-grep -q '^\[1/2\] compiled, ' said || fail "it does not tell how far it is"
+  fail "a successful build is reported as failed"
+grep -q '^\[1/2\] compiled, ' said || fail "it shows no progress"
 [ "$(tail -n 1 said)" = "[2/2] Linking CXX executable two" ] ||
   fail "it does not end with the build's last line"
 
-"$source/tools/watch_build" log sh slow >said 2>&1 || fail "a build that succeeds is called failed"
+"$source/tools/watch_build" log sh slow >said 2>&1 || fail "a successful build is reported as failed"
 [ "$(wc -l <said)" -eq 1 ] || fail "more than a line a minute where there is no terminal"
 
-"$source/tools/watch_build" log sh broken >said 2>&1 && fail "a build that fails is called done"
-grep -q '^one.cpp:3:5: error: no such thing' said || fail "the compiler's words are not shown"
+"$source/tools/watch_build" log sh broken >said 2>&1 && fail "a failed build is reported as done"
+grep -q '^one.cpp:3:5: error: no such thing' said || fail "the compiler's output is not shown"
 grep -q '^\[1/2\]' said && fail "the steps before a failure are shown"
 
 # On a terminal: one row, redrawn repeatedly.

@@ -6,7 +6,7 @@ proof=$tree/tests/unit/edge/proofs/layers.sh
 rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" \
   "$tree/workstation" "$copy" || exit 1
 mkdir -p "$copy/tests/system" && cp -R "$tree/tests/system/trial" "$copy/tests/system" || exit 1
-sh "$proof" "$copy" || { echo "layers.sh complains about a right copy"; exit 1; }
+sh "$proof" "$copy" || { echo "layers.sh refuses a correct copy"; exit 1; }
 places=$copy/places
 wrong() {  # wrong FILE LINE: FILE gets it as its last one
   printf '%s\n' "$2" >>"$copy/$1"

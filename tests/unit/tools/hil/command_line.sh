@@ -61,7 +61,7 @@ fi
 
 # An unreadable file: one line with file, line and correction; a wrong option: 2.
 printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
-"$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was taken"
+"$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was accepted"
 grep -q 'bad.toml:2: .*minuts' "$work/bad.err" || complain "$(cat "$work/bad.err")"
 [ "$(wc -l <"$work/bad.err")" -eq 1 ] || complain "more than one line: $(cat "$work/bad.err")"
 printf 'title = "x"\n[edge]\nguard = "soc_minn = 0.2"\n' >"$work/edge.toml"

@@ -73,7 +73,7 @@ refused "fault.toml: .*silence" 1 \
 # It runs, judged, within its limits.
 "$hil" run "$work/short.toml" "${real[@]}" >"$work/run.txt" 2>&1 || complain "it failed"
 grep -q '^ok    real    short' "$work/run.txt" || complain "no verdict"
-grep -q 'mode=stopping battery=ok' "$work/run.txt" || complain "not told that it was released"
+grep -q 'mode=stopping battery=ok' "$work/run.txt" || complain "its release is not reported"
 
 # await TEXT: until the edge of the current run has logged it.
 await() {
@@ -85,7 +85,7 @@ await() {
 ends_released() {  # ends_released CODE TEXT: the cause and the kind of end
   [ "$1" -eq 3 ] || complain "$2: exit code $1"
   grep -q 'mode=stopping battery=ok' "$work/run.txt" ||
-    complain "$2: not told that it was released"
+    complain "$2: its release is not reported"
 }
 # A signal ends it immediately; so does the key, at a terminal.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!

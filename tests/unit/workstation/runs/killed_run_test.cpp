@@ -90,7 +90,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   write_file(out + "/student_weights.h", "// mine");
   fs::remove(out + "/evaluation.csv");
   EXPECT_THAT(said({"run", "--resume", "--out", out}), testing::Not(HasSubstr("steps")))
-      << "nothing is learnt again";
+      << "nothing is trained again";
   expect_same(out, expected);
 
   // A configuration edited afterwards differs from that of the run.
@@ -129,7 +129,7 @@ TEST_F(KilledRun, AFailedProofIsReportedWithEveryRoundAndNotRepeated) {
   EXPECT_THAT(read_file(out + "/report.html"),
               AllOf(HasSubstr("href=\"#failure\""), Names("201 EUR/MWh")));
   EXPECT_FALSE(fs::exists(out + "/student.json"));
-  EXPECT_FALSE(fs::exists(out + "/teacher.checkpoint")) << "it has served";
+  EXPECT_FALSE(fs::exists(out + "/teacher.checkpoint")) << "no longer needed";
   const auto before = contents(out);
   const std::string kept = path("kept");
   fs::copy(out, kept, fs::copy_options::recursive);

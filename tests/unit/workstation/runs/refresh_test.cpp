@@ -75,7 +75,7 @@ TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
   int killed = 0;
   for (const char* stage : {"teacher.bin", "student.json"}) {
     killed += kill_once_there(words, path("site.proposal") + "/" + stage) ? 1 : 0;
-    ASSERT_TRUE(fs::exists(path("site/student.json"))) << "the run stands until it is replaced";
+    ASSERT_TRUE(fs::exists(path("site/student.json"))) << "the run remains until it is replaced";
   }
   EXPECT_EQ(killed, 2);
   if (fs::exists(path("site.proposal"))) {

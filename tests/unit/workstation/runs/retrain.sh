@@ -41,16 +41,16 @@ echo "the flow took $(($(date +%s) - start)) s"
 grep -q 'signature=[0-9a-f]\{16\}$' edge/generated/decision_signature.txt ||
   fail "no signature: $(cat edge/generated/decision_signature.txt)"
 [ "$(build/bess-edge signature)" = "$(cat edge/generated/decision_signature.txt)" ] ||
-  fail "the build decides otherwise than export says: $(build/bess-edge signature)"
+  fail "the build's decisions differ from the exported ones: $(build/bess-edge signature)"
 grep -q '^#define BESS_STUDENT_TRAINED_FROM "2023-01-01"$' edge/generated/student_weights.h &&
   grep -q '^#define BESS_STUDENT_TRAINED_UNTIL "2023-05-22"$' edge/generated/student_weights.h ||
-  fail "the header does not tell its training days"
+  fail "the header lacks its training days"
 grep -q '^expect about [0-9.]* full cycles a day.* wear_eur_per_mwh or cycles_per_day_max$' \
-  runs/first/summary.txt || fail "the summary does not tell the cycles"
+  runs/first/summary.txt || fail "the summary lacks the cycles"
 grep -q 'warning: the newest day of these prices, 2023-05-22, was ' said ||
   fail "no warning of old prices"
 [ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] ||
-  fail "bess-edge decides as before"
+  fail "bess-edge makes the old decisions"
 grep -q 'low_price_eur_per_mwh: -500 | -300' said ||
   fail "'runs compare' does not tell what differs"
 grep -q '"low_price_eur_per_mwh":[[:space:]]*-300' runs/mine/student.json ||

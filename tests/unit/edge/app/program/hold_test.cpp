@@ -107,7 +107,7 @@ TEST_F(TwoHolds, TheNewerHoldCounts) {
   put(paths_.state, line_of(kHold), 3);
   EXPECT_EQ(reading(), HoldReading{.hold = kHold});
   std::filesystem::remove(paths_.state.c_str());
-  EXPECT_EQ(reading(), HoldReading{.hold = other_}) << "another disk, which knows nothing";
+  EXPECT_EQ(reading(), HoldReading{.hold = other_}) << "another disk, without state";
   EXPECT_EQ(read_newest_hold({.state = paths_.state, .run = ""}), HoldReading{});
 }
 

@@ -84,7 +84,7 @@ TEST(InstanceLock, ManyTakersAreNeverInsideTogether) {
   }
   int status = 0;
   while (wait(&status) > 0) EXPECT_EQ(status, 0);
-  EXPECT_GT(waits, 0) << "they never met";
+  EXPECT_GT(waits, 0) << "no contention occurred";
   munmap(shared, sizeof(std::atomic<int>));
 }
 

@@ -101,13 +101,13 @@ TEST_F(RecordedStepsTest, WhatShowsNoWholeStepIsLeftOut) {
   begin({.time_constant_s = 2});
   order(1'000);
   read_for(30);
-  EXPECT_TRUE(steps_->whole().empty()) << "from nobody knows what";
+  EXPECT_TRUE(steps_->whole().empty()) << "from an unknown order";
   order(-1'000);
   read_for(3);
   order(1'000);
   read_for(30);
   EXPECT_EQ(steps_->orders(), 2);
-  EXPECT_TRUE(steps_->whole().empty()) << "cut short, and begun before the last had come";
+  EXPECT_TRUE(steps_->whole().empty()) << "truncated, and begun before the last one ended";
   order(3'000);
   read_for(120, 60);
   EXPECT_TRUE(steps_->whole().empty()) << "seldom read";

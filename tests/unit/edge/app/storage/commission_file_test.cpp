@@ -123,7 +123,7 @@ TEST_F(CommissionCopies, AnyFlippedByteOfAnyCopyIsReportedAndRepaired) {
       ASSERT_THAT(commission_file_losses(config_),
                   ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
-      ASSERT_EQ(text_of_file(folder_.file(place)), flipped) << "looking writes nothing";
+      ASSERT_EQ(text_of_file(folder_.file(place)), flipped) << "a check writes nothing";
       ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
       ASSERT_EQ(text_of_file(folder_.file(place)), text_) << i;

@@ -37,7 +37,7 @@ TEST_F(FileOwner, AnotherUsersLockIsRefusedWithTheRemedy) {
   InstanceLock lock;
   EXPECT_FALSE(lock.take(path.c_str(), "the battery", error_));
   EXPECT_THAT(error_.c_str(), Names(path + " 65534"));
-  EXPECT_EQ(access(path.c_str(), F_OK), 0) << "not ours to remove";
+  EXPECT_EQ(access(path.c_str(), F_OK), 0) << "owned by another user";
 }
 
 TEST_F(FileOwner, AnotherUsersStatusOrLogIsRefusedBeforeTheStart) {

@@ -37,7 +37,7 @@ TEST(ClearedTrips, TheOldestOfNineIsForgotten) {
   EXPECT_FALSE(nine.has(kTrip));
   EXPECT_TRUE(nine.has(kTrip + 1));
   EXPECT_TRUE(nine.has(kTrip + 8));
-  EXPECT_FALSE(ClearedTrips{}.has(0)) << "no trip is none that was cleared";
+  EXPECT_FALSE(ClearedTrips{}.has(0)) << "no trip does not count as cleared";
 }
 
 /// A damaged card must not clear a trip.
@@ -96,14 +96,14 @@ TEST_F(TwoPlaces, AnUnreadableFileIsNoEntryAndIsRewritten) {
   EXPECT_TRUE(read_cleared(paths_.run.c_str()).unreadable);
   EXPECT_FALSE(clear_trip_of(paths_.run.c_str(), kTrip));
   EXPECT_EQ(errno, EISDIR);
-  EXPECT_TRUE(is_trip_cleared(paths_, kTrip)) << "the other place has it";
+  EXPECT_TRUE(is_trip_cleared(paths_, kTrip)) << "the other copy has it";
 }
 
 TEST_F(TwoPlaces, NoPathIsNothingCleared) {
   EXPECT_FALSE(read_cleared("").unreadable);
   EXPECT_FALSE(is_trip_cleared({}, kTrip));
   ASSERT_TRUE(clear_trip_of(paths_.state.c_str(), kTrip));
-  ASSERT_TRUE(clear_trip_of(paths_.state.c_str(), kTrip + 1)) << "beside the one before";
+  ASSERT_TRUE(clear_trip_of(paths_.state.c_str(), kTrip + 1)) << "in addition to the one before";
   EXPECT_TRUE(is_trip_cleared(paths_, kTrip));
 }
 

@@ -107,7 +107,7 @@ TEST_F(Rounds, TheDayIsReportedWhenTheNextBegins) {
   };
   cycle(kNow, "2023-03-27");
   cycle(kNow + 120, "2023-03-27");
-  EXPECT_EQ(told(), "") << "days before the first look were not watched";
+  EXPECT_EQ(told(), "") << "days before the start do not count";
   cycle(kNow + 86'400, "2023-03-28");
   cycle(kNow + 86'520, "2023-03-28");
   EXPECT_EQ(count_of(told(), "Subject: "), 1U);
@@ -237,7 +237,7 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
                     HasSubstr("\"command_topic\":\"bess/v1/garage/hold_power/set\"")));
   ASSERT_NE(all.await("/state", "\"hold_power_w\":0"), "");
   all.publish("bess/v1/garage/hold_power/set", "-1500");
-  EXPECT_NE(all.await("/state", "\"hold_power_w\":-1500"), "") << "noted for the next hold";
+  EXPECT_NE(all.await("/state", "\"hold_power_w\":-1500"), "") << "stored for the next hold";
   for (const char* bad : {"on", "", "ON; rm -rf /", "{\"power_w\":1}"}) {
     all.publish("bess/v1/garage/hold/set", bad);
     all.publish("bess/v1/garage/hold_power/set", bad);

@@ -36,7 +36,7 @@ TEST(LeakyCount, OneBadReadingIsNeverEnough) {
   for (int good = 0; good < 3; ++good) count.good();
   EXPECT_EQ(count, LeakyCount{});
   count.good();
-  EXPECT_EQ(count.level, 0) << "what was good for long excuses nothing in advance";
+  EXPECT_EQ(count.level, 0) << "a long good period is no credit";
 }
 
 TEST(LeakyCount, WhatWasBadForADayIsForgivenLikeWhatWasBadTwice) {

@@ -142,7 +142,7 @@ TEST(LostOrders, UnintendedEndsAreNoFinding) {
     now.order_number = 2;
     const bool is_safety = now.measurement.alarm || now.measurement.off_grid;
     orders.observe(now, false);
-    EXPECT_EQ(orders.replaced(), is_safety ? 0 : 1) << c.name << ": a hand is a hand";
+    EXPECT_EQ(orders.replaced(), is_safety ? 0 : 1) << c.name << ": a register change counts";
   }
 }
 
@@ -163,7 +163,7 @@ TEST(LostOrders, InsistsForAnHourAndAfterThatOnlyAgainstFew) {
   };
   EXPECT_EQ(given_back_after(every(1), false), 31);
   EXPECT_EQ(given_back_after(every(2), false), 32);
-  EXPECT_EQ(given_back_after(every(3), false), 0) << "two of three orders hold: it goes on";
+  EXPECT_EQ(given_back_after(every(3), false), 0) << "two of three orders last: it continues";
 }
 
 TEST(LostOrders, TheNextTryEndsSoonerUntilOrdersHaveLasted) {

@@ -127,8 +127,8 @@ expect() {  # expect WHAT PHASE RUNNING [REASON]
 
 printf '%-46s %-12s %-4s %s\n' "package or moment" phase runs reason
 machine; upgrade 2.0; judge; expect "a version that works" confirmed 2.0
-grep -q '^reload bess-edge' systemctl || fail "a version that works is not handed over to"
-grep -q '^stop\|^restart bess-edge' systemctl && fail "a version that works is stopped"
+grep -q '^reload bess-edge' systemctl || fail "a working version gets no hand-over"
+grep -q '^stop\|^restart bess-edge' systemctl && fail "a working version is stopped"
 [ -d "$store/versions/1.0" ] || fail "the version before is not kept"
 upgrade 3.0; judge; expect "and the next one" confirmed 3.0
 
@@ -136,17 +136,17 @@ for does in crash hang silent price trip link; do
   machine; echo $does >does_2.0
   upgrade 2.0; judge 60; expect "a version that $does" rolled_back 1.0
   grep -q '^stop bess-edge' systemctl || fail "$does: the version that fails is not stopped"
-  probation admit 2.0 && fail "$does: it is let in again"
-  [ ! -d "$store/versions/2.0" ] || fail "$does: a blocked version takes room"
-  grep -q '^WARN: 2.0 was reverted to 1.0' "$kept/note" || fail "$does: status does not tell"
-  grep -q '^bess_update_trouble 1' "$kept/update.prom" || fail "$does: metrics do not tell"
+  probation admit 2.0 && fail "$does: it is admitted again"
+  [ ! -d "$store/versions/2.0" ] || fail "$does: a blocked version uses space"
+  grep -q '^WARN: 2.0 was reverted to 1.0' "$kept/note" || fail "$does: status does not report it"
+  grep -q '^bess_update_trouble 1' "$kept/update.prom" || fail "$does: metrics do not report it"
 done
 machine; upgrade 2.0; judge 1; echo price >site; judge 5; rm site; judge
 expect "a market that goes away for ten minutes" confirmed 2.0
 
 refused() {  # refused WHAT REASON: the running version continues, unchanged, and it is not blocked
   expect "$1" rolled_back 1.0 "$2"
-  grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: what runs was touched"
+  grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: the running version was changed"
   probation admit 2.0 || fail "$1: it is blocked"
 }
 machine; upgrade 2.0 'echo x >>share/student_weights.h'
@@ -162,23 +162,23 @@ refused "a student that fails its self-test" "self-test"
 machine; echo unknown_key=1 >>"$BESS_ROOT/etc/bess/edge.toml"; upgrade 2.0
 refused "settings that the new version refuses" "unknown key"
 [ "$(ls "$BESS_ROOT/etc/bess")" = "edge.toml
-update.conf" ] || fail "something is left beside the settings: $(ls "$BESS_ROOT/etc/bess")"
+update.conf" ] || fail "a file is left next to the settings: $(ls "$BESS_ROOT/etc/bess")"
 machine; deliver 1.0 "echo more >>share/maps/alphaess.toml"; probation begin
 refused "the same version with other bytes" "other bytes"
-machine; upgrade ../x && fail "a version that leads out of the folder"
+machine; upgrade ../x && fail "a version outside of the folder"
 machine; upgrade 2.0 "rm share/certificate.json" &&
-  fail "no certificate, and dpkg is told that all is well"
+  fail "no certificate, and dpkg reports success"
 [ "$(cat running)" = 1.0 ] || fail "no certificate: $(cat running)"
 
 machine; touch no_room; upgrade 2.0 &&
-  fail "a disk that does not take the version: dpkg is told that all is well"
-grep -q "No space left" said || fail "a disk that does not take the version: $(cat said)"
+  fail "a disk without room for the version: dpkg reports success"
+grep -q "No space left" said || fail "a disk without room for the version: $(cat said)"
 rm no_room; probation begin; judge; expect "a disk that takes it at the second try" confirmed 2.0
 machine; echo crash >does_2.0; echo hang >does_3.0; upgrade 2.0; upgrade 3.0; judge 60
 expect "two in a row, neither works" rolled_back 1.0
 machine; echo crash >does_2.0; upgrade 2.0; judge; probation allow 2.0; rm does_2.0
 upgrade 2.0; judge
-expect "allowed again, and mended" confirmed 2.0
+expect "allowed again, and repaired" confirmed 2.0
 machine; upgrade 2.0; judge; upgrade 1.0; judge; expect "a downgrade" confirmed 1.0
 machine; upgrade 2.0; judge; probation revert "it trades too much"
 expect "back by hand" rolled_back 1.0 "trades too much"

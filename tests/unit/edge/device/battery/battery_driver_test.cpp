@@ -146,7 +146,7 @@ TEST_F(DriverTest, AnOrderThatEndsEarlyIsReportedByItsTraces) {
   };
   const Case cases[] = {
       {"stopped, or ended by the device", {{10, 0}}, false, true},
-      {"released by somebody", {{10, 0}, {11, 0}}, true, false},
+      {"released by another controller", {{10, 0}, {11, 0}}, true, false},
       {"another power", {{11, 777}}, true, false},
       {"another time", {{12, 30}}, true, false},
       {"another power that has run out", {{10, 0}, {11, 777}}, true, false},

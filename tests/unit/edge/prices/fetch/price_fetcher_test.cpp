@@ -68,7 +68,7 @@ TEST_F(PriceSourceTest, UnitsAndNumbersForNone) {
   }
   config_->price.feed.fields.eur_per_mwh_e1 = 10;
   body_ = rows({"-999", "50"});
-  EXPECT_EQ(ask().newest.price_centi_eur_per_mwh, -99'900) << "a real price, unless it is said";
+  EXPECT_EQ(ask().newest.price_centi_eur_per_mwh, -99'900) << "a real price by default";
   config_->price.feed.fields.no_price.push_back(-999);
   EXPECT_EQ(ask().newest.price_centi_eur_per_mwh, 5'000);
 }

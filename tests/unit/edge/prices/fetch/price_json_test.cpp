@@ -138,7 +138,7 @@ TEST(PriceJson, ARowWithAFieldTwiceIsPassedOverAndTwoListsOfRowsAreRefused) {
     EXPECT_EQ(parse(twice, row), Status::kMalformed) << twice;
   }
   EXPECT_EQ(parse(R"({"a":1,"a":2,"results":[)" + good + "]}", row), Status::kOk)
-      << "what is not asked for may be as it likes";
+      << "unused fields may have any value";
 }
 
 TEST(PriceJson, SkipsRowsThatAreNotRows) {

@@ -55,7 +55,7 @@ TEST(WholeFile, AFolderInTheWayIsAnError) {
   const std::string path = folder.file("status.json");
   fs::create_directory(path + ".new");
   EXPECT_FALSE(replace_file(path.c_str(), "now"));
-  EXPECT_FALSE(is_disk_trouble(errno)) << "the operator's to mend";
+  EXPECT_FALSE(is_disk_trouble(errno)) << "the operator must fix it";
 }
 
 /// Creates files under a restrictive umask of root.
@@ -90,7 +90,7 @@ TEST_F(CarefulRoot, FilesAreReadableForAllWhoMayEnterTheFolder) {
   EXPECT_EQ(mode_of(make("for_all", 0755)), 0644U);
   EXPECT_EQ(mode_of(make("for_the_group", 0750)), 0640U);
   EXPECT_EQ(mode_of(make("for_one", 0700)), 0600U);
-  EXPECT_EQ(mode_of(make("of_everybody", 01777)), 0644U) << "nobody else may write";
+  EXPECT_EQ(mode_of(make("of_everybody", 01777)), 0644U) << "no other user may write";
 }
 
 TEST_F(CarefulRoot, WhatRootMakesBelongsToTheFoldersOwner) {

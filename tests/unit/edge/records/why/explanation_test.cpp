@@ -97,7 +97,7 @@ TEST_F(Why, SinceWhenIsTheBeginningOfTheRun) {
   EXPECT_EQ(explained().cycles, 6);
   EXPECT_EQ(explained().since_utc_s, kTick + 4 * kSecondsPerStep);
   EXPECT_EQ(explained(4).cycles, 4);
-  EXPECT_EQ(explained(7).cycles, 3) << "what came later does not count";
+  EXPECT_EQ(explained(7).cycles, 3) << "later records do not count";
 }
 
 TEST_F(Why, AGapInTheLogStartsAgain) {
@@ -122,7 +122,7 @@ TEST_F(Why, EveryReasonButTheStudentsHasAnEnd) {
     r.reason = static_cast<Reason>(i);
     const std::string end = what_ends(r, settings_);
     EXPECT_EQ(end.empty(), r.reason == Reason::kStudent) << reason_name(r.reason);
-    EXPECT_EQ(end.find_first_of("{}"), end.npos) << "a value that nobody knows: " << end;
+    EXPECT_EQ(end.find_first_of("{}"), end.npos) << "an unknown value: " << end;
   }
 }
 

@@ -92,7 +92,7 @@ TEST(Lessons, ObeyTheRulesForAnyTeacher) {
       teacher.program = nullptr;
     }
     DistilOptions options = school().options;
-    EXPECT_GT(broken_lessons(teacher, rules, options), 1000) << "the teacher knows no rules";
+    EXPECT_GT(broken_lessons(teacher, rules, options), 1000) << "the teacher ignores the rules";
     options.rules = rules;
     EXPECT_EQ(broken_lessons(teacher, rules, options), 0);
   }
@@ -165,7 +165,7 @@ TEST(CorrectAndProve, DemandsOnStatesAreLearntAndProved) {
        "at_most = \"idle\"\nprice_min = 400\ncontext_classes = [11, 12]",
        "charge_at_or_below = -200", "discharge_at_or_above = 900",
        "power_max = 0.5\nhours = \"18:00-21:00\"\nenforce = true"});
-  EXPECT_FALSE(counts.back().binds_student) << "a power is the guard's alone";
+  EXPECT_FALSE(counts.back().binds_student) << "a power rule only binds the guard";
 }
 
 TEST(CorrectAndProve, DirectionsAreLearntAndProved) {
@@ -265,7 +265,7 @@ TEST(SignBounds, EveryStudentInsideIsMonotone) {
     for (int i = 0; i < 2'000; ++i) seen[static_cast<int>(net.decide(random_state(random)))] = true;
     with_all_actions += seen[0] && seen[2] ? 1 : 0;
   }
-  EXPECT_GT(with_all_actions, 0) << "monotone because it never changes its mind proves nothing";
+  EXPECT_GT(with_all_actions, 0) << "a constant action would prove nothing";
 }
 
 TEST(SignBounds, OutsideTheStudentIsNot) {

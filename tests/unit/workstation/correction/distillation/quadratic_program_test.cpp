@@ -129,7 +129,7 @@ TEST(QuadraticProgram, SolutionsAreOptimal) {
     let_go += solver.steps() - static_cast<int>(std::ranges::count_if(
                                    solver.multipliers(), [](double u) { return u != 0; }));
   }
-  EXPECT_GT(let_go, 100) << "rows are let go on the way";
+  EXPECT_GT(let_go, 100) << "rows are dropped on the way";
 }
 
 /// Scaled numbers, of the rows and of all: the result does not depend on units.
@@ -332,7 +332,7 @@ TEST(QuadraticProgram, BackwardAtAKink) {
        vector_of({0.5, 3})},
       {"an equal pair", constraints_of(2, {{1, -1}}, {0}), vector_of({4, 4}),
        vector_of({1.5, 2.5})},
-      {"beside an active bound", constraints_of(2, {{1, 0}, {0, 1}}, {5, 4}), vector_of({3, 4}),
+      {"next to an active bound", constraints_of(2, {{1, 0}, {0, 1}}, {5, 4}), vector_of({3, 4}),
        vector_of({0, 1.5})},
       {"an equality has one side", constraints_of(2, {{1, 0}}, {3}, 1), vector_of({3, 4}),
        vector_of({0, 3})},
@@ -365,7 +365,7 @@ TEST(QuadraticProgram, AllocatesNothingAfterTheConstructor) {
   }
   const long before = allocation_count();
   const Vector one_more(100);
-  EXPECT_GT(allocation_count(), before) << "the counter counts";
+  EXPECT_GT(allocation_count(), before) << "the counter works";
 }
 
 }  // namespace

@@ -387,7 +387,7 @@ TEST(ExportCommand, RefusesViolations) {
       answer_of({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.text, Names(student + ": 3473280 1"));
-  EXPECT_TRUE(fs::is_empty(folder.file("out"))) << "made to see whether it can be";
+  EXPECT_TRUE(fs::is_empty(folder.file("out"))) << "created as a test";
 }
 
 #ifndef __SANITIZE_ADDRESS__  // a whole proof takes long there, and two are above

@@ -30,7 +30,7 @@ TEST(ExportedPolicy, IsTheStudentBehindItsGuard) {
   EXPECT_EQ(policy->decide(step_at(0, 1400), 0, 0.5), Action::kDischarge) << "as the student";
   EXPECT_EQ(policy->decide(step_at(kEvening, 1400), 0, 0.5), Action::kIdle) << "the guard's";
   EXPECT_EQ(policy->decide(step_at(kEvening, -400), 0, 0.5), Action::kCharge)
-      << "a rule that is not enforced is the proof's alone";
+      << "a rule without enforce only affects the proof";
   EXPECT_EQ(policy->power_share_max(step_at(0, 0), 0.5), 1);
   EXPECT_EQ(policy->power_share_max(step_at(kEvening, 0), 0.5), 0.5);
 }

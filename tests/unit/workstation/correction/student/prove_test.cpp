@@ -92,7 +92,7 @@ TEST(Prove, ASampleCountsInEverySeventhContextAndProvesNothing) {
 
 TEST(Certificate, CoversTheLatticeOnlyAsAWhole) {
   EXPECT_TRUE(flawless_claim().covers_lattice_without_violation());
-  EXPECT_FALSE(Certificate{}.covers_lattice_without_violation()) << "nobody has looked yet";
+  EXPECT_FALSE(Certificate{}.covers_lattice_without_violation()) << "not proved yet";
   Certificate quick_look = flawless_claim();
   quick_look.states_checked /= 2;
   EXPECT_FALSE(quick_look.covers_lattice_without_violation());

@@ -116,7 +116,7 @@ TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
     text = without(without(text, "rule_states"), "rule_violations");
     const Certificate again = parse_student(text, "old.json").certificate;
     EXPECT_EQ(again.covers_lattice_without_violation(), violations == 0);
-    EXPECT_EQ(again.rule_counts().size(), violations == 0 ? 2U : 0U) << "nobody knows which";
+    EXPECT_EQ(again.rule_counts().size(), violations == 0 ? 2U : 0U) << "unknown which";
   }
 }
 
@@ -150,7 +150,7 @@ TEST(StudentFile, Version1IsStillRead) {
       load_student(BESS_SOURCE_DIR "/tests/checks/fuzz/seeds/student_file_fuzz/version_1.json");
   constexpr std::uint32_t kHashInTheFile = 374'446'160;
   EXPECT_EQ(student_weights_hash(student.net), kHashInTheFile);
-  EXPECT_EQ(student.net.context, ContextClasses{}) << "by month, as all were";
+  EXPECT_EQ(student.net.context, ContextClasses{}) << "by month, the only kind then";
   EXPECT_EQ(student.certificate.thresholds, (PriceThresholds{-500, 1500}));
   EXPECT_EQ(student.certificate.states_checked, 0);
   EXPECT_FALSE(student.certificate.covers_lattice_without_violation());

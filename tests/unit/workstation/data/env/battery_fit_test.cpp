@@ -92,7 +92,7 @@ TEST(BatteryFit, FindsTheColdHoursWhetherTheBatterySaysThemOrNot) {
       EXPECT_NEAR(fit.cold_to_hour->value, 7, 0.25 + fit.cold_to_hour->standard_error);
       EXPECT_LE(fit.cold_to_hour->standard_error, 0.5);
       EXPECT_EQ(fit.applied_to(kHouse).cold.power_share, fit.cold_power_share->value);
-      ASSERT_TRUE(fit.charge_taper_share) << "the cold is no taper";
+      ASSERT_TRUE(fit.charge_taper_share) << "the limit in the cold is no taper";
       EXPECT_NEAR(fit.charge_taper_share->value, 0.25, 0.0125);
       EXPECT_NEAR(fit.discharge_taper_width->value, 0.06, 0.004);
     }

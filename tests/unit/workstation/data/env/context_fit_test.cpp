@@ -40,12 +40,12 @@ TEST(ContextFit, AnotherYearsLevelsDoNotMoveTheClasses) {
   const auto fit = [](const MinuteSeries& series) {
     return fit_context_classes(make_market_steps(series, {}), ContextKind::kLevel);
   };
-  EXPECT_NE(fit(later), fit(small_series())) << "training days of February are others now";
+  EXPECT_NE(fit(later), fit(small_series())) << "the training days of February differ now";
   MinuteSeries test_days = january;
   for (std::size_t m = std::size_t{26} * 24 * 60; m < test_days.size(); ++m) {
     test_days.indicative[m] += 300;
   }
-  EXPECT_EQ(fit(test_days), fit(january)) << "test days are not looked at";
+  EXPECT_EQ(fit(test_days), fit(january)) << "test days are not used";
 }
 
 TEST(ContextFit, AConstantMarketHasClassesToo) {

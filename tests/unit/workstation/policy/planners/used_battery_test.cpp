@@ -33,7 +33,7 @@ TEST(CapacityFade, IsOfThePartThatIsLeftAndOff) {
   }
   EXPECT_LT(capacity_wh, 0.98 * fading.capacity_wh);
   EXPECT_LT(faded.profit_eur_per_day_per_mwh(), trade({}).profit_eur_per_day_per_mwh());
-  EXPECT_EQ(faded.capacity_mwh, 8) << "profits are by what was bought";
+  EXPECT_EQ(faded.capacity_mwh, 8) << "profits refer to the initial capacity";
 }
 
 TEST(MinimumRun, ADirectionIsKeptAndNothingElseIs) {

@@ -38,7 +38,7 @@ TEST_P(ReplayOf, PlayStoresEachStepOfADayInOrder) {
     for (std::size_t i = 0; i < played.size(); ++i) {
       EXPECT_EQ(played[i].state[4], market.context(found->first + i).price);
       if (i > 0) {
-        EXPECT_EQ(played[i].state[3], played[i - 1].next_state[3]) << "the SoC goes on";
+        EXPECT_EQ(played[i].state[3], played[i - 1].next_state[3]) << "the SoC continues";
       }
     }
     EXPECT_GE(played[0].state[3], 0.0999F);

@@ -242,7 +242,7 @@ TEST(KeptStep, TheLowerEndIsTheMeanLessStudentsTTimesTheWiderError) {
   const double by_month =
       gain_at_least({1, 1, 1, 1, 2, 3, 3, 3, 3, 2}, 6);  // the same days, sorted
   EXPECT_GT(mixed, 0);
-  EXPECT_LT(by_month, 0) << "two months that differ are two witnesses, not ten";
+  EXPECT_LT(by_month, 0) << "two months that differ are two samples, not ten";
   EXPECT_LT(gain_at_least({5}, 1), -1e9) << "one day shows nothing";
 }
 

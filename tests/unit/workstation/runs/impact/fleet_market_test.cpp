@@ -188,7 +188,7 @@ TEST(ImpactStudy, RowsAreMeansOverSeedsAndAShyFleetTradesLess) {
   EXPECT_EQ(alone.mean.overshoot_share, 0);
   EXPECT_EQ(alone.mean.imbalance_mw, alone.mean.imbalance_alone_mw);
   EXPECT_EQ(row_of(0, "round 1").mean.eur_per_mw_day, alone.mean.eur_per_mw_day)
-      << "what it made itself are today's prices";
+      << "its own prices are those of the environment";
   EXPECT_GT(alone.mean.eur_per_mw_day, row_of(600, "as it is").mean.eur_per_mw_day);
   EXPECT_GT(row_of(600, "as it is").mean.overshoot_share, 0.1);
   EXPECT_GT(row_of(600, "shy").mean.eur_per_mw_day, row_of(600, "as it is").mean.eur_per_mw_day);

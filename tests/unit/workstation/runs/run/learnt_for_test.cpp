@@ -91,7 +91,7 @@ TEST_F(LearntFor, AFitBeforeABoundaryIsReportedAfterIt) {
   const auto told = Names("2024 PICASSO");
   const std::string test = "evaluate --prices " + prices + " --policy ";
   EXPECT_THAT(warnings(test + "sdp"), AllOf(told, Names("2024-11-01 2024-11-25")));
-  EXPECT_EQ(warnings(test + "rbc"), "") << "it is fitted on nothing";
+  EXPECT_EQ(warnings(test + "rbc"), "") << "it has no fit";
   EXPECT_EQ(warnings("evaluate --split val --prices " + prices + " --policy sdp"), "");
   EXPECT_EQ(warnings("evaluate --fit " + prices + " --prices " + prices_ + " --policy rbc"), "");
   EXPECT_THAT(warnings("evaluate --fit " + prices_ + " --prices " + prices + " --policy sdp"),
@@ -176,7 +176,7 @@ TEST(PriceRegimes, BeginAtLocalMidnight) {
   EXPECT_EQ(regimes_not_learnt(before, before), "");
   EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), Names("PICASSO"));
   EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), Names("22 2024"));
-  EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it learnt a minute of it";
+  EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it was trained on a minute of it";
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST_F(ClassPackages, OneAClassAndAgainOnlyWhereItsStudentIsAnother) {
   write_file(request_.out / "22/bess-edge_9_arm64.deb", "of the student before");
   write_file(folder_.path / "22/student_weights.h", "retrained");
   EXPECT_TRUE(package_class(folder_, request_, classes[0]));
-  EXPECT_EQ(classes[0].version, "0.1.0+2026.g1.22") << "none of the student before is left";
+  EXPECT_EQ(classes[0].version, "0.1.0+2026.g1.22") << "no file of the previous student is left";
 }
 
 TEST_F(ClassPackages, TheInventoryHasEachSiteInItsClassAndInOneShare) {
@@ -114,7 +114,7 @@ TEST_F(ClassPackages, WhatCannotBeIsRefusedInOneLine) {
   EXPECT_THAT(refusal_of([&] { package_class(folder_, request_, classes[0]); }),
               Names("11 tools/package: no compiler"));
   write_file(folder_.path / "11/student_weights.h", "good");
-  EXPECT_TRUE(package_class(folder_, request_, classes[0])) << "what broke off is no package";
+  EXPECT_TRUE(package_class(folder_, request_, classes[0])) << "an interrupted build is no package";
 }
 
 }  // namespace

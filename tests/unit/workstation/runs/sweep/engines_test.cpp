@@ -21,7 +21,7 @@ TEST(Engines, ParallelRunsEachLineOfTheTasksUnlessItsJoblogHasIt) {
             HasSubstr("--jobs 4"), EndsWith(" :::: '/a sweep/tasks.tsv'")));
   const auto words = parallel_command(folder);
   EXPECT_THAT(words.at(words.size() - 3), EndsWith(" sweep task '/a sweep' {1}"))
-      << "parallel's own shell reads it once more";
+      << "parallel's own shell parses it again";
 }
 
 TEST(Engines, AnArrayIsAThousandTasks) {

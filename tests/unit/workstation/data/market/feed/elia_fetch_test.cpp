@@ -478,7 +478,7 @@ TEST_F(EliaFetch, AnAnswerTooLargeSaysSo) {
     FetchRequest wanted = request(elia);
     wanted.retry.limits.bytes_max = 1'000'000;
     EXPECT_THAT(error_of(wanted), Names("1000000 ods046"));
-    EXPECT_EQ(elia.requests().at("ods046"), 1) << "another try would bring the same";
+    EXPECT_EQ(elia.requests().at("ods046"), 1) << "a retry would get the same answer";
   }
 }
 

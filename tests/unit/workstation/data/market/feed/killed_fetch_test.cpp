@@ -100,7 +100,7 @@ TEST_F(KilledFetch, AtEachWindowKeepsThoseBefore) {
   EXPECT_EQ(std::distance(fs::directory_iterator(out.parent_path()), {}), 1) << "left behind";
   const std::map<std::string, int> requests = elia_.requests();
   EXPECT_EQ(requests.at("ods046") + requests.at("ods047"), kWindows + (kWindows - 1))
-      << "a window that was kept is not asked for again";
+      << "a stored window is not fetched again";
 }
 
 TEST_F(KilledFetch, CtrlCWritesNoFile) {
