@@ -1,5 +1,4 @@
-// A text held against a file of the repository; BESS_UPDATE_GOLDEN in the environment writes it
-// anew.
+// Golden file comparison; BESS_UPDATE_GOLDEN in the environment rewrites the file.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -197,7 +197,7 @@ class StateFiles : public SiteTest {
 };
 
 TEST_F(StateFiles, NoDamageOfACardLosesOrFakesState) {
-  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
+  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to another user";
   for (int i = 0; i < few_or_all(4, 150); ++i) {
     const StateFile& file = kFiles[random_() % std::size(kFiles)];
     try_one(file, kDamages[random_() % std::size(kDamages)]);

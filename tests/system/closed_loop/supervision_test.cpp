@@ -220,7 +220,7 @@ TEST_P(EveryMapSupervised, AProcessThatWasPausedDoesNotContinueItsOldOrder) {
   constexpr std::int64_t kStoppedS = 1'230;
   SupervisedSite site(GetParam());
   if (site.device.test.map.watchdog.kind == Watchdog::Kind::kNone) {
-    GTEST_SKIP() << "without a watchdog an order stays, whoever is stopped";
+    GTEST_SKIP() << "without a watchdog an order stays in force";
   }
   site.prices.price = [](std::int64_t) { return -60'000; };
   CycleRecord before;

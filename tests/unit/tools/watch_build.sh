@@ -22,7 +22,7 @@ grep -q '^\[1/2\] compiled, ' said || fail "it shows no progress"
 [ "$(tail -n 1 said)" = "[2/2] Linking CXX executable two" ] ||
   fail "it does not end with the build's last line"
 
-"$source/tools/watch_build" log sh slow >said 2>&1 || fail "a successful build is reported as failed"
+"$source/tools/watch_build" log sh slow >said 2>&1 || fail "a slow build is reported as failed"
 [ "$(wc -l <said)" -eq 1 ] || fail "more than a line a minute where there is no terminal"
 
 "$source/tools/watch_build" log sh broken >said 2>&1 && fail "a failed build is reported as done"

@@ -120,7 +120,7 @@ TEST_F(File, TrailingOrMissingGzipDataIsReported) {
   EXPECT_GE(told, whole.size() - 12);
 }
 
-/// 1.2 MB in place of 1.2 GB: memory never exceeds the bound.
+/// 1.2 MB instead of 1.2 GB: memory never exceeds the bound.
 TEST_F(File, ABombIsBoundedWhileItIsRead) {
   std::string comments;
   while (comments.size() < 1'000'000) comments += "# nothing\n";

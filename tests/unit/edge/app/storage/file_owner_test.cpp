@@ -18,7 +18,7 @@ constexpr uid_t kStranger = 65'534;
 class FileOwner : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
+    if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to another user";
   }
   /// A file as that user would have made it, writable by everyone.
   std::string strangers(const std::string& name) const {

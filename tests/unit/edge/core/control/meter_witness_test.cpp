@@ -97,7 +97,7 @@ TEST(MeterWitness, ARatioThatAStepHasShownIsPossibleFromThenOn) {
   EXPECT_NEAR(c.witness.possible_ratios(c.utc_s).least_permille, 650, 10);
   EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 1'000);
   EXPECT_EQ(c.witness.trust().doubt, 0) << "and no doubt";
-  EXPECT_EQ(c.witness.possible_ratios(c.utc_s + 1'300).least_permille, 1'000) << "and not permanently";
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s + 1'300).least_permille, 1'000) << "not permanent";
   EXPECT_EQ(c.witness.possible_ratios(c.utc_s - 86'400).least_permille, 1'000) << "clock set back";
   c.meter = [](double w) { return w; };
   c.cycle(4'000);

@@ -1,4 +1,4 @@
-// Operator requests besides trading: holds, a reserve by the hour, full charges. Each separately,
+// Operator requests: holds, a reserve by the hour, full charges. Each separately,
 // then in the guard.
 #include <gtest/gtest.h>
 

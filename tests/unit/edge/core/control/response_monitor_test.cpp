@@ -306,7 +306,7 @@ TEST(ResponseMonitor, AnOrderThatIsReadTwiceOnItsWayIsOnItsWay) {
   cycles.read(0, 117, 800, 37);
   EXPECT_EQ(cycles.monitor.trip(), std::nullopt);
   for (int i = 0; i < 2; ++i) cycles.read(0, 150 + i, 800, 33);
-  EXPECT_EQ(cycles.monitor.trip(), Reason::kUncontrolledPower) << "a constant power is no transition";
+  EXPECT_EQ(cycles.monitor.trip(), Reason::kUncontrolledPower) << "constant is no transition";
 }
 
 /// 30 W/s, read at -2488 W and ordered back a minute later, when it had got to -4000 W.

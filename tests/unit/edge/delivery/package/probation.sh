@@ -146,7 +146,7 @@ expect "a market that goes away for ten minutes" confirmed 2.0
 
 refused() {  # refused WHAT REASON: the running version continues, unchanged, and it is not blocked
   expect "$1" rolled_back 1.0 "$2"
-  grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: the running version was changed"
+  grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: running version changed"
   probation admit 2.0 || fail "$1: it is blocked"
 }
 machine; upgrade 2.0 'echo x >>share/student_weights.h'

@@ -32,7 +32,7 @@ TEST(StepHold, ALargeStepIsHeldUntilALaterRowConfirmsIt) {
   EXPECT_TRUE(hold.has_held());
   EXPECT_EQ(hold.held().price_centi_eur_per_mwh, 900'000);
   EXPECT_FALSE(hold.judge(kBefore, row_at(11, 900'000)).is_taken) << "one row twice, not two rows";
-  EXPECT_FALSE(hold.judge(kBefore, row_at(11, 900'100)).is_taken) << "a correction is no confirmation";
+  EXPECT_FALSE(hold.judge(kBefore, row_at(11, 900'100)).is_taken) << "a correction is no proof";
   const auto verdict = hold.judge(kBefore, row_at(12, 800'000));
   EXPECT_TRUE(verdict.is_taken);
   EXPECT_TRUE(verdict.is_large_step);

@@ -94,7 +94,7 @@ TEST_F(CarefulRoot, FilesAreReadableForAllWhoMayEnterTheFolder) {
 }
 
 TEST_F(CarefulRoot, WhatRootMakesBelongsToTheFoldersOwner) {
-  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a folder to somebody else";
+  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a folder to another user";
   ASSERT_EQ(chown(folder_.file("").c_str(), kService, kService), 0);
   const std::string made = folder_.file("made");
   ASSERT_TRUE(make_folder(made.c_str()));

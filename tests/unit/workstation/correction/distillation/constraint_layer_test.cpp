@@ -123,7 +123,7 @@ TEST(ConstraintLayer, RulesHoldTogetherWithTheProperties) {
     EXPECT_GE(value, row.bound - 1e-9) << row.rule;
   }
   layer.forward(corrected, again);
-  EXPECT_LT((again - corrected).cwiseAbs().maxCoeff(), 1e-9) << "a repeated correction changes nothing";
+  EXPECT_LT((again - corrected).cwiseAbs().maxCoeff(), 1e-9) << "the correction is idempotent";
 }
 
 TEST(ConstraintLayer, ContradictingRulesAreNamed) {

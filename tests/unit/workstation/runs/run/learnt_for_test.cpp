@@ -176,7 +176,7 @@ TEST(PriceRegimes, BeginAtLocalMidnight) {
   EXPECT_EQ(regimes_not_learnt(before, before), "");
   EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), Names("PICASSO"));
   EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), Names("22 2024"));
-  EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it was trained on a minute of it";
+  EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "trained on a minute of it";
 }
 
 }  // namespace
