@@ -24,7 +24,7 @@ inline std::filesystem::path outside_sample(const std::string& name) {
 #define BESS_SKIP_WITHOUT(sample)                               \
   if (!std::filesystem::exists(bess::outside_sample(sample))) { \
     GTEST_SKIP() << "needs ../shared/data/" << (sample)         \
-                 << " next to the checkout, which is absent";    \
+                 << " next to the checkout, which is absent";   \
   }
 
 /// An empty folder of this test, removed at its end.

@@ -124,9 +124,8 @@ class DyingDisk : public SiteTest {
 
   void commission(bool has_run_folder, const std::string& keys = "") {
     const std::string run = "run_folder = \"" + site_.folder.file("run") + "\"\n";
-    config_ =
-        site_.commission({.guard_keys = "price_age_s_max = 1800\n",  // stopped during queries
-                          .state_keys = (has_run_folder ? run : "") + keys});
+    config_ = site_.commission({.guard_keys = "price_age_s_max = 1800\n",  // stopped during queries
+                                .state_keys = (has_run_folder ? run : "") + keys});
   }
   void start() {
     controller_ = std::make_unique<ChildProcess>(

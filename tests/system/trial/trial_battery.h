@@ -18,8 +18,7 @@ namespace bess::trial {
 /// Since the start, in the cells.
 struct EnergyAccount {
   double moved_wh = 0;  ///< in and out, at the grid side
-  double wrong_wh =
-      0;  ///< against the flow of a healthy battery, or beyond order and it
+  double wrong_wh = 0;  ///< against the flow of a healthy battery, or beyond order and it
 };
 
 class TrialBattery {

@@ -102,8 +102,7 @@ TEST_F(RulesCli, PriceShowsEachRuleAloneAndAllTogether) {
   EXPECT_THAT(rules_output(arguments), HasSubstr("\nsteady "));
   const std::vector<Json> lines = json_lines(rules_output(arguments + " --json"));
   const Json& first = lines.front();
-  EXPECT_NEAR(number(first, "profit_eur_per_day_per_mwh"), 0, 1)
-      << "idles at all of these prices";
+  EXPECT_NEAR(number(first, "profit_eur_per_day_per_mwh"), 0, 1) << "idles at all of these prices";
   EXPECT_LT(number(first, "gain_eur_per_day_per_mwh"), -100);
   EXPECT_GT(number(first, "gain_standard_error"), 0);
   EXPECT_THROW(rules_output("price --policy foresight --rules " + file + with_prices()), UserError);

@@ -117,8 +117,7 @@ TEST_F(Log, ABlockedDiskNeverBlocksTheControlThread) {
   const auto log = opened(s);
   constexpr int kRecords = 1'000;
   for (int cycle = 1; cycle <= kRecords; ++cycle) log->write(record_of(cycle));
-  EXPECT_FALSE(
-      log->drain(kNanosecondsPerSecond / 100));  // it is blocked, and drain is bounded
+  EXPECT_FALSE(log->drain(kNanosecondsPerSecond / 100));  // it is blocked, and drain is bounded
   char bytes[65'536];
   for (bool drained = false; !drained; drained = log->drain(kNanosecondsPerSecond / 100)) {
     while (read(reader, bytes, sizeof bytes) > 0) continue;
