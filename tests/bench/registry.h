@@ -1,6 +1,5 @@
-// Benchmark registry: each file registers its own benchmarks by name. A peer is registered with the
-// benchmark it is compared with and runs after it, or reports its time from within it when the two
-// alternate.
+// Benchmark registry by name. A peer is registered with its benchmark and runs after it, or reports
+// its time from within it when the two alternate.
 #pragma once
 
 #include <benchmark/benchmark.h>

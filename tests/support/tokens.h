@@ -24,8 +24,7 @@ inline bool has_code(std::string_view text, std::string_view code) {
   return false;
 }
 
-/// Whether each of these codes, separated by spaces, occurs in the text: Names("edge.toml:3 power_w
-/// 4000").
+/// Whether each of these codes, split at spaces, occurs: Names("edge.toml:3 power_w 4000").
 MATCHER_P(Names, codes, "names " + ::testing::PrintToString(std::string(codes))) {
   std::istringstream words{std::string(codes)};
   bool has_all = true;

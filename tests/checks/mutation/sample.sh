@@ -1,7 +1,6 @@
 #!/bin/sh
-# sample.sh FOLDER: mutate.py draws a number of mutants of each room by its seed, lists survivors
-# and compares two trees, on ten invented mutants in each of two rooms, of which a test finds the
-# even ones.
+# sample.sh FOLDER: mutate.py draws mutants of each room by its seed, lists survivors and compares
+# two trees, on ten invented mutants in two rooms, of which a test finds the even ones.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$1"

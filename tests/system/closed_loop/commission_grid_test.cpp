@@ -189,8 +189,7 @@ Truth truth_of(const Nature& nature, const CommissionSettings& settings) {
           .is_beyond = soonest_s > settings.response.settle_s + unseen_s(nature)};
 }
 
-/// Where a larger step fits both ways, a battery beyond the limit is refused; otherwise it may be a
-/// warning.
+/// Where a larger step fits both ways, one beyond is refused; otherwise it may be a warning.
 bool is_right(const CommissionResult& r, const Truth& truth, bool has_room) {
   const bool is_known = passes(r) || r.verdict == CommissionVerdict::kSlow;
   if (!is_known || (truth.is_within && !passes(r))) return false;

@@ -15,8 +15,7 @@ class EveryMap : public ::testing::TestWithParam<MapVariant> {
  protected:
   EveryMap() : device_(GetParam().map, GetParam().variant), t_(device_.test) {}
 
-  /// The rest of a control cycle as the control loop spends it: refreshes as often as the driver
-  /// requests.
+  /// The rest of a control cycle as in the loop: refreshes as often as the driver requests.
   void pass_cycle() {
     const int interval_s = t_.driver->refresh_interval_s();
     int left_s = 120;

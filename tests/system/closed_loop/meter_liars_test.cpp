@@ -275,8 +275,7 @@ TEST(MeterLiars, ALimitIsPassedForAMinuteAtMostOnceAStepHasContradicted) {
       const Damage now = worst_damage(lie, habits);
       std::printf("%-20s | %8d %9.0f %10d %10d %10d\n", lie.name, now.over_s, now.over_w_max,
                   now.cycles_to_find, now.steps_to_find, now.trial_s);
-      // In the most restless house a correct meter exceeds them for longer than that, house by
-      // house.
+      // In the most restless house a correct meter exceeds them longer, house by house.
       const bool is_wild = habits.hob && habits.pv_w > 0;
       if (is_bounded(lie)) {
         EXPECT_LE(now.over_s, is_wild ? 90 : 60) << habits.name << ", " << lie.name;

@@ -20,8 +20,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The default, evaluated at the tick; the logged age is at the order, after the wait for a new
-/// one.
+/// The default, at the tick; the logged age is at the order, after the wait for a new one.
 constexpr int kPriceAgeSMax = 240 + 20 + 1;
 
 class PriceProcesses : public ::testing::Test {

@@ -28,8 +28,7 @@ std::int32_t outlasting_scale() {
   return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 10 : 3);
 }
 
-/// Follows a controller until it orders power; returns the line of that control cycle, empty if it
-/// ended before.
+/// The line of the next control cycle that orders power, empty if it ended before.
 std::string line_with_power(ChildProcess& edge) {
   std::string line;
   do line = edge.read_line();
@@ -146,8 +145,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   {
     ChildProcess edge = controller();
     for (int i = 0; i < 15; ++i) await_line(edge, "utc=");
-    // A loaded machine may be late with a control cycle of 133 ms: ok and degraded are both correct
-    // here.
+    // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both correct.
     const Said status = ask({"status"});
     EXPECT_LE(status.exit_code, 1) << status.text;
     EXPECT_THAT(status.text, Names(std::to_string(edge.pid()) + " running alphaess block EUR/MWh"));

@@ -239,8 +239,7 @@ void TrialBattery::count_charge() {
   if (nature_.calibration != Calibration::kNone) calibrate();
 }
 
-/// At rest the voltage shows the charge: the count moves immediately. At the ends it must be 0 or
-/// 1.
+/// At rest the voltage shows the charge: the count moves immediately. At the ends it is 0 or 1.
 void TrialBattery::calibrate() {
   const int day = static_cast<int>(now_s_ / kSecondsPerDay);
   if (day == calibration_day_) return;

@@ -105,8 +105,7 @@ std::string fault_name(const ::testing::TestParamInfo<ShownFault>& info) { retur
 INSTANTIATE_TEST_SUITE_P(Faults, ShownFaultOfTheTrial, ::testing::ValuesIn(kShownFaults),
                          fault_name);
 
-/// A fault that only the SoC shows, and the number of control cycles at full power within which it
-/// is found.
+/// A fault that only the SoC shows, and the control cycles at full power until it is found.
 struct SocFault {
   const char* name;
   int cycles_max;

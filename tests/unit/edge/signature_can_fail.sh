@@ -1,7 +1,6 @@
 #!/bin/sh
-# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: shows that signature.sh passes the correct
-# line only, distinguishes another student from other decisions, and that the command it names
-# renews the file.
+# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: signature.sh passes the correct line only,
+# distinguishes another student from other decisions, and names a command that renews the file.
 folder=$1
 shift
 fail() { echo "$*"; exit 1; }

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# flash_look_ahead.sh SOURCE FOLDER: checks that tools/flash ssh runs with the new program on the
-# machine, with a replacement for it: refused settings, a machine without settings. Exit 77 =
-# skipped.
+# flash_look_ahead.sh SOURCE FOLDER: checks of tools/flash ssh with the new program on the machine,
+# here a replacement: refused settings, no settings. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/unit/tools/script_test.sh

@@ -13,8 +13,7 @@ mkdir bin tmp
 stand_in() { cat >"bin/$1" && chmod 755 "bin/$1"; }
 export MACHINE=$folder/machine
 mkdir -p "$MACHINE"
-# The other machine: commands run here, with replacements for the programs that they would call
-# there.
+# The other machine: commands run here, with replacements for the programs they call.
 stand_in ssh <<'SH'
 #!/bin/sh
 [ ! -e "$MACHINE/refuses" ] || { echo "ops@edge: Permission denied (publickey)." >&2; exit 255; }

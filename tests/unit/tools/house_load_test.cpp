@@ -1,5 +1,4 @@
-// House load of the simulator: the source of its power, and that every mistake in a file names its
-// line.
+// House load of the simulator: its source, and that every mistake in a file names its line.
 #include "tools/simulators/battery_sim/house_load.h"
 
 #include <gmock/gmock.h>

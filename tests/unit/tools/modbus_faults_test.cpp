@@ -232,8 +232,7 @@ TEST(ModbusFaults, EachIsReportedByItsStatus) {
       const Status expected = transport == Transport::kTcp ? verdict.tcp : verdict.rtu;
       if (expected == kNone) continue;
       const std::int32_t timeout_ms = expected == Status::kTimeout ? kResponseTimeoutMs : 5'000;
-      // Both kinds of echo; of a read only the first, because a late answer may belong to the
-      // second.
+      // Both kinds of echo; of a read only the first, a late answer may belong to the second.
       for (const int function : verdict.write ? std::vector{6, 16} : std::vector{3}) {
         LoopbackBattery loopback("block", troubled({transport, verdict.fault, 100}, 1), transport);
         ModbusLink link(loopback.link(timeout_ms), {}, loopback.clock);

@@ -93,9 +93,8 @@ TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
   EXPECT_THAT(csv, HasSubstr("\nstudent,3,"));
 }
 
-/// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 per
-/// MWh. By hand in day_errors_test.cpp: mean 5, errors 1.958 and 3 by two months, known to within
-/// 71 %.
+/// Two days of January and two of February: the rule earns 0, the student 1 3 and 6 10 per MWh. By
+/// hand (day_errors_test.cpp): mean 5, errors 1.958 and 3 by two months, known to within 71 %.
 TEST(Comparison, BothErrorsAreNextToProfitAndGain) {
   NamedEvaluation rule{"rule", evaluation_of({0, 0, 0, 0}), {}};
   NamedEvaluation student{"student", evaluation_of({8, 24, 48, 80}), {}};

@@ -64,8 +64,7 @@ MarketSteps hidden_dear_day(int age_min) {
   return market;
 }
 
-/// Sells in the evening; or at the price that it sees as high, too; in the morning; rests; buys in
-/// the event.
+/// Sells in the evening; or at a visibly high price; in the morning; rests; buys in the event.
 Action asleep(const MarketStep&, std::size_t i, double) {
   return i >= kEvening ? Action::kDischarge : Action::kIdle;
 }
@@ -171,8 +170,7 @@ TEST(LostMoney, TheCyclesAreUsedUp) {
   }
   const DayLoss loss = loss_of(market, {eager}, 0.5, battery);
   EXPECT_NEAR(loss.missed_eur(), 1.6 * 1300, 0.1 * 1.6 * 1300);
-  // Its full cycles were used at the usual price; the last step beyond the limit counts to the
-  // limit.
+  // Its cycles were used at the usual price; the last step beyond the limit counts to it.
   EXPECT_GT(loss.of(LossCause::kTiming), 0.8 * loss.missed_eur());
   EXPECT_NEAR(loss.of(LossCause::kCycleLimit), 0, 0.2 * loss.missed_eur());
   EXPECT_NEAR(sum_of(loss), loss.missed_eur(), 1e-9);

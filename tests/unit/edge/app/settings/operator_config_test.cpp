@@ -58,8 +58,7 @@ TEST(PeopleConfig, ReadsTheRequestsOfTheOperator) {
   EXPECT_EQ(config.control.reserve[1].months, 0x801);
 }
 
-/// bess-notify reads its own section: a mistake in it must not prevent the controller from
-/// starting.
+/// bess-notify reads its own section: a mistake in it must not stop the controller.
 TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
   EdgeConfig config;
   std::string error;

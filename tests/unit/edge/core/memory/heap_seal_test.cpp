@@ -96,8 +96,7 @@ TEST(SeccompFilter, EverythingElseStaysAllowed) {
 }
 
 #ifndef BESS_SANITIZED
-/// This test program has the C library's malloc family: the check at the start must find exactly
-/// that.
+/// This program has the C library's malloc family: the check at the start must find it.
 TEST(HeapSeal, AProcessWithoutOursIsRefused) {
   EXPECT_EXIT(_exit(prepare_memory() ? kAllAsExpected : 1), ::testing::ExitedWithCode(1), "malloc");
 }

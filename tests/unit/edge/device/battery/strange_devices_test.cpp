@@ -1,6 +1,5 @@
-// Every map with unexpected devices: another manufacturer's, still starting, empty or erratic.
-// Nothing aborts, nothing is written before the identity check, and each message names a register
-// or model.
+// Every map with unexpected devices: foreign, starting, empty or erratic. Nothing aborts, nothing
+// is written before the identity check, and each message names a register or model.
 #include <gmock/gmock.h>
 
 #include <random>

@@ -142,8 +142,7 @@ TEST(AlphaEssSingles, AreWrittenAndReleasedByTheOtherFunction) {
   }
 }
 
-/// Manual: 250 is 100 %; senalse and the Home Assistant community: 255 is 100 %. Neither ends
-/// early.
+/// Manual: 250 is 100 %; senalse and the Home Assistant community: 255. Neither ends early.
 TEST(AlphaEssSoc, ACeilingOfAHundredPercentIsNone) {
   MapUnderTest t(shipped_map("alphaess"), fill_alphaess);
   PowerOrder order{.power_w = 2'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};

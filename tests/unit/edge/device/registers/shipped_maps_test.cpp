@@ -147,8 +147,7 @@ TEST(VictronEss3, SixtySecondsWithoutARefreshIsNoOrderAnyMore) {
   EXPECT_THAT(t.writes_of(1'000), ElementsAre(fc16(37, {1'000, 0, 0}, 228)));
 }
 
-/// Its set point has expired, but the mode stays: passthru permanently, unless a later run releases
-/// it.
+/// Its set point has expired, but the mode stays: passthru until a later run releases it.
 TEST(VictronEss3, AModeThatAKilledProcessLeftIsSeenByTheNext) {
   MapUnderTest t(shipped_map("victron_ess3"));
   t.device.set(843, {62});

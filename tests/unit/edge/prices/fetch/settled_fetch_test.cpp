@@ -69,8 +69,7 @@ TEST(SettledSchedule, TriesAgainAndThenOnceADay) {
   EXPECT_TRUE(schedule.is_due(kSettleMidnight + 7'200));
 }
 
-/// Query terms of Elia's portal (Opendatasoft, Explore API v2.1): instants with their offset, half
-/// open.
+/// Query terms of Elia's portal (Opendatasoft API v2.1): instants with offset, half open.
 TEST(SettledUrl, IsEliasWhereItHasNoQuery) {
   SettledSource source;
   source.url = "https://opendata.elia.be/datasets/ods134/exports/json";

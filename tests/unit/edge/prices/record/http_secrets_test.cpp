@@ -1,5 +1,4 @@
-// Secrets of the price request: allowed contents of the header file, and the allowed contents of a
-// log.
+// Secrets of the price request: allowed contents of the header file and of a log.
 #include "edge/prices/record/http_trust.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,4 @@
-// Treatment of a row far from the previous one: one wrong row has no effect, a correct one is a row
-// late.
+// Rows far from the previous one: a wrong one has no effect, a correct one is a row late.
 #include "edge/prices/record/newest_row.h"
 
 #include <gtest/gtest.h>

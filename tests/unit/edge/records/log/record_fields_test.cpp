@@ -191,8 +191,7 @@ TEST(RunFields, EachIsInEveryOutputThatItClaims) {
   }
 }
 
-/// Two fields at one place of a table do not compile; only this test compares the tables with each
-/// other.
+/// Two fields at one place of a table do not compile; this compares the tables.
 TEST(RecordFields, PlacesAndNamesOfAnOutputAreTakenOnce) {
   for (const Output output :
        {&Places::journal, &Places::csv, &Places::last, &Places::totals, &Places::metrics}) {

@@ -89,8 +89,7 @@ TEST(Isotonic, HandCases) {
   }
 }
 
-/// Constant input of every size is one level set: rounding of long sums must not split it
-/// repeatedly.
+/// Constant input of any size is one level set: rounding of long sums must not split it.
 TEST(Isotonic, ConstantInputOfAnySize) {
   for (const int side : {16, 64, 256, 700}) {
     SCOPED_TRACE(side);

@@ -1,6 +1,5 @@
-// Monotone distillation: within the bounds the integer student is monotone for any weights; without
-// them it is not. Distillation within them learns from its teacher, obeys the thresholds, and is
-// bit-identical when repeated.
+// Monotone distillation: within the bounds the integer student is monotone for any weights, without
+// them not. It learns from its teacher, obeys the thresholds, and repeats bit-identically.
 #include "workstation/correction/distillation/monotone_distil.h"
 
 #include <gtest/gtest.h>

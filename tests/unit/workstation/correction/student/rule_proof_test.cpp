@@ -153,8 +153,7 @@ TEST(RuleProof, CountsAreThoseOfTheDefinitions) {
     EXPECT_EQ(certificate.violations(), sum);
   }
   for (std::size_t r = 0; r < seen.size(); ++r) {
-    // The box at 05:00 does not hold in the first context; each other shape is violated by some
-    // net.
+    // The box at 05:00 is not in the first context; each other shape is violated by some net.
     const bool is_elsewhere = rules.rules[r].box.quarter_hour_first == 20;
     EXPECT_EQ(seen[r] > 0, !is_elsewhere) << rules.rules[r].text();
   }

@@ -21,8 +21,7 @@ double profit(const MarketSteps& market, Split split, bool carry_soc, double lev
 
 TEST(StochasticProgram, EarnsOnTheBenchmarkWhatThePrototypesEarn) {
   const MarketSteps market = make_market_steps(read_yardstick(), {});
-  // By hour alone, as the prototype; by level at least as much, because values are found for each
-  // level.
+  // By hour alone, as the prototype; by level at least as much: each level has its values.
   EXPECT_NEAR(profit(market, Split::kValidation, false, 0), 464.6, 6);
   EXPECT_NEAR(profit(market, Split::kValidation, true, 0), 450.9, 6);
   EXPECT_GT(profit(market, Split::kValidation, false, 0.6), 491.7);

@@ -124,8 +124,7 @@ TEST_F(Log, WithoutAUsablePriceAllRest) {
 }
 
 /// Below -500 EUR/MWh every proved student charges, above 1500 it discharges: three of the ten
-/// low-price control cycles were idle. Their extra charge is discharged at the mean of -600 and
-/// 1600.
+/// low-price cycles were idle. The extra charge is discharged at the mean of -600 and 1600.
 TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   std::string text = kHead;
   for (int tick = 1; tick <= 10; ++tick)

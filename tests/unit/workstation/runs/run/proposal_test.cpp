@@ -1,5 +1,4 @@
-// Comparison of two students in a proposal: their money, their different decisions, and when one is
-// worse.
+// Comparison of two students: their money, their different decisions, when one is worse.
 #include "workstation/runs/run/refresh.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Earnings of a battery by size: a cell equals `evaluate` at its own size; money is shared, billed
-// and paid back as by hand; and an error of a plan is reported with its place.
+// Earnings by battery size: a cell equals `evaluate` at its own size; money is shared, billed and
+// paid back as by hand; an error of a plan is reported with its place.
 #include <gmock/gmock.h>
 
 #include <cmath>

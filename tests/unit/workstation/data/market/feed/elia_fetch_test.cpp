@@ -1,6 +1,5 @@
-// Download from a server like Elia's, on good days and with one fault at a time: the file is
-// complete, or there is none and one line gives the reason, and requests that cannot succeed are
-// not repeated.
+// Download from a server like Elia's, without and with one fault: the file is complete, or there is
+// none and one line gives the reason, and hopeless requests are not repeated.
 #include "workstation/data/market/feed/elia_fetch.h"
 
 #include <gmock/gmock.h>

@@ -160,8 +160,7 @@ TEST(OwnCsv, AnHourThatComesTwiceIsNotGuessed) {
               Names("own.csv:4 \"26/10/2025 02:00\""));
 }
 
-/// A random series in a random form, with gaps, duplicates and any order of rows, reads back the
-/// same.
+/// A random series in a random form, with gaps, duplicates and any order, reads back the same.
 TEST(OwnCsv, DrawnFormsComeBack) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
