@@ -398,7 +398,6 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
   }
 }
 
-/// A first run without storage: not driven, and reported.
 TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDriven) {
   for (const Death& death : kDeaths) {
     if (death.name == std::string("IoErrors")) continue;  // not commissioned: nothing can be read
@@ -445,7 +444,6 @@ TEST_F(DyingDisk, UnmountedDuringARunItContinuesInTheFolderBelow) {
   EXPECT_THAT(refused.text, Names("commissioned.toml [state] folder"));
 }
 
-/// A disk that is mounted after the start, and records a trip.
 TEST_F(DyingDisk, MountedLateItsTripCounts) {
   disk_.unmount();
   ASSERT_NO_FATAL_FAILURE(start_and_run(false));

@@ -88,7 +88,6 @@ TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
-/// A hold cannot drive a battery that the supervision has released: the command says so.
 TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
   start_site(1'200);
   const int port = site_.battery_port;

@@ -130,7 +130,6 @@ TEST_F(Notify, AKilledControllerIsReportedOnceAndItsReturn) {
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
-/// The members of `bess-edge status` and `earned` behind the topics exist.
 TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
   start_site(3'000);

@@ -111,7 +111,6 @@ TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
   }
 }
 
-/// More than the sign check needs is only ordered where no limit forbids it.
 TEST_F(SiteProcesses, CommissionOrdersNothingLargerUnderALimit) {
   start({});
   configure("[limits]\nfile = \"limit\"\n");

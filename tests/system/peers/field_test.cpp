@@ -452,7 +452,6 @@ TEST_P(Field, BusyAroundTheTick) {
   EXPECT_EQ(record("power ").back().what, "power 0");
 }
 
-/// A stop in the middle of a busy time releases as well.
 TEST_P(Field, StopWhileBusy) {
   const int before_s = draw(2, 5);
   drive_into_trouble(
@@ -483,7 +482,6 @@ TEST_P(Field, LateAnswers) {
   EXPECT_EQ(driven(all), 12);
 }
 
-/// The gateway answers with a unit of its own.
 TEST_P(Field, ForeignUnitIds) {
   const std::vector<Cycle> all = commission_and_drive(
       {.kind = variant<const char*>("alphaess", "sunspec", "sma"),

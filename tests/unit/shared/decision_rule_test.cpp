@@ -85,7 +85,6 @@ TEST(RuleLimits, AllRulesCountWhereTheyHold) {
             (RuleLimits{action_bit(Action::kDischarge), 500}));
 }
 
-/// An omitted row, and every changed field, changes the hash.
 TEST(RuledHash, KnowsEveryRowAndField) {
   const std::int32_t row[kGuardRuleFields] = {-100, 400, 3, 150, 92, 28, 0x803, 0xfff, 2, 500};
   const std::vector<GuardRule> rules{guard_rule_of(row),

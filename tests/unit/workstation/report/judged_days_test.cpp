@@ -25,7 +25,6 @@ TEST(JudgedDays, DaysAfterAllLearningAreSaidToBe) {
   EXPECT_THAT(judged_days_text(later), Names("1 59 2 2023-01-01 2023-02-28 2022-12-25"));
 }
 
-/// For any split, the text names the days that it really uses.
 TEST(JudgedDays, TheTextIsThatOfTheSplit) {
   for (const auto& [split, first, last] :
        {std::tuple(Split::kTrain, 1, 20), std::tuple(Split::kValidation, 21, 25),

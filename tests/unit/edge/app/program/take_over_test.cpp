@@ -81,7 +81,6 @@ TEST(RecallCycles, ARecordThatCannotBeReadIsLeftOut) {
   EXPECT_EQ(recalled(log).cycles, (std::vector<std::int64_t>{1, 2, 3, 5}));
 }
 
-/// The clock of the previous run was ahead: its records are in the future.
 TEST(RecallCycles, RecordsOfAClockThatWasAheadAreRecalled) {
   MadeUpLog log(4);
   for (CycleRecord& record : log.records) record.utc_s += 3'600;

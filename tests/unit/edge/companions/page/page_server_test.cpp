@@ -164,7 +164,6 @@ TEST_F(PageServerTest, AForeignNameIsNotAnswered) {
   }
 }
 
-/// A controller that gives no answer is reported, without affecting other parts.
 TEST_F(PageServerTest, AnAbsentControllerIsReported) {
   PageSettings settings = site_.settings();
   settings.program = site_.folder.file("not there");

@@ -279,7 +279,6 @@ TEST(SignBounds, OutsideTheStudentIsNot) {
   EXPECT_GT(rising, 0);
 }
 
-/// One wrong sign on each path from an input to the logits is found.
 TEST(SignBounds, AWrongSignAnywhereIsOutside) {
   const SignBounds bounds = SignBounds::monotone();
   Parameters inside = initial_parameters(kStudentShape, 3);

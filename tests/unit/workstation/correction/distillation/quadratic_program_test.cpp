@@ -132,7 +132,6 @@ TEST(QuadraticProgram, SolutionsAreOptimal) {
   EXPECT_GT(let_go, 100) << "rows are dropped on the way";
 }
 
-/// Scaled numbers, of the rows and of all: the result does not depend on units.
 TEST(QuadraticProgram, UnitsDoNotMatter) {
   Random random(302);
   for (int round = 0; round < 50; ++round) {

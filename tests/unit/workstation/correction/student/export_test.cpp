@@ -298,7 +298,6 @@ int main() {
             decision_signature_line(crowded_student().file()));
 }
 
-/// A changed or omitted row or table entry does not compile.
 TEST(Export, DamagedRulesDoNotCompile) {
   const std::string good = format_weight_header(ruled_student());
   const auto edited = [&good](const std::string& from, const std::string& to) {

@@ -136,7 +136,6 @@ TEST(FailedProof, NamesTheRuleAStateItsActionAndTheRemedy) {
   EXPECT_THAT(text, Names("June: 1 \"never sell\" 1400 EUR/MWh"));
 }
 
-/// Where the opposite demand is far away, room is not the problem.
 TEST(FailedProof, OnlyAnOppositeThatIsNearIsGivenMoreRoom) {
   for (const auto& [price_min, is_near] : {std::pair{-450, true}, std::pair{-250, false}}) {
     RuleSet rules = one_rule("price_min = -450\nprice_max = 300\nis = \"idle\"", "rest");
