@@ -166,7 +166,7 @@ TEST(ClosedLoop, AStopWithADeadManTriesOnceAndSaysWhatFailed) {
   }
 }
 
-TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
+TEST(ClosedLoop, TheWatchdogIsRefreshedAsOftenAsTheMapAsks) {
   Plant plant;
   plant.battery.refresh_s = 30;
   plant.cycle();
@@ -178,7 +178,7 @@ TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
   EXPECT_EQ(plant.battery.refreshed_ns[2] - first_ns, 60 * kNanosecondsPerSecond);
 }
 
-TEST(ClosedLoop, NothingIsFedWithoutAnOrderOrInReadOnly) {
+TEST(ClosedLoop, NothingIsRefreshedWithoutAnOrderOrInReadOnly) {
   Plant reader(0.5, ControlSettings{});
   Plant safe;
   reader.battery.refresh_s = safe.battery.refresh_s = 30;
@@ -260,7 +260,7 @@ TEST(ClosedLoop, AKillAfterEachCycleHidesNoFault) {
   EXPECT_LE(runs_until_trip(1, every_other), 6);
 }
 
-TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
+TEST(ClosedLoop, TheRestoredStateIsTheFoundOne) {
   Plant plant;
   plant.set_price(kCheapCenti);
   plant.battery.inverted = true;
@@ -294,7 +294,7 @@ TEST(ClosedLoop, ThePriceIsLoggedAsOldAsAtTheWrite) {
   EXPECT_EQ(plant.cycle().price_age_s, 7);
 }
 
-TEST(ClosedLoop, ATripOfTheRunBeforeHoldsUntilItIsCleared) {
+TEST(ClosedLoop, ATripOfThePreviousRunHoldsUntilItIsCleared) {
   Plant plant;
   plant.set_price(kCheapCenti);
   plant.loop.take_over({}, Trip{.reason = Reason::kUncontrolledPower, .utc_s = 7});
@@ -326,7 +326,7 @@ TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
   EXPECT_TRUE(record.written);
 }
 
-TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
+TEST(ClosedLoop, ABatteryThatStillFollowsThePreviousOrderIsNotAgainstTheNewOne) {
   Plant plant;
   plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
   plant.battery.refuses_orders = true;

@@ -347,7 +347,7 @@ class DyingDiskWords : public DyingDisk {
   void mend_disk(bool is_full) { is_full ? disk_.free_again() : disk_.come_back(); }
 };
 
-TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesTheOneBefore) {
+TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne) {
   commission(false);
   std::ofstream(config_, std::ios::app) << "[limits]\nfile = \"" << disk_.file("limit") << "\"\n";
   const auto limit = [&](const std::string& power_w) {

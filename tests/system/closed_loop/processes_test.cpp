@@ -241,7 +241,7 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   }
 }
 
-TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
+TEST_F(Processes, ARefusedStartLeavesTheStatusOfThePreviousRun) {
   start_site();
   EXPECT_EQ(ask({"--cycles", "2"}).exit_code, 0);
   const auto status = [&] { return text_of_file(site_.folder.file("state/status.json")); };

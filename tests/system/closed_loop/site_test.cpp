@@ -89,7 +89,7 @@ TEST(Site, AnOrderLeavesTheHouseItsShareOfTheConnection) {
   EXPECT_EQ(next.site.grid_power_w, 4'900);
 }
 
-TEST(Site, AHouseThatAsksForMoreIsGivenItBeforeTheNextTick) {
+TEST(Site, AHouseThatNeedsMoreIsGivenItBeforeTheNextTick) {
   House house(metered({.import_w_max = 5'000, .margin_w = 0}), HouseLoad::constant(500));
   house.let_it(kCharge);
   EXPECT_EQ(house.cycle().ordered_power_w, 4'000);

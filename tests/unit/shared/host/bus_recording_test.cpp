@@ -85,7 +85,7 @@ TEST_F(BusRecording, IsReadAsItWasWritten) {
   EXPECT_EQ(head.time_scale, 60);
 }
 
-TEST_F(BusRecording, CutIsOneLineWithItsNumberAndIsTakenWhenAsked) {
+TEST_F(BusRecording, CutIsOneLineWithItsNumberAndIsAcceptedOnRequest) {
   const std::string path = write({kRead, kRefused});
   EXPECT_THAT(read(path), Names("device.jsonl:4 --accept-cut 2"));
   EXPECT_EQ(read(path, CutRecording::kAccepted), "");

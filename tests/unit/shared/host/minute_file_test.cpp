@@ -22,7 +22,7 @@ TEST(MinuteFile, PricesReadBackToTheLastDigit) {
   EXPECT_EQ(read.settled[1], 1e-7);
 }
 
-TEST(MinuteFile, AByteOrderMarkIsPassedOver) {
+TEST(MinuteFile, AByteOrderMarkIsSkipped) {
   const std::string text =
       "\xEF\xBB\xBFminute_utc,indicative_eur_mwh,settled_eur_mwh\n2023-01-01T00:00:00Z,1,2\n";
   EXPECT_EQ(parse_minute_csv(text, "f").settled.at(0), 2);

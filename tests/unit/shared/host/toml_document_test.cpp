@@ -67,7 +67,7 @@ TEST(TomlDocument, AContinuedLineMayBeginWithAnyCharacter) {
   }
 }
 
-TEST(TomlDocument, AByteOrderMarkIsPassedOver) {
+TEST(TomlDocument, AByteOrderMarkIsSkipped) {
   EXPECT_EQ(parsed("\xEF\xBB\xBF[battery]\n").find("battery")->line, 1);
   EXPECT_TRUE(parsed("\xEF\xBB\xBF").as<TomlMembers>()->empty());
 }

@@ -18,7 +18,7 @@ Scenario shipped_scenario(const char* name) {
   return read_scenario(std::string(BESS_SOURCE_DIR "/tests/scenarios/") + name + ".toml");
 }
 
-TEST(VirtualTime, ARunRepeatsToTheBit) {
+TEST(VirtualTime, ARunRepeatsBitIdentically) {
   const Scenario scenario = shipped_scenario("bus_torn_frames");
   const Outcome first = run_scenario(scenario, true, {});
   const Outcome second = run_scenario(scenario, true, {});

@@ -41,7 +41,7 @@ TEST(Program, BrokenTomlIsOneClearLine) {
   }
 }
 
-TEST(Program, AByteOrderMarkBeforeTheConfigurationIsPassedOver) {
+TEST(Program, AByteOrderMarkBeforeTheConfigurationIsSkipped) {
   const TemporaryFolder folder;
   const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");
   const CommandResult result = run_train({"config", "--config", config});

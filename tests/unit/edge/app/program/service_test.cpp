@@ -143,7 +143,7 @@ TEST(ServiceNotify, SendsToAFileSocketAndToAnAbstractOne) {
   }
 }
 
-TEST(ServiceNotify, TheWatchdogIsFedByCyclesInTimeOnly) {
+TEST(ServiceNotify, TheWatchdogIsRefreshedByCyclesInTimeOnly) {
   const TemporaryFolder folder;
   const NotifySocket systemd(folder.file("notify"));
   ServiceNotify notify;

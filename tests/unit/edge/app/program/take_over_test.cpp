@@ -56,7 +56,7 @@ TEST(RecallCycles, AreTheLastEightHoursOldestFirst) {
   }
 }
 
-TEST(RecallCycles, AShortLogOrNoneIsRecalledAsFarAsItGoes) {
+TEST(RecallCycles, AShortLogOrNoneIsRestoredCompletely) {
   EXPECT_TRUE(recalled(MadeUpLog(0)).cycles.empty());
   EXPECT_EQ(recalled(MadeUpLog(3)).cycles, (std::vector<std::int64_t>{1, 2, 3}));
 }
@@ -67,7 +67,7 @@ TEST(RecallCycles, WhatIsOlderThanEightHoursIsForgotten) {
   EXPECT_EQ(recalled(log).cycles, (std::vector<std::int64_t>{4, 5}));
 }
 
-TEST(RecallCycles, ATripEndsThemAndIsNotRecalledItself) {
+TEST(RecallCycles, ATripEndsThemAndIsNotRestoredItself) {
   MadeUpLog log(9);
   log.records[5].is_tripped = true;
   EXPECT_EQ(recalled(log).cycles, (std::vector<std::int64_t>{7, 8, 9}));
@@ -81,7 +81,7 @@ TEST(RecallCycles, ARecordThatCannotBeReadIsLeftOut) {
   EXPECT_EQ(recalled(log).cycles, (std::vector<std::int64_t>{1, 2, 3, 5}));
 }
 
-TEST(RecallCycles, RecordsOfAClockThatWasAheadAreRecalled) {
+TEST(RecallCycles, RecordsOfAClockThatWasAheadAreRestored) {
   MadeUpLog log(4);
   for (CycleRecord& record : log.records) record.utc_s += 3'600;
   EXPECT_EQ(recalled(log).cycles.size(), 4U);

@@ -186,7 +186,7 @@ TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
 }
 
 /// An older file of another battery: readable and unreadable copies must not be mixed.
-TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
+TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfThePreviousOne) {
   std::filesystem::remove(folder_.file(kPlaces[1]));
   std::filesystem::create_directory(folder_.file(kPlaces[1]));
   config_.battery.link.host = "192.168.1.20";

@@ -39,7 +39,7 @@ TEST(PriceHistory, TakesTheRowsThatDecisionsSaw) {
   EXPECT_EQ(history.hours_covered(), 1);
 }
 
-TEST(PriceHistory, WhereARowIsMissingTheOneBeforeWasSeen) {
+TEST(PriceHistory, WhereARowIsMissingThePreviousOneWasSeen) {
   PriceHistory history(1, kBetweenTicks);
   history.add(kLastTick - 300, 5'000);
   history.add(kLastTick - 240, 4'000);  // seen at -2: the row of -3 is missing

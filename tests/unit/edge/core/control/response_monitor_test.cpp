@@ -286,7 +286,7 @@ struct ShortCycles {
   }
 };
 
-TEST(ResponseMonitor, SomeSecondsBeyondItsMapTheOrderBeforeIsNoFault) {
+TEST(ResponseMonitor, SomeSecondsBeyondItsMapThePreviousOrderIsNoFault) {
   ShortCycles cycles;
   cycles.read(4'000, 117, 4'000, kStepS, 5'000);
   cycles.read(0, 22, 4'000, 25, 5'030);  // of a lag of 25 s, where the map has 20

@@ -77,7 +77,7 @@ TEST(Supervision, AGoodAnswerMakesTheNextPauseShortAgain) {
   EXPECT_EQ(supervision.stop_reason(), std::nullopt);
 }
 
-TEST(Supervision, OrdersThatFailAgainAndAgainAreGivenUp) {
+TEST(Supervision, OrdersThatFailRepeatedlyAreAbandoned) {
   Supervision supervision(kSettings);
   supervision.on_ordered(0, Status::kBadReply);
   supervision.on_ordered(120, Status::kBadReply);
@@ -141,7 +141,7 @@ TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {
 }
 
 /// Ten minutes each time, and a trip only after a day without a good reading.
-TEST(Supervision, ABatteryThatLooksAfterItselfIsLeftAloneForAWhile) {
+TEST(Supervision, ABatteryThatRecoversByItselfIsLeftAloneForAWhile) {
   Supervision supervision(kSettings);
   const auto balancing = [](std::int64_t utc_s) {
     Response now = reading(utc_s, 0, 450);

@@ -213,7 +213,7 @@ TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
 }
 
 /// The link fails during the closer look at the end of an order.
-TEST_F(DriverTest, AnEndIsNoHandEvenWhereTheReadingFails) {
+TEST_F(DriverTest, AnEndIsNoOtherControllerEvenWhereTheReadingFails) {
   MapUnderTest& t = with_order();
   t.device.pass_s(110);
   t.device.set(10, {0});
@@ -365,7 +365,7 @@ TEST_F(DriverTest, AcknowledgedButNotDoneEndsInARollBack) {
   EXPECT_EQ(writes[4], (WriteRecord{1, 16, 10, {0}}));
 }
 
-TEST_F(DriverTest, HalfACommandIsTakenBack) {
+TEST_F(DriverTest, HalfACommandIsWithdrawn) {
   MapUnderTest& t = with();
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.exception = 2;  // final: no second attempt
@@ -431,7 +431,7 @@ TEST_F(DriverTest, TheBudgetOfADaySurvivesARestart) {
   EXPECT_EQ(t.order(1'000), Status::kOk);
 }
 
-TEST_F(DriverTest, ARefusedOrderEndsTheFeedingOfTheOneBefore) {
+TEST_F(DriverTest, ARefusedOrderEndsTheRefreshOfThePreviousOne) {
   MapUnderTest& t = with({{"refresh_s = 120", "refresh_s = 30"},
                           {"order = [[",
                            "idle = [\"enable = 1\", \"time = duration\"]\n"
@@ -446,7 +446,7 @@ TEST_F(DriverTest, ARefusedOrderEndsTheFeedingOfTheOneBefore) {
   EXPECT_THAT(t.refresh_writes(), IsEmpty());  // charging ends with its timer
 }
 
-TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
+TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheRefreshOfThePreviousOne) {
   MapUnderTest& t = with({{"refresh_s = 120", "refresh_s = 30"},
                           {"name = \"power\"", "name = \"power\", clamp_to = \"battery_power\""}});
   t.device.set(1, {1'000});
@@ -459,7 +459,7 @@ TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
   EXPECT_THAT(t.refresh_writes(), IsEmpty());
 }
 
-TEST_F(DriverTest, WithoutAWatchdogARefusedOrderTakesBackTheOneBefore) {
+TEST_F(DriverTest, WithoutAWatchdogARefusedOrderWithdrawsThePreviousOne) {
   MapUnderTest& t =
       with_order({{"kind = \"duration\"\nduration_s = 300\nrefresh_s = 120", "kind = \"none\""}});
   ASSERT_EQ(t.order(10'001), Status::kNotExpressible);

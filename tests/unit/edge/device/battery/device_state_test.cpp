@@ -238,7 +238,7 @@ TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
 }
 
 /// Any other answer may be temporary: the register is still read.
-TEST(OptionalPoint, IsNotGivenUpForAnotherException) {
+TEST(OptionalPoint, IsNotAbandonedForAnotherException) {
   MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
   t.device.missing = {{.address = 267, .exception = 4}};
   EXPECT_EQ(t.read(), Status::kBusException);

@@ -121,7 +121,7 @@ TEST(OrderState, FollowsItsTable) {
   }
 }
 
-TEST(OrderState, ItsTimeRunsFromTheLastFeeding) {
+TEST(OrderState, ItsTimeRunsFromTheLastRefresh) {
   OrderState order(kHundredSeconds);
   order.on_enabled();
   order.on_taken(Command::kCharge, {}, 0);

@@ -216,7 +216,7 @@ TEST(Sma, SixOrderedWrites) {
 }
 
 /// Limits ordered by a killed process must not be taken for the original ones.
-TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
+TEST(Sma, ARestartDoesNotSaveTheOrderOfThePreviousRun) {
   MapUnderTest t(shipped_map("sma"), "bms_mode");
   t.device.set(30'845, {0, 55});
   t.device.set(40'236, {0, 2'424});

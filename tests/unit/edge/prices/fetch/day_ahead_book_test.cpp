@@ -223,7 +223,7 @@ class KeptBook : public Book {
   TemporaryFolder folder_;
 };
 
-TEST_F(KeptBook, ComesBackFromItsFileToTheSecond) {
+TEST_F(KeptBook, ReadsBackFromItsFileToTheSecond) {
   ASSERT_EQ(take(both(), now_), Status::kOk);
   ASSERT_TRUE(keep_day_ahead(path().c_str(), book_));
   DayAheadBook again;
@@ -233,7 +233,7 @@ TEST_F(KeptBook, ComesBackFromItsFileToTheSecond) {
   }
 }
 
-TEST_F(KeptBook, OfADamagedFileNothingComesBack) {
+TEST_F(KeptBook, OfADamagedFileNothingIsRestored) {
   EXPECT_EQ(restore_day_ahead(path().c_str(), book_), 0);
   ASSERT_EQ(take(both(), now_), Status::kOk);
   ASSERT_TRUE(keep_day_ahead(path().c_str(), book_));

@@ -43,7 +43,7 @@ class PriceSourceTest : public ::testing::Test {
   std::unique_ptr<EdgeConfig> config_ = std::make_unique<EdgeConfig>();
 };
 
-TEST_F(PriceSourceTest, OneBadRowAmongGoodOnesIsPassedOver) {
+TEST_F(PriceSourceTest, OneBadRowAmongGoodOnesIsSkipped) {
   for (const char* bad :
        {"null", "NaN", "-Infinity", "\"42\"", "\"n/a\"", "{}", "[]", "true", "1e9", "\"NaN\""}) {
     body_ = rows({bad, "42.5", "43"});

@@ -39,7 +39,7 @@ TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
   EXPECT_EQ(row.price_centi_eur_per_mwh, -3'026);
 }
 
-TEST(PriceJson, PassesOverNullsAndKeepsTheOneBefore) {
+TEST(PriceJson, SkipsNullsAndKeepsThePreviousOne) {
   const PriceRow row =
       newest_of(R"({"results":[{"datetime":"2025-08-17T00:37:00+00:00","imbalanceprice":null},
                      {"datetime":"2025-08-17T02:36:00+02:00","imbalanceprice":7}]})");
@@ -119,7 +119,7 @@ TEST(PriceJson, NothingMayFollowTheDocument) {
   EXPECT_EQ(parse("x" + whole, row), Status::kMalformed);
 }
 
-TEST(PriceJson, ARowWithAFieldTwiceIsPassedOverAndTwoListsOfRowsAreRefused) {
+TEST(PriceJson, ARowWithAFieldTwiceIsSkippedAndTwoListsOfRowsAreRefused) {
   PriceRow row;
   const std::string good = R"({"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5})";
   for (

@@ -39,7 +39,7 @@ TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
 }
 
 /// The edge refuses such a row, so it must not be in the training data.
-TEST(MarketSteps, ARowBeyondBeliefIsPassedOverAsTheEdgeDoes) {
+TEST(MarketSteps, ARowBeyondPlausibilityIsSkippedAsTheEdgeDoes) {
   MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
   series.indicative[101] = 100'000.01;
   series.indicative[103] = -100'000;

@@ -63,7 +63,7 @@ auto interrupted_after(long looks) {
 
 class TrainTeacher : public testing::TestWithParam<TrainCase> {};
 
-TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
+TEST_P(TrainTeacher, RunsAndRepeatsBitIdentically) {
   const TrainOptions options = options_of(GetParam());
   const TrainResult result = train(options);
   const std::size_t points = static_cast<std::size_t>((options.steps + 99) / 100);

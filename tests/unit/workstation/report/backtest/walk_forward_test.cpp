@@ -78,7 +78,7 @@ TEST(Folds, AWindowThatNoMonthHasIsAnError) {
   EXPECT_THROW(make_folds(four_months(), {400}), UserError);
 }
 
-TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
+TEST(WalkForward, RepeatsBitIdenticallyAndCarriesTheCharge) {
   const MarketSteps market = four_months();
   const Folds folds = make_folds(market, {kWindowDays});
   const WalkForward once = walk_forward("sdp", folds, fitted("sdp"), {}, 0.5, market);

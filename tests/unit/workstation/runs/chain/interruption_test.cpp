@@ -54,7 +54,7 @@ TEST(Interruption, BeforeTheFirstLookThereIsNothingToSave) {
       ExitedWithCode(0), "");
 }
 
-TEST(Interruption, TakesHalfWrittenFilesAlong) {
+TEST(Interruption, RemovesHalfWrittenFiles) {
   const TemporaryFolder folder;
   const std::string half = folder.write("out.csv.part.1", "half");
   EXPECT_EXIT(

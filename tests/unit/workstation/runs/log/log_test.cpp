@@ -145,7 +145,7 @@ TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   EXPECT_THROW(replay_log(read(hour_of_trade()).log, {20'200'101, 20'200'131}, student), UserError);
 }
 
-TEST_F(Log, WhatIsPassedOverIsCounted) {
+TEST_F(Log, WhatIsSkippedIsCounted) {
   const std::string whole = hour_of_trade();
   const ReadLog log =
       read(whole + row(31, 250, 0, 0) + row(35, 250, 0, 0, "idle", "holding", "link") +

@@ -161,7 +161,7 @@ TEST(OwnCsv, AnHourThatComesTwiceIsNotGuessed) {
 }
 
 /// A random series in a random form, with gaps, duplicates and any order, reads back the same.
-TEST(OwnCsv, DrawnFormsComeBack) {
+TEST(OwnCsv, DrawnFormsReadBack) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 draws(seed);

@@ -27,7 +27,7 @@ DayAheadSeries days_of_prices(const LocalDate& from, const LocalDate& until) {
   return series;
 }
 
-TEST(DayAhead, ComesBackFromItsFileToTheBit) {
+TEST(DayAhead, ReadsBackFromItsFileToTheBit) {
   DayAheadSeries series = days_of_prices({2025, 6, 1}, {2025, 6, 3});
   series.eur_per_mwh[5] = kNotPublished;
   series.eur_per_mwh[6] = -12.345678901;
