@@ -26,7 +26,7 @@ bool is_numeric_ipv4(const char* host) {
   return inet_pton(AF_INET, host, &address) == 1;
 }
 
-/// What the operator does not say about the link is as the device's maker ships it.
+/// Link settings that the operator omits are the manufacturer's defaults from the map.
 void complete_link(TomlTable& table, BatteryLinkSettings& link, RegisterMap& map) {
   if (!table.has("port")) link.port = map.port;
   if (!table.has("baud")) link.baud = map.baud;
@@ -62,8 +62,8 @@ void check_link(TomlTable& table, const BatteryLinkSettings& link) {
   }
   if (!link.rtu && !is_numeric_ipv4(link.host.c_str())) {
     table.fail("host",
-               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
-               "depend on the resolver at every reconnect");
+               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would need a "
+               "resolver at every reconnect");
   }
 }
 
@@ -74,7 +74,7 @@ bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_vi
   if (!path.assign(map_path)) table.fail("map", "is too long");
   if (access(map_path.c_str(), R_OK) != 0) {
     table.fail("map", "= " + map_path + " cannot be read: " + std::strerror(errno) +
-                          "; the installed maps lie in share/bess/maps, of meters in "
+                          "; installed maps are in share/bess/maps, meter maps in "
                           "share/bess/meters");
     return false;
   }
@@ -104,7 +104,7 @@ void check_connection(TomlTable& table, const ConnectionSettings& connection) {
     }
   }
   if (table.has("peak_w_max")) return;
-  if (table.has("peak_shave")) table.fail("peak_shave", "means nothing without peak_w_max");
+  if (table.has("peak_shave")) table.fail("peak_shave", "needs peak_w_max");
 }
 
 bool is_same_line(const BatteryLinkSettings& a, const BatteryLinkSettings& b) {
@@ -120,19 +120,19 @@ void load_meter_map(TomlTable& table, const MeteredBattery& battery, std::string
   FixedText<511> path;
   if (!load_linked_map(table, map_file, variant, site.link, site.map, path)) return;
   if (!site.map.is_meter) {
-    table.fail("map", "is a battery's map; meters lie in meters/, their maps say kind = \"meter\"");
+    table.fail("map", "is a battery's map: use a map in meters/, with kind = \"meter\"");
   }
   if (is_same_line(site.link, battery.link)) {
     table.fail("device",
-               "is the battery's serial line, which it has for itself: use another line, or "
-               "source = \"battery\" where the battery has a grid point");
+               "is the battery's serial line, which cannot be shared: use another line, or "
+               "source = \"battery\" if the battery has a grid power point");
   }
 }
 
 void use_grid_point(TomlTable& table, const MeteredBattery& battery) {
   if (!table.ok() || measure_grid_power(battery.map)) return;
   table.fail("source", "= \"battery\": the battery's map " + std::string(battery.map.name.view()) +
-                           " has no grid point; use a meter's map");
+                           " has no grid power point: use a meter's map");
 }
 
 }  // namespace
@@ -184,7 +184,7 @@ void read_limits(TomlTable table, SiteConfig& site) {
 
 namespace {
 
-/// In whole EUR/MWh, as the proof counts them: 1500 as well as 1500.0.
+/// Whole EUR/MWh, as in the proof: 1500 or 1500.0.
 void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_per_mwh) {
   std::int32_t centi_eur_per_mwh = eur_per_mwh * kCentiPerEur;
   table.scaled(key, centi_eur_per_mwh, kCentiPerEur, -kThresholdMaxEurPerMwh,
@@ -195,8 +195,8 @@ void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_pe
   eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
 }
 
-/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have
-/// needed.
+/// Full cycles: twelve for a battery that is full in an hour, fewer for a slower one. Correct
+/// prices have needed no more.
 std::int32_t default_cycles_per_day_e4(std::int32_t power_w, std::int32_t capacity_wh) {
   const std::int64_t cycles_e4 = std::int64_t{120'000} * power_w / capacity_wh;
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(cycles_e4, 10'000, 1'000'000));
@@ -249,7 +249,7 @@ void read_time(TomlTable& table, std::string_view key, std::int16_t& minute) {
   table.require(key);
   const std::string* const text = table.text(key);
   if (text == nullptr || parse_time_of_day(*text, minute)) return;
-  table.fail(key, "must be a local time of day such as \"17:00\", \"24:00\" at the latest");
+  table.fail(key, "must be a local time of day such as \"17:00\", at most \"24:00\"");
 }
 
 void read_months(TomlTable& table, ReservePeriod& period) {
@@ -259,11 +259,11 @@ void read_months(TomlTable& table, ReservePeriod& period) {
   for (const TomlValue& month : *months) {
     const std::int64_t* const number = month.as<std::int64_t>();
     if (number == nullptr || *number < 1 || *number > 12) {
-      return table.fail("months", "must hold months, 1 to 12");
+      return table.fail("months", "must be a list of months, 1 to 12");
     }
     period.months |= static_cast<std::uint16_t>(1 << (*number - 1));
   }
-  if (period.months == 0) table.fail("months", "is empty: leave it out for every month");
+  if (period.months == 0) table.fail("months", "is empty: omit it for every month");
 }
 
 ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
@@ -276,7 +276,7 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
   read_months(table, period);
   table.finish();
   if (period.from_minute == period.to_minute) {
-    table.fail("to", "is the same as from: a whole day is \"00:00\" to \"24:00\"");
+    table.fail("to", "equals from: write \"00:00\" to \"24:00\" for a whole day");
   }
   if (soc_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
     table.fail("soc", "must be below [guard] soc_max by more than 0.01");
@@ -296,7 +296,7 @@ void check_full_charge(TomlTable& battery, const ControlSettings& control) {
   if (control.full_charge_every_days == 0) return;
   if (control.guard.soc_max_e4 >= FullCharge::kFullE4) return;
   battery.fail("full_charge_every_days",
-               "needs [guard] soc_max of at least 0.995, else no charge is full");
+               "needs [guard] soc_max of at least 0.995 for a full charge");
 }
 
 void read_reserve(TomlTable& root, ControlSettings& control) {
@@ -305,13 +305,13 @@ void read_reserve(TomlTable& root, ControlSettings& control) {
   for (const TomlValue& value : *periods) {
     if (!root.ok()) return;
     if (value.as<TomlMembers>() == nullptr) {
-      return root.fail("reserve", "must hold tables: [[reserve]] with from, to and soc");
+      return root.fail("reserve", "must be tables: [[reserve]] with from, to and soc");
     }
     const ReservePeriod period =
         read_period(TomlTable(&value, root.file(), "[[reserve]]", root.error()), control.guard);
     if (control.reserve.try_push_back(period)) continue;
     return root.fail("reserve", "has more than " + std::to_string(ReservePlan::capacity()) +
-                                    " periods: leave some out");
+                                    " periods: remove some");
   }
 }
 
@@ -329,7 +329,7 @@ void read_outlook(TomlTable table, OutlookSettings& outlook) {
   table.finish();
   if (!table.ok() || table.value() == nullptr) return;
   if (table.has("url") && table.has("file")) {
-    return table.fail("file", "and url are two sources: leave one of them out");
+    return table.fail("file", "and url are two sources: remove one");
   }
   if (!outlook.file.empty()) {
     if (!outlook.file.assign(table.resolved(outlook.file.view()))) {
@@ -354,25 +354,25 @@ struct CapacityRange {
   std::int64_t most_wh;
 };
 
-/// What a battery of the configured capacity reports.
+/// Range that a battery of the configured capacity reports.
 CapacityRange capacity_range(const BatteryConfig& battery) {
   const std::int64_t capacity_wh = battery.capacity_wh;
   const std::int64_t tolerance_wh = capacity_wh / 4;  // ageing and rounding
   return {.least_wh = capacity_wh - tolerance_wh, .most_wh = capacity_wh + tolerance_wh};
 }
 
-/// The battery must report the configured capacity, else the address leads to another one.
+/// The battery must report the configured capacity, else it is another battery.
 void expect_capacity(BatteryConfig& battery) {
   const CapacityRange range = capacity_range(battery);
   for (IdentityCheck& check : battery.map.identity) {
     if (battery.map.points[check.point].name != "capacity") continue;
     check.value_min = range.least_wh;
     check.value_max = range.most_wh;
-    check.hint = "is [battery] capacity_wh right, or is this another battery?";
+    check.hint = "check [battery] capacity_wh, or the address: this may be another battery";
   }
 }
 
-/// No battery is that small: the value was given in kW or kWh.
+/// Smaller values are probably in kW or kWh.
 void expect_watts(TomlTable& table, std::string_view key, std::int32_t value, const char* unit) {
   constexpr std::int32_t kLeast = 100;
   if (!table.ok() || !table.has(key) || value >= kLeast) return;
@@ -409,7 +409,7 @@ void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& cont
                        battery.map_path)) {
     return;
   }
-  if (battery.map.is_meter) return table.fail("map", "is a meter's: it belongs into [meter]");
+  if (battery.map.is_meter) return table.fail("map", "is a meter's map: use it in [meter]");
   expect_capacity(battery);
 }
 
@@ -427,8 +427,8 @@ void check_battery_against_map(TomlTable table, const BatteryConfig& battery,
     table.fail("variant",
                "\"" + std::string(battery.map.variant.view()) + "\" of map " +
                    std::string(battery.map.name.view()) +
-                   " has no watchdog: if bess-edge dies, the battery follows its last order for "
-                   "ever; choose another variant, or add allow_without_watchdog = true");
+                   " has no watchdog: if bess-edge stops, the battery follows its last order "
+                   "without end; choose another variant, or add allow_without_watchdog = true");
   }
 }
 

@@ -36,7 +36,7 @@ void read_state(TomlTable table, KeptFiles kept) {
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
   const std::string path = table.resolved(folder.view());
-  // As the service has it; elsewhere nobody says which folder is in memory.
+  // Default only for the service: otherwise no memory folder is known.
   FixedText<255> run_folder(kInstalledEdge.run_beside(path));
   table.text("run_folder", run_folder);
   table.finish();
@@ -66,12 +66,12 @@ void read_metrics(TomlTable table, EventLogSettings& log) {
 
 namespace {
 
-/// What the meter is held against: this battery's steps.
+/// Completes the site's settings from battery and map.
 void set_site(EdgeConfig& config) {
   SiteSettings& site = config.site.settings;
   site.witness.power_w = config.control.guard.power_w;
   site.witness.settle_s = config.battery.map.response.settle_s;
-  // A hybrid inverter has panels of its own, and its map does not know how large they are.
+  // A hybrid inverter has panels of unknown power.
   if (config.battery.map.response.charges_by_itself && site.pv_w_max == 0)
     site.pv_w_max = kAnyPowerW;
 }
@@ -89,7 +89,7 @@ void read_simulation(TomlTable table, ScaledClock& clock) {
   clock.anchor_monotonic_ns = anchor_ns != 0 ? anchor_ns : clock_ns(CLOCK_MONOTONIC);
   table.require("utc_start");
   if (table.ok() && !parse_utc(utc_start.view(), clock.anchor_utc_s)) {
-    table.fail("utc_start", "must be a UTC instant such as \"2023-03-26T00:00:00Z\"");
+    table.fail("utc_start", "must be a UTC time such as \"2023-03-26T00:00:00Z\"");
   }
 }
 
@@ -117,7 +117,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_meter(section(root, "meter", &config.retired), {config.battery.link, config.battery.map},
              config.site);
   read_limits(section(root, "limits"), config.site);
-  // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
+  // For bess-notify, bess-page and bess-edge earned: an error there must not stop the controller.
   for (const char* const others : {"notify", "page", "settled", "contract"}) {
     static_cast<void>(section(root, others, &config.retired));
   }
@@ -157,7 +157,7 @@ FixedText<639> run_file(const EdgeConfig& config, std::string_view name) {
 FixedText<639> prices_file(const EdgeConfig& config) {
   const FixedText<639> run = run_file(config, kPricesFileName);
   if (!run.empty()) return run;
-  // In memory whatever becomes of the disk; of this user and this state folder.
+  // In memory, independent of the disk; named by user and state folder.
   std::error_code ignored;
   const std::string folder =
       std::filesystem::absolute(config.state.folder.c_str(), ignored).lexically_normal().string();

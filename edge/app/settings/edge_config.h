@@ -1,5 +1,5 @@
-// The operator's settings, from a commented TOML file (bess-edge.toml is the documented example).
-// Everything ends in fixed-size structs before the loop starts.
+// Settings of the controller from a TOML file (documented example: bess-edge.toml), in fixed-size
+// structs.
 #pragma once
 
 #include <string>
@@ -15,15 +15,13 @@
 
 namespace bess {
 
-// [state], [log] and [metrics]: what the controller keeps, and where; and the paths below.
-
-/// Where the controller keeps what outlives it.
+/// Folders of the persistent state.
 struct StateSettings {
   FixedText<511> folder;
-  FixedText<511> run_folder;  ///< on a memory file system, beside `folder`; empty = none
+  FixedText<511> run_folder;  ///< on a memory file system; empty = none
 };
 
-/// The log lies in the [state] folders, unless it is said otherwise.
+/// Settings of [state], [log] and [metrics]; the log is in the [state] folders by default.
 struct KeptFiles {
   StateSettings& state;
   EventLogSettings& log;
@@ -42,26 +40,25 @@ struct EdgeConfig {
   EventLogSettings log;
   ScaledClock clock;
   RetiredKeys retired;
-  FixedText<159> contact;  ///< who is called when it does not work; empty = not said
+  FixedText<159> contact;  ///< person to call; empty = none
 };
 
-/// Reads the file and the register map it names. False with one line ("file:line: what, and the
-/// mend").
+/// Reads the file and its register map. False with one line ("file:line: error, remedy").
 bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error);
 
 /// Path of a file of this name in the [state] folder.
 FixedText<639> state_file(const EdgeConfig& config, std::string_view name);
-/// In [state] run_folder; empty where there is none.
+/// In [state] run_folder; empty without one.
 FixedText<639> run_file(const EdgeConfig& config, std::string_view name);
 
-/// The record of bess-prices: in the run folder, or in /dev/shm where there is none.
+/// Price record of bess-prices: in the run folder, else in /dev/shm.
 FixedText<639> prices_file(const EdgeConfig& config);
 
-/// Of the usual time at which tomorrow's prices are asked for: 0 to 119 s, the same at every start,
-/// so that a thousand machines do not ask at one instant; 0 in simulated time.
+/// Delay of the first request for tomorrow's prices, 0 to 119 s, constant per machine, to spread
+/// the requests of many machines; 0 in simulated time.
 std::int32_t day_ahead_offset_s(const EdgeConfig& config);
 
-/// The same file in both folders, for what must be known though one of two disks has died.
+/// The same file in both folders, for state that must survive the failure of one.
 struct BothPlaces {
   FixedText<639> state;
   FixedText<639> run;  ///< empty = none

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kCyclesPerHour = 30;
 
-/// The most that this battery can do in a day of 25 hours, in 1e-4 full cycles.
+/// Maximum of this battery in a day of 25 hours, in 1e-4 full cycles.
 std::int64_t cycles_per_day_possible_e4(const EdgeConfig& config) {
   if (config.battery.capacity_wh <= 0) return 0;
   return std::int64_t{25} * 10'000 * config.control.guard.power_w /
@@ -19,18 +19,17 @@ void add_guard(const EdgeConfig& config, std::vector<std::string>& keys) {
   const ControlSettings& control = config.control;
   const GuardSettings& guard = control.guard;
   if (!control.control) {
-    keys.emplace_back("all limits: control = false, nothing is written to the battery");
+    keys.emplace_back("all limits: with control = false nothing is written to the battery");
   }
   if (guard.ramp_w_max >= 2 * guard.power_w) {
-    keys.emplace_back(
-        formatted("ramp_w_max: no change of order is larger than %d W", 2 * guard.power_w));
+    keys.emplace_back(formatted("ramp_w_max: no step is larger than %d W", 2 * guard.power_w));
   }
   if (control.cycles_per_day_max_e4 > cycles_per_day_possible_e4(config)) {
-    keys.emplace_back(formatted("cycles_per_day_max: this battery can do %.1f in a day",
+    keys.emplace_back(formatted("cycles_per_day_max: this battery reaches %.1f full cycles a day",
                                 static_cast<double>(cycles_per_day_possible_e4(config)) / 10'000));
   }
   if (control.reversals_per_hour_max >= kCyclesPerHour) {
-    keys.emplace_back("reversals_per_hour_max: an hour has 30 cycles");
+    keys.emplace_back("reversals_per_hour_max: an hour has 30 control cycles");
   }
 }
 
@@ -38,7 +37,7 @@ void add_reserves(const EdgeConfig& config, std::vector<std::string>& keys) {
   const std::int32_t soc_min_e4 = config.control.guard.soc_min_e4;
   for (const ReservePeriod& period : config.control.reserve) {
     if (period.soc_e4 > soc_min_e4) continue;
-    keys.emplace_back(formatted("a reserve of %.1f %%: soc_min keeps %.1f %% at all hours",
+    keys.emplace_back(formatted("reserve of %.1f %%: soc_min always keeps %.1f %%",
                                 period.soc_e4 / 100.0, soc_min_e4 / 100.0));
   }
 }
@@ -50,12 +49,11 @@ void add_site(const EdgeConfig& config, std::vector<std::string>& keys) {
   const bool has_limit = connection.import_w_max < kAnyPowerW ||
                          connection.export_w_max < kAnyPowerW || connection.peak_w_max < kAnyPowerW;
   if (!has_limit) {
-    keys.emplace_back(
-        "[meter]: it is read, and limits nothing (import_w_max, export_w_max, peak_w_max)");
+    keys.emplace_back("[meter]: sets no limit (import_w_max, export_w_max, peak_w_max)");
   }
   if (connection.peak_w_max < kAnyPowerW && connection.import_w_max < kAnyPowerW &&
       connection.peak_w_max >= connection.import_w_max) {
-    keys.emplace_back("peak_w_max: import_w_max is lower at every moment");
+    keys.emplace_back("peak_w_max: import_w_max is always lower");
   }
 }
 
@@ -63,7 +61,7 @@ void add_site(const EdgeConfig& config, std::vector<std::string>& keys) {
 
 std::string retired_key_text(const RetiredKey& old) {
   return "[" + std::string(old.section) + "] " + std::string(old.key) +
-         ": no longer a setting, the value is fixed; delete it";
+         ": retired, the value is fixed; delete it";
 }
 
 std::vector<std::string> keys_without_effect(const EdgeConfig& config) {

@@ -1,5 +1,4 @@
-// Keys of a configuration that are set and do nothing, with the reason: what an operator believes
-// to be in force and is not.
+// Keys of a configuration without effect, with the reason.
 #pragma once
 
 #include <string>
@@ -9,10 +8,10 @@
 
 namespace bess {
 
-/// "[price] timeout_ms: no longer a setting, ...".
+/// "[price] timeout_ms: retired, ...".
 std::string retired_key_text(const RetiredKey& old);
 
-/// "guard.ramp_w_max: no change of order is larger than 8000 W".
+/// "ramp_w_max: no step is larger than 8000 W".
 std::vector<std::string> keys_without_effect(const EdgeConfig& config);
 
 }  // namespace bess

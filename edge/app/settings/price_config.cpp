@@ -17,7 +17,7 @@ bool is_http(std::string_view url) {
   return url.starts_with("http://") || url.starts_with("https://");
 }
 
-/// How a student by level is given the level at a first start.
+/// Price level at a first start, for a student whose context is the level.
 void read_history(TomlTable& table, PriceConfig& price) {
   HistorySettings& history = price.history;
   table.integer("history_hours", history.hours, 0, PriceHistory::kHoursMax);
@@ -30,7 +30,7 @@ void read_history(TomlTable& table, PriceConfig& price) {
   }
 }
 
-/// What a number of the source is in EUR/MWh, and which are none.
+/// Unit of the source, and its numbers that mean "no price".
 void read_unit(TomlTable& table, PriceFields& fields) {
   constexpr std::int32_t kEurPerMwhE1[] = {10, 10'000, 100};
   int unit = 0;
@@ -40,18 +40,18 @@ void read_unit(TomlTable& table, PriceFields& fields) {
   if (none == nullptr) return;
   for (const TomlValue& item : *none) {
     const std::optional<double> number = item.number();
-    if (!number) return table.fail_at(item, "no_price must hold numbers");
-    if (!fields.no_price.try_push_back(*number)) return table.fail("no_price", "holds more than 8");
+    if (!number) return table.fail_at(item, "no_price must be a list of numbers");
+    if (!fields.no_price.try_push_back(*number)) return table.fail("no_price", "has more than 8");
   }
 }
 
-/// Secrets are sent to one host alone.
+/// Secrets are sent to only one host.
 void check_history_url(TomlTable& table, const PriceConfig& price) {
   const FixedText<511>& url = price.history.url;
   if (url.empty()) return;
   if (!is_http(url.view()) || place_of_url(url.view()).empty() ||
       place_of_url(url.view()) != place_of_url(price.feed.http.url.view())) {
-    table.fail("history_url", "must start with http:// or https:// and be of the host of url");
+    table.fail("history_url", "must start with http:// or https:// and have the host of url");
   }
 }
 
@@ -81,7 +81,7 @@ void read_price(TomlTable table, PriceConfig& price) {
   if (url.starts_with("https://") && access(price.feed.http.ca_file.c_str(), R_OK) != 0) {
     table.fail("ca_file", "= " + ca_file +
                               " cannot be read: install the package ca-certificates, "
-                              "or name your own file");
+                              "or set your own file");
   }
   if (header_file.empty() || !table.ok()) return;
   load_http_headers(table.resolved(header_file.view()).c_str(), price.feed.http.headers,
@@ -95,20 +95,20 @@ void check_price_url(TomlTable& table, std::string_view key, std::string_view ur
     return table.fail(key, "must start with http:// or https:// and name a host");
   }
   if (transport == UrlTransport::kSecure) return;
-  // Inside this machine as well: while the server is down, any user may listen at its port.
+  // Also on loopback: while the server is down, any user can listen on its port.
   if (keys.has_header_file) {
     return table.fail("header_file",
-                      "holds secrets, which are never sent over plain http: use an https:// url, "
-                      "or leave header_file out");
+                      "has secrets, which are never sent over plain HTTP: use an https:// url, or "
+                      "remove header_file");
   }
   if (holds_login(url)) {
     return table.fail(key,
-                      "holds a user or a password, which are never sent over plain http: use "
-                      "https://, or leave them out");
+                      "has a user or a password, which are never sent over plain HTTP: use "
+                      "https://, or remove them");
   }
   if (transport == UrlTransport::kOpen && !keys.allow_http) {
     table.fail(key,
-               "is plain http to another machine: whoever is on the way can write the prices; use "
+               "is plain HTTP (http://) to another host: prices could be forged in transit; use "
                "https://, or add allow_http = true (127.0.0.1 and [::1] need no key)");
   }
 }
@@ -129,13 +129,13 @@ TransportNote transport_note(const PriceSources& sources) {
     case UrlTransport::kSecure:
       return {.text = "https"};
     case UrlTransport::kLoopback:
-      return {.text = "plain http inside this machine"};
+      return {.text = "plain http on this machine"};
     case UrlTransport::kOpen:
     case UrlTransport::kUnusable:
       break;
   }
   return {.is_open = true,
-          .text = "prices come over plain http (allow_http): whoever is on the way can write them"};
+          .text = "prices come over plain http (allow_http) and could be forged in transit"};
 }
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-// [price]: whom to ask for prices, how, and what a first start knows of those before.
+// Reader of [price]: source, transport, and price level at a first start.
 #pragma once
 
 #include <cstdint>
@@ -19,36 +19,32 @@ struct PriceConfig {
 
 void read_price(TomlTable table, PriceConfig& price);
 
-// Over what prices come, and what may be sent for them: refused at the start where the
-// configuration does not allow it, told where it does.
-
-/// Where prices come from.
+/// Sources of prices.
 struct PriceSources {
   const PriceFeedSettings& price;
   const HistorySettings& history;
 };
 
-/// What the operator says about the way of the requests.
+/// Operator's settings of the transport.
 struct PriceTransportKeys {
   bool allow_http = false;
   bool has_header_file = false;  ///< secrets are sent with every request
 };
 
-/// Complains, with the mend, of a URL that is none, of plain http that is not allowed, and of
-/// secrets on plain http.
+/// Rejects a malformed URL, plain HTTP that is not allowed, and secrets over plain HTTP.
 void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
                      const PriceTransportKeys& keys);
 
-/// The same of each URL of [price].
+/// The same for each URL of [price].
 void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys);
 
 struct TransportNote {
-  bool is_open = false;  ///< somebody else could write the prices
+  bool is_open = false;  ///< prices could be forged in transit
   std::string text;
 };
 
-/// One line about the transport of url and history_url, the weaker one of them.
+/// One line on the weaker transport of url and history_url.
 TransportNote transport_note(const PriceSources& sources);
 
 }  // namespace bess

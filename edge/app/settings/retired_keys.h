@@ -1,5 +1,5 @@
-// Keys of earlier versions, whose value is fixed by now, for the controller and the programs beside
-// it: a configuration that has them still works, and --check and status name them.
+// Retired keys of earlier versions, whose values are fixed now. A configuration with them still
+// works, and --check and status name them.
 #pragma once
 
 #include <iterator>
@@ -42,7 +42,7 @@ inline constexpr RetiredKey kRetiredKeys[] = {
     {"meter", "age_s_max"},
     {"meter", "check_every_s"},
     {"meter", "house_rise_w"},
-    {"contract", "import_adder_eur_per_mwh"},  // `bess-train log statement --config` has them
+    {"contract", "import_adder_eur_per_mwh"},  // now in `bess-train log statement --config`
     {"contract", "import_percent"},
     {"contract", "export_fee_eur_per_mwh"},
     {"contract", "export_percent"},
@@ -56,7 +56,7 @@ inline constexpr RetiredKey kRetiredKeys[] = {
 };
 static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
 
-/// A section of the configuration, with its retired keys taken; `retired` collects those it has.
+/// Section of the configuration without its retired keys, which `retired` collects.
 inline TomlTable section(TomlTable& root, std::string_view name, RetiredKeys* retired = nullptr) {
   TomlTable table(root.table(name), root.file(), std::string("[").append(name).append("]"),
                   root.error());

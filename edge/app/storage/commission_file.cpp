@@ -19,11 +19,10 @@
 namespace bess {
 namespace {
 
-/// Far more than is ever written.
+/// More than is ever written.
 constexpr std::size_t kBytesMax = 8'192;
 
-/// Where it lies, the one that counts first. The copy outlasts a flipped byte, that in memory a
-/// dead disk.
+/// Paths in order of preference. The copy survives a flipped byte, the one in memory a failed disk.
 std::vector<std::string> places_of(const EdgeConfig& config) {
   std::vector<std::string> places = {state_file(config, "commissioned.toml").c_str(),
                                      state_file(config, "commissioned.copy").c_str()};
@@ -33,20 +32,20 @@ std::vector<std::string> places_of(const EdgeConfig& config) {
   return places;
 }
 
-/// What one of the places has.
+/// Content of one place.
 struct Stored {
   std::string path;
   std::string text;
-  std::string loss;  ///< why it does not count; "" = it counts
+  std::string loss;  ///< why it is not usable; "" = usable
   bool is_absent = false;
   bool is_checked = false;
   TomlValue document{};
 };
 
-constexpr const char* kHidden = "is not for this user to read";
+constexpr const char* kHidden = "is not readable by this user";
 
 std::string why_unreadable(int cause) {
-  if (cause == ENOENT) return "is gone";
+  if (cause == ENOENT) return "is missing";
   if (cause == EPERM) return "belongs to another user";
   if (cause == EACCES) return kHidden;
   return std::string("cannot be read: ") + std::strerror(cause);
@@ -66,11 +65,11 @@ Stored read_place(const std::string& path) {
   const TextState state = check_text(stored.text, kCommentChecksum);
   stored.is_checked = state == TextState::kIntact;
   if (state == TextState::kBroken) {
-    stored.loss = "is damaged: its checksum does not fit";
+    stored.loss = "is damaged: wrong checksum";
   } else if (!parse_toml_text(stored.text, path, stored.document, error)) {
     stored.loss = "is damaged: " + error;
   } else if (stored.document.find("battery") == nullptr) {
-    stored.loss = "is damaged: what it must say is cut off";
+    stored.loss = "is damaged: truncated";
   }
   return stored;
 }
@@ -78,7 +77,7 @@ Stored read_place(const std::string& path) {
 struct AllStored {
   std::vector<Stored> places;
 
-  /// A checksum is better than none, which an older program wrote or a cut has left; then the order
+  /// Prefers a file with a checksum (older versions and truncated files have none), then the order
   /// of places.
   [[nodiscard]] const Stored* that_counts() const {
     const Stored* best = nullptr;
@@ -103,14 +102,14 @@ AllStored read_places(const EdgeConfig& config) {
 std::string why_not_commissioned(const AllStored& all) {
   const Stored& first = all.places.front();
   if (first.loss == kHidden) {
-    return first.path + " " + kHidden + ": run this as the user of the service, or with sudo";
+    return first.path + " " + kHidden + ": run this as the service's user, or with sudo";
   }
   const std::string why =
       all.are_absent()
-          ? ": not there: the battery's sign has not been checked (or the disk of [state] "
-            "folder is not mounted); run once: "
+          ? ": missing: the battery's sign is not checked (or the disk of [state] folder is "
+            "not mounted); run once: "
           : " " + first.loss +
-                ", and no copy counts: is its disk dying, or not mounted? Mend it, or "
+                ", and no copy is usable: check that its disk is mounted and healthy, or "
                 "check the sign again: ";
   return first.path + why + "bess-edge commission --config FILE --yes";
 }
@@ -123,7 +122,7 @@ void add_file(const std::string& path, Crc32& crc) {
   crc.add_bytes(text.data(), text.size());
 }
 
-/// Of the bytes of the map file and of the one that it includes: an edited map is another map.
+/// Checksum of the map file and its included file: an edited map is another map.
 std::string map_checksum(const EdgeConfig& config) {
   const std::string path(config.battery.map_path.view());
   Crc32 crc;
@@ -140,7 +139,7 @@ std::string map_checksum(const EdgeConfig& config) {
   return hex;
 }
 
-/// Where it is, with the unit ids of the map's groups: another id is another inverter.
+/// Address with the unit ids of the map's groups: another id is another inverter.
 std::string battery_text(const EdgeConfig& config) {
   std::string text(battery_place(config.battery).view());
   for (const UnitGroup& group : config.battery.map.unit_groups) {
@@ -149,7 +148,7 @@ std::string battery_text(const EdgeConfig& config) {
   return text;
 }
 
-/// What was found out, for people: nothing is compared with it.
+/// Measured values, for people only.
 void add_direction(std::string_view name, const DirectionResult& direction,
                    std::ostringstream& text) {
   if (!direction.is_tested) return;
@@ -159,15 +158,14 @@ void add_direction(std::string_view name, const DirectionResult& direction,
        << name << "_time_constant_ms = " << std::lround(speed.dynamics.time_constant_s * 1e3)
        << "\n"
        << name << "_ramp_w_per_s = " << ramp_w_per_s(speed)
-       << (ramp_w_per_s(speed) == 0 ? "  # faster than could be seen\n" : "\n");
+       << (ramp_w_per_s(speed) == 0 ? "  # faster than measurable\n" : "\n");
 }
 
 std::string file_text(const EdgeConfig& config, const CommissionResult& result,
                       std::int64_t utc_s) {
   std::ostringstream text;
-  text << "# Written by: bess-edge commission, which also renews it. It lies here, beside as "
-          "commissioned.copy,\n"
-          "# and in [state] run_folder: one that is lost or damaged is taken from the others.\n"
+  text << "# Written by: bess-edge commission. Copies: commissioned.copy in this folder,\n"
+          "# and [state] run_folder; a lost or damaged file is restored from a copy.\n"
        << "map = \"" << config.battery.map.name.view() << "\"\n"
        << "variant = \"" << config.battery.map.variant.view() << "\"\n"
        << "map_crc32 = \"" << map_checksum(config) << "\"\n"
@@ -180,7 +178,7 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   if (result.meter != MeterVerdict::kNotAsked) {
     text << "meter_percent = " << result.meter_percent << "\n";
   }
-  text << "# Optional points that this device has: required from now on.\npresent = [";
+  text << "# Optional points of this device, now required.\npresent = [";
   for (const std::int8_t point : result.present) {
     text << (point == result.present[0] ? "\"" : ", \"")
          << config.battery.map.points[point].name.view() << "\"";
@@ -189,15 +187,15 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   return text.str();
 }
 
-/// What every place should hold.
+/// Expected text of every place.
 std::string whole_text(const Stored& good) {
   std::string text(without_checksum(good.text, kCommentChecksum));
   text += checksum_end(text, kCommentChecksum).view();
   return text;
 }
 
-/// Of a place that holds something else. A boot has emptied memory; an older program kept one
-/// alone, without a checksum: neither is a loss.
+/// Whether a place with another text is a loss. Memory emptied by a boot is none, nor a missing
+/// copy of an older version, which wrote one file without a checksum.
 bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
              const Stored& good) {
   if (!one.is_absent) return &one != &good;
@@ -208,15 +206,15 @@ bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
 std::string loss_line(const Stored& one, const Stored& good) {
   std::string line = one.path + " ";
   if (one.loss.empty()) {
-    line += one.is_checked ? "says something else" : "has lost its checksum";
+    line += one.is_checked ? "has other content" : "has no checksum";
   }
   line += one.loss;
-  if (&one != &good) line += "; " + good.path + " counts";
+  if (&one != &good) line += "; " + good.path + " is used";
   return line;
 }
 
-/// Visits each place that holds something else than it should: the place, the one that counts,
-/// what should be there, and whether that is a loss. None where none counts.
+/// Visits each place with another text: place, place in use, expected text, and whether it is a
+/// loss. None without a usable place.
 template <typename Visit>
 void for_each_other(const EdgeConfig& config, const Visit& visit) {
   const AllStored all = read_places(config);
@@ -228,13 +226,13 @@ void for_each_other(const EdgeConfig& config, const Visit& visit) {
   }
 }
 
-/// The file's keys, compared one by one; the first that differs is named.
+/// Compares one key of the file; an error names it.
 bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
   FixedText<255> found;
   table.require(key);
   table.text(key, found);
   if (!table.ok() || found.view() == configured) return table.ok();
-  table.fail(key, "is \"" + std::string(found.view()) + "\", the configuration now has \"" +
+  table.fail(key, "is \"" + std::string(found.view()) + "\", but the configuration has \"" +
                       configured + "\"");
   return false;
 }
@@ -243,17 +241,17 @@ bool expect_same(TomlTable& table, std::string_view key, const std::string& conf
 
 bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
                            std::int64_t utc_s, std::string& error) {
-  make_folder(config.state.folder.c_str());  // when it fails, the open below says why
+  make_folder(config.state.folder.c_str());  // a failure is reported when writing
   std::string text = file_text(config, result, utc_s);
   text += checksum_end(text, kCommentChecksum).view();
   const std::vector<std::string> places = places_of(config);
   if (!replace_file_durably(places.front().c_str(), text)) {
-    error = places.front() + ": cannot write here: " + std::strerror(errno) +
-            "; mend the folder's permissions, its disk, or [state] folder, and repeat";
+    error = places.front() + ": cannot be written: " + std::strerror(errno) +
+            "; correct the folder's permissions, its disk, or [state] folder, and repeat";
     return false;
   }
   if (!config.state.run_folder.empty()) make_folder(config.state.run_folder.c_str());
-  // Copies of another battery would be of no use; what cannot be written is told at the next start.
+  // Old copies may be of another battery: remove them if they cannot be replaced.
   for (std::size_t i = 1; i < places.size(); ++i) {
     if (!replace_file_durably(places[i].c_str(), text)) unlink(places[i].c_str());
   }
@@ -296,22 +294,22 @@ std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
   for_each_other(config,
                  [&](const Stored& one, const Stored& good, const std::string&, bool is_lost) {
                    if (is_lost)
-                     lines.push_back(loss_line(one, good) + "; a start in control writes it again");
+                     lines.push_back(loss_line(one, good) + "; a start in control restores it");
                  });
   return lines;
 }
 
 std::vector<std::string> mend_commission_file(const EdgeConfig& config) {
   std::vector<std::string> lines;
-  for_each_other(config, [&](const Stored& one, const Stored& good, const std::string& text,
-                             bool is_lost) {
-    const bool is_written = replace_file_durably(one.path.c_str(), text);
-    const int cause = errno;
-    if (is_written && !is_lost) return;
-    lines.push_back(loss_line(one, good) +
-                    (is_written ? ", and it is written again"
-                                : std::string("; it cannot be written: ") + std::strerror(cause)));
-  });
+  for_each_other(
+      config, [&](const Stored& one, const Stored& good, const std::string& text, bool is_lost) {
+        const bool is_written = replace_file_durably(one.path.c_str(), text);
+        const int cause = errno;
+        if (is_written && !is_lost) return;
+        lines.push_back(loss_line(one, good) +
+                        (is_written ? "; restored"
+                                    : std::string("; cannot be written: ") + std::strerror(cause)));
+      });
   return lines;
 }
 

@@ -26,8 +26,8 @@ FileMessage strangers_file(const char* path) {
   char line[768];
   std::snprintf(
       line, sizeof line,
-      "%.500s belongs to user %ld, neither to root nor to the user that runs this bess-edge "
-      "(%ld): if nothing of that user should be there, remove it",
+      "%.500s belongs to user %ld, not to root or the user of this bess-edge (%ld): remove it, "
+      "unless that user runs a bess-edge",
       path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid()));
   return {line};
 }
@@ -42,12 +42,11 @@ bool refuse_stranger(const char* path, FileMessage& error) {
 bool refuse_roots_leftover(const char* path, FileMessage& error) {
   struct stat info {};
   if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
-  char line[1'400];  // what is too long for a message is cut
-  std::snprintf(
-      line, sizeof line,
-      "%s is root's, of a bess-edge that was started as root: if none runs any more (pgrep "
-      "-u root -x bess-edge), it was killed; remove its lock: sudo rm %s",
-      path, path);
+  char line[1'400];  // longer than a message, which is cut
+  std::snprintf(line, sizeof line,
+                "%s belongs to a bess-edge started as root: if it no longer runs (pgrep -u root -x "
+                "bess-edge), remove its lock: sudo rm %s",
+                path, path);
   error = FileMessage(line);
   return false;
 }
@@ -59,8 +58,8 @@ bool is_believable(const char* path) {
 
 namespace {
 
-/// /dev/serial/by-id/... and /dev/ttyUSB0 may be one device: its real name counts. On a serial line
-/// two masters cannot even share the wire, so the unit does not matter there.
+/// Lock name of the battery. Serial devices by real path, because /dev/serial/by-id/... and
+/// /dev/ttyUSB0 may be one device; without the unit, because a line has one master.
 FixedText<159> locked_thing(const EdgeConfig& config) {
   if (!config.battery.link.rtu) return battery_place(config.battery);
   char real[PATH_MAX];
@@ -73,8 +72,8 @@ bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& err
   if (*folder == '\0') return true;
   if (!make_folder(folder)) {
     static_cast<void>(
-        fail_with_errno(folder, "cannot make the folder of [state] run_folder", error));
-    report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
+        fail_with_errno(folder, "cannot create the folder of [state] run_folder", error));
+    report(JournalLevel::kWarning, "note: %s: continuing without it", error.c_str());
     error = {};
     return true;
   }
@@ -130,7 +129,7 @@ bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error)
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   const char* const folder = config.state.folder.c_str();
   if (!make_folder(folder)) {
-    return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
+    return fail_with_errno(folder, "cannot create the folder of [state] folder", error);
   }
   for (const auto& path : {stored_status_path(config.log.status), config.log.ring,
                            stored_status_path(config.log.run_status), config.log.run_ring}) {
@@ -146,21 +145,21 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
 
 namespace {
 
-/// For its owner alone: whoever may open a file, if only to read it, can hold its lock.
+/// Owner-only permissions, because a reader could also hold the lock.
 constexpr mode_t kLockMode = 0600;
 
 /// First without O_CREAT: in a sticky folder such as /run/lock the kernel (fs.protected_regular)
-/// refuses O_CREAT on another user's file, even to root.
+/// refuses O_CREAT on files of other users, even for root.
 int open_or_create(const char* path) {
   constexpr int kFlags = O_CLOEXEC | O_NOFOLLOW;
   int fd = open(path, O_RDWR | kFlags);
-  if (fd < 0 && errno == EROFS) fd = open(path, O_RDONLY | kFlags);  // a lock needs no writing
+  if (fd < 0 && errno == EROFS) fd = open(path, O_RDONLY | kFlags);  // enough for a lock
   if (fd >= 0 || errno != ENOENT) return fd;
   const int made = open(path, O_RDWR | O_CREAT | O_EXCL | kFlags, kLockMode);
   return made < 0 && errno == EEXIST ? open(path, O_RDWR | kFlags) : made;
 }
 
-/// The holder removes its file when it ends; a lock on a removed file would lock nothing.
+/// The owner removes its file at its end; a lock on a removed file is void.
 bool is_still_at(int fd, const char* path) {
   struct stat ours {};
   struct stat there {};
@@ -179,7 +178,7 @@ int pid_in(int fd) {
 
 InstanceLock::~InstanceLock() {
   if (fd_ < 0) return;
-  unlink(path_.c_str());  // while still holding it; see is_still_at
+  unlink(path_.c_str());  // while still locked; see is_still_at
   close(fd_);
 }
 
@@ -198,10 +197,10 @@ bool InstanceLock::take(const char* path, const char* what, FileMessage& error) 
   }
   FileMessage stranger;
   const bool is_strangers = !refuse_stranger(path, stranger);
-  char line[1'700];  // of two messages; what is too long for one is cut
+  char line[1'700];  // longer than a message, which is cut
   std::snprintf(line, sizeof line,
-                "%s is in use by another program (process %d, lock %s): two must not share it, not "
-                "even to read; stop that one, or ask bess-edge status%s%s",
+                "%s is in use by another program (process %d, lock %s), also reading needs "
+                "exclusive access: stop that program, or use bess-edge status%s%s",
                 what, holder_of(path), path, is_strangers ? "; " : "", stranger.c_str());
   static_cast<void>(error.assign(line));
   return false;
@@ -220,16 +219,16 @@ InstanceLock::Try InstanceLock::try_once(const char* path) {
     return Try::kTaken;
   }
   close(fd);
-  errno = EACCES;  // its owner could take it from us, or remove it, at any time
+  errno = EACCES;  // its owner could lock or remove it at any time
   return Try::kFailed;
 }
 
-/// True where only the disk stands in the way: the battery is driven all the same.
+/// True after a disk error, which does not prevent control.
 bool InstanceLock::explain(const char* path, FileMessage& error) {
   const int cause = errno;
-  static_cast<void>(fail_with_errno(path, "cannot make the lock", error));
+  static_cast<void>(fail_with_errno(path, "cannot create the lock", error));
   if (is_disk_trouble(cause)) {
-    report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
+    report(JournalLevel::kWarning, "note: %s: continuing without it", error.c_str());
     error = {};
     return true;
   }
@@ -240,11 +239,11 @@ bool InstanceLock::explain(const char* path, FileMessage& error) {
 }
 
 void InstanceLock::leave_pid() const {
-  fchmod(fd_, kLockMode);  // of an older program, which let everybody write
+  fchmod(fd_, kLockMode);  // older versions let all users write
   char text[16];
   const int length = std::snprintf(text, sizeof text, "%d\n", static_cast<int>(getpid()));
   const bool written = ftruncate(fd_, 0) == 0 && pwrite(fd_, text, length, 0) == length;
-  static_cast<void>(written);  // only for the message of the next one who comes
+  static_cast<void>(written);  // only for the message of a second program
 }
 
 int holder_of(const char* path) {
@@ -253,7 +252,7 @@ int holder_of(const char* path) {
   if (fd < 0) return errno == EACCES ? kHolderHidden : 0;
   int holder = 0;
   if (flock(fd, LOCK_SH | LOCK_NB) != 0) holder = pid_in(fd);
-  // On a read-only disk a lock keeps the number of whoever could write it last.
+  // On a read-only disk the file keeps an old process id.
   if (holder > 0 && kill(holder, 0) != 0 && errno == ESRCH) holder = -1;
   close(fd);
   return holder;

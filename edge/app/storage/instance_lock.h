@@ -1,6 +1,6 @@
-// One controller to one battery, one to one state folder: an advisory lock (flock) on a file that
-// names the process holding it. The kernel returns the lock when a process ends, however it ends; a
-// file that is left behind means nothing. Lock and status files of other users are rejected.
+// Instance lock: one controller per battery and per state folder, by an advisory lock (flock) on a
+// file with the process id. The kernel releases the lock when the process ends; a leftover file has
+// no effect. Lock and status files of other users are rejected.
 #pragma once
 
 #include <sys/stat.h>
@@ -11,25 +11,24 @@
 
 namespace bess {
 
-// Owners of files: a lock or a status that any user could have put there would keep the controller
-// from starting, or report one that has long ended.
+// Owners of files: a lock or status of another user could prevent a start, or report a controller
+// that has ended.
 
-/// Root, and the user of this process.
+/// True for root and the user of this process.
 bool is_trusted(uid_t owner);
 
-/// "PATH belongs to user N, ...", with the mend.
+/// "PATH belongs to user N, ...", with the remedy.
 FileMessage strangers_file(const char* path);
 
-/// For a file that this process is going to rely on or to replace: false with one line when it is
-/// there and belongs to a stranger. A link is looked at itself.
+/// For a file that this process relies on or replaces: false with one line if it exists and belongs
+/// to another user. Checks a link itself.
 bool refuse_stranger(const char* path, FileMessage& error);
 
-/// For a file of root's that this process may not open: false with one line that names the command
-/// which removes it.
+/// For a file of root that this process may not open: false with one line and the command that
+/// removes it.
 bool refuse_roots_leftover(const char* path, FileMessage& error);
 
-/// For a file that is only read: also of whoever owns its folder, who can put anything there. A
-/// file that is not there is nobody's.
+/// For a file that is only read: also accepts the owner of the folder, and a missing file.
 bool is_believable(const char* path);
 
 class InstanceLock {
@@ -39,10 +38,9 @@ class InstanceLock {
   InstanceLock& operator=(const InstanceLock&) = delete;
   ~InstanceLock();
 
-  /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by
-  /// locking. False with one line; `what` names the locked thing in it. A lock file of another
-  /// user, root apart, is refused: he could take it away. On a full or read-only disk it goes on
-  /// without a lock, and says so.
+  /// Tries for one second, because a predecessor may be ending and `holder_of` locks briefly. False
+  /// with one line; `what` names the locked object. A lock file of another user except root is
+  /// refused, because that user could remove it. On a full or read-only disk, a note and true.
   bool take(const char* path, const char* what, FileMessage& error);
 
  private:
@@ -58,20 +56,18 @@ class InstanceLock {
 
 inline constexpr int kHolderHidden = -2;
 
-/// Process that holds the lock, 0 = nobody, or nobody who is to be believed; -1 = somebody whose
-/// number is unknown; kHolderHidden = this user may not ask.
+/// Process id of the lock's owner; 0 = none, or not trusted; -1 = unknown id; kHolderHidden = no
+/// permission to check.
 int holder_of(const char* path);
 
-// What a controller must have for itself before it does anything: its battery and its state folder.
-
-/// Lock of the battery: the same name for every configuration that leads to it.
+/// Lock of the battery, the same for every configuration with this address.
 FixedText<639> battery_lock_path(const EdgeConfig& config);
-/// Of [battery] name: two controllers of one machine must not report under the same.
+/// Lock of [battery] name: two controllers of one machine need different names.
 FixedText<639> name_lock_path(const EdgeConfig& config);
-/// Where every controller of this machine locks its battery; no configuration leads past it.
+/// Folder of the locks of all controllers of this machine, not configurable.
 std::string_view lock_folder();
-/// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state
-/// folder or, where that could not be made there, of its run folder.
+/// Process of the controller of this configuration, as `holder_of`: by the lock of its run folder
+/// or its state folder.
 int controller_holding(const EdgeConfig& config);
 bool is_controller_running(const EdgeConfig& config);
 
@@ -79,13 +75,13 @@ struct RunLocks {
   InstanceLock battery;
   InstanceLock name;
   InstanceLock state;
-  InstanceLock run;  ///< where there is a run folder
+  InstanceLock run;  ///< only with a run folder
 };
 
-/// --check needs the battery alone. False with one line.
+/// Enough for --check. False with one line.
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
-/// Makes state and run folder if they are missing; refuses files of another user in them. A run
-/// folder that cannot be made is told and no reason to fail.
+/// Creates missing state and run folders and refuses files of another user in them. A run folder
+/// that cannot be created is only reported.
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
 
 }  // namespace bess

@@ -21,7 +21,7 @@ constexpr std::size_t kUntilCharacters = 20;
 
 constexpr Hold kUnreadable{.unreadable = true};
 
-/// What one of the places says, and since when.
+/// Hold of one place, with its time.
 struct Word {
   Hold hold;
   bool is_there = false;
@@ -63,12 +63,12 @@ Hold parse_hold(std::string_view text) {
   if (read.ec != std::errc{} || !parse_utc(until, until_utc_s)) return kUnreadable;
   if (until_utc_s < 0 || until_utc_s >= UINT32_MAX) return kUnreadable;
   hold.until_utc_s = static_cast<std::uint32_t>(until_utc_s);
-  // Every other character, and the checksum: written again it must be the same.
+  // Checks all other characters and the checksum: formatting the hold must give the same text.
   return format_hold(hold) == text ? hold : kUnreadable;
 }
 
 Hold read_hold(const char* path) {
-  char text[kHoldFileBytes + 1];  // one more: a longer file is none of ours
+  char text[kHoldFileBytes + 1];  // one more, to detect a longer file
   const ssize_t size = read_beginning(path, text, Links::kRefused);
   if (size < 0) return errno == ENOENT ? Hold{} : kUnreadable;
   return parse_hold({text, static_cast<std::size_t>(size)});

@@ -1,8 +1,7 @@
-// Files by which others limit the controller: `hold` of an operator, the limit of another program.
-// The file through which `bess-edge hold` tells the running controller: one line of fixed length in
-// the state folder and in its run_folder, replaced at once. It outlives restarts; when its end has
-// passed it means nothing. The younger file is the newer word: a disk that dies may have kept an
-// older one.
+// Operator files: hold of an operator, limit of another program. The hold file of `bess-edge hold`
+// is one line of fixed length in the state folder and in run_folder, replaced atomically. It
+// survives restarts and has no effect after its end time. The newer of both files is used, because
+// a failed disk may have an older one.
 //   bess-hold 1 power_w=+000002000 until=2026-11-22T14:00:00Z crc32=0123abcd
 // Nothing here allocates.
 #pragma once
@@ -22,36 +21,35 @@ using HoldText = FixedText<kHoldFileBytes>;
 
 HoldText format_hold(const Hold& hold);
 
-/// Anything but exactly what `format_hold` writes is an unreadable hold.
+/// Any text that `format_hold` does not write is an unreadable hold.
 Hold parse_hold(std::string_view text);
 
-/// What lies at `path`; no file is no hold.
+/// Reads the hold at `path`; no file is no hold.
 Hold read_hold(const char* path);
 
-/// Where a controller looks for an operator's hold, by this name.
+/// File name of the hold in state and run folder.
 inline constexpr std::string_view kHoldFileName = "hold";
 
 struct HoldReading {
-  Hold hold;  ///< unreadable where no file can be understood and one is there
+  Hold hold;  ///< unreadable if files exist and none is readable
   bool state_is_lost = false;
-  bool run_is_lost = false;  ///< the file is there and cannot be understood, another one counts
+  bool run_is_lost = false;  ///< this file is unreadable and the other one is used
 
   friend bool operator==(const HoldReading&, const HoldReading&) = default;
 };
-/// Of both places the newer word; no file at all is no hold.
+/// Newer hold of both places; no file is no hold.
 HoldReading read_newest_hold(const BothPlaces& paths);
 
-// The file in which another program limits the battery (connection_guard.h has its line): read by
-// the control thread every few seconds, so no heap, a fixed buffer, and nothing that could wait: a
-// regular file on a memory file system (/run), never a pipe. Who writes it replaces it at once.
+// Limit file of another program (format: connection_guard.h), read by the control thread every few
+// seconds: no heap, fixed buffer, and no blocking, so a regular file in memory (/run), never a
+// pipe. Writers replace it atomically.
 
 class LimitFile {
  public:
   /// `path` must outlive this object.
   explicit LimitFile(const char* path) : path_(path) {}
 
-  /// `is_set` is false where there is no such file. kMalformed: it cannot be understood, or is
-  /// there and cannot be read.
+  /// `is_set` is false without a file. kMalformed: unreadable or malformed.
   Status read(OutsideLimit& limit, bool& is_set) const;
 
  private:

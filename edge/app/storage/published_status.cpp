@@ -50,7 +50,7 @@ std::int64_t age_ms_of(const RunStatus& status) {
   return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - status.written_monotonic_ms;
 }
 
-/// Of one place; nothing when there is none, it is not ours, or it is not as it was written.
+/// Status of one place; nothing if missing, not trusted or damaged.
 std::optional<RunStatus> stored_status(const FixedText<511>& status_json) {
   if (status_json.empty()) return std::nullopt;
   const FixedText<511> path = stored_status_path(status_json);
@@ -63,22 +63,20 @@ std::optional<RunStatus> stored_status(const FixedText<511>& status_json) {
     case StatusFile::kRead:
       return status;
     case StatusFile::kDamaged:
-      report(JournalLevel::kWarning, "%s is damaged, or of another version: not believed",
-             path.c_str());
+      report(JournalLevel::kWarning, "%s is damaged or of another version: ignored", path.c_str());
       return std::nullopt;
     case StatusFile::kAbsent:
       break;
   }
   if (errno == EACCES) {
     report(JournalLevel::kWarning,
-           "%s is not for this user to read: ask as the user of the service, or with sudo",
+           "%s is not readable by this user: run this as the service's user, or with sudo",
            path.c_str());
   }
   return std::nullopt;
 }
 
-/// Of both places the one that was written last. One of before the last boot is older than any
-/// other.
+/// Newer status of both places. A status from before the last boot is the older one.
 std::optional<RunStatus> newer_status(const EdgeConfig& config) {
   const std::optional<RunStatus> of_state = stored_status(config.log.status);
   const std::optional<RunStatus> of_run = stored_status(config.log.run_status);
@@ -88,8 +86,8 @@ std::optional<RunStatus> newer_status(const EdgeConfig& config) {
   return age_ms >= 0 && age_ms < age_ms_of(*of_run) ? of_state : of_run;
 }
 
-/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is
-/// of no process, nor is a number that another program has by now, where that can be seen.
+/// Running process that wrote the status; 0 = none. Excludes a status from before the last boot,
+/// and a process id that another program has now.
 int living_writer_of(const std::optional<RunStatus>& status) {
   if (!status) return 0;
   const int pid = status->identity.pid;
@@ -108,14 +106,14 @@ bool has_place_for_status(const EdgeConfig& config) {
          (*run_folder != '\0' && !takes_no_file(run_folder));
 }
 
-/// Whether neither a status nor the log can have been written just now.
+/// Whether neither status nor log can be written.
 bool is_every_place_read_only(const EdgeConfig& config) {
   const char* const run_folder = config.state.run_folder.c_str();
   return is_read_only(config.state.folder.c_str()) &&
          (*run_folder == '\0' || is_read_only(run_folder));
 }
 
-/// How long ago the youngest of a controller's locks was made, as far as one is left.
+/// Age of the newest lock file of a controller; nothing without one.
 std::optional<std::int64_t> lock_age_ms(const EdgeConfig& config) {
   std::optional<std::int64_t> youngest;
   for (const FixedText<639>& path :
@@ -128,11 +126,11 @@ std::optional<std::int64_t> lock_age_ms(const EdgeConfig& config) {
   return youngest;
 }
 
-/// Negative: a controller may run whose process number is not known.
+/// Negative: a controller may run with an unknown process id.
 constexpr int kUnknownProcess = -1;
 
-/// Without asking for locks: the writer of the status, or an unknown process that has locked the
-/// battery since.
+/// Without checking locks: the writer of the status, or an unknown process that locked the battery
+/// later.
 int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>& status) {
   const int writer = living_writer_of(status);
   if (writer != 0) return writer;
@@ -141,21 +139,20 @@ int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>
   return is_later ? kUnknownProcess : 0;
 }
 
-/// Who may not open the lock, or will not, asks the files.
+/// By the locks; by the files if the locks may not be opened.
 int find_controller(const EdgeConfig& config, const std::optional<RunStatus>& status,
                     bool no_lock) {
   int holder = no_lock ? kHolderHidden : controller_holding(config);
-  if (holder == 0 && !has_place_for_status(config)) {  // nor could it make its locks there
+  if (holder == 0 && !has_place_for_status(config)) {  // no locks there either
     holder = holder_of(battery_lock_path(config).c_str());
   }
   if (holder == kHolderHidden) return controller_by_files(config, status);
-  // A full disk keeps the lock and not the number in it.
+  // On a full disk the lock file has no process id.
   const int writer = holder < 0 ? living_writer_of(status) : 0;
   return writer != 0 ? writer : holder;
 }
 
-/// The status that should have been stored with this record, by what an older one of the same run
-/// says.
+/// Status that belongs to this record, completed from an older one of the same run.
 RunStatus status_of_record(const EdgeConfig& config, const std::optional<RunStatus>& older,
                            int holder, const CycleRecord& record, std::uint64_t number) {
   RunStatus status = older.value_or(RunStatus{});
@@ -174,7 +171,7 @@ RunStatus status_of_record(const EdgeConfig& config, const std::optional<RunStat
   return status;
 }
 
-/// Where the log has newer cycles than the status, they count.
+/// Newer control cycles in the log replace the status.
 void believe_the_log(const EdgeConfig& config, PublishedStatus& published) {
   LogReader log;
   FileMessage ignored;
@@ -199,10 +196,11 @@ std::string why_unknown(const EdgeConfig& config, const PublishedStatus& publish
                               ? "process " + std::to_string(published.holder) + " runs"
                               : std::string("a controller has locked this battery or its state");
   const bool has_run_folder = !config.state.run_folder.empty();
-  return who + ", but it has left neither a status nor a log record: is the disk under " +
+  return who + ", but there is no status and no log record: is the disk of " +
          config.state.folder.c_str() +
          (has_run_folder ? " and " + std::string(config.state.run_folder.view()) : "") +
-         " full or read-only" + (has_run_folder ? "?" : "? [state] run_folder would tell");
+         " full or read-only?" +
+         (has_run_folder ? "" : " [state] run_folder would show its status");
 }
 
 }  // namespace
@@ -226,7 +224,7 @@ PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
   const bool is_fresh = published.cycles_behind > 0 && published.age_ms < 4 * cadence_ms;
   published.is_of_this_run = published.holder > 0 ? published.holder == pid : is_fresh;
   const bool is_old = !published.is_of_this_run || (pid == 0 && !is_fresh);
-  // What cannot be written any more says nothing of now.
+  // A status that can no longer be written is out of date.
   const bool is_stuck = 2 * published.age_ms > 3 * cadence_ms && is_every_place_read_only(config);
   if (published.holder != 0 && (is_old || is_stuck)) {
     published.unknown = why_unknown(config, published);

@@ -15,7 +15,7 @@ constexpr std::string_view kHead = "bess-cleared 1";
 
 constexpr ClearedTrips kUnreadable{.unreadable = true};
 
-/// Programs before this form left the instant alone.
+/// Older versions wrote only the time.
 bool parse_older(std::string_view text, ClearedTrips& cleared) {
   if (!text.ends_with('\n')) return false;
   const char* const end = text.data() + text.size() - 1;
@@ -60,7 +60,7 @@ ClearedTrips parse_cleared(std::string_view text) {
     if (read.ec != std::errc{}) return kUnreadable;
     at = read.ptr;
   }
-  // Every other character, and the checksum: written again it must be the same.
+  // Checks all other characters and the checksum: formatting must give the same text.
   return format_cleared(cleared) == text ? cleared : kUnreadable;
 }
 
@@ -87,20 +87,20 @@ bool clear_trip_of(const char* path, std::int64_t trip_utc_s) {
 namespace {
 
 std::string why_nothing_is_known(const RingLog& ring, std::uint64_t published_number) {
-  if (!ring.is_open()) return "the decision log can be neither read nor made";
-  if (ring.damage().is_any()) return "nothing in the decision log can be understood";
+  if (!ring.is_open()) return "the decision log can be neither read nor created";
+  if (ring.damage().is_any()) return "the decision log is unreadable";
   if (published_number == 0) return "";  // a new battery
-  return "the decision log is gone, although a controller has run here";
+  return "the decision log is missing, although a controller has run here";
 }
 
 std::string why_unknown(const RingLog& ring, const RingLog& run_ring,
                         std::uint64_t published_number) {
   const std::uint64_t newest = std::max(ring.newest_number(), run_ring.newest_number());
   if (newest == 0) return why_nothing_is_known(ring, published_number);
-  // One record less is one cycle less; several may hide a trip.
+  // One lost record is harmless; several may hide a trip.
   const bool knows_more = run_ring.newest_number() > ring.newest_number();
   if (!knows_more && ring.damage().newest_lost > 1) {
-    return "the newest records of the decision log are lost, perhaps " +
+    return "the newest records of the decision log are lost, up to " +
            std::to_string(ring.damage().newest_lost);
   }
   if (published_number > newest + 1) {

@@ -1,6 +1,5 @@
-// What a start takes over from the runs before, from wherever it can still be read. That there was
-// nothing before is not the same as that nothing can be read: the first is a new battery, the
-// second may have been a trip.
+// Restored state: reads what earlier runs left, from any readable copy. No earlier state means a
+// new battery; unreadable state may hide a trip.
 #pragma once
 
 #include <array>
@@ -14,15 +13,14 @@
 
 namespace bess {
 
-// How a person's word that the battery may be driven again reaches the controller: a small file
-// names the trips that were cleared, by the instant each was found at, newest first. It lies in the
-// [state] folder and in its run_folder, because a trip that was cleared stays cleared if either
-// says so: a disk that dies may have kept the trip and not the word.
+// Cleared trips: a small file in the [state] folder and in run_folder with the times of cleared
+// trips, newest first. A trip is cleared if either file has it, because a failed disk may have the
+// trip without its clearance.
 //   bess-cleared 1 1679788800 1679702400 crc32=0123abcd
 
 struct ClearedTrips {
   std::array<std::int64_t, 8> utc_s{};  ///< 0 = none
-  bool unreadable = false;              ///< there is a file, and not one that was written here
+  bool unreadable = false;              ///< the file exists and is malformed
 
   [[nodiscard]] bool has(std::int64_t trip_utc_s) const;
   void add(std::int64_t trip_utc_s);
@@ -30,38 +28,36 @@ struct ClearedTrips {
 
 using ClearanceText = FixedText<255>;
 ClearanceText format_cleared(const ClearedTrips& cleared);
-/// Anything but exactly what `format_cleared` writes is unreadable.
+/// Any text that `format_cleared` does not write is unreadable.
 ClearedTrips parse_cleared(std::string_view text);
-/// What lies at `path`; no file, and no path, is nothing cleared. Allocates nothing.
+/// Reads `path`; without file or path nothing is cleared. Allocates nothing.
 ClearedTrips read_cleared(const char* path);
 
 inline constexpr std::string_view kClearedFileName = "cleared";
 
-/// Whether the trip found at this instant was cleared. Allocates nothing.
+/// Whether the trip of this time was cleared. Allocates nothing.
 bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s);
 
-/// Adds the trip to what was cleared in this file, on the disk before it returns. False with errno
-/// set.
+/// Adds the trip to this file and syncs it. False with errno set.
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
 
 struct Recall {
-  CycleRecord before{};        ///< the newest record of both logs; empty where there is none
-  std::optional<Trip> trip{};  ///< one of the logs says so, and no person has cleared it
-  std::string unknown;         ///< not empty: what earlier runs left cannot be read, why
+  CycleRecord before{};        ///< newest record of both logs, or empty
+  std::optional<Trip> trip{};  ///< in a log and not cleared
+  std::string unknown;         ///< why earlier state is unreadable, or empty
 };
 
-/// Of a start that cannot read what earlier runs left: the battery may have tripped, and nobody
-/// knows. A trip that is known stays.
+/// Trip for a start with unreadable earlier state, which may hide a trip. A known trip stays.
 inline std::optional<Trip> trip_without_state(const Recall& recalled, std::int64_t now_utc_s) {
   if (recalled.unknown.empty() || recalled.trip) return recalled.trip;
   return Trip{.reason = Reason::kStateLost, .utc_s = now_utc_s};
 }
 
-/// The trip by the newest records, wherever they are, that no person has cleared.
+/// Trip in the newest record of either ring that is not cleared.
 std::optional<Trip> standing_trip(const RingLog& ring, const RingLog& run_ring,
                                   const BothPlaces& cleared);
 
-/// `published_number`: of the newest record that a status.json knows; 0 = none does.
+/// `published_number`: newest record in a stored status; 0 = none.
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,
               const BothPlaces& cleared);
 

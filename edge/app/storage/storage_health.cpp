@@ -21,19 +21,19 @@
 namespace bess {
 namespace {
 
-/// Tests have one of their own below a folder, as the supervisor of upgrades has.
+/// /sys, below BESS_ROOT in tests.
 std::string sysfs() {
   const char* const root = std::getenv("BESS_ROOT");
   return std::string(root == nullptr ? "" : root) + "/sys";
 }
 
-/// Empty where there is none.
+/// Text of a file; empty without one.
 std::string text_of(const std::string& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Of "0x0a" at that place; 0 where it is no number.
+/// Value of "0x0a" at that position; 0 if malformed.
 int hexadecimal_at(std::string_view text, std::size_t at) {
   int value = 0;
   text.remove_prefix(at + 2);
@@ -41,7 +41,7 @@ int hexadecimal_at(std::string_view text, std::size_t at) {
   return read.ec == std::errc{} && value > 0 ? value : 0;
 }
 
-/// Its place in /sys; empty when there is no such folder.
+/// Path of the folder's block device in /sys; empty without the folder.
 std::string block_device_of(const std::string& folder) {
   struct stat at {};
   if (stat(folder.c_str(), &at) != 0) return {};
@@ -49,7 +49,7 @@ std::string block_device_of(const std::string& folder) {
          std::to_string(minor(at.st_dev));
 }
 
-/// By the options of the file system that the folder lies on: "36 35 8:1 / /var rw - ext4 /dev/sda1
+/// By the mount options of the folder's file system: "36 35 8:1 / /var rw - ext4 /dev/sda1
 /// rw,emergency_ro".
 bool was_set_read_only(const char* folder) {
   struct stat at {};
@@ -80,7 +80,7 @@ int write_and_sync(const std::string& path) {
 }  // namespace
 
 int used_life_percent(std::string_view life_time) {
-  constexpr int kTenthsMax = 11;  // beyond its life
+  constexpr int kTenthsMax = 11;  // life exceeded
   int worst = 0;
   for (std::size_t at = life_time.find("0x"); at != std::string_view::npos;
        at = life_time.find("0x", at + 1)) {
@@ -99,7 +99,7 @@ CardWear card_wear_of(const std::string& folder) {
   CardWear wear;
   const std::string device = block_device_of(folder);
   if (device.empty()) return wear;
-  // Of the device itself, or of the one that it is a partition of.
+  // The device itself, or the disk of a partition.
   for (const std::string& place : {device + "/device", device + "/../device"}) {
     if (wear.used_life_percent == 0) {
       wear.used_life_percent = used_life_percent(text_of(place + "/life_time"));
@@ -129,7 +129,7 @@ bool takes_no_file(const char* folder) {
 
 StorageHealth look_at_storage(const std::string& folder) {
   StorageHealth health;
-  make_folder(folder.c_str());  // when it fails, the write says why
+  make_folder(folder.c_str());  // a failure is reported by the write
   const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
   const int error = write_and_sync(folder + "/self-test.new");
   health.is_writable = error == 0;
