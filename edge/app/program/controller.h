@@ -1,10 +1,8 @@
-// The controller, the same in every world: reach the battery, begin with what runs before left, run
-// cycle by cycle, end in a safe state. What a world supplies is below: the machine that bess-edge
-// runs on (real_world.h), or virtual time and memory (tools/hil_runner/virtual/virtual_world.h), so
-// that what is tested there is what drives a battery.
-//   reach   is the battery there, and is it the right one?
-//   begin   greet the price server, recall log and trip, come by the price level, listen to people
-//   run     cycles, each kept and told of; then the end: hand over, or 0 W and release
+// Controller, a template over its world: the machine of bess-edge (real_world.h), or virtual time
+// and memory (tools/hil_runner/virtual/virtual_world.h), so that tests run the production code.
+//   reach   find and identify the battery
+//   begin   first price, restored state, price level, operator files
+//   run     control cycles, each logged and published; then hand over, or 0 W and release
 // After `begin` nothing here allocates.
 #pragma once
 
@@ -23,8 +21,8 @@
 
 namespace bess {
 
-/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say.
-/// `Seal` exists as long as cycles run: nothing may allocate.
+/// World of a controller. Requirements on its types: control_loop.h, site_limits.h. While `Seal`
+/// exists, nothing may allocate.
 template <typename World>
 concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
                                    const CycleRecord& done, std::int64_t number, std::int32_t level,
@@ -38,20 +36,20 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
   { world.prices() } -> std::same_as<typename World::Prices&>;
   { world.meter() } -> std::same_as<typename World::Meter&>;
   { world.limits() } -> std::same_as<typename World::Limits&>;
-  // The first answer of whom prices come from, and what the last hours say of the price level.
+  // First price answer, and price level of the last hours.
   { world.greet_prices() } -> std::same_as<Status>;
   { world.find_history() } -> std::same_as<PublishedHistory>;
-  // What is kept over the end of a run. `open` says itself why it failed, and so does `recall`.
+  // Persistent state. `open` and `recall` report their own errors.
   { world.open() } -> std::same_as<bool>;
   { world.recall() } -> std::same_as<Recall>;
   { known.read_back(number, record) } -> std::same_as<bool>;  // 0: the newest
   world.keep(done);
-  // People: the holds that they ask for, and whether one has cleared the trip of an instant.
+  // Operator: holds, and whether the trip of a time was cleared.
   { world.listen() } -> std::same_as<const HoldMailbox&>;
-  // The plans of a student by outlook, from this level on; null where its context is another.
+  // Plans for a student by outlook, from this level; null for other contexts.
   { world.look_out(level) } -> std::same_as<OutlookBoard*>;
   { world.is_cleared(number) } -> std::same_as<bool>;
-  // Who is told.
+  // Observers.
   world.needs_time(number);
   world.complain(JournalLevel::kError, line);
   world.write_line(JournalLevel::kInfo, line);
@@ -75,7 +73,7 @@ class Controller {
         loop_(config.control, world.battery(), world.prices(), world.clock(),
               Site(config.site.settings, &world.meter(), &world.limits())) {}
 
-  /// True when the battery is found.
+  /// True if the battery is found.
   bool reach() {
     world_.needs_time(config_.battery.start_timeout_s + kStartMarginS);
     for (const std::int8_t point : commissioned_points(config_)) world_.battery().require(point);
@@ -85,7 +83,7 @@ class Controller {
     return false;
   }
 
-  /// False where this run must not drive, or cannot keep what it does.
+  /// False if this run must not control, or cannot store its log.
   bool begin() {
     if (!world_.open()) return false;
     const Status greeting = greet_price_server();
@@ -96,8 +94,8 @@ class Controller {
     return true;
   }
 
-  /// Until a stop is requested or so many cycles are done (negative: no such number); the last
-  /// order keeps its whole step. False when the battery could not be given back.
+  /// Runs until a stop request or `cycles` control cycles (negative: no limit); the last order
+  /// keeps its full step. False if the battery was not released.
   bool run(std::int64_t cycles) {
     CycleRecord record{};
     const typename World::Seal seal;  // from here on this thread calls no allocator
@@ -111,7 +109,7 @@ class Controller {
   }
 
  private:
-  static constexpr std::int64_t kStartMarginS = 60;  ///< of what the start waits for besides
+  static constexpr std::int64_t kStartMarginS = 60;  ///< for the other waits of the start
 
   bool end(CycleRecord& record) {
     loop_.finish_step();
@@ -122,7 +120,7 @@ class Controller {
     return record.battery_status == Status::kOk;
   }
 
-  /// Says it when there is no price yet.
+  /// Reports a missing first price.
   Status greet_price_server() {
     const Status status = world_.greet_prices();
     if (status == Status::kOk) return status;

@@ -1,6 +1,6 @@
-// The control thread's time: UTC (possibly scaled), absolute deadlines, and the request to stop.
-// SIGTERM, SIGINT and SIGHUP are blocked in every thread and taken synchronously while waiting, so
-// no signal is lost between a test and a sleep and no handler runs in the middle of an order.
+// Clock of the control thread: UTC (possibly scaled), absolute deadlines, and stop requests.
+// SIGTERM, SIGINT and SIGHUP are blocked in every thread and received synchronously while waiting,
+// so no signal is lost between a test and a sleep, and no handler interrupts an order.
 #pragma once
 
 #include <pthread.h>
@@ -15,7 +15,7 @@ namespace bess {
 
 class EdgeClock {
  public:
-  /// Construct before any thread is started: the threads inherit the blocked signals.
+  /// Construct before any thread starts: threads inherit the blocked signals.
   explicit EdgeClock(const ScaledClock& clock) : clock_(clock) {
     sigemptyset(&stop_signals_);
     sigaddset(&stop_signals_, SIGTERM);
@@ -31,9 +31,8 @@ class EdgeClock {
   }
   [[nodiscard]] const ScaledClock& scaled() const { return clock_; }
 
-  /// Waits for an instant; false when a stop was requested. Re-read every second, because the real
-  /// clock may be stepped while waiting. Stepped back, the instant may lie hours ahead: then the
-  /// wait is over, and whoever waited finds out what the time is.
+  /// Waits for a time; false after a stop request. The clock is read every second, because it may
+  /// be stepped. If it is stepped back, the wait ends and the caller reads the new time.
   bool sleep_until_utc_ns(std::int64_t utc_ns) {
     constexpr std::int64_t kPollNs = 5 * kNanosecondsPerSecond;
     std::int64_t left_before_ns = INT64_MAX - kPollNs;
@@ -46,13 +45,13 @@ class EdgeClock {
     return false;
   }
 
-  /// Waits although a stop was requested: between attempts to give the battery back.
+  /// Waits also after a stop request: between attempts to release the battery.
   void pause_ns(std::int64_t ns) const {
     const std::int64_t end_ns = monotonic_ns() + clock_.wall_ns(ns);
     while (monotonic_ns() < end_ns) sleep_until_monotonic(end_ns);
   }
 
-  /// Simulated time begins at its anchor: the first tick is then the same in every run.
+  /// Simulated time begins at its anchor, so that the first tick is the same in every run.
   bool wait_for_simulated_start() {
     if (clock_.is_real_time()) return true;
     const std::int64_t before_first_tick_s = clock_.anchor_utc_s - kSecondsPerStep + 1;
@@ -64,19 +63,17 @@ class EdgeClock {
     return stop_requested_;
   }
 
-  /// The stop was asked for by SIGHUP: the process ends and leaves its order in force, because a
-  /// new one takes over at once.
+  /// Stop by SIGHUP: the process ends and leaves its order in force for the next start.
   [[nodiscard]] bool hand_over_requested() {
-    take_stop_signal(0);  // a SIGTERM that came with it wins
+    take_stop_signal(0);  // SIGTERM has precedence
     return hand_over_requested_;
   }
 
-  /// Simulated time is always right; real time must be disciplined by NTP, or every order is a
-  /// guess.
+  /// True in simulated time; real time must be set by NTP.
   [[nodiscard]] bool is_synchronised() const {
     if (!clock_.is_real_time()) return true;
     timex state{};
-    const int clock_state = adjtimex(&state);  // -1: a sandbox forbids to ask, so it is not known
+    const int clock_state = adjtimex(&state);  // -1: forbidden by a sandbox, unknown
     return clock_state >= 0 && clock_state != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
   }
 

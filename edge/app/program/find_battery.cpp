@@ -18,8 +18,8 @@ namespace {
 ModbusBattery* battery_of_check_handler = nullptr;
 pthread_t control_thread;
 
-/// Not from another thread, which would talk into the control thread's requests: the watchdog ends
-/// the order then. Nor twice, should the release be what broke.
+/// Not from another thread, which would interleave with requests of the control thread (the
+/// watchdog ends the order then), and not twice, because the release itself may have failed.
 void release_after_failed_check(const char*, const char*, int) {
   ModbusBattery* const battery = std::exchange(battery_of_check_handler, nullptr);
   if (battery == nullptr || pthread_equal(pthread_self(), control_thread) == 0) return;
@@ -49,16 +49,16 @@ bool DeviceSession::begin(const EdgeConfig& config) {
 
 namespace {
 
-/// "PLACE: what is wrong there".
+/// "ADDRESS: error".
 std::string trouble_at(const EdgeConfig& config, std::string_view what) {
   return std::string(battery_place(config.battery).view()) + ": " + std::string(what);
 }
 
-/// What the link's trouble means for this transport.
+/// Text of a link error for this transport.
 std::string_view link_text(const EdgeConfig& config, Status status) {
   if (!config.battery.link.rtu || status != Status::kNotConnected) return status_text(status);
-  return "the serial line cannot be opened (is device right and plugged in, is this user in the "
-         "group dialout?)";
+  return "the serial line cannot be opened: check that device is correct and plugged in, and that "
+         "this user is in group dialout";
 }
 
 std::string missing_model_text(const RegisterMap& map, int model) {
@@ -67,8 +67,7 @@ std::string missing_model_text(const RegisterMap& map, int model) {
     bases += (bases.empty() ? "" : ", ") + std::to_string(base);
   }
   return formatted(
-      "SunSpec model %d was not found from %s: is it the device of map %s, has it "
-      "started?",
+      "SunSpec model %d not found from %s: check that the device matches map %s and has started",
       model, bases.c_str(), map.name.c_str());
 }
 
@@ -93,7 +92,7 @@ std::string identity_text(const RegisterMap& map, const IdentityFailure& failure
   }
   const std::string value =
       failure.is_known ? std::to_string(failure.value) : std::string("no plausible value");
-  return formatted("%s (register %d, raw %s) is %s, not %lld to %lld: %s", point.name.c_str(),
+  return formatted("%s (register %d, raw %s) is %s, expected %lld to %lld: %s", point.name.c_str(),
                    point.address, read.c_str(), value.c_str(),
                    static_cast<long long>(check.value_min), static_cast<long long>(check.value_max),
                    check.hint.c_str());
@@ -104,14 +103,14 @@ std::string reading_text(const EdgeConfig& config, ModbusBattery& battery, Statu
   const RegisterMap& map = config.battery.map;
   std::string text(link_text(config, status));
   if (const int unit = battery.link().foreign_unit(); unit >= 0) {
-    text = formatted("unit %d answered in place of unit %d: set [battery] unit or units", unit,
+    text = formatted("unit %d answered instead of unit %d: set [battery] unit or units", unit,
                      battery.link().asked_unit());
   }
   if (lost_point == 0 || lost_point > map.points.size()) return text;
   const RegisterPoint& point = map.points[lost_point - 1];
   text += formatted(": %s (register %d", point.name.c_str(), point.address);
   if (status != Status::kImplausible) return text + ")";
-  return text + formatted(", raw %s), not %lld to %lld",
+  return text + formatted(", raw %s), expected %lld to %lld",
                           raw_text(point, battery.live().raw[lost_point - 1]).c_str(),
                           static_cast<long long>(point.value_min),
                           static_cast<long long>(point.value_max));

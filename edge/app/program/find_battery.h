@@ -1,5 +1,4 @@
-// The battery at the start: is it there, and is it the one that the configuration means? Nothing
-// here writes to it, nothing prints.
+// Battery search at the start: reachable, and the configured battery? Writes nothing to it.
 #pragma once
 
 #include <optional>
@@ -12,20 +11,15 @@
 
 namespace bess {
 
-// A broken promise of the program itself (edge/core/base/check.h): the battery gets 0 W and is
-// released before the process ends.
-
-/// From now on, of this battery, if it is this thread whose check fails. The battery must outlive
-/// the process.
+/// After a failed internal check (edge/core/base/check.h) of this thread, orders 0 W and releases
+/// the battery before the process ends. The battery must outlive the process.
 void release_if_a_check_fails(ModbusBattery& battery);
 
-// What everything that talks to the battery begins with: memory as it must be, the student as it
-// was exported, the battery for this process alone, a clock.
-
+/// Preparation of every command that uses the battery: memory, student check, battery lock, clock.
 class DeviceSession {
  public:
-  /// Before any thread is started. False when somebody else has the battery, or this machine is not
-  /// fit; one line on stderr says it.
+  /// Call before any thread starts. False with one line on stderr when the battery is in use, or
+  /// this machine is not suitable.
   bool begin(const EdgeConfig& config);
 
   /// After `begin`.
@@ -39,24 +33,24 @@ class DeviceSession {
 
 struct BatterySearch {
   Status status = Status::kOk;
-  bool is_stranger = false;  ///< it answers as another device, and will go on doing so
-  std::string trouble;       ///< where it was looked for, what was read, what mends it
+  bool is_stranger = false;  ///< another device: no retry
+  std::string trouble;       ///< address, reading, remedy
 };
 
-/// Which identity check failed, and what was read there.
+/// Failed identity check, with the reading.
 std::string identity_text(const RegisterMap& map, const IdentityFailure& failure);
 
-/// Why the battery could not be read, with the point that was lost (1 + index; 0 = none).
+/// Read error, with the lost point (1 + index; 0 = none).
 std::string reading_text(const EdgeConfig& config, ModbusBattery& battery, Status status,
                          int lost_point);
 
-/// The registers that decided the measurement, and alarms that hold, with their raw values.
+/// Raw values of the registers of the measurement and of active alarms.
 std::string measured_text(const RegisterMap& map, const LivePoints& live);
 
-/// Proves that this is the configured battery.
+/// Checks that this is the configured battery.
 BatterySearch identify_battery(const EdgeConfig& config, ModbusBattery& battery);
 
-/// Tries until `start_timeout_s` is over, or a stop is asked for.
+/// Tries until `start_timeout_s` or a stop request.
 BatterySearch find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
 }  // namespace bess

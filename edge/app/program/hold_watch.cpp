@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-/// By the monotonic clock; false when the semaphore was posted before the time was over.
+/// By the monotonic clock; false if the semaphore was posted earlier.
 bool wait_ns(sem_t& semaphore, std::int64_t ns) {
   const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + ns;
   const timespec until{.tv_sec = static_cast<time_t>(until_ns / kNanosecondsPerSecond),
@@ -57,13 +57,13 @@ void HoldWatch::look() {
   if (is_trip_cleared(cleared_, trip_utc_s)) cleared_trip_utc_s_ = trip_utc_s;
 }
 
-/// Once each time. That no file can be understood is told with the cycle that does not follow it.
+/// Reports each loss once. Without any readable file, the control cycle reports it.
 void HoldWatch::tell_of_losses(const HoldReading& reading) {
   const bool state_is_new = reading.state_is_lost && !told_.state_is_lost;
   const bool run_is_new = reading.run_is_lost && !told_.run_is_lost;
   told_ = reading;
   if (!state_is_new && !run_is_new) return;
-  report(JournalLevel::kError, "hold: %s cannot be understood; %s counts",
+  report(JournalLevel::kError, "hold: %s is malformed; %s is used",
          state_is_new ? paths_.state.c_str() : paths_.run.c_str(),
          state_is_new ? paths_.run.c_str() : paths_.state.c_str());
 }

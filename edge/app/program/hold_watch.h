@@ -1,6 +1,6 @@
-// Looks every second at the files through which people speak to the controller, and publishes what
-// they say: the hold, and whether a trip was cleared. A thread of its own, because a card that
-// stands still must not keep the control thread waiting. After `start` it allocates nothing.
+// Hold watcher: reads the operator's files every second and publishes hold and cleared trips. A
+// separate thread, because a blocked disk must not delay the control thread. After `start` it
+// allocates nothing.
 #pragma once
 
 #include <semaphore.h>
@@ -23,13 +23,13 @@ class HoldWatch {
   HoldWatch& operator=(const HoldWatch&) = delete;
   ~HoldWatch();
 
-  /// Reads the files once, so that the first cycle knows it, then goes on in the background.
-  /// `time_scale`: simulated time is looked at as often as it passes.
+  /// Reads the files once for the first control cycle, then in the background. `time_scale`: the
+  /// period is one second of simulated time.
   void start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale);
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
 
-  /// From the control thread, which never waits here: whether a person has cleared the trip of this
-  /// instant, as far as it is known by now. It is looked for from the first question on.
+  /// Called by the control thread, never waits: whether the trip of this time is known to be
+  /// cleared. The watcher checks it from the first call.
   bool is_cleared(std::int64_t trip_utc_s);
 
  private:

@@ -10,24 +10,24 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kPlanningSMax = 30;  ///< of the first plans, on the slowest board
+constexpr std::int64_t kPlanningSMax = 30;  ///< first plans, on the slowest board
 constexpr std::int64_t kMillisecondsNs = 1'000'000;
 
 void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
   if (!is_in_control) {
-    write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing was written");
+    write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing written");
   } else if (last.reason == Reason::kHandOver) {
     write_journal_line(JournalLevel::kNotice, "stopped: handed over, the order stays in force");
   } else if (last.battery_status != Status::kOk && !ends_by_itself) {
     write_journal_line(JournalLevel::kError,
-                       "stopped: release failed, and this battery has no timer: it may follow its "
-                       "last order for ever; start again, or set it back by hand");
+                       "stopped: release failed, and this battery has no dead-man timer: it may "
+                       "follow its last order without end; start again, or reset it by hand");
   } else if (last.battery_status != Status::kOk) {
     write_journal_line(JournalLevel::kWarning,
-                       "stopped: release failed, the battery's own timer ends it");
+                       "stopped: release failed, the battery's dead-man timer ends the order");
   } else {
-    write_journal_line(JournalLevel::kNotice, last.written ? "stopped: battery released"
-                                                           : "stopped: no order was in force");
+    write_journal_line(JournalLevel::kNotice,
+                       last.written ? "stopped: battery released" : "stopped: no order in force");
   }
 }
 
@@ -69,7 +69,7 @@ const HoldMailbox& RealWorld::listen() {
   return people_.mailbox();
 }
 
-/// Wall time: bess-prices may just have been started.
+/// In wall time: bess-prices may just have started.
 Status RealWorld::greet_prices() {
   const std::int64_t request_ms = config_.price.feed.http.timeout_ms + 1'000;
   return devices_.prices.first_answer(request_ms * kMillisecondsNs);
@@ -103,7 +103,7 @@ void RealWorld::begins() {
 void RealWorld::has_stopped(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
   constexpr std::int64_t kDrainNsMax = 5 * kNanosecondsPerSecond;
   if (!log_.drain(kDrainNsMax)) {
-    report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
+    report(JournalLevel::kWarning, "disk too slow: the last records are not logged");
   }
   write_farewell(last, is_in_control, ends_by_itself);
 }

@@ -1,6 +1,5 @@
-// The machine that bess-edge runs on, for its controller (controller.h): Modbus battery and meter,
-// the price server, the decision log on disk, the files through which people and other programs
-// speak, journal and systemd.
+// Real world of the controller (controller.h): Modbus battery and meter, prices, decision log on
+// disk, operator files, journal and systemd.
 #pragma once
 
 #include <string>
@@ -27,7 +26,7 @@ class RealWorld {
   using Limits = LimitFile;
   using Seal = HeapSeal;
 
-  /// What other commands have too. All of it, and the configuration, must outlive this object.
+  /// Devices shared with other commands. They and the configuration must outlive this object.
   struct Devices {
     EdgeClock& clock;
     ModbusBattery& battery;
@@ -42,13 +41,12 @@ class RealWorld {
   ModbusMeter& meter() { return devices_.meter; }
   LimitFile& limits() { return limits_; }
 
-  /// From now on what the battery's link says and hears goes to a file; no path: nowhere. False
-  /// with one line.
+  /// Starts recording the battery's Modbus traffic; an empty path records nothing. False with one
+  /// line.
   bool record_battery(const std::string& path, FileMessage& error);
   bool finish_recording(FileMessage& error) { return recorder_.finish(error); }
 
-  /// The log. Before it, that the sign was checked: a run that is refused leaves the status of the
-  /// one before.
+  /// Checks the commissioning, then opens the log, so that a refused run keeps the previous status.
   bool open();
   Recall recall();
   bool read_back(std::int64_t records, CycleRecord& record) const {
@@ -67,7 +65,7 @@ class RealWorld {
   static void write_line(JournalLevel level, const std::string& line) {
     write_journal_line(level, line);
   }
-  /// Journal lines of what this run stands on. From now on a failed check releases the battery.
+  /// Logs the start. From now on a failed internal check releases the battery.
   void begins();
   void is_ready() { notify_.ready(); }
   void cycle_done(const CycleRecord& record) { notify_.cycle_done(record); }
@@ -82,7 +80,7 @@ class RealWorld {
   ExchangeRecorder recorder_;
   LimitFile limits_;
   HoldWatch people_;
-  std::uint64_t published_ = 0;  ///< number of the newest record that a status knew at the start
+  std::uint64_t published_ = 0;  ///< newest record number in a status at the start
 };
 
 }  // namespace bess

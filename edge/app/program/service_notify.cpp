@@ -16,7 +16,7 @@ ServiceNotify::ServiceNotify() {
   if (length >= sizeof address_.sun_path) return;
   address_.sun_family = AF_UNIX;
   std::memcpy(address_.sun_path, name, length);
-  if (name[0] == '@') address_.sun_path[0] = '\0';  // the abstract namespace: no file, no final 0
+  if (name[0] == '@') address_.sun_path[0] = '\0';  // abstract namespace: no file, no final 0
   address_bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length);
   fd_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 }
@@ -34,7 +34,7 @@ void ServiceNotify::extend_start(std::int64_t seconds) const {
 
 void ServiceNotify::ready() const { send("READY=1\nSTATUS=waiting for the first tick"); }
 
-void ServiceNotify::stopping() const { send("STOPPING=1\nSTATUS=giving the battery back"); }
+void ServiceNotify::stopping() const { send("STOPPING=1\nSTATUS=releasing the battery"); }
 
 void ServiceNotify::cycle_done(const CycleRecord& r) {
   const bool is_good = r.missed_ticks == missed_ticks_before_;

@@ -1,5 +1,5 @@
-// What systemd is told (sd_notify(3)): ready, alive, status line, stopping. One datagram to the
-// socket named in NOTIFY_SOCKET; without it every call does nothing. Never waits, never allocates.
+// systemd notifications (sd_notify(3)): ready, alive, status line, stopping. One datagram to the
+// socket of NOTIFY_SOCKET; without it every call does nothing. Never waits, never allocates.
 #pragma once
 
 #include <sys/socket.h>
@@ -18,12 +18,12 @@ class ServiceNotify {
   ServiceNotify& operator=(const ServiceNotify&) = delete;
   ~ServiceNotify();
 
-  /// The start may take this much longer than the unit says.
+  /// Extends the start timeout of the unit.
   void extend_start(std::int64_t seconds) const;
   void ready() const;
-  /// After each cycle: the status line, and WATCHDOG=1 when the cycle was good. Good means that the
-  /// controller itself works: it finished in time, no tick was missed since the last one. A battery
-  /// or a price server that is away is a mode of the controller; a restart would not mend it.
+  /// After each control cycle: the status line, and WATCHDOG=1 if no tick was missed since the last
+  /// one. A missing battery or price is a mode of the controller, which a restart would not
+  /// correct.
   void cycle_done(const CycleRecord& record);
   void stopping() const;
 

@@ -18,12 +18,12 @@
 namespace bess {
 
 bool check_student() {
-  set_market_time_zone();  // a plan of local days is one of the checks
+  set_market_time_zone();  // one check plans local days
   const int failures = count_student_self_check_failures();
   if (failures == 0) return true;
   report(JournalLevel::kError,
-         "the built-in student fails %d of its %d self-checks on this machine; build bess-edge for "
-         "it again",
+         "the built-in student fails %d of %d self-checks on this machine: rebuild bess-edge for "
+         "it",
          failures, student_self_check_count());
   return false;
 }
@@ -46,20 +46,19 @@ Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
   const BothPlaces paths = both_places(config, kClearedFileName);
   for (const FixedText<639>* path : {&paths.state, &paths.run}) {
     if (!read_cleared(path->c_str()).unreadable) continue;
-    report(JournalLevel::kError,
-           "%s cannot be understood: a trip that was cleared there counts again", path->c_str());
+    report(JournalLevel::kError, "%s is malformed: trips cleared there are active again",
+           path->c_str());
   }
   Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
   if (recalled.unknown.empty()) return recalled;
   const char* const what = recalled.unknown.c_str();
   if (recalled.trip) {
     report(JournalLevel::kError,
-           "state: %s: cycle budget and price level of earlier runs are not known", what);
+           "state: %s: full-cycle budget and price level of earlier runs are unknown", what);
     return recalled;
   }
   report(JournalLevel::kError,
-         "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes",
-         what);
+         "state: %s: a trip may be lost, so there is no control until bess-edge clear --yes", what);
   recalled.trip = trip_without_state(recalled, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }
@@ -83,8 +82,8 @@ std::string decision_signature_line() {
 
 void prepare_process() {
   set_market_time_zone();
-  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
-  prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
+  signal(SIGPIPE, SIG_IGN);           // a closed log reader must not end the controller
+  prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us matters at high time scales
 }
 
 namespace {
@@ -97,7 +96,7 @@ std::string eur_text(std::int32_t centi) {
 
 std::string why_no_more(const LevelNews& news) {
   if (news.hours_wanted == 0) return "history_hours = 0";
-  if (news.status == Status::kOk) return "the server has no more";
+  if (news.status == Status::kOk) return "no more rows at the server";
   return std::string(price_status_text(news.status));
 }
 
@@ -105,7 +104,7 @@ std::string history_note(const LevelNews& news) {
   std::string text = "from " + std::to_string(news.rows) + " rows of the last " +
                      std::to_string(news.hours) + " h";
   if (news.hours >= news.hours_wanted) return text;
-  return text + ", not " + std::to_string(news.hours_wanted) + " h: " + why_no_more(news);
+  return text + " instead of " + std::to_string(news.hours_wanted) + " h: " + why_no_more(news);
 }
 
 std::string source_note(const LevelNews& news) {
@@ -120,7 +119,7 @@ std::string source_note(const LevelNews& news) {
     case LevelSource::kNone:
       break;
   }
-  return "the first price will set it; no history: " + why_no_more(news);
+  return "set by the first price; no history: " + why_no_more(news);
 }
 
 }  // namespace
@@ -128,8 +127,8 @@ std::string source_note(const LevelNews& news) {
 std::string context_note(const ContextClasses& context) {
   if (context.kind == ContextKind::kMonth) return "month";
   std::string text = context.is_outlook()
-                         ? "break-even price of a plan on day-ahead prices, classes divided at"
-                         : "trailing price level, classes divided at";
+                         ? "break-even price of the plan on day-ahead prices, class limits"
+                         : "trailing price level, class limits";
   const char* separator = " ";
   for (const std::int16_t edge : context.level_edge_eur_per_mwh) {
     text.append(separator).append(std::to_string(edge));
@@ -139,7 +138,7 @@ std::string context_note(const ContextClasses& context) {
 }
 
 std::string level_note(const LevelNews& news) {
-  const char* const refused = news.start.refused_log ? "the log's is out of range; " : "";
+  const char* const refused = news.start.refused_log ? "value in the log out of range; " : "";
   return std::string("price level: ").append(refused).append(source_note(news));
 }
 
@@ -165,10 +164,10 @@ std::string operator_note(const ControlSettings& control, const Hold& hold,
   if (held.held) {
     add_line(note, "hold       %d W until %s", held.power_w, utc_text(held.until_utc_s).c_str());
   }
-  if (held.unreadable) add_line(note, "hold       %s", "its file is not readable: not followed");
+  if (held.unreadable) add_line(note, "hold       %s", "file unreadable, hold ignored");
   if (!control.reserve.empty()) {
     const std::int16_t now_e4 = reserve_soc_e4_at(control.reserve, local_minute_of(now_utc_s));
-    add_line(note, "reserve    SoC %.1f %% at this hour, %d periods in all", now_e4 / 100.0,
+    add_line(note, "reserve    SoC %.1f %% at this hour, %d periods in total", now_e4 / 100.0,
              control.reserve.size());
   }
   for (int r = 0; r < guard_rule_count(); ++r) {
@@ -183,19 +182,19 @@ std::string operator_note(const ControlSettings& control, const Hold& hold,
 
 namespace {
 
-/// One threshold as both have it.
+/// One threshold of guard and student.
 struct Pair {
   const char* key;
   const char* action;
   std::int32_t guard;
   std::int32_t proved;
-  bool guard_reaches_further;  ///< it acts at prices at which the student need not
+  bool guard_reaches_further;  ///< it acts at prices not proved for the student
   bool binds_student;
 };
 
 const char* who_answers(const Pair& pair) {
-  if (pair.guard_reaches_further) return "the guard alone makes it ";
-  return pair.binds_student ? "the student's proof alone makes it " : "nothing makes it ";
+  if (pair.guard_reaches_further) return "only the guard makes it ";
+  return pair.binds_student ? "only the student's proof makes it " : "nothing makes it ";
 }
 
 void add_difference(const Pair& pair, std::string& text) {

@@ -1,5 +1,5 @@
-// What happens before the loop: student, process, battery, what earlier runs left, the price level
-// to start with, and one line per finding for a person. Nothing here writes to the battery.
+// Start-up before the loop: student, process, battery, restored state, price level. Writes nothing
+// to the battery.
 #pragma once
 
 #include <string>
@@ -22,82 +22,73 @@
 
 namespace bess {
 
-/// Time zone, signals and timers of the process; before any thread is started.
+/// Sets time zone, signals and timers of the process, before any thread starts.
 void prepare_process();
 
-/// True when it is found; otherwise one line on stderr says what to mend.
+/// True if found; else one line on stderr with the remedy.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
-/// Of the sign check's copies: each that was lost or damaged is a line of the journal, and written
-/// again.
+/// Restores lost or damaged copies of the commissioning result, with a journal line for each.
 void report_commission_losses(const EdgeConfig& config);
 
-/// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is
-/// not driven until a person clears it.
-/// `published_number`: recall.h.
+/// Restores the state of earlier runs. If it is unreadable, a journal line has the cause, and there
+/// is no control until a person clears it. `published_number`: recall.h.
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number);
 
-/// One journal line: whether the guard enforces what the student is proved for.
+/// One journal line: price thresholds of guard and student's proof.
 void journal_thresholds(const EdgeConfig& config);
 
-/// One journal line where others than the price server could write the prices.
+/// One journal line if prices could be forged in transit.
 void journal_transport(const EdgeConfig& config);
 
-/// What the signature command prints of this build.
+/// Output of the signature command.
 std::string decision_signature_line();
 
-/// True when this machine computes the built-in student as the exporter did.
+/// True if this machine computes the built-in student like the exporter.
 bool check_student();
 
-// Notes of --check and of the start: the student's context and price level, what the operator asks,
-// the thresholds of guard and student.
+// Notes of --check and of the start.
 
-/// "month", or what the classes are of, with their edges.
+/// "month", or quantity and limits of the classes.
 std::string context_note(const ContextClasses& context);
 
-/// How the level was come by. What is said of the history counts only if it was asked for.
+/// Source of the starting price level. The history fields are valid only after a request.
 struct LevelNews {
   LevelStart start{};
   int hours_wanted = 0;
-  int hours = 0;  ///< that the rows reach back
+  int hours = 0;  ///< covered by the rows
   int rows = 0;
-  Status status = Status::kOk;  ///< what ended the fetching, or kept it from beginning
+  Status status = Status::kOk;  ///< what ended or prevented the request
 };
 
 std::string level_note(const LevelNews& news);
-/// Only a level that nothing is known of is worth a warning: it takes days to come right.
+/// A warning only for an unknown level, which needs days to settle.
 JournalLevel journal_level_of(const LevelNews& news);
 
-// What --check says of what the operator asks: each line only where there is one.
-
-/// Lines with their ends; empty when nothing is wanted. `now_utc_s` decides which reserve and hold
-/// are in force.
+/// Operator's orders for --check: lines with line ends, or empty. `now_utc_s` selects reserve and
+/// hold.
 std::string operator_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s);
 
-// The guard's price thresholds beside those that the student is proved for. The one comes from the
-// operator's file, the other with the weights; where they differ, a price lies between them for
-// which only one of the two answers, or neither. Said at every start, never a reason to refuse it.
-
+/// Comparison of the guard's price thresholds (configuration) with those of the student's proof
+/// (weights). Between different thresholds only one of the two acts, or none. Reported at every
+/// start, never a refusal.
 struct ThresholdNote {
   bool agree = false;
-  std::string
-      text;  ///< one line: the thresholds, or each that differs and who answers between the two
+  std::string text;  ///< one line: thresholds, or each difference
 };
 
 ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved);
 
-// The price level that a controller starts with: kept by the log, or for a student by level filled
-// from the prices of the last hours.
-
-/// `logged` is the newest record's, `greeting` what prices have just answered with.
+/// Price level to start with: from the log, or for a student by level from the prices of the last
+/// hours. `logged`: of the newest record. `greeting`: first price answer.
 template <typename World>
 LevelNews starting_level(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
                          World& world) {
   const std::int64_t now_utc_s = world.clock().now_utc_ns() / kNanosecondsPerSecond;
   LevelNews news{.hours_wanted = config.price.history.hours, .status = greeting};
   const auto fetch = [&]() -> PriceLevel {
-    // A server that has just not answered would only hold up the start.
+    // A server that has not answered would only delay the start.
     const bool has_answered = greeting == Status::kOk || greeting == Status::kNoRow;
     if (news.hours_wanted == 0 || !has_answered) return {};
     const PublishedHistory history = world.find_history();

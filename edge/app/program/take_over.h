@@ -1,24 +1,23 @@
-// What a run takes over from the log of the runs before, which may be empty.
+// State that a run restores from the log of earlier runs, which may be empty.
 #pragma once
 
 #include "edge/core/loop/control_loop.h"
 
 namespace bess {
 
-/// The newest record, but for the level to start from.
+/// Newest record, with the price level to start from.
 inline CycleRecord take_over_of(const CycleRecord& newest, const PriceLevel& level) {
   CycleRecord before = newest;
   before.price_level = level;
   return before;
 }
 
-/// Supervision judges at a start what it has judged in the last hours, so that a kill between two
-/// readings hides no finding. A trip ends what is recalled: it is taken over by itself, or a person
-/// has looked. `Log`: bool read_back(std::int64_t records, CycleRecord&), 0 = the newest, false =
-/// not readable.
+/// Supervision replays the last hours at a start, so that a kill between two readings hides no
+/// finding. Control cycles before a trip are skipped: it is restored separately, or was cleared.
+/// `Log`: bool read_back(std::int64_t records, CycleRecord&), 0 = the newest, false = unreadable.
 template <typename Log, typename Loop>
 void recall_cycles(const Log& log, std::int64_t now_utc_s, Loop& loop) {
-  constexpr std::int64_t kRecalledS = 8 * 3'600;  // the longest pause, and what led to it
+  constexpr std::int64_t kRecalledS = 8 * 3'600;  // longest pause, and what led to it
   constexpr std::int64_t kCyclesMax = kRecalledS / kSecondsPerStep;
   CycleRecord record;
   std::int64_t cycles = 0;

@@ -10,7 +10,7 @@ namespace bess {
 
 namespace {
 
-constexpr int kReadingsMin = 5;  ///< of a step: a ramp and a lag have no shape in fewer
+constexpr int kReadingsMin = 5;  ///< of a step, to distinguish ramp and lag
 
 int last_term(const StaticVector<PowerCase, 4>& cases) {
   for (const PowerCase& c : cases) {
@@ -45,7 +45,7 @@ void RecordedSteps::add(const BusExchange& exchange) {
   }
 }
 
-/// An order may take several writes: it is in force with the last before something is read.
+/// An order may need several writes: it is in force after the last one before a read.
 void RecordedSteps::take_order(std::int64_t end_ns) {
   std::int64_t order_w = 0;
   const bool is_active = map_.active.empty() || live_all(map_, map_.active, live_);
@@ -57,7 +57,7 @@ void RecordedSteps::take_order(std::int64_t end_ns) {
   if (order_w != order_w_) {
     begin_step(order_w);
   } else if (power_w_.has_value()) {
-    return;  // fed again
+    return;  // watchdog refresh
   }
   order_ns_ = end_ns;
 }
@@ -104,16 +104,16 @@ std::vector<const AnswerCurve*> RecordedSteps::whole() const {
 
 namespace {
 
-constexpr std::int64_t kGapNsMax = 300 * kNanosecondsPerSecond;  // beyond, nobody knows what flowed
+constexpr std::int64_t kGapNsMax = 300 * kNanosecondsPerSecond;  // longer gaps: energy unknown
 constexpr int kSocChangesMin = 3;
 constexpr int kAnswersMin = 3;
-constexpr double kMovedFracMin = 0.05;  // of the capacity, before a SoC can be said to stand still
-constexpr double kOrderWMin = 200;      // smaller powers drown in what the device needs itself
+constexpr double kMovedFracMin = 0.05;  // of the capacity, to call a SoC frozen
+constexpr double kOrderWMin = 200;      // above the device's own consumption
 
 }  // namespace
 
-/// A reading's power is taken as that of the time before it: a controller reads just before it
-/// orders.
+/// A reading's power applies to the time before it, because a controller reads just before an
+/// order.
 void EnergyEvidence::add(const EnergyReading& reading) {
   const std::int64_t passed_ns = reading.utc_ns - last_utc_ns_;
   const bool is_next = last_utc_ns_ != 0 && passed_ns > 0 && passed_ns <= kGapNsMax;

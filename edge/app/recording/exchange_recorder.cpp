@@ -14,12 +14,13 @@
 namespace bess {
 namespace {
 
-constexpr std::size_t kLineBytesMax = 1'280;  // 125 values of five digits, and what is before them
-constexpr std::size_t kEndBytesMax = 128;     // kept free of `bytes_max` for the last line
+constexpr std::size_t kLineBytesMax =
+    1'280;                                 // 125 values of five digits, and the fields before them
+constexpr std::size_t kEndBytesMax = 128;  // kept free of `bytes_max` for the last line
 
 std::int64_t since_second_us(std::int64_t utc_ns) { return utc_ns % kNanosecondsPerSecond / 1'000; }
 
-/// The line of one exchange, its end included.
+/// Line of one exchange, with line end.
 void add_line(const BusExchange& e, TextBuffer& line) {
   const UtcText second = utc_text(e.utc_ns / kNanosecondsPerSecond);
   line.add("{\"utc\":\"%.19s.%06" PRId64
@@ -59,7 +60,7 @@ RecordingHead recording_head_of(const RegisterMap& map, const BatteryLinkSetting
 }
 
 ExchangeRecorder::~ExchangeRecorder() {
-  FileMessage ignored;  // the journal has it already
+  FileMessage ignored;  // already in the journal
   static_cast<void>(finish(ignored));
 }
 
@@ -67,10 +68,10 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
                              const ScaledClock& clock, FileMessage& error, std::int64_t bytes_max) {
   if (!path_.assign(path) || !part_path_.assign(std::string(path) + ".part")) {
     errno = ENAMETOOLONG;
-    return fail_with_errno(path, "cannot be recorded to", error);
+    return fail_with_errno(path, "cannot create the recording", error);
   }
   fd_ = make_afresh(part_path_.c_str());
-  if (fd_ < 0) return fail_with_errno(part_path_.c_str(), "cannot be recorded to", error);
+  if (fd_ < 0) return fail_with_errno(part_path_.c_str(), "cannot create the recording", error);
   clock_ = clock;
   bytes_max_ = bytes_max;
   mask_.emplace(map, head.unit);
@@ -115,17 +116,17 @@ void ExchangeRecorder::keep(BusExchange& exchange) {
   add_line(exchange, line);
   const std::size_t size = line.view().size();
   if (bytes_ + static_cast<std::int64_t>(size + kEndBytesMax) > bytes_max_) {
-    return stop_writing("is full: nothing more is recorded");
+    return stop_writing("has reached its maximum size: recording ends");
   }
   if (write_line(text, size)) {
     ++written_;
   } else {
     has_failed_ = true;
-    stop_writing("cannot be written, is the disk full? Nothing more is recorded");
+    stop_writing("cannot be written (is the disk full?): recording ends");
   }
 }
 
-/// A line that was torn is taken back: what stands in the file is whole.
+/// Removes a torn line, so that the file has only complete lines.
 bool ExchangeRecorder::write_line(const char* line, std::size_t size) {
   errno = ENOSPC;  // what a short write means
   const ssize_t done = write(fd_, line, size);
@@ -169,10 +170,10 @@ bool ExchangeRecorder::finish(FileMessage& error) {
   fd_ = -1;
   if (!is_whole) {
     errno = cause;
-    return fail_with_errno(part_path_.c_str(), "the recording is not complete", error);
+    return fail_with_errno(part_path_.c_str(), "incomplete recording", error);
   }
   if (rename(part_path_.c_str(), path_.c_str()) != 0) {
-    return fail_with_errno(path_.c_str(), "the recording cannot be given its name", error);
+    return fail_with_errno(path_.c_str(), "cannot rename the recording", error);
   }
   sync_folder_of(path_.c_str());
   return true;

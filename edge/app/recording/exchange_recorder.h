@@ -1,8 +1,8 @@
-// Writes what a Modbus link says and hears to a recording (shared/host/bus_recording.h), for a
-// device that is somewhere else. The link's thread leaves each exchange in a fixed queue and goes
-// on; a thread on a static stack hides what is private and writes, so that no disk holds up an
-// order. What does not fit is dropped and counted. Written to FILE.part and renamed at the end; a
-// process that dies leaves FILE.part, cut behind a whole line.
+// Exchange recorder: writes Modbus traffic to a recording (shared/host/bus_recording.h). The link's
+// thread puts each exchange into a fixed-size queue; another thread, on a static stack, masks
+// private data and writes, so that no disk delays an order. Excess exchanges are dropped and
+// counted. Writes FILE.part and renames it at the end; a killed process leaves FILE.part with
+// complete lines.
 #pragma once
 
 #include <atomic>
@@ -20,36 +20,34 @@
 
 namespace bess {
 
-/// What the first line of a recording of this battery says.
+/// Head of a recording of this battery.
 RecordingHead recording_head_of(const RegisterMap& map, const BatteryLinkSettings& link,
                                 const ScaledClock& clock);
 
-inline constexpr std::int64_t kRecordingBytesMax = 256 << 20;  ///< a quarter of a year, or more
+inline constexpr std::int64_t kRecordingBytesMax = 256 << 20;  ///< three months or more
 
 class ExchangeRecorder {
  public:
   ExchangeRecorder() = default;
   ExchangeRecorder(const ExchangeRecorder&) = delete;
   ExchangeRecorder& operator=(const ExchangeRecorder&) = delete;
-  ~ExchangeRecorder();  ///< ends the recording, if nobody did
+  ~ExchangeRecorder();  ///< ends the recording, if still open
 
-  /// Start-up only. False with one line when the file cannot be made. `map` must outlive this
-  /// object; `head` is what the first line says. Beyond `bytes_max` nothing more is recorded, and
-  /// the journal says so.
+  /// Start-up only. False with one line if the file cannot be created. `map` must outlive this
+  /// object; `head`: first line. Beyond `bytes_max` recording ends with a journal line.
   bool start(const char* path, const RecordingHead& head, const RegisterMap& map,
              const ScaledClock& clock, FileMessage& error,
              std::int64_t bytes_max = kRecordingBytesMax);
-  /// For the link, whose thread then calls nothing here that waits or allocates.
+  /// Listener for the link; its calls do not wait or allocate.
   [[nodiscard]] ExchangeListener listener();
-  /// Writes what is still queued and the last line, and gives the file its name. False with one
-  /// line.
+  /// Writes the queue and the last line, and renames the file. False with one line.
   bool finish(FileMessage& error);
 
   [[nodiscard]] std::int64_t exchanges() const { return written_; }
   [[nodiscard]] std::int64_t dropped() const { return dropped_; }
 
  private:
-  static constexpr std::size_t kQueueLength = 128;  // a cycle makes some twenty
+  static constexpr std::size_t kQueueLength = 128;  // about 20 per control cycle
 
   void push(BusExchange exchange);
   void run();

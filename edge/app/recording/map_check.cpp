@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-constexpr double kFactorMax = 3;  // efficiency, rounding and pauses stay far below
+constexpr double kFactorMax = 3;  // far above efficiency, rounding and pauses
 
 int first_term(const StaticVector<PowerCase, 4>& cases) {
   for (const PowerCase& c : cases) {
@@ -21,17 +21,17 @@ int first_term(const StaticVector<PowerCase, 4>& cases) {
   return -1;
 }
 
-/// "10 times" of 9.7, "a 100th" of 0.0102: what a scale can be wrong by.
+/// "10 times" for 9.7, "a 100th" for 0.0102: typical errors of a scale.
 std::string decimal_factor(double factor) {
   const double size = std::abs(factor);
   const int power = static_cast<int>(std::lround(std::log10(size)));
   char text[48];
   if (power > 0) {
-    std::snprintf(text, sizeof text, "%.0f times as far as", std::pow(10, power));
+    std::snprintf(text, sizeof text, "%.0f times as much as", std::pow(10, power));
   } else if (power < 0) {
-    std::snprintf(text, sizeof text, "a %.0fth as far as", std::pow(10, -power));
+    std::snprintf(text, sizeof text, "a %.0fth of what", std::pow(10, -power));
   } else {
-    std::snprintf(text, sizeof text, "%.1f times as far as", size);
+    std::snprintf(text, sizeof text, "%.1f times as much as", size);
   }
   return text;
 }
@@ -44,12 +44,12 @@ std::string raw_text(const RegisterPoint& p, const std::uint16_t* raw) {
   return text + "]";
 }
 
-/// What else these registers could be; empty when nothing that is known lies in the range.
+/// Another type, word order or scale with a value in range; empty if none.
 std::string what_would_fit(const RegisterPoint& point, const std::uint16_t* raw,
                            const Scaling& scaling) {
   std::int64_t value = 0;
   const auto fits = [&](const RegisterPoint& other) {
-    // 0 is in nearly every range: it would prove nothing.
+    // 0 is in nearly every range and proves nothing.
     return decode(other, raw, value, scaling) && value != 0;
   };
   RegisterPoint other = point;
@@ -85,7 +85,7 @@ std::string what_would_fit(const RegisterPoint& point, const std::uint16_t* raw,
   return "";
 }
 
-/// The value as the map would have it if it had no range; false when it is none at all.
+/// Value without the range of the map; false if it cannot be decoded.
 bool decode_anything(RegisterPoint point, const std::uint16_t* raw, const Scaling& scaling,
                      std::int64_t& value) {
   point.value_min = std::numeric_limits<std::int64_t>::min();
@@ -116,8 +116,7 @@ void MapCheck::add(const BusExchange& exchange) {
   note_order(exchange.utc_ns);
 }
 
-/// What is measured is read in rounds. One ends where something of it is read again, or an order
-/// follows it.
+/// Measured points are read in rounds. A round ends when a point is read again, or at an order.
 bool MapCheck::begins_round(const BusExchange& exchange) const {
   if (exchange.is_write()) return true;
   for (int i = 0; i < map_.points.size(); ++i) {
@@ -158,8 +157,7 @@ void MapCheck::take(const BusExchange& exchange, int point, int offset) {
   }
   Seen& seen = seen_[point];
   ++seen.asked;
-  // One refused register takes its neighbours with it: a point is refused when it was asked for
-  // alone.
+  // One refused register refuses its whole block: only a point read separately counts as refused.
   const bool is_alone = exchange.count == map_.points[point].register_count();
   if (exchange.outcome == BusOutcome::kException && is_alone) seen.exception = exchange.exception;
   if (exchange.outcome != BusOutcome::kAnswered) return;
@@ -237,17 +235,15 @@ std::string MapCheck::finding_of(int point) const {
   if (seen.good == 0 && seen.unscaled > 0) {
     const RegisterPoint& p = map_.points[point];
     const int scale = p.scale_from >= 0 ? p.scale_from : p.percent_of;
-    return "has no value: its scale " + std::string(map_.points[scale].name.view()) +
-           " was not answered";
+    return "has no value: no answer for its scale " + std::string(map_.points[scale].name.view());
   }
   if (seen.good == 0 && seen.absent > 0 && is_needed(point)) {
-    return "the device says that it has no such value, in " + std::to_string(seen.absent) +
-           " answers";
+    return "not implemented by the device, in " + std::to_string(seen.absent) + " answers";
   }
   return energy_finding(point);
 }
 
-/// The controller does not go on without it.
+/// The controller needs this point.
 bool MapCheck::is_needed(int point) const {
   const bool is_measured =
       std::find(map_.measure.begin(), map_.measure.end(), point) != map_.measure.end();
@@ -258,14 +254,14 @@ bool MapCheck::is_needed(int point) const {
 
 std::string MapCheck::unanswered_finding(int point) const {
   const Seen& seen = seen_[point];
-  // Nobody misses an optional point, nor one that is only written, or read on demand.
+  // Points that are optional, only written, or read on demand are not reported as missing.
   const bool is_asked_for = seen.asked > 0 && !places_.is_written(point);
   if (map_.points[point].optional || !(is_needed(point) || is_asked_for)) return "";
   if (!places_.is_placed(point)) {
     return "its SunSpec model " + std::to_string(map_.models[map_.points[point].model]) +
-           " was not found";
+           " not found";
   }
-  if (seen.asked == 0) return "never asked for: no reading of this recording holds it";
+  if (seen.asked == 0) return "never read in this recording";
   if (seen.exception != 0) {
     return "never answered: exception " + std::to_string(seen.exception) +
            (seen.exception == 2 ? ", no such register" : "");
@@ -280,9 +276,9 @@ std::string MapCheck::range_finding(int point) const {
   const bool is_number = decode_anything(p, seen.bad_raw.data(), seen.bad_scaling, value);
   const std::string fit = what_would_fit(p, seen.bad_raw.data(), seen.bad_scaling);
   return "reads " + (is_number ? std::to_string(value) : "no number") + " " +
-         raw_text(p, seen.bad_raw.data()) + ", not " + std::to_string(p.value_min) + " to " +
+         raw_text(p, seen.bad_raw.data()) + ", expected " + std::to_string(p.value_min) + " to " +
          std::to_string(p.value_max) + ", in " + std::to_string(seen.bad) + " of " +
-         std::to_string(seen.answers) + " answers" + (fit.empty() ? "" : "; would fit: " + fit);
+         std::to_string(seen.answers) + " answers" + (fit.empty() ? "" : "; try " + fit);
 }
 
 double MapCheck::capacity_wh() const {
@@ -297,32 +293,31 @@ std::string MapCheck::energy_finding(int point) const {
   if (point == soc_) return soc_finding(capacity);
   const bool is_power_right = energy_.soc_per_energy(1).value_or(0) > 0;
   if (point == order_ && is_power_right && energy_.answer() == EnergyEvidence::Answer::kOpposite) {
-    return "power flows against this order, and the state of charge follows the power: sign";
+    return "power flows against this order, and the state of charge follows the power: wrong sign";
   }
   return "";
 }
 
-/// A wrong scale of the power shows against the order as well; where nothing was ordered, it may be
-/// any of three.
+/// A wrong scale of the power also differs from the order; without orders, it may be any of three.
 std::string MapCheck::power_finding(double capacity) const {
   const bool knows_capacity = capacity > 0;
   const auto ratio = energy_.soc_per_energy(knows_capacity ? capacity : 1);
   if (!ratio.has_value()) return "";
   if (*ratio < 0)
-    return "the state of charge falls while it charges, and rises while it discharges: sign";
+    return "the state of charge falls while charging and rises while discharging: wrong sign";
   const bool is_far_off = *ratio > kFactorMax || *ratio < 1 / kFactorMax;
   if (!knows_capacity || !is_far_off) return "";
   const double by_order = energy_.power_per_order().value_or(0);
-  if (by_order > 0.5 && by_order < 1.5) return "";  // then it is the SoC's or the capacity's
-  return "the state of charge moves " + decimal_factor(*ratio) +
-         " this power explains: scale of this, of soc or of capacity";
+  if (by_order > 0.5 && by_order < 1.5) return "";  // wrong scale of SoC or capacity
+  return "the state of charge changes " + decimal_factor(*ratio) +
+         " this power explains: wrong scale of this, of soc or of capacity";
 }
 
 std::string MapCheck::soc_finding(double capacity) const {
   constexpr double kCapacityUnknownWh = 20'000;
   if (energy_.soc_stands_still(capacity > 0 ? capacity : kCapacityUnknownWh)) {
     char text[96];
-    std::snprintf(text, sizeof text, "stands still, although %.0f Wh have flowed",
+    std::snprintf(text, sizeof text, "does not change, although %.0f Wh have flowed",
                   energy_.energy_moved_wh());
     return text;
   }
@@ -331,15 +326,15 @@ std::string MapCheck::soc_finding(double capacity) const {
   const double by_order = energy_.power_per_order().value_or(0);
   const bool is_power_right = by_order > 0.5 && by_order < 1.5;
   if (!is_power_right || (*ratio <= kFactorMax && *ratio >= 1 / kFactorMax)) return "";
-  return "moves " + decimal_factor(*ratio) +
-         " the measured power explains, which is as ordered: scale of this or of capacity";
+  return "changes " + decimal_factor(*ratio) +
+         " the measured power explains, which is as ordered: wrong scale of this or of capacity";
 }
 
 std::string MapCheck::unjudged() const {
   if (power_ < 0 || soc_ < 0 || energy_.soc_per_energy(1).has_value()) return "";
   if (!soc_finding(capacity_wh()).empty()) return "";
-  return "sign and scale of the power cannot be judged: the state of charge moved too little while "
-         "this was recorded";
+  return "sign and scale of the power not checked: the state of charge changed too little in the "
+         "recording";
 }
 
 }  // namespace bess

@@ -1,9 +1,7 @@
-// Does a register map fit what a device answered? Takes the exchanges of a recording one by one and
-// tells, for every point of the map, whether its values can be true and, if not, what would fit.
-// Two kinds of evidence:
-//   each point by itself   never answered, outside its range; then other scale, word order and type
-//                          are tried
-//   points together        energy_evidence.h
+// Register map check: compares a map with the exchanges of a recording. For every point it reports
+// whether its values are plausible and, if not, a correction. Two kinds of evidence:
+//   single points    no answer, out of range; then other scale, word order and type are tried
+//   several points   energy_evidence.h
 #pragma once
 
 #include <array>
@@ -19,39 +17,39 @@
 
 namespace bess {
 
-/// What is known of one point at the end.
+/// Result for one point.
 struct PointVerdict {
   std::string name;
   std::int32_t unit = 0;
-  int address = -1;  ///< PDU address; -1 = its SunSpec model was not found
+  int address = -1;  ///< PDU address; -1 = SunSpec model not found
   std::int64_t answers = 0;
   bool has_values = false;
   std::int64_t value_min = 0;  ///< of the plausible values
   std::int64_t value_max = 0;
-  std::string finding;  ///< what is wrong and what would fit, in one line; empty = nothing
+  std::string finding;  ///< error and correction, one line; empty = plausible
 };
 
 class MapCheck {
  public:
-  /// `unit` replaces the map's unit id when it is not negative. `map` must outlive this object.
+  /// `unit` replaces the map's unit id if not negative. `map` must outlive this object.
   MapCheck(const RegisterMap& map, std::int32_t unit);
 
-  /// Every exchange of a recording, in its order.
+  /// Adds every exchange of a recording, in order.
   void add(const BusExchange& exchange);
 
-  /// One for each point of the map, in its order.
+  /// One verdict per point of the map, in its order.
   [[nodiscard]] std::vector<PointVerdict> verdicts() const;
-  /// One line when sign and scale of the power could not be judged; empty when they could.
+  /// One line if sign and scale of the power were not checked; else empty.
   [[nodiscard]] std::string unjudged() const;
 
  private:
   struct Seen {
     std::int64_t asked = 0;
     std::int64_t answers = 0;
-    std::int64_t absent = 0;    ///< of the answers: the device has no such value
-    std::int64_t unscaled = 0;  ///< the point that holds its scale had no value
-    std::int64_t bad = 0;       ///< outside the range
-    std::int64_t strange = 0;   ///< not what an identity check asks for
+    std::int64_t absent = 0;    ///< answers "not implemented"
+    std::int64_t unscaled = 0;  ///< answers without a value of the scale point
+    std::int64_t bad = 0;       ///< out of range
+    std::int64_t strange = 0;   ///< failed identity checks
     int exception = 0;          ///< of the newest refusal
     std::int64_t good = 0;
     std::int64_t value_min = 0, value_max = 0;
@@ -82,10 +80,10 @@ class MapCheck {
   EnergyEvidence energy_;
   std::array<bool, kPointsMax> in_round_{};  ///< read since the newest round began
   std::int64_t power_utc_ns_ = 0;            ///< of the power in it
-  std::optional<std::int64_t> order_w_;      ///< in force, as far as is known
+  std::optional<std::int64_t> order_w_;      ///< in force, if known
   std::int64_t order_since_ns_ = 0;
   int soc_, capacity_;           ///< points; -1 = not in this map
-  int power_ = -1, order_ = -1;  ///< the first of those that make the power up
+  int power_ = -1, order_ = -1;  ///< first points of measured and ordered power
 };
 
 }  // namespace bess

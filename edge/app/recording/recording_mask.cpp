@@ -5,7 +5,7 @@
 namespace bess {
 namespace {
 
-/// How many characters of a text point an identity check asks for.
+/// Number of characters of a text point that identity checks need.
 int asked_characters(const RegisterMap& map, int point) {
   std::size_t most = 0;
   for (const IdentityCheck& check : map.identity) {
@@ -14,7 +14,7 @@ int asked_characters(const RegisterMap& map, int point) {
   return static_cast<int>(most);
 }
 
-/// The padding behind a text is none of it.
+/// Padding of a text stays unchanged.
 std::uint16_t hidden_character(std::uint16_t character) {
   return character == 0 || character == ' ' ? character : std::uint16_t{'X'};
 }
@@ -37,7 +37,7 @@ void RecordingMask::apply(BusExchange& exchange) {
                   kept.registers.begin() + offset);
     }
   }
-  // Two points may share a register: what one of them hides stays hidden.
+  // Two points may share a register: private wins.
   for (int i = 0; i < map_.points.size(); ++i) {
     const int offset = map_.points[i].is_private ? places_.offset_in(exchange, i) : -1;
     if (offset < 0) continue;

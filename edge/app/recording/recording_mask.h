@@ -1,7 +1,7 @@
-// What of a device a recording must not tell: it is made to be given away. Kept are the registers
-// that the register map names, the walk over SunSpec models, and of a text the beginning that an
-// identity check asks for. Everything else becomes 0, of a text X: serial numbers, points that the
-// map marks as private, and what lies between the points of one read.
+// Recording mask: hides private data of a device. Kept are the registers that the map names, the
+// walk over SunSpec models, and the beginning of texts that identity checks need. All other
+// registers become 0, in a text X: serial numbers, private points, and registers between the points
+// of a read.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace bess {
 
 class RecordingMask {
  public:
-  /// `unit` replaces the map's unit id when it is not negative. `map` must outlive this object.
+  /// `unit` replaces the map's unit id if not negative. `map` must outlive this object.
   RecordingMask(const RegisterMap& map, std::int32_t unit) : map_(map), places_(map, unit) {}
 
-  /// Every exchange in its order. Nothing here allocates.
+  /// Masks every exchange, in order. Allocates nothing.
   void apply(BusExchange& exchange);
 
  private:
