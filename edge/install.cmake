@@ -1,9 +1,9 @@
-# cmake --install BUILD --component edge: program, maps, unit, user, documented configuration. The
-# configuration and the unit are installed with the paths of this installation in them.
+# Installation of component edge: programs, maps, units, user, example configuration. Configuration
+# and units contain the paths of the installation.
 include(GNUInstallDirs)
 
-# install_with_paths(FILE FOLDER NAME FROM TO...): installs FILE as NAME, each FROM replaced; FROM
-# must occur.
+# install_with_paths(FILE FOLDER NAME FROM TO...): installs FILE as NAME with each FROM replaced by
+# TO; each FROM must occur.
 function(install_with_paths file folder name)
   file(READ ${file} text)
   set(pairs ${ARGN})
@@ -11,7 +11,7 @@ function(install_with_paths file folder name)
     list(POP_FRONT pairs from to)
     string(FIND "${text}" "${from}" place)
     if(place EQUAL -1)
-      message(FATAL_ERROR "${file}: \"${from}\" is not in it any more; correct edge/install.cmake")
+      message(FATAL_ERROR "${file}: \"${from}\" not found: correct edge/install.cmake")
     endif()
     string(REPLACE "${from}" "${to}" text "${text}")
   endwhile()
@@ -31,7 +31,7 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/delivery/monitoring DESTINATION ${CM
         COMPONENT edge)
 install(FILES delivery/systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf
         COMPONENT edge)
-# Absolute: bess-edge looks in /etc whatever the prefix. An example, so that no edited file is lost.
+# Absolute, because bess-edge reads /etc for any prefix. An example, so no edited file is replaced.
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.toml.example
   "map = \"device/maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
   "map = \"device/meters/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/meters/"

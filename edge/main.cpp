@@ -1,4 +1,4 @@
-// bess-edge: one of its commands (edge/app/commands/), or the controller itself (run_command.cpp).
+// Program bess-edge: a command (edge/app/commands/), or the controller itself (run_command.cpp).
 #include "edge/app/commands/command_line.h"
 
 int main(int argc, char** argv) { return bess::run_command_line(argc, argv); }

@@ -1,6 +1,5 @@
-# What only the Debian package of the edge has, besides edge/install.cmake: the probation of new
-# versions, rules for users, folders and devices, and what tools/package makes of the built programs
-# (man pages, completion, certificate) in BUILD/package/edge.
+# Additional files of the Debian package: probation of new versions, rules for users, folders and
+# devices, and files of tools/package (man pages, completion, certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/delivery/package)
 install(PROGRAMS ${package_dir}/bess-probation DESTINATION sbin
         COMPONENT edge_package)
