@@ -1,4 +1,4 @@
-// Account of a local day from the decision log: money, energy, cycles, interventions. Money is
+// Account of a local day from the decision log: money, energy, full cycles, interventions. Money is
 // before fees, taxes and wear, which `bess-train log` subtracts.
 #pragma once
 
