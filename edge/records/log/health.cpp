@@ -7,6 +7,7 @@
 #include "edge/core/control/reasons.h"
 #include "edge/core/control/tick.h"
 #include "edge/records/log/log_text.h"
+#include "shared/local_text.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -20,6 +21,8 @@ constexpr std::int64_t kLockedReadingsMax = 30;
 constexpr std::int64_t kUnplannedSMax = kSecondsPerDay;
 /// A quarter of the trip level (../core/supervision/energy_balance.h).
 constexpr std::int64_t kWrongEnergyE6Max = 50'000;
+
+std::string since(std::int64_t utc_s) { return " since " + std::string(local_text(utc_s).view()); }
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
@@ -132,19 +135,22 @@ void check_answers(const RunStatus& status, std::vector<std::string>& reasons) {
   const CycleRecord& last = status.totals.last;
   std::vector<std::string> failed;
   if (last.battery_status != Status::kOk) {
-    failed.push_back("battery: no usable answer, " + std::string(status_name(last.battery_status)));
+    failed.push_back("battery: no usable answer, " + std::string(status_name(last.battery_status)) +
+                     since(status.totals.battery_since_utc_s));
   }
   const std::string lost = point_name(status.identity, last.measurement.lost_point);
   if (!lost.empty()) failed.push_back("battery: " + lost + " could not be read");
   if (last.price.status != Status::kOk) {
-    failed.push_back("prices: no usable answer, " + std::string(status_name(last.price.status)));
+    failed.push_back("prices: no usable answer, " + std::string(status_name(last.price.status)) +
+                     since(status.totals.price_since_utc_s));
   }
   if (last.mode == Mode::kRunning) {
     for (const std::string& what : failed) reasons.push_back("WARN: " + what);
     return;
   }
   std::string line = "WARN: mode is " + std::string(mode_name(last.mode)) + ", reason " +
-                     std::string(reason_name(last.reason)) + meaning_of(last.reason);
+                     std::string(reason_name(last.reason)) +
+                     since(status.totals.reason_since_utc_s) + meaning_of(last.reason);
   for (const std::string& what : failed) line += "; " + what;
   reasons.push_back(line);
 }
@@ -177,6 +183,7 @@ void check_cycle(const RunStatus& status, std::vector<std::string>& reasons) {
   const CycleRecord& last = status.totals.last;
   if (last.is_tripped) {
     reasons.push_back("CRITICAL: tripped, " + std::string(reason_name(last.trip.reason)) +
+                      since(last.trip.utc_s) +
                       ": check the cause (bess-edge log), then bess-edge clear --yes");
   }
   check_answers(status, reasons);

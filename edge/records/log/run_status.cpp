@@ -189,6 +189,12 @@ std::uint32_t crc_of(const RunStatus& status) {
 }  // namespace
 
 void RunTotals::count(const CycleRecord& record) {
+  const auto keep = [&](std::int64_t& since_utc_s, bool is_same) {
+    if (cycles == 0 || !is_same) since_utc_s = record.utc_s;
+  };
+  keep(reason_since_utc_s, record.reason == last.reason);
+  keep(battery_since_utc_s, record.battery_status == last.battery_status);
+  keep(price_since_utc_s, record.price.status == last.price.status);
   last = record;
   ++cycles;
   ++cycles_by_reason[static_cast<std::size_t>(record.reason)];

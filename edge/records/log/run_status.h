@@ -50,14 +50,17 @@ struct RunTotals {
   std::int64_t cycles = 0;
   std::array<std::int64_t, kReasonCount> cycles_by_reason{};
   std::int64_t written_orders = 0;
-  std::int64_t battery_failures = 0;   ///< control cycles whose battery status was not ok
-  std::int64_t price_failures = 0;     ///< control cycles whose last price request was not ok
-  std::int64_t records_dropped = 0;    ///< because the disk was too slow
-  std::int64_t disk_failures = 0;      ///< failed writes of records to a log file
-  bool disk_is_slow = false;           ///< records dropped since the last stored one
-  bool disk_is_failing = false;        ///< a write of the last record failed
-  bool run_folder_is_failing = false;  ///< a write to the run folder failed
-  std::uint64_t log_number = 0;        ///< of the newest record in this status
+  std::int64_t battery_failures = 0;     ///< control cycles whose battery status was not ok
+  std::int64_t price_failures = 0;       ///< control cycles whose last price request was not ok
+  std::int64_t reason_since_utc_s = 0;   ///< first control cycle in a row with the last reason
+  std::int64_t battery_since_utc_s = 0;  ///< ... with the last battery status
+  std::int64_t price_since_utc_s = 0;    ///< ... with the last price status
+  std::int64_t records_dropped = 0;      ///< because the disk was too slow
+  std::int64_t disk_failures = 0;        ///< failed writes of records to a log file
+  bool disk_is_slow = false;             ///< records dropped since the last stored one
+  bool disk_is_failing = false;          ///< a write of the last record failed
+  bool run_folder_is_failing = false;    ///< a write to the run folder failed
+  std::uint64_t log_number = 0;          ///< of the newest record in this status
   CycleRecord last{};
 
   void count(const CycleRecord& record);
@@ -71,7 +74,7 @@ struct RunStatus {
 };
 
 /// Increase when a member of RunStatus is added, moved or removed.
-inline constexpr std::uint32_t kStatusLayout = 1;
+inline constexpr std::uint32_t kStatusLayout = 2;
 
 /// Status on disk. Another layout, or a torn or damaged file, is rejected.
 struct StoredStatus {

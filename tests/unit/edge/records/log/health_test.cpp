@@ -106,6 +106,22 @@ TEST(Health, EveryTroubleHasItsReason) {
   }
 }
 
+TEST(Health, AnOutageHasItsBeginning) {
+  RunTotals totals;
+  CycleRecord record;
+  record.utc_s = 1'700'000'000;  // 2023-11-14 23:13 in Brussels
+  record.battery_status = Status::kTimeout;
+  totals.count(record);
+  record.utc_s += 120;
+  totals.count(record);
+  EXPECT_EQ(totals.battery_since_utc_s, 1'700'000'000);
+  EXPECT_EQ(totals.reason_since_utc_s, 1'700'000'000);
+  Well well;
+  well.last.battery_status = Status::kTimeout;
+  well.status.totals.battery_since_utc_s = totals.battery_since_utc_s;
+  EXPECT_THAT(well.health().reasons.at(0), Names("battery timeout 2023-11-14 23:13"));
+}
+
 /// A controller that hangs on a full disk must not look as if only the disk were full.
 TEST(Health, TheAgeIsReportedInAdditionToTheDisk) {
   Well well;
