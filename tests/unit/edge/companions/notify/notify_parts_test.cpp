@@ -195,14 +195,15 @@ std::vector<std::string> keys_of(const ControllerStatus& status) {
 TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
   const TemporaryFolder folder;
   const std::string program = write_program(
-      folder,
-      R"(echo '{"health": "degraded", "last": {"reason": "alarm"}, "health_reasons": [)"
-      R"("WARN: mode is holding, reason alarm", "CRITICAL: the last control cycle ended 601 s ago", )"
-      R"("WARN: a rule of next year"]}'; exit 1)");
+      folder, R"(echo '{"health": "degraded", "last": {"reason": "alarm"}, "health_reasons": [)"
+              R"("WARN: mode is holding, reason alarm", )"
+              R"("CRITICAL: the last control cycle ended 601 s ago", )"
+              R"("WARN: a rule of next year"]}'; exit 1)");
   const ControllerStatus status = ask(program);
   EXPECT_EQ(status.trouble, "");
-  EXPECT_THAT(keys_of(status), ElementsAre("not running: alarm", "the last control cycle ended # s ago",
-                                           "a rule of next year"));
+  EXPECT_THAT(keys_of(status),
+              ElementsAre("not running: alarm", "the last control cycle ended # s ago",
+                          "a rule of next year"));
 }
 
 /// From the first failed answer to the resulting safe mode.
