@@ -54,7 +54,7 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
 void add_release(EdgeCommand root) {
   EdgeCommand command = root.subcommand("release", "return a battery to its own mode");
   const auto given = std::make_shared<ReleaseGiven>();
-  command.flag("--yes", given->yes, "release the battery; default: only print what would happen");
+  command.flag("--yes", given->yes, "required: release the battery now");
   command.flag("--force", given->force,
                "release even if the device does not match its register map");
   command.footer(kFooter);

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "shared/local_time.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
@@ -107,6 +108,7 @@ TEST(Health, EveryTroubleHasItsReason) {
 }
 
 TEST(Health, AnOutageHasItsBeginning) {
+  set_market_time_zone();
   RunTotals totals;
   CycleRecord record;
   record.utc_s = 1'700'000'000;  // 2023-11-14 23:13 in Brussels
