@@ -15,6 +15,7 @@ namespace {
 
 struct LogGiven {
   bool csv = false;
+  bool is_short = false;
   bool local = false;
   bool explain = false;
   std::int64_t last = -1;  ///< -1 = all
@@ -33,7 +34,7 @@ Exit codes:
   1 log unreadable
   2 command line error
 Examples:
-  bess-edge log --last 10
+  bess-edge log --short --last 10
   bess-edge log --local --since 14:00 --until 15:00
   bess-edge log --explain --last 30
   bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv)";
@@ -83,7 +84,11 @@ void print_csv(const CycleRecord& record, const LogGiven& given,
 void print_text(const CycleRecord& record, const LogGiven& given,
                 const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
-  format_log_line(record, line);
+  if (given.is_short) {
+    format_short_line(record, line);
+  } else {
+    format_log_line(record, line);
+  }
   if (given.local) {
     std::printf("%s  %+8.1f Wh  %+8.4f EUR  ", local_text(record.utc_s).c_str(),
                 cycle_energy_wh(record), cycle_earned_eur(record));
@@ -109,6 +114,7 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
     std::printf("%s%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "",
                 given.explain ? ",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh" : "");
   }
+  if (given.is_short) std::puts(kShortLineHead);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
   const LogSpan span = span_of(given, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   CycleRecord record;
@@ -132,6 +138,11 @@ void add_log(EdgeCommand root) {
   const auto given = std::make_shared<LogGiven>();
   command.flag("--csv", given->csv,
                "CSV with a header; default: one key=value line per control cycle");
+  command
+      .flag("--short", given->is_short,
+            "local time, order, price, SoC and reason of each control cycle, as a table")
+      .excludes("--csv")
+      .excludes("--local");
   command.flag("--local", given->local,
                "also local time, energy (Wh, positive charges) and money (EUR)");
   command.flag("--explain", given->explain,

@@ -184,13 +184,12 @@ void print_last_orders(const EdgeConfig& config) {
     std::printf("margins    at %s: %s EUR/MWh\n", local_clock_text(r.utc_s).c_str(),
                 price_margins_text(margins).c_str());
   }
-  std::printf("orders     local time        ordered W  price EUR/MWh   SoC %%  reason\n");
+  std::printf("orders     %s\n", kShortLineHead);
   for (std::uint64_t n = newest > kOrders ? newest - kOrders + 1 : 1; n <= newest; ++n) {
     if (!log.read(n, r)) continue;
-    std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", local_text(r.utc_s).c_str(),
-                r.ordered_power_w, r.price.price_centi_eur_per_mwh / 100.0,
-                r.measurement.soc_e4 / 100.0, reason_name(r.reason).data(),
-                r.written ? "" : " (not written)");
+    char line[kLogLineBytes];
+    format_short_line(r, line);
+    std::printf("           %s\n", line);
   }
 }
 

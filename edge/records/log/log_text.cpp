@@ -2,6 +2,7 @@
 
 #include "edge/records/log/record_fields.h"
 #include "edge/records/log/text_buffer.h"
+#include "shared/local_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -34,6 +35,15 @@ std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineByte
     add_value(*field, record, text);
     separator = " ";
   }
+  return text.view().size();
+}
+
+std::size_t format_short_line(const CycleRecord& record, char (&line)[kLogLineBytes]) {
+  TextBuffer text(line);
+  text.add("%s  %10d  %13.2f  %6.1f  %s%s", local_text(record.utc_s).c_str(),
+           record.ordered_power_w, eur_of(record.price.price_centi_eur_per_mwh),
+           record.measurement.soc_e4 / 100.0, reason_name(record.reason).data(),
+           record.written ? "" : " (not written)");
   return text.view().size();
 }
 

@@ -14,6 +14,10 @@ inline constexpr std::size_t kLogLineBytes = 1'024;
 
 // Each returns the length, without a line end.
 std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
+/// For people: local time, order, price, SoC and reason, below kShortLineHead.
+std::size_t format_short_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
+inline constexpr const char* kShortLineHead =
+    "local time         ordered W  price EUR/MWh   SoC %  reason";
 std::size_t format_csv_header(char (&line)[kLogLineBytes]);
 std::size_t format_csv_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
 
