@@ -1,5 +1,4 @@
-// bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file
-// only wires them together.
+// Program bess-train: from prices to a proved, exported student. Subcommands are in cli/.
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad
 //        3 interrupted   130 by a second Ctrl-C
 #include <csignal>
@@ -11,11 +10,11 @@
 #include "workstation/runs/chain/folder_lock.h"
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is reported like a full disk
   bess::set_market_time_zone();
-  bess::CommandLine command_line(
-      "bess-train", "bess-train: train, correct, prove and export a battery arbitrage policy",
-      "bess-train " BESS_VERSION "\n" + bess::build_line());
+  bess::CommandLine command_line("bess-train",
+                                 "train, correct, prove and export a battery arbitrage policy",
+                                 "bess-train " BESS_VERSION "\n" + bess::build_line());
   bess::ProgramCommand root = command_line.root();
   bess::add_commands(root);
   bess::end_when_interrupted();

@@ -176,6 +176,9 @@ ProgramOption& ProgramOption::needs(const std::string& other) {
 ProgramCommand ProgramCommand::subcommand(const std::string& name, const std::string& description) {
   return ProgramCommand(app_->add_subcommand(name, description));
 }
+void ProgramCommand::group(const std::string& heading, const std::vector<std::string>& names) {
+  for (const std::string& name : names) app_->get_subcommand(name)->group(heading);
+}
 void ProgramCommand::requires_subcommand() { app_->require_subcommand(1); }
 
 namespace {

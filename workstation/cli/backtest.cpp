@@ -1,5 +1,5 @@
-// bess-train backtest: what policies would have earned month after month, each month traded by what
-// was fitted before it.
+// bess-train backtest: walk-forward evaluation; each month is traded by policies fitted on the days
+// before it.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The teacher of the whole chain's fold.
+/// Policy name of a fold's teacher.
 constexpr const char* kTeacherName = "teacher";
 
 std::vector<std::string> compared_with_the_chain() {
@@ -54,7 +54,7 @@ struct BacktestArguments {
   bool json = false;
 };
 
-/// All that a fold's student depends on, but for the fold.
+/// Inputs of every fold's student, except the fold itself.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                         const BacktestArguments& options) {
   const std::string day_ahead =
@@ -69,15 +69,14 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                      config.train.seed, format_run_config(config));
 }
 
-/// A folder belongs to one configuration: its folds are kept when that comes again.
+/// A folder belongs to one configuration, so that its folds can be reused.
 void claim_folder(const fs::path& folder, const std::string& identity) {
   const fs::path path = folder / "backtest.toml";
   if (!fs::exists(path)) return write_file(path, identity);
   if (read_file(path) != identity) {
     fail(
-        "{}: holds the folds of other prices, window, seed or configuration (its backtest.toml "
-        "says "
-        "which); give another --out",
+        "{}: contains folds of other prices, window, seed or configuration (see its "
+        "backtest.toml); choose another --out",
         folder.string());
   }
 }
@@ -103,7 +102,7 @@ StudentFile distil_fold(const Teacher& teacher, const Fold& fold, const RunConfi
   return require_proof(corrected, config.distil.method, fold.month + ": ").file();
 }
 
-/// What the folds are learnt from, and where they are kept.
+/// Inputs and output folder of the folds' training.
 struct Learning {
   RunConfig config;
   const MinuteSeries& series;
@@ -112,7 +111,7 @@ struct Learning {
   bool and_student;
 };
 
-/// Its file says the prices and days that it was learnt from; so does its student's.
+/// The teacher's file names its prices and training days; so does its student's.
 Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
   TrainResult trained =
       train_teacher(fold.market, of.config.battery, of.config.train, interruption());
@@ -124,7 +123,7 @@ Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
   return std::move(trained.teacher);
 }
 
-/// Of the models of a fold those that are asked for and not there yet.
+/// Trains the requested models of a fold that do not exist yet.
 void learn_fold(const Fold& fold, const Learning& of) {
   const fs::path path = model_path(of.folder, fold, kTeacherName);
   if (!fs::exists(path)) save_teacher(path, teacher_of_fold(fold, of));
@@ -133,8 +132,7 @@ void learn_fold(const Fold& fold, const Learning& of) {
   save_student(student, distil_fold(load_teacher(path), fold, of.config));
 }
 
-/// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the
-/// bit whatever runs beside it.
+/// Trains missing models in parallel. One thread per fold keeps each fold bit-identical.
 void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>& policies) {
   const auto is_missing = [&](const Fold& fold) {
     return std::ranges::any_of(policies, [&](const std::string& name) {
@@ -147,7 +145,7 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
   }
   const int threads = of.config.train.threads;
   of.config.set_threads(1);
-  Progress progress("learn", "folds", static_cast<double>(folds.traded.size()),
+  Progress progress("train", "folds", static_cast<double>(folds.traded.size()),
                     static_cast<double>(folds.traded.size() - missing.size()));
   std::mutex mutex;
   std::size_t done = folds.traded.size() - missing.size();
@@ -182,7 +180,7 @@ void run_backtest(const BacktestArguments& options) {
   require_writable(folder / "backtest.csv");
   const FolderLock lock(folder);
   claim_folder(folder, identity_of(config, series, options));
-  end_when_interrupted("months that were learnt are kept: the same command goes on");
+  end_when_interrupted("trained months are kept: repeat the command to continue");
   const bool and_student =
       std::ranges::find(options.policies, kChainName) != options.policies.end();
   learn_folds(folds, {config, series, prices, folder, and_student}, options.policies);
@@ -219,12 +217,12 @@ void run_backtest(const BacktestArguments& options) {
   write_backtest_page(results, folder);
   const std::string run = folder.parent_path().string();
   if (folder.filename() == kRunsBacktest && fs::exists(RunFolder{run}.record())) {
-    fmt::print(stderr, "'bess-train report --run {}' shows it beside the run's figure\n", run);
+    fmt::print(stderr, "'bess-train report --run {}' adds it to the run's report\n", run);
   }
   if (options.json) {
     fmt::print("{}\n", backtest_json(results).line());
   } else {
-    fmt::print("{}{}: backtest.html, and the same as CSV and JSON\n",
+    fmt::print("{}{}: backtest.html, with the same data in CSV and JSON\n",
                format_backtest_table(results), folder.string());
   }
 }
@@ -233,37 +231,35 @@ void run_backtest(const BacktestArguments& options) {
 
 void add_backtest_command(ProgramCommand& app) {
   auto options = std::make_shared<BacktestArguments>();
-  ProgramCommand command =
-      app.subcommand("backtest", "Walk forward: fit on a window, trade the next month, roll on");
-  command
-      .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
+  ProgramCommand command = app.subcommand(
+      "backtest", "walk-forward backtest: fit on a window, trade the next month, repeat");
+  command.option("--prices", options->prices, "minute files or downloads; periods may be separate")
       .required();
   options->price_input.add(command);
-  command.option("--out", options->out, "Folder for results and the folds' students").required();
+  command.option("--out", options->out, "folder for results and students").required();
   command
       .option("--policy", options->policies,
-              std::string("Gains are over the first. ") + kChainName +
-                  " is the whole chain, learnt anew for each month, " + kTeacherName +
+              std::string("policies; gains are relative to the first. ") + kChainName +
+                  " is the whole chain, retrained for each month, " + kTeacherName +
                   " its teacher; the others: " + policy_help())
       .with_default();
   command
-      .option("--window-days", options->plan.window_days,
-              "Days before a month that it is fitted on")
+      .option("--window-days", options->plan.window_days, "training window before each month, days")
       .range(30, 3650)
       .with_default();
   command
       .option("--lag-days", options->plan.lag_days,
-              "Days between them and the month that nothing is fitted on, as a refresh has 30")
+              "gap between training window and traded month, days (default 0; a refresh has 30)")
       .range(0, 365);
-  command.flag("--weekly", options->weekly, "Fit anew for every seven days instead of every month");
+  command.flag("--weekly", options->weekly, "refit every seven days instead of every month");
   options->day_ahead.add(command);
   command.flag("--day-reset", options->and_day_reset,
-               "In the table also: each day from the same SoC, its end given away");
-  command.flag("--json", options->json, "One JSON object");
+               "also report day-reset accounting: each day starts at the same SoC");
+  command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);
   command.footer(
-      "A month that was learnt is kept: the same command goes on after an interruption. Each fold "
-      "learns on one thread, so that it repeats to the bit.\n"
+      "Trained months are kept: after an interruption, repeat the command to continue. Each fold "
+      "trains on one thread, so that its result is bit-identical.\n"
       "Examples:\n"
       "  bess-train backtest --prices 2023.csv.gz 2024.csv.gz --out backtests/first\n"
       "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick\n"

@@ -1,4 +1,4 @@
-// bess-train battery fit: what a battery really does, from the log of its controller.
+// bess-train battery fit: battery parameters from a controller's log.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -26,13 +26,13 @@ struct FitArguments {
   bool json = false;
 };
 
-/// Delay, ramp and lag, as `bess-edge map check --steps` prints them; nothing else.
+/// Takes delay, ramp and lag from the output of `bess-edge map check --steps`.
 void take_steps(const std::string& path, BatteryParameters& battery) {
   std::string error;
   TomlValue document;
   if (!parse_toml_file(path, document, error)) throw UserError(error);
   if (document.find("battery") == nullptr) {
-    fail("{}: has no [battery]: it is what bess-edge map check --steps prints", path);
+    fail("{}: no [battery]: use the output of bess-edge map check --steps", path);
   }
   TomlTable table(document.find("battery"), path, "[battery]", error);
   for (const BatteryKey& key : kBatteryKeys) {
@@ -99,8 +99,8 @@ BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& n
   const BatteryFit fit = fit_battery(cycles, nameplate);
   if (fit.found().empty()) {
     fail(
-        "{}: {} cycles show nothing of the battery: a log of some days, with orders in both "
-        "directions and rests between, does",
+        "{}: {} control cycles are too few to fit the battery: use several days with orders in "
+        "both directions and idle cycles between them",
         options.logs.front(), cycles.size());
   }
   return fit;
@@ -124,20 +124,22 @@ void write_fit(const FitArguments& options) {
 void add_battery_fit(ProgramCommand& battery) {
   auto options = std::make_shared<FitArguments>();
   ProgramCommand command = battery.subcommand(
-      "fit", "Efficiency, taper, cold and own consumption, from its controller's log");
-  command.option("--log", options->logs, "Of bess-edge log --csv; several are one log");
+      "fit", "fit efficiency, taper, cold limits and standby power to a controller's log");
+  command.option("--log", options->logs,
+                 "controller logs (bess-edge log --csv); several are joined");
   command.option("--steps", options->steps,
-                 "Delay, ramp and lag, of bess-edge map check --steps; --out has them too");
-  command.option("--config", options->config,
-                 "Its [battery] has power_w, capacity_wh, soc_min and soc_max of the nameplate");
+                 "step response from bess-edge map check --steps; copied to --out");
+  command.option(
+      "--config", options->config,
+      "configuration with the nameplate values in [battery] (default: the default battery)");
   command.option("--out", options->out,
-                 "The configuration with the fitted [battery]: for --config here, and bess-sim "
-                 "battery --battery");
-  command.flag("--json", options->json, "One JSON object a line, a key each");
+                 "output file: the configuration with the fitted [battery], for --config and for "
+                 "bess-sim battery --battery");
+  command.flag("--json", options->json, "JSON, one line per key");
   command.footer(
-      "What a log does not show keeps the value of --config: a battery that never rested tells\n"
-      "nothing of its own consumption, and a summer nothing of the cold. Delay, ramp and lag need\n"
-      "readings within a cycle: bess-edge commission --record takes them.\n"
+      "Values that the log cannot show keep the value of --config: standby power needs idle\n"
+      "cycles, cold limits need cold days. Delay, ramp and lag need readings within a control\n"
+      "cycle: bess-edge commission --record takes them.\n"
       "Examples:\n"
       "  bess-edge log --csv > june.csv     # on the controller\n"
       "  bess-edge commission --record steps.jsonl --yes && \\\n"
@@ -151,7 +153,7 @@ void add_battery_fit(ProgramCommand& battery) {
 }  // namespace
 
 void add_battery_commands(ProgramCommand& app) {
-  ProgramCommand battery = app.subcommand("battery", "What a battery really does: fit");
+  ProgramCommand battery = app.subcommand("battery", "battery parameters from measurements: fit");
   battery.requires_subcommand();
   add_battery_fit(battery);
 }

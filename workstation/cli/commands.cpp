@@ -11,68 +11,74 @@ namespace bess {
 
 void add_commands(ProgramCommand& app) {
   add_run_command(app);
+  add_report_command(app);
   add_runs_commands(app);
+  add_refresh_command(app);
   add_sweep_commands(app);
+  app.group("Run commands", {"run", "report", "runs", "refresh", "sweep"});
   add_prices_commands(app);
+  add_battery_commands(app);
+  add_rules_commands(app);
+  app.group("Input commands", {"prices", "battery", "rules"});
   add_train_command(app);
   add_distil_command(app);
-  add_rules_commands(app);
   add_verify_command(app);
+  add_export_command(app);
+  add_omega_sweep_command(app);
+  app.group("Single-stage commands", {"train", "distil", "verify", "export", "omega-sweep"});
   add_evaluate_command(app);
   add_backtest_command(app);
   add_size_command(app);
   add_impact_command(app);
-  add_omega_sweep_command(app);
-  add_export_command(app);
-  add_report_command(app);
-  add_refresh_command(app);
-  add_battery_commands(app);
   add_log_commands(app);
+  app.group("Evaluation commands", {"evaluate", "backtest", "size", "impact", "log"});
   add_config_command(app);
   add_schema_command(app);
+  app.group("Reference commands", {"config", "schema"});
 }
 
 // bess-train config: every key with its default, range and meaning.
 
 void add_config_command(ProgramCommand& app) {
   auto path = std::make_shared<std::string>();
-  ProgramCommand command = app.subcommand("config", "Print the configuration as commented TOML");
-  command.option("--config", *path, "File whose values replace the defaults");
+  ProgramCommand command = app.subcommand("config", "print the configuration as commented TOML");
+  command.option("--config", *path, "file whose values replace the defaults");
   command.footer(
       "Examples:\n"
       "  bess-train config > my.toml\n"
-      "  bess-train config --config my.toml     # checks it and shows what is in force");
+      "  bess-train config --config my.toml     # checks it and shows the values in force");
   command.runs([path] { fmt::print("{}", format_run_config(load_run_config(*path))); });
 }
 
-// bess-train schema: what the answers of --json and the tables hold.
+// bess-train schema: members of the --json answers and columns of the tables.
 
 void add_schema_command(ProgramCommand& app) {
-  ProgramCommand command = app.subcommand(
-      "schema", "Print the JSON schema of what --json prints and of the columns of all tables");
+  ProgramCommand command =
+      app.subcommand("schema", "print the JSON schema of --json answers and table columns");
   command.footer(
-      "JSON Schema, draft 2020-12. Each answer names its \"schema_version\" and, as \"answer\", "
-      "its kind.\n"
+      "JSON Schema, draft 2020-12. Each answer has \"schema_version\" and its kind as "
+      "\"answer\".\n"
       "Examples:\n"
       "  bess-train schema > answers.schema.json");
   command.runs([] { fmt::print("{}", page_file("answers.schema.json")); });
 }
 
-// bess-train log: what a controller's log says, against other policies, another student, the bill.
+// bess-train log: analysis of a controller's log.
 
 void add_log_commands(ProgramCommand& app) {
-  ProgramCommand log = app.subcommand(
-      "log", "A controller's log: other policies, another student, a statement beside the bill");
+  ProgramCommand log =
+      app.subcommand("log", "analyse a controller's log: compare, replay, statement");
   log.requires_subcommand();
   add_log_compare(log);
   add_log_replay(log);
   add_log_statement(log);
 }
 
-// bess-train prices: where minute files come from.
+// bess-train prices: sources of minute files.
 
 void add_prices_commands(ProgramCommand& app) {
-  ProgramCommand prices = app.subcommand("prices", "Get, build or describe minute price files");
+  ProgramCommand prices =
+      app.subcommand("prices", "price files: fetch, import, reconstruct, simulate, stats");
   prices.requires_subcommand();
   add_prices_simulate(prices);
   add_prices_reconstruct(prices);
@@ -81,21 +87,20 @@ void add_prices_commands(ProgramCommand& app) {
   add_prices_stats(prices);
 }
 
-// bess-train rules: an operator's rules before anybody commits to them.
+// bess-train rules: operator rules before training.
 
 void add_rules_commands(ProgramCommand& app) {
-  ProgramCommand rules = app.subcommand(
-      "rules", "Your own rules: whom they bind, who breaks them, what they cost and change");
+  ProgramCommand rules = app.subcommand("rules", "operator rules: check, price");
   rules.requires_subcommand();
   add_rules_check(rules);
   add_rules_price(rules);
 }
 
-// bess-train sweep: many runs, here or on a cluster.
+// bess-train sweep: many runs, local or on a cluster.
 
 void add_sweep_commands(ProgramCommand& app) {
   ProgramCommand sweep = app.subcommand(
-      "sweep", "Many runs, here or on a cluster: plan, run, task, collect, packages");
+      "sweep", "many runs, local or on a cluster: plan, run, task, collect, packages");
   sweep.requires_subcommand();
   add_sweep_plan(sweep);
   add_sweep_run(sweep);

@@ -1,5 +1,4 @@
-// The subcommands of bess-train: one file each in this folder, which declares its options, its help
-// with examples, and runs it as the subcommand's callback.
+// Subcommands of bess-train: one file each in this folder, with options, help and action.
 #pragma once
 
 #include "shared/host/command_line.h"
@@ -42,7 +41,7 @@ void add_log_statement(ProgramCommand& log);
 void add_config_command(ProgramCommand& app);
 void add_schema_command(ProgramCommand& app);
 
-/// Every subcommand, in the order of the help.
+/// All subcommands, grouped and ordered as in the help.
 void add_commands(ProgramCommand& app);
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-// bess-train distil: teacher in, corrected and proved integer student out.
+// bess-train distil: from a teacher to a corrected and proved integer student.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -57,7 +57,7 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   fmt::print("{}", rule_count_lines(c));
 }
 
-/// "student.json" becomes "student_unproved.json", beside it.
+/// "student.json" becomes "student_unproved.json" in the same folder.
 std::filesystem::path unproved_path(const std::filesystem::path& out) {
   std::filesystem::path path = out;
   return path.replace_filename(out.stem().string() + "_unproved" + out.extension().string());
@@ -104,28 +104,31 @@ void run_distil(const DistilArguments& options) {
 
 void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<DistilArguments>();
-  ProgramCommand command =
-      app.subcommand("distil", "Correct the teacher while distilling it, until proved");
-  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  ProgramCommand command = app.subcommand(
+      "distil", "distil a teacher into a student that satisfies the properties, and prove it");
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
-  options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
-  command.option("--teacher", options->teacher, "Teacher file").required();
-  command.option("--out", options->out, "Student file to write").required();
+  options->rule_files.add(command, "rule files: operator rules to train and prove as well");
+  command.option("--teacher", options->teacher, "teacher file").required();
+  command.option("--out", options->out, "student file to write").required();
   command.option("--omega", options->omega,
-                 "Of the layer: larger follows the teacher more closely");
-  command.option("--epochs", options->epochs, "Before the first proof").positive();
+                 "trade-off of the optimisation layer; larger follows the teacher more closely "
+                 "(default: [distil] omega)");
+  command
+      .option("--epochs", options->epochs,
+              "epochs before the first proof (default: [distil] epochs)")
+      .positive();
   command.flag("--plain", options->plain,
-               "No correction: what the teacher alone would give; its violations are sampled");
-  command.option("--curve-out", options->curve_out, "CSV of the losses");
-  command.flag("--json", options->json, "One JSON object");
+               "distil without correction; count violations on a sample");
+  command.option("--curve-out", options->curve_out, "output file for the losses (CSV)");
+  command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);
   command.footer(
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --rules my_rules.toml "
-      "--out "
-      "student.json\n"
+      "--out student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --plain --out plain.json");
   command.runs([options] { run_distil(*options); });
 }

@@ -1,4 +1,4 @@
-// bess-train evaluate: what a policy would have earned.
+// bess-train evaluate: profit of policies on recorded prices.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -41,12 +41,12 @@ struct EvaluateArguments {
   std::string days_out;
   std::string steps_out;
 
-  /// Both ways of counting unless one is asked for: a single policy's line is about one of them.
+  /// Both accountings, unless one is requested or a single policy is evaluated.
   [[nodiscard]] bool wants_reset() const { return !carry_soc; }
   [[nodiscard]] bool wants_carried() const { return carry_soc || policies.size() > 1; }
 };
 
-/// Per-day and per-step records of every policy and way of counting, as CSV.
+/// Days and steps of every policy and accounting, as CSV.
 struct Records {
   std::string days = "date,profit_eur,cycles,switches,policy,carry_soc,soc_end_frac\n";
   std::string steps =
@@ -69,7 +69,7 @@ struct Records {
   }
 };
 
-/// A row a policy in one way of counting, in their order; none when it was not counted.
+/// One row per policy in one accounting; empty when it was not evaluated.
 using Rows = std::vector<ComparisonRow>;
 
 Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows& rows,
@@ -91,7 +91,7 @@ Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows
   return json;
 }
 
-/// A line a policy; of several, nested, the same with the SoC carried over.
+/// One line per policy; with several policies, carried-over figures are nested.
 void print_json(const std::vector<NamedEvaluation>& results, const NamedEvaluation& foresight,
                 const EvaluateArguments& options) {
   const Rows reset = comparison_rows(results, &NamedEvaluation::day_reset, &foresight);
@@ -109,7 +109,7 @@ double price_range(const MarketSteps& market, const MarketDay& day) {
   return high.observed_eur_per_mwh - low.observed_eur_per_mwh;
 }
 
-/// The one day that --date names, out of those of the split.
+/// Day named by --date, from the split.
 MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& days,
                      const std::string& date) {
   const auto found =
@@ -119,15 +119,14 @@ MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& da
           : std::ranges::find_if(days, [&](const MarketDay& day) { return day.date() == date; });
   if (found == days.end()) {
     fail(
-        "--date {}: no complete day of that date in the split; use YYYY-MM-DD or widest, and "
-        "perhaps --split all",
+        "--date {}: no complete day of that date in the split; use YYYY-MM-DD or widest, or add "
+        "--split all",
         date);
   }
   return *found;
 }
 
-/// Leaves one day of what was run over all days of the split, so that a carried-over SoC is carried
-/// into it.
+/// Keeps one day of an evaluation over the whole split, so that its carried-over SoC is correct.
 void keep_day(const MarketDay& day, const MarketSteps& market, Evaluation& evaluation,
               std::vector<StepRecord>& steps) {
   std::erase_if(evaluation.days, [&](const DayResult& d) { return d.date != day.date(); });
@@ -137,7 +136,7 @@ void keep_day(const MarketDay& day, const MarketSteps& market, Evaluation& evalu
   });
 }
 
-/// The market as the fitted policies knew it: the training days of --fit, at --fit-delay.
+/// Market for fitting: training days of --fit, at --fit-delay.
 MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
                            const EvaluateArguments& options) {
   MarketOptions market = config.market;
@@ -151,7 +150,7 @@ bool is_fitted(const std::string& policy) {
   return baseline != nullptr && baseline->is_for(kFitted);
 }
 
-/// What every policy is evaluated on.
+/// Common inputs of all evaluations.
 struct Trial {
   const MarketSteps& market;
   const MarketSteps& fitting;
@@ -161,7 +160,7 @@ struct Trial {
   const EvaluateArguments& options;
 };
 
-/// In the ways of counting that are wanted; every step goes to `records` when it is given.
+/// In the requested accountings; days and steps go to `records` when given.
 NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
   const EvaluateArguments& options = trial.options;
   const RunConfig& config = trial.config;
@@ -192,7 +191,7 @@ std::vector<std::string> dates_of(const Trial& trial) {
   return dates;
 }
 
-/// Asked before the work, so that a wrong name costs nothing.
+/// Checked first, so that a wrong name costs no time.
 void require_outputs_writable(const EvaluateArguments& options) {
   std::vector<GivenPath> inputs = given_paths("--policy", options.policies);
   inputs.push_back({"--prices", options.prices});
@@ -231,7 +230,7 @@ void run_evaluate(const EvaluateArguments& options) {
   std::vector<NamedEvaluation> results;
   Records records;
   if (std::ranges::any_of(options.policies, is_fitted)) {
-    warn_unknown_regimes("what is fitted here", fitting, market, trial.days);
+    warn_unknown_regimes("fitted policies", fitting, market, trial.days);
   }
   for (const std::string& name : options.policies) {
     warn_learnt_otherwise(name, circumstances_of(config_entries(config)), market, trial.days);
@@ -252,35 +251,36 @@ void run_evaluate(const EvaluateArguments& options) {
 
 void add_evaluate_command(ProgramCommand& app) {
   auto options = std::make_shared<EvaluateArguments>();
-  ProgramCommand command = app.subcommand("evaluate", "What a policy would have earned");
-  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  ProgramCommand command = app.subcommand("evaluate", "evaluate policies on recorded prices");
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--policy", options->policies, std::string("One or more of ") + policy_help())
+  command.option("--policy", options->policies, std::string("one or more of ") + policy_help())
       .required();
   command
       .option("--split", options->split,
-              "Local days 1-20, 21-25, 26-end, the last two together, or all")
+              "local days of each month: 1-20, 21-25, 26-end, the last two together, or all")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
   command.option("--date", options->date,
-                 "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");
+                 "only this day of the split: YYYY-MM-DD, or widest (largest price range)");
   options->common.add_market(command);
   options->common.add_config(command);
   command.flag("--carry-soc", options->carry_soc,
-               "Chain the days instead of resetting SoC (several policies: both, unless given)");
-  command.flag("--json", options->json, "One JSON object a line and policy");
-  command.option("--csv", options->csv, "Write the comparison as CSV");
+               "carry the SoC from day to day instead of resetting it (default with several "
+               "policies: both)");
+  command.flag("--json", options->json, "JSON, one line per policy");
+  command.option("--csv", options->csv, "output file for the comparison (CSV)");
   const std::string fitted = fmt::format("{}", fmt::join(baseline_names(kFitted), ", "));
-  command.option(
-      "--fit", options->fit,
-      fmt::format("Minute file whose training days {} are fitted on (default: --prices)", fitted));
+  command.option("--fit", options->fit,
+                 fmt::format("minute file for fitting {} (default: --prices)", fitted));
   command
       .option("--fit-delay", options->fit_delay_min,
-              fmt::format("Delay at which {} are fitted (default: --delay)", fitted))
+              fmt::format("observation delay for fitting {}, minutes (default: --delay)", fitted))
       .range(0, 5);
-  command.option("--days-out", options->days_out, "CSV of every policy's days");
-  command.option("--steps-out", options->steps_out, "CSV of every policy's steps");
+  command.option("--days-out", options->days_out, "output file for the days of all policies (CSV)");
+  command.option("--steps-out", options->steps_out,
+                 "output file for the steps of all policies (CSV)");
   command.footer(
       "Examples:\n"
       "  bess-train evaluate --prices market.csv.gz --policy rbc rbc-tuned tabular mpc foresight "

@@ -1,5 +1,5 @@
-// bess-train export: proves a student once more and writes the weight header of the edge, with the
-// signature that its build will have.
+// bess-train export: weight header of a proved student for the edge, with the signature of its
+// build.
 #include "workstation/correction/student/export.h"
 
 #include <fmt/core.h>
@@ -23,8 +23,8 @@ struct ExportArguments {
 };
 
 [[noreturn]] void refuse(const std::string& name, const Certificate& c) {
-  fail("{}: refused: {} violations over the lattice ({}); distil it again", name, c.violations(),
-       broken_text(demand_counts(c)));
+  fail("{}: refused: {} violations over the lattice ({}); repeat bess-train distil", name,
+       c.violations(), broken_text(demand_counts(c)));
 }
 
 void print_next(const ExportArguments& options, const std::filesystem::path& folder) {
@@ -65,12 +65,12 @@ void run_export(const ExportArguments& options) {
 
 void add_export_command(ProgramCommand& app) {
   auto options = std::make_shared<ExportArguments>();
-  ProgramCommand command = app.subcommand(
-      "export", "Prove a student and write it as the edge's weight header, with its signature");
-  command.option("--student", options->student, "Student file").required();
+  ProgramCommand command =
+      app.subcommand("export", "prove a student and export the weight header and its signature");
+  command.option("--student", options->student, "student file").required();
   command.option("--out", options->out,
-                 "Header to write; without it edge/generated/student_weights.h of the source tree "
-                 "around the current folder, or around this program");
+                 "output header (default: edge/generated/student_weights.h of the source tree "
+                 "around the current folder or this program)");
   options->common.add_seed_and_threads(command);
   command.footer(
       "Examples:\n"

@@ -1,4 +1,4 @@
-// bess-train impact: what a fleet that moves its own price earns, as it grows.
+// bess-train impact: profit of a fleet that changes the price, by its size.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -36,8 +36,7 @@ std::vector<double> fleets_of(const std::vector<std::string>& texts) {
     const auto read = std::from_chars(text.data(), text.data() + text.size(), mw);
     const bool is_whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
     if (!is_whole || !(mw >= 0 && mw <= kFleetMwMax)) {
-      fail("--fleet-mw {}: use megawatts from 0, a fleet that moves nothing, to {:g}", text,
-           kFleetMwMax);
+      fail("--fleet-mw {}: use megawatts from 0 (no impact) to {:g}", text, kFleetMwMax);
     }
     fleets.push_back(mw);
   }
@@ -57,12 +56,12 @@ void run_impact(const ImpactArguments& options) {
   require_policies(plan.policies);
   for (const std::string& policy : plan.policies) {
     if (policy == kForesightName || policy == kOutlookProgramName) {
-      fail("--policy {}: the simulated fleet has neither tomorrow's prices nor the day-ahead ones",
+      fail("--policy {}: the simulated fleet has no future and no day-ahead prices; choose another",
            policy);
     }
   }
   if (config.market.observation_delay_min == 0) {
-    fail("[market] observation_delay_min = 0: a fleet cannot see what it has not done yet; use 1");
+    fail("[market] observation_delay_min = 0: a fleet cannot see its own future effect; use 1");
   }
   require_writable(folder / "impact.csv");
   end_when_interrupted();
@@ -85,29 +84,28 @@ void add_impact_command(ProgramCommand& app) {
   auto options = std::make_shared<ImpactArguments>();
   ImpactPlan& plan = options->plan;
   ProgramCommand command = app.subcommand(
-      "impact", "A fleet that moves its own price: EUR a MW over its size, by price formula");
-  command.option("--out", options->out, "Folder for table and page").required();
+      "impact", "simulate a fleet that changes the price: EUR/MW by fleet size and price formula");
+  command.option("--out", options->out, "folder for table and page").required();
   command.option("--fleet-mw", options->fleet_mw,
-                 "Sizes; 0 moves nothing (default 0 50 100 200 300 450 600 800 1200)");
+                 "fleet sizes, MW; 0 has no impact (default 0 50 100 200 300 450 600 800 1200)");
   command
       .option("--policy", plan.policies,
-              std::string("Of the fleet, each an equal part of it: ") + policy_help())
+              std::string("policies of the fleet, in equal parts: ") + policy_help())
       .with_default();
-  command.option("--train-days", plan.train_days, "That policies are fitted on")
-      .range(10, 300)
-      .with_default();
-  command.option("--test-days", plan.test_days, "Behind them, that are traded")
+  command.option("--train-days", plan.train_days, "training days").range(10, 300).with_default();
+  command.option("--test-days", plan.test_days, "test days after the training days")
       .range(1, 300)
       .with_default();
-  command.option("--seeds", plan.seeds, "Simulated markets, seeds 1 to this")
+  command.option("--seeds", plan.seeds, "number of simulated markets (seeds 1 to N)")
       .range(1, 1000)
       .with_default();
-  command.option("--rounds", plan.rounds, "Times that it is learnt anew on prices it made itself")
+  command.option("--rounds", plan.rounds, "rounds of retraining on prices that include the fleet")
       .range(0, 20)
       .with_default();
-  command.flag("--json", options->json, "One JSON object");
-  command.option("--threads", options->common.threads, "Default: all cores").range(1, 256);
-  command.option("--delay", options->common.delay_min, "Observation delay in minutes (default 1)")
+  command.flag("--json", options->json, "one JSON object");
+  command.option("--threads", options->common.threads, "threads (default: all cores)")
+      .range(1, 256);
+  command.option("--delay", options->common.delay_min, "observation delay, minutes (default 1)")
       .range(1, 5);
   options->common.add_config(command);
   command.footer(

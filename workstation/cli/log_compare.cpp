@@ -1,4 +1,4 @@
-// bess-train log compare: what other policies would have earned in the cycles of a log.
+// bess-train log compare: profit of other policies in the control cycles of a log.
 #include <fmt/format.h>
 
 #include <memory>
@@ -17,7 +17,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// A rule by the quartiles of the prices that the compiled student learnt on, and that student.
+/// Default policies: a rule at the quartiles of the compiled student's training prices, and it.
 std::vector<std::string> usual_policies() {
   const StudentNet net = compiled_student().net;
   return {fmt::format("rbc:{}:{}", learnt_price_quartile(net, 1), learnt_price_quartile(net, 3)),
@@ -57,18 +57,18 @@ void run_compare(const CompareArguments& options) {
 void add_log_compare(ProgramCommand& log) {
   auto options = std::make_shared<CompareArguments>();
   ProgramCommand command =
-      log.subcommand("compare", "What other policies would have earned in the same cycles");
+      log.subcommand("compare", "compare the log with other policies in the same control cycles");
   options->input.add(command, true);
-  command.option("--policy", options->policies,
-                 "rbc, rbc:LOW:HIGH, compiled, a student's file or a run's folder (default: a rule "
-                 "by the quartiles of the prices that the compiled student learnt on, compiled); "
-                 "foresight always");
-  command.flag("--json", options->json, "One JSON object a line and policy, this battery first");
+  command.option(
+      "--policy", options->policies,
+      "rbc, rbc:LOW:HIGH, compiled, a student file or run folder (default: a rule at the "
+      "quartiles of the compiled student's training prices, and compiled); foresight is "
+      "always added");
+  command.flag("--json", options->json, "JSON, one line per policy, this battery first");
   command.footer(
-      "This battery is counted as bess-edge earned counts it, less [costs] and wear; the others "
-      "as\n"
-      "evaluate counts them, from the same charge on, on the price that the controller had, with\n"
-      "its delay. Where the log has no price that can be decided on, they rest.\n"
+      "This battery is accounted as by bess-edge earned, less [costs] and wear. The others are\n"
+      "accounted as by evaluate, from the same charge, on the controller's prices with their\n"
+      "delay; they are idle where the log has no usable price.\n"
       "Examples:\n"
       "  bess-edge log --csv > october.csv          # on the controller\n"
       "  bess-train log compare october.csv --settled settled.csv --config house.toml\n"

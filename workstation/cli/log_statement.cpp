@@ -1,4 +1,4 @@
-// bess-train log statement: what a battery earned in some days, to hold beside the bill.
+// bess-train log statement: earnings of a battery by day, to compare with the bill.
 #include <fmt/format.h>
 
 #include <memory>
@@ -32,15 +32,13 @@ void run_statement(const StatementArguments& options) {
 void add_log_statement(ProgramCommand& log) {
   auto options = std::make_shared<StatementArguments>();
   ProgramCommand command =
-      log.subcommand("statement", "A page to print: money and energy by days, beside the bill");
+      log.subcommand("statement", "write a printable statement of energy and money by day");
   options->input.add(command, true);
-  command.option("--output", options->output, "The page (HTML)").required();
+  command.option("--output", options->output, "output file (HTML)").required();
   command.footer(
-      "By quarter-hours, at the settled price where --settled has it, less what [costs] of "
-      "--config\n"
-      "takes and [battery] wear_eur_per_mwh. The log must hold the first cycle behind the last "
-      "day,\n"
-      "which tells the power of the last.\n"
+      "By quarter-hour, at the settled price where --settled has it, less [costs] and [battery]\n"
+      "wear_eur_per_mwh of --config. The log must include the first control cycle after the last\n"
+      "day.\n"
       "Examples:\n"
       "  bess-edge log --csv > log.csv              # on the controller\n"
       "  bess-train log statement log.csv --settled settled.csv --config house.toml \\\n"

@@ -1,4 +1,4 @@
-// bess-train omega-sweep: the trade-off of the paper's loss, measured.
+// bess-train omega-sweep: measured trade-off of the paper's loss.
 #include <fmt/core.h>
 
 #include <charconv>
@@ -44,14 +44,14 @@ std::vector<double> parse_omegas(const std::vector<std::string>& words) {
     const char* const end = word.data() + word.size();
     const auto read = std::from_chars(word.data(), end, omega);
     if (read.ec != std::errc() || read.ptr != end || !(omega >= kOmegaMin && omega <= kOmegaMax)) {
-      fail("--omega {}: use numbers of {:g} to {:g}", word, kOmegaMin, kOmegaMax);
+      fail("--omega {}: use numbers from {:g} to {:g}", word, kOmegaMin, kOmegaMax);
     }
     omegas.push_back(omega);
   }
   return omegas;
 }
 
-/// Decides as the teacher and counts how often the student would have decided the same.
+/// Decides as the teacher and counts decisions that the student shares.
 class AgreementCounter final : public Policy {
  public:
   AgreementCounter(const Teacher& teacher, const StudentNet& student)
@@ -74,7 +74,7 @@ class AgreementCounter final : public Policy {
   mutable std::int64_t agreed_ = 0;
 };
 
-/// What every student is distilled from and judged on.
+/// Common inputs of all distillations and evaluations.
 struct Bench {
   const Teacher& teacher;
   const Matrix& visited;
@@ -150,18 +150,19 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
 
 void add_omega_sweep_command(ProgramCommand& app) {
   auto options = std::make_shared<OmegaSweepArguments>();
-  ProgramCommand command = app.subcommand(
-      "omega-sweep", "The layer's trade-off: violations, fidelity and profit for each omega");
-  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  ProgramCommand command =
+      app.subcommand("omega-sweep", "sweep omega: violations, fidelity and profit");
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
-  command.option("--teacher", options->teacher, "Teacher file").required();
-  command.option("--out", options->out, "Folder for omega_sweep.csv").required();
+  command.option("--teacher", options->teacher, "teacher file").required();
+  command.option("--out", options->out, "folder for omega_sweep.csv").required();
   command
-      .option("--omega", options->omegas,
-              "One or more trade-offs; each is a distillation through the layer without repair")
+      .option("--omega", options->omegas, "omega values; one distillation without repair for each")
       .with_default();
-  command.option("--epochs", options->epochs, "Of each distillation").positive();
-  command.flag("--json", options->json, "One JSON object a line and omega");
+  command
+      .option("--epochs", options->epochs, "epochs of each distillation (default: [distil] epochs)")
+      .positive();
+  command.flag("--json", options->json, "JSON, one line per omega");
   options->common.add_all(command);
   command.footer(
       "Examples:\n"

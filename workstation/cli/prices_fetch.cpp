@@ -1,4 +1,4 @@
-// bess-train prices fetch: real prices from Elia's open data.
+// bess-train prices fetch: download of prices from Elia's open data.
 #include <fmt/core.h>
 
 #include <ctime>
@@ -42,7 +42,7 @@ void fetch_day_ahead_prices(const PricesFetchArguments& options) {
   if (!fetched) throw Interrupted{};
   write_judged_day_ahead(*fetched, options.price_input.accepted(), {request.base_url},
                          fmt::format("Day-ahead prices of {} fetched from {} (Fraunhofer ISE; the "
-                                     "licence stands in its answer) by bess-train {}",
+                                     "licence is in its answer) by bess-train {}",
                                      request.zone, request.base_url, BESS_VERSION),
                          options.out);
 }
@@ -62,7 +62,7 @@ void run_prices_fetch(const PricesFetchArguments& options) {
        .sleep = sleep_unless},
       interruption());
   if (!fetched) {
-    fmt::print(stderr, "finished windows are kept: run the same command again to go on\n");
+    fmt::print(stderr, "finished windows are kept: repeat the command to continue\n");
     throw Interrupted{};
   }
   fmt::print("{}written to {}. {}\n", fetched->description, options.out,
@@ -74,30 +74,26 @@ void run_prices_fetch(const PricesFetchArguments& options) {
 void add_prices_fetch(ProgramCommand& prices) {
   auto options = std::make_shared<PricesFetchArguments>();
   ProgramCommand command =
-      prices.subcommand("fetch", "Download minute and settled prices from Elia's open data");
-  command.option("--from", options->from, "First local day, YYYY-MM-DD").required();
-  command.option("--to", options->to, "Last local day, included").required();
-  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+      prices.subcommand("fetch", "download minute and settled prices from Elia's open data");
+  command.option("--from", options->from, "first local day, YYYY-MM-DD").required();
+  command.option("--to", options->to, "last local day, YYYY-MM-DD, included").required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.flag("--allow-gaps", options->allow_gaps,
-               "Write the file also when rows are missing, and say which; else it is an error");
+               "accept missing rows and list them (default: error)");
   options->price_input.add(command);
   command.flag("--day-ahead", options->day_ahead,
-               "Day-ahead prices instead, from energy-charts: a day-ahead file");
-  command.option("--zone", options->zone, "Bidding zone of --day-ahead (default BE)")
+               "download day-ahead prices from energy-charts instead; writes a day-ahead file");
+  command.option("--zone", options->zone, "bidding zone of --day-ahead (default BE)")
       .needs("--day-ahead");
   command.option(
       "--base-url", options->base_url,
       fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl, kEnergyChartsBaseUrl));
   command.footer(
-      "Interrupted? Run the same command again: finished months are kept in OUT.fetch until the "
-      "end.\n"
-      "What came is counted against the calendar and the server's own total. Elia's minutes have "
-      "gaps in some months: --allow-gaps accepts those. A quarter-hour without a price is one "
-      "too.\n"
-      "An answer that is not whole after 20 minutes, or comes at less than 1,000 bytes a second "
-      "for\n"
-      "a minute, is asked for once more.\n"
-      "Behind a proxy set https_proxy. No key is needed.\n"
+      "After an interruption, repeat the command: finished months are kept in OUT.fetch.\n"
+      "Rows are counted against the calendar and the server's total. Elia's minutes have gaps in\n"
+      "some months: --allow-gaps accepts them, and quarter-hours without a price.\n"
+      "A request is repeated if it is incomplete after 20 minutes, or slower than 1,000 bytes/s\n"
+      "for a minute. Behind a proxy set https_proxy. No key is needed.\n"
       "Examples:\n"
       "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"
       "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv\n"

@@ -1,4 +1,4 @@
-// bess-train prices import: downloaded CSV and JSON to one minute file.
+// bess-train prices import: conversion of downloaded CSV, JSON and XML to one minute file.
 #include <fmt/core.h>
 
 #include <memory>
@@ -52,32 +52,33 @@ void run_prices_import(const PricesImportArguments& options) {
 void add_prices_import(ProgramCommand& prices) {
   auto options = std::make_shared<PricesImportArguments>();
   ProgramCommand command =
-      prices.subcommand("import", "Join downloaded minute and quarter-hour files to a minute file");
+      prices.subcommand("import", "convert downloaded or own price files to a minute file");
   command
       .option("files", options->files,
-              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
-              "minute files, or CSV of your own; plain or .gz")
+              "downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
+              "minute files, or your own CSV; plain or .gz")
       .required();
-  command.flag("--day-ahead", options->day_ahead,
-               "The files hold day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
-               "datetime_utc and price_eur_mwh, or day-ahead files");
+  command.flag(
+      "--day-ahead", options->day_ahead,
+      "the files contain day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
+      "datetime_utc and price_eur_mwh, or day-ahead files");
   command.option("--time-column", options->own.time_column,
-                 "Your CSV's column of times, the start of each minute or quarter-hour");
-  command.option("--price-column", options->own.price_column, "Its column of EUR/MWh");
-  command
-      .option("--date-format", options->own.times.date_format, "Its order of day, month and year")
+                 "time column of your CSV: start of each minute or quarter-hour");
+  command.option("--price-column", options->own.price_column, "price column of your CSV, EUR/MWh");
+  command.option("--date-format", options->own.times.date_format, "date format of your CSV")
       .one_of({"yyyy-mm-dd", "yyyy/mm/dd", "dd/mm/yyyy", "dd-mm-yyyy", "dd.mm.yyyy", "mm/dd/yyyy"})
       .with_default();
   command.choice<std::optional<WallClock>>("--time-zone", options->own.times.clock,
                                            {{"utc", WallClock::kUtc}, {"local", WallClock::kLocal}},
-                                           "Of its times without an offset; local: Belgian clocks");
+                                           "time zone of times without an offset; local: Belgium");
   options->price_input.add(command);
-  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.footer(
-      "Of downloads, later files win where two have the same minute; minute files must agree there "
-      "(--accept overlap: later files win). Semicolons with decimal commas are read too. ENTSO-E "
-      "sends a ZIP archive: unzip it first. Your own CSV needs a header with a time and a price "
-      "(datetime_utc,price_eur_mwh); commas, semicolons or tabs, and all else by the options.\n"
+      "Where two downloads have the same minute, the later file wins; minute files must agree "
+      "(--accept overlap: the later file wins). Semicolons with decimal commas are accepted. "
+      "ENTSO-E sends a ZIP archive: unzip it first. Your own CSV needs a header with a time and a "
+      "price (datetime_utc,price_eur_mwh), separated by commas, semicolons or tabs; for other "
+      "formats use the options.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv\n"

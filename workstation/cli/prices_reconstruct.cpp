@@ -1,4 +1,4 @@
-// bess-train prices reconstruct: plausible minutes on real settled quarter-hours.
+// bess-train prices reconstruct: simulated minute prices on real settled quarter-hours.
 #include <fmt/core.h>
 
 #include <memory>
@@ -37,7 +37,7 @@ void run_prices_reconstruct(const PricesReconstructArguments& options) {
                   "bess-train {} prices reconstruct --seed {}",
                   file_names(options.files), attribution, BESS_VERSION, options.seed));
   if (settled.minutes_unused > 0) {
-    fmt::print("{} of the files not used: drawn ones take their place\n",
+    fmt::print("{} of the files not used: replaced by drawn ones\n",
                counted(settled.minutes_unused, "indicative price"));
   }
   if (inferred > 0) {
@@ -55,19 +55,19 @@ void run_prices_reconstruct(const PricesReconstructArguments& options) {
 
 void add_prices_reconstruct(ProgramCommand& prices) {
   auto options = std::make_shared<PricesReconstructArguments>();
-  ProgramCommand command = prices.subcommand(
-      "reconstruct", "Draw minute prices that converge to real settled quarter-hours");
+  ProgramCommand command =
+      prices.subcommand("reconstruct", "reconstruct minute prices from settled quarter-hours");
   command
       .option("--quarter-hours", options->files,
-              "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
-              "(XML), or what 'prices import' wrote; plain or .gz")
+              "settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
+              "(XML), or output of 'prices import'; plain or .gz")
       .required();
   options->price_input.add(command);
-  command.option("--seed", options->seed, "Same seed, same minutes").non_negative().with_default();
-  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.option("--seed", options->seed, "random seed").non_negative().with_default();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.footer(
-      "Sources without a system imbalance (ENTSO-E A85, minute files) get its side from the price. "
-      "ENTSO-E sends a ZIP archive: unzip it first.\n"
+      "For sources without a system imbalance (ENTSO-E A85, minute files) its sign is inferred\n"
+      "from the price. ENTSO-E sends a ZIP archive: unzip it first.\n"
       "Examples:\n"
       "  bess-train prices reconstruct --quarter-hours A85_AT.xml --out austria.csv.gz\n"
       "  bess-train prices reconstruct --quarter-hours ods047.csv --seed 3 --out prices.csv.gz\n"

@@ -1,4 +1,4 @@
-// bess-train prices simulate: a year of market without any download.
+// bess-train prices simulate: simulated market, without a download.
 #include <fmt/core.h>
 
 #include <memory>
@@ -55,14 +55,14 @@ void run_prices_simulate(const PricesSimulateArguments& options) {
 
 void add_prices_simulate(ProgramCommand& prices) {
   auto options = std::make_shared<PricesSimulateArguments>();
-  ProgramCommand command =
-      prices.subcommand("simulate", "Draw a market with the statistics of Belgium in early 2023");
-  command.option("--days", options->days, "Local days").range(1, 7320).with_default();
-  command.option("--seed", options->seed, "Same seed, same market").non_negative().with_default();
-  command.option("--start", options->start, "First local day, YYYY-MM-DD").with_default();
-  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  ProgramCommand command = prices.subcommand(
+      "simulate", "simulate a market with the statistics of Belgium in early 2023");
+  command.option("--days", options->days, "local days").range(1, 7320).with_default();
+  command.option("--seed", options->seed, "random seed").non_negative().with_default();
+  command.option("--start", options->start, "first local day, YYYY-MM-DD").with_default();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.option("--day-ahead-out", options->day_ahead_out,
-                 "Also day-ahead prices of that market, for sdp-outlook");
+                 "output file for day-ahead prices of the same market, for sdp-outlook");
   command.footer(
       "Examples:\n"
       "  bess-train prices simulate --out market.csv.gz\n"

@@ -1,4 +1,4 @@
-// bess-train prices stats: what is in a price file.
+// bess-train prices stats: statistics of a price file.
 #include <fmt/core.h>
 
 #include <memory>
@@ -43,7 +43,7 @@ Described describe_download(std::string_view text, const std::string& name) {
   return {statistics_of_quarter_hours(quarter_hours)};
 }
 
-/// A day-ahead file has the statistics of settled quarter-hours, what is wrong with it as warnings.
+/// Statistics as of settled quarter-hours; findings are warnings.
 Described describe_day_ahead_file(std::string_view text, const std::string& name) {
   const DayAheadSeries series = parse_day_ahead_csv(text, name);
   judge(implausible_day_ahead(series), AcceptedFindings::all(), {{name, text}});
@@ -72,16 +72,15 @@ void run_prices_stats(const PricesStatsArguments& options) {
 void add_prices_stats(ProgramCommand& prices) {
   auto options = std::make_shared<PricesStatsArguments>();
   ProgramCommand command = prices.subcommand(
-      "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
+      "stats", "statistics of a price file: quartiles, tails, autocorrelation, gaps");
   command
       .option("file", options->file,
-              "Minute file, day-ahead file, or a download of Elia (CSV, JSON); plain or .gz")
+              "minute file, day-ahead file, or a download of Elia (CSV, JSON); plain or .gz")
       .required();
-  command.flag("--json", options->json, "One JSON object");
+  command.flag("--json", options->json, "one JSON object");
   command.footer(
-      "Sign flips of the system imbalance need a quarter-hour download, convergence by minute "
-      "needs "
-      "minutes.\n"
+      "Sign changes of the system imbalance need a quarter-hour download, convergence by minute "
+      "needs minute prices.\n"
       "Examples:\n"
       "  bess-train prices stats prices.csv.gz\n"
       "  bess-train prices stats ods047.csv --json");

@@ -1,5 +1,5 @@
-// bess-train refresh: learns a run anew from what was published since, and puts it in the run's
-// place when it is not worse.
+// bess-train refresh: retraining of a run on the latest prices; adopts the candidate unless it is
+// worse.
 #include "workstation/runs/run/refresh.h"
 
 #include <fmt/core.h>
@@ -33,7 +33,7 @@ struct RefreshArguments {
   std::string day_ahead_source = kEnergyChartsBaseUrl;
 };
 
-/// What a proposal may need of the days that are over, and some for the price level to settle in.
+/// Past days that a candidate may need, and ten for the price level to settle.
 FetchSpan span_of(const RefreshArguments& options) {
   constexpr int kSettlingDays = 10;
   const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
@@ -43,7 +43,7 @@ FetchSpan span_of(const RefreshArguments& options) {
 void bring_prices(const RefreshArguments& options, const fs::path& out) {
   if (!options.prices.empty()) {
     return write_minute_file(out, options.price_input.read_joined(options.prices).series,
-                             "Of " + file_names(options.prices));
+                             "From " + file_names(options.prices));
   }
   watch_interruption();
   const auto fetched = fetch_prices({.span = span_of(options),
@@ -51,7 +51,7 @@ void bring_prices(const RefreshArguments& options, const fs::path& out) {
                                      .base_url = checked_base_url(options.source, "--base-url"),
                                      .now_utc_s = std::time(nullptr),
                                      .retry = {},
-                                     .allow_gaps = true,  // days that are not whole are left out
+                                     .allow_gaps = true,  // incomplete days are skipped
                                      .accepted = options.price_input.accepted(),
                                      .sleep = sleep_unless},
                                     interruption());
@@ -80,7 +80,7 @@ void bring_day_ahead(const RefreshArguments& options, const fs::path& out,
   } else if (options.prices.empty()) {
     fetch_day_ahead_to(options, out);
   } else {
-    fail("the run plans on day-ahead prices: give their file with --day-ahead beside --prices");
+    fail("the run plans on day-ahead prices: with --prices, also give their file with --day-ahead");
   }
   (void)read_day_ahead(out, settled, options.price_input.accepted(), kDayAheadPublishedMin);
 }
@@ -89,28 +89,28 @@ void bring_day_ahead(const RefreshArguments& options, const fs::path& out,
 
 void add_refresh_command(ProgramCommand& app) {
   auto options = std::make_shared<RefreshArguments>();
-  ProgramCommand command =
-      app.subcommand("refresh", "Learn a run anew from the newest prices, as a proposal beside it");
-  command.option("--run", options->run, "Run folder").required();
+  ProgramCommand command = app.subcommand(
+      "refresh", "retrain on the latest prices; writes a candidate run next to the run");
+  command.option("--run", options->run, "run folder").required();
   command.flag("--adopt", options->adopt,
-               "Put the proposal in the run's place unless it is worse beyond its error");
+               "replace the run with the candidate unless it is significantly worse");
   command
       .option("--window-days", options->window_days,
-              "Days that it is fitted on; half of them must be there")
+              "training window, days; at least half must have prices")
       .range(30, 3650)
       .with_default();
   command.option("--prices", options->prices,
-                 "Minute files or downloads, instead of fetching the newest");
+                 "minute files or downloads (default: download the latest prices)");
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--base-url", options->source, "API root of the prices").with_default();
+  command.option("--base-url", options->source, "API root of the imbalance prices").with_default();
   command.option("--day-ahead-base-url", options->day_ahead_source, "API root of day-ahead prices")
       .with_default();
   command.footer(
-      "The newest 30 days judge, and nothing is learnt from them; it is fitted on the days before\n"
-      "them. RUN.proposal is a run like any other. Adopted, it is RUN, and the run before it\n"
-      "RUN.before-DATE; refused, RUN.refused-DATE. After an interruption the same command goes "
-      "on.\n"
+      "The latest 30 days evaluate the candidate; training uses the days before them. The\n"
+      "candidate RUN.proposal is a complete run. Adopted, it becomes RUN, and the previous run\n"
+      "RUN.before-DATE; rejected, it becomes RUN.refused-DATE. After an interruption, repeat the\n"
+      "command to continue.\n"
       "Examples:\n"
       "  bess-train refresh --run runs/site\n"
       "  bess-train refresh --run runs/site --prices 2024.csv.gz 2025.csv.gz --adopt");

@@ -1,4 +1,4 @@
-// bess-train report: figures and tables of a run, made again from its folder.
+// bess-train report: regenerated figures and tables of a run.
 #include <fmt/core.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ void run_report(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
   std::optional<RunRecord> record = load_run_record(folder);
   if (!record) {
-    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", path,
+    fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'", path,
          run_file::kRecord, path);
   }
   std::vector<GivenPath> outputs;
@@ -29,18 +29,18 @@ void run_report(const std::string& path, const std::string& prices) {
   if (record->prices != run_file::kSimulatedPrices) {
     require_distinct(outputs, {{"--prices", prices}});
   }
-  // The run accepted what it accepted.
+  // Findings were already accepted or rejected when the run was made.
   const MinuteSeries series = prices.empty()
                                   ? prices_of_run(*record, folder, AcceptedFindings::all())
                                   : read_judged_minutes(prices, AcceptedFindings::all());
   if (const std::string hash = prices_hash(series); hash != record->value("prices")) {
-    fail("{}: are not the prices of this run: {}, and the run has {}",
+    fail("{}: not the prices of this run: {}, but the run has {}; give its file with --prices",
          prices.empty() ? record->prices : prices, hash, record->value("prices"));
   }
   if (!record->day_ahead.empty() &&
       file_mark(folder.path / record->day_ahead) != record->value(kDayAheadKey)) {
-    fail("{}: are not the day-ahead prices of this run, which has {}", record->day_ahead,
-         record->value(kDayAheadKey));
+    fail("{}: not the day-ahead prices of this run, which has {}; restore the file",
+         record->day_ahead, record->value(kDayAheadKey));
   }
   const FolderLock lock(folder.path);
   RunStages stages(folder, std::move(*record), series, stderr);
@@ -54,9 +54,9 @@ void add_report_command(ProgramCommand& app) {
   auto path = std::make_shared<std::string>();
   auto prices = std::make_shared<std::string>();
   ProgramCommand command =
-      app.subcommand("report", "Make a run's figures, tables and report.html again");
-  command.option("--run", *path, "Run folder").required();
-  command.option("--prices", *prices, "Minute file, if it moved since the run");
+      app.subcommand("report", "regenerate figures, tables and report.html of a run");
+  command.option("--run", *path, "run folder").required();
+  command.option("--prices", *prices, "minute file, if its path changed since the run");
   command.footer("Examples:\n  bess-train report --run runs/first");
   command.runs([path, prices] { run_report(*path, *prices); });
 }

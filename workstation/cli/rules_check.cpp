@@ -1,5 +1,4 @@
-// bess-train rules check: whether rules can be obeyed together and whom they bind; with a policy,
-// how often it breaks them on real days.
+// bess-train rules check: conflicts and scope of rules; with a policy, its violations on real days.
 #include <fmt/core.h>
 
 #include <memory>
@@ -22,7 +21,7 @@
 namespace bess {
 namespace {
 
-/// Other SoCs that are looked at in each decision, drawn evenly.
+/// Additional uniformly drawn SoCs checked at each decision.
 constexpr int kDrawnPerStep = 4;
 
 struct CheckArguments {
@@ -36,7 +35,7 @@ struct CheckArguments {
   bool json = false;
 };
 
-/// What was counted of it is null without a policy.
+/// Counts are null without a policy.
 Json rule_json(const Rule& rule, ContextKind kind, const std::string& policy,
                const std::string& split, std::optional<std::int64_t> decisions,
                const std::optional<WatchCount>& count) {
@@ -80,7 +79,7 @@ void print_watch(const RuleSet& rules, const RuleWatch& watch, ContextKind kind,
                  const CheckArguments& options) {
   if (!options.json) {
     fmt::print(
-        "\n{} breaks, in {} decisions of the {} split and at {} SoCs drawn beside each (seed {}):\n"
+        "\nviolations by {}, in {} decisions of the {} split and at {} drawn SoCs each (seed {}):\n"
         "{:<40}  {:>10}  {:>8}  {:>10}  {:>8}\n",
         options.policy, watch.decisions(), options.split, kDrawnPerStep,
         options.common.seed.value_or(1), "rule", "visited", "%", "drawn", "%");
@@ -92,7 +91,7 @@ void print_watch(const RuleSet& rules, const RuleWatch& watch, ContextKind kind,
                                    watch.decisions(), c)
                              .line());
     } else if (c.visited + c.drawn == 0) {
-      fmt::print("{:<40}  never met in these states\n", rules.rules[r].name);
+      fmt::print("{:<40}  does not apply in these states\n", rules.rules[r].name);
     } else {
       fmt::print("{:<40}  {:>10}  {:>8.3f}  {:>10}  {:>8.3f}\n", rules.rules[r].name,
                  c.visited_broken, percent(c.visited_broken, watch.decisions()), c.drawn_broken,
@@ -128,21 +127,21 @@ void run_rules_check(const CheckArguments& options) {
 
 void add_rules_check(ProgramCommand& rules) {
   auto options = std::make_shared<CheckArguments>();
-  ProgramCommand command = rules.subcommand(
-      "check", "Whether rules can be obeyed together, and whom they bind (exit 1 if not)");
-  options->rule_files.add(command, "Rule files (TOML)").required();
+  ProgramCommand command =
+      rules.subcommand("check", "check rules for conflicts and scope (exit code 1 on conflict)");
+  options->rule_files.add(command, "rule files (TOML)").required();
   command
       .option("--context", options->context,
-              "What the student sees: level or month (default: that of the configuration)")
+              "context class: level or month (default: from the configuration)")
       .one_of({"level", "month"});
   command.option("--policy", options->policy,
-                 std::string("Counts on real days how often it breaks them: ") + policy_help());
-  command.option("--prices", options->prices, "Minute file, for --policy");
+                 std::string("count violations by this policy on real days: ") + policy_help());
+  command.option("--prices", options->prices, "minute file, for --policy");
   options->price_input.add(command);
-  command.option("--split", options->split, "Days of --prices")
+  command.option("--split", options->split, "days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
-  command.flag("--json", options->json, "One JSON object a line and rule");
+  command.flag("--json", options->json, "JSON, one line per rule");
   options->common.add_all(command);
   command.footer(
       "Examples:\n"
@@ -150,7 +149,7 @@ void add_rules_check(ProgramCommand& rules) {
       "  bess-train rules check --rules my_rules.toml --policy teacher.bin --prices market.csv.gz");
   command.runs([options] {
     if (!options->policy.empty() && options->prices.empty()) {
-      fail("--policy needs days to look at: add --prices FILE");
+      fail("--policy needs --prices FILE");
     }
     run_rules_check(*options);
   });

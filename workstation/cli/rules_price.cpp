@@ -1,5 +1,5 @@
-// bess-train rules price: what each rule costs or earns a day, alone and all together, by
-// projecting a policy's decisions.
+// bess-train rules price: daily cost of each rule, alone and together, by projection of a policy's
+// decisions.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -30,12 +30,12 @@ struct PriceArguments {
   bool json = false;
 };
 
-/// The same days, each from the configured SoC and chained.
+/// Day-reset and carried-over evaluation of the same days.
 struct BothWays {
   Evaluation reset, carried;
 };
 
-/// What rules change in one way of counting; NaN of a rule that cannot be projected.
+/// Effect of rules in one accounting; NaN for a rule that cannot be projected.
 struct RuleGain {
   double profit = NAN, profit_without = NAN;
   PairedDifference gain{NAN, NAN};
@@ -75,8 +75,8 @@ class Pricing {
   void print_head(const BothWays& base, const std::string& name) const {
     if (options_.json) return;
     fmt::print(
-        "{} split, {} days; {} earns {:.1f} EUR a day per MWh of capacity, with the SoC carried "
-        "over {:.1f}.\nWhat rules change of it, day by day:\n"
+        "{} split, {} days; {} earns {:.1f} EUR per day per MWh of capacity, with the SoC carried "
+        "over {:.1f}.\nChange by each rule, EUR per day per MWh:\n"
         "{:<40}  {:>7} {:>6} {:>8}  {:>7} {:>6} {:>8}  {:>12}\n",
         options_.split, days_.size(), name, base.reset.profit_eur_per_day_per_mwh(),
         base.carried.profit_eur_per_day_per_mwh(), "rule", "reset", "s.e.", "by month", "carried",
@@ -94,10 +94,10 @@ class Pricing {
                error_text(carried.gain.standard_error_by_month, 2), 100 * changed_share);
   }
 
-  /// Of a rule that no single decision can be moved by.
+  /// For a rule that does not restrict single decisions.
   void print_unknown(const std::string& rule) const {
     if (options_.json) return print_json(rule, {}, {}, NAN);
-    fmt::print("{:<40}  no demand on single states: 'distil --rules' shows it\n", rule);
+    fmt::print("{:<40}  not on single states: see 'distil --rules'\n", rule);
   }
 
  private:
@@ -129,8 +129,8 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
   const std::shared_ptr<Policy> policy = make_policy(options.policy, market, config.battery);
   if (policy->sees_future()) {
     fail(
-        "--policy {}: it plans ahead without the rules; price them on a policy that does not see "
-        "the future",
+        "--policy {}: it plans with future prices and ignores the rules; choose a policy that does "
+        "not see the future",
         options.policy);
   }
   const BothWays base = pricing.run(*policy);
@@ -164,18 +164,18 @@ void run_rules_price(const PriceArguments& options) {
 void add_rules_price(ProgramCommand& rules) {
   auto options = std::make_shared<PriceArguments>();
   ProgramCommand command = rules.subcommand(
-      "price", "What each rule costs or earns a day, alone and together, before it is learnt");
-  options->rule_files.add(command, "Rule files (TOML)").required();
-  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+      "price", "estimate the daily cost of each rule, alone and together, before training");
+  options->rule_files.add(command, "rule files (TOML)").required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   command
       .option("--policy", options->policy,
-              std::string("Whose decisions are projected; one of ") + policy_help())
+              std::string("policy to which the rules are applied; one of ") + policy_help())
       .with_default();
-  command.option("--split", options->split, "Days of --prices that are traded")
+  command.option("--split", options->split, "traded days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
-  command.flag("--json", options->json, "One JSON object a line and rule");
+  command.flag("--json", options->json, "JSON, one line per rule");
   options->common.add_all(command);
   command.footer(
       "Examples:\n"

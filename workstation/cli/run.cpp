@@ -1,4 +1,4 @@
-// bess-train run: the whole chain into one folder, from prices to the weight header and the report.
+// bess-train run: whole chain in one folder, from prices to weight header and report.
 #include <fmt/core.h>
 
 #include <ctime>
@@ -28,7 +28,7 @@ struct RunArguments {
   bool json = false;
 };
 
-/// Made-up prices are of no day: their file says so.
+/// Simulated prices have no real date; their file says so.
 void warn_old_prices(const RunPlan& plan) {
   if (plan.record.prices == run_file::kSimulatedPrices) return;
   const std::string warning = old_prices(plan.series, std::time(nullptr));
@@ -38,10 +38,10 @@ void warn_old_prices(const RunPlan& plan) {
   fmt::print(stderr, "bess-train: warning: {}\n", warning);
 }
 
-/// Plans, claims the folder and goes through all stages.
+/// Plans, locks the folder and runs all stages.
 void run_one(const RunRequest& request, std::FILE* messages) {
   std::optional<FolderLock> lock;
-  if (fs::is_directory(request.out)) lock.emplace(request.out);  // before what it holds is judged
+  if (fs::is_directory(request.out)) lock.emplace(request.out);  // before its content is read
   RunPlan plan = plan_run(request);
   if (!plan.record.teacher_file.empty()) {
     Entries here = circumstances_of(plan.record.identity);
@@ -65,7 +65,7 @@ void run_single(const RunArguments& options) {
   if (options.json) {
     fmt::print("{}\n", summary_json(load_run_summary(folder)).line());
   } else {
-    fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n",
+    fmt::print("\n{}\n{}: report.html, student_weights.h and all other files of this run\n",
                with_run_folder(read_file(folder.file(run_file::kSummary)), folder.path),
                folder.path.string());
   }
@@ -76,22 +76,22 @@ void run_single(const RunArguments& options) {
 void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<RunArguments>();
   RunRequest& request = options->request;
-  ProgramCommand command = app.subcommand(
-      "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
-  command.option("--prices", request.prices, "Minute file; without it a built-in simulated year");
+  ProgramCommand command =
+      app.subcommand("run", "run the whole chain: train, correct, prove, export, evaluate, report");
+  command.option("--prices", request.prices, "minute file (default: a built-in simulated year)");
   request.price_input.add(command);
   request.day_ahead.add(command);
-  request.rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
-  command.option("--out", options->out, "Run folder").required();
+  request.rule_files.add(command, "rule files: operator rules to train and prove as well");
+  command.option("--out", options->out, "run folder").required();
   command.flag("--resume", request.resume,
-               "Go on with the folder's run, to the same bytes; what is not given is the folder's");
+               "resume the run in --out; options not given keep their value");
   command.option("--from-teacher", request.from_teacher,
-                 "Start at the correction, with this teacher: its file or its run's folder");
-  command.flag("--json", options->json, "One JSON object");
+                 "skip training; use this teacher (file or run folder)");
+  command.flag("--json", options->json, "one JSON object");
   request.common.add_all(command);
   command.footer(
-      "Each stage is written when it is done: after Ctrl-C, a full disk or a failed proof nothing "
-      "is lost.\n" +
+      "Each finished stage is saved: --resume continues after Ctrl-C, a full disk or a failed "
+      "proof.\n" +
       RunStages::help() +
       "Examples:\n"
       "  bess-train run --out runs/first\n"

@@ -1,4 +1,4 @@
-// bess-train runs: finished runs side by side.
+// bess-train runs: comparison of finished runs.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Options {
   std::string html;
 };
 
-/// A folder of several seeds stands for all of its runs.
+/// A folder of runs is replaced by its runs.
 std::vector<RunFolder> runs_in(const std::string& name) {
   std::vector<RunFolder> runs;
   if (!fs::exists(RunFolder{name}.record()) && fs::is_directory(name)) {
@@ -73,16 +73,16 @@ void compare(const Options& options) {
 
 void add_runs_commands(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  ProgramCommand runs = app.subcommand("runs", "Finished runs side by side: compare");
+  ProgramCommand runs = app.subcommand("runs", "finished runs: compare");
   runs.requires_subcommand();
-  ProgramCommand command = runs.subcommand(
-      "compare", "What the exported policy of each run earned, and what the runs differ in");
-  command.option("folders", options->folders, "Run folders, or folders of run folders").required();
-  command.flag("--json", options->json, "One JSON object a line and run");
+  ProgramCommand command =
+      runs.subcommand("compare", "compare results and settings of finished runs");
+  command.option("folders", options->folders, "run folders, or folders of run folders").required();
+  command.flag("--json", options->json, "JSON, one line per run");
   command.option("--html", options->html,
-                 "Instead a page with a table to sort, also of runs that failed or were stopped");
+                 "write a sortable HTML table instead, including failed and stopped runs");
   command.footer(
-      "Gains are over the first, day by day.\n"
+      "Gains are day-by-day differences to the first run.\n"
       "Examples:\n"
       "  bess-train runs compare runs/first runs/second\n"
       "  bess-train runs compare runs/seeds --json\n"

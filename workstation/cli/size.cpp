@@ -1,5 +1,4 @@
-// bess-train size: what a battery would earn, before it is bought: of what size, under which
-// contract.
+// bess-train size: earnings and payback by battery size and contract, before purchase.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -43,7 +42,7 @@ void require_files(const SizeArguments& options) {
   require_distinct(outputs, inputs);
 }
 
-/// The student of the best cell is made by the normal run: this is its configuration, and how.
+/// Writes the configuration of the best cell; returns the command that trains its student.
 std::string how_to_learn_it(const SizeArguments& options, const RunConfig& base,
                             const SizeCell& best) {
   const fs::path config = fs::path(options.out) / "best.toml";
@@ -97,20 +96,18 @@ void run_size(const SizeArguments& options) {
 
 void add_size_command(ProgramCommand& app) {
   auto options = std::make_shared<SizeArguments>();
-  ProgramCommand command = app.subcommand(
-      "size", "Before buying: powers x capacities x contracts, what each earns and pays back");
-  command
-      .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
+  ProgramCommand command =
+      app.subcommand("size", "compare battery sizes and contracts: earnings and payback");
+  command.option("--prices", options->prices, "minute files or downloads; periods may be separate")
       .required();
   options->price_input.add(command);
-  command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)")
-      .required();
-  command.option("--out", options->out, "Folder for table and page").required();
+  command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)").required();
+  command.option("--out", options->out, "folder for table and page").required();
   options->day_ahead.add(command);
-  command.flag("--json", options->json, "One JSON object");
+  command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);
   command.footer(
-      "The least plan: [size], power_kw = [5, 10], capacity_kwh = [10, 20].\n"
+      "Minimum plan: [size], power_kw = [5, 10], capacity_kwh = [10, 20].\n"
       "Examples:\n"
       "  bess-train size --prices 2024.csv.gz 2025.csv.gz --plan plan.toml --out sizes\n"
       "  bess-train size --prices 2024.csv.gz --day-ahead day_ahead.csv --plan outlook.toml --out "

@@ -1,4 +1,4 @@
-// bess-train sweep collect: what all tasks came to, as tables, and what is still to be done.
+// bess-train sweep collect: tables of finished tasks, and list of open tasks.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::size_t count_of(const std::vector<CollectedTask>& tasks, TaskState state) {
   return static_cast<std::size_t>(std::ranges::count(tasks, state, &CollectedTask::state));
 }
 
-/// Those without an output, why, and what runs them.
+/// Lists tasks without output, with cause and the commands that run them.
 void tell_holes(const SweepFolder& folder, const std::vector<CollectedTask>& tasks) {
   constexpr int kShown = 20;
   std::vector<int> holes;
@@ -36,7 +36,7 @@ void tell_holes(const SweepFolder& folder, const std::vector<CollectedTask>& tas
     holes.push_back(task.task.number);
     if (task.said.empty() || ++shown > kShown) continue;
     fmt::print("  task {}{} {}\n", task.task.number,
-               task.state == TaskState::kFailed ? "" : " has begun, and last said:", task.said);
+               task.state == TaskState::kFailed ? "" : " started; last message:", task.said);
   }
   if (holes.empty()) return;
   fmt::print("{} without an output; to run them:\n{}\nor on Slurm:\n{}",
@@ -66,7 +66,7 @@ void collect_sweep(const CollectArguments& options) {
     tell_holes(folder, tasks);
   }
   if (proved + unproved < tasks.size() && !options.partial) {
-    fail("{}: no tables of a part of the tasks without --partial", options.folder);
+    fail("{}: tasks are missing or failed: add --partial for tables of the others", options.folder);
   }
   const auto sites = collect_sites(folder, tasks, load_sites(folder));
   write_file(folder.path / "tasks.csv", tasks_csv(tasks));
@@ -79,10 +79,10 @@ void collect_sweep(const CollectArguments& options) {
 void add_sweep_collect(ProgramCommand& sweep) {
   auto options = std::make_shared<CollectArguments>();
   ProgramCommand command = sweep.subcommand(
-      "collect", "What the tasks came to: tasks.csv, settings.csv and sites.csv, in the folder");
-  command.option("folder", options->folder, "Folder of the sweep").required();
-  command.flag("--partial", options->partial, "Also when tasks are missing or failed");
-  command.flag("--json", options->json, "One JSON object: how many tasks are done");
+      "collect", "write tasks.csv, settings.csv and sites.csv from finished tasks");
+  command.option("folder", options->folder, "folder of the sweep").required();
+  command.flag("--partial", options->partial, "accept missing or failed tasks");
+  command.flag("--json", options->json, "one JSON object: number of tasks by state");
   command.footer("Example:\n  bess-train sweep collect sweeps/first --partial");
   command.runs([options] { collect_sweep(*options); });
 }

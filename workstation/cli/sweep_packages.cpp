@@ -1,4 +1,4 @@
-// bess-train sweep packages: a Debian package a class of sites, and what Ansible rolls them out by.
+// bess-train sweep packages: Debian packages by class of fleet members, and an Ansible inventory.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -25,20 +25,21 @@ struct PackagesArguments {
 void package_sweep(const PackagesArguments& options) {
   if (!fs::exists(fs::path(options.source) / "tools/package"))
     fail(
-        "{}: no tools/package there: packages are compiled from a checkout of the source; "
-        "--source DIR names yours",
+        "{}: no tools/package here: packages are compiled from a source checkout; name it with "
+        "--source DIR",
         options.source);
   const PackageRequest request{fs::canonical(options.source), fs::absolute(options.out),
                                options.architectures};
   const SweepFolder folder{options.folder};
   const auto tasks = collect_tasks(folder, load_tasks(folder));
   const std::vector<Site> sites = load_sites(folder);
-  if (sites.empty()) fail("{}: was planned without --sites: it has no classes", options.folder);
+  if (sites.empty())
+    fail("{}: planned without --sites, so it has no classes; plan it with --sites", options.folder);
   auto classes = classes_to_package(tasks, collect_sites(folder, tasks, sites), options.partial);
   for (PackagedClass& one : classes) {
     const bool is_new = package_class(folder, request, one);
     fmt::print("class {}: student {}, {}: {}{}\n", one.name, one.student,
-               counted(one.sites.size(), "site"), one.version, is_new ? "" : " is there already");
+               counted(one.sites.size(), "site"), one.version, is_new ? "" : " exists already");
     std::fflush(stdout);
   }
   const fs::path inventory = fs::path(options.out) / "inventory.yml";
@@ -51,18 +52,19 @@ void package_sweep(const PackagesArguments& options) {
 void add_sweep_packages(ProgramCommand& sweep) {
   auto options = std::make_shared<PackagesArguments>();
   ProgramCommand command = sweep.subcommand(
-      "packages", "A Debian package of bess-edge for each class of sites, and Ansible's inventory");
-  command.option("folder", options->folder, "Folder of the sweep").required();
-  command.option("--out", options->out, "Folder: inventory.yml, and one a class").required();
+      "packages",
+      "Debian packages of bess-edge by class of fleet members, and an Ansible inventory");
+  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("--out", options->out, "output folder for inventory.yml and one folder per class")
+      .required();
   command
       .option("--arch", options->architectures,
-              "One or more; most machines have the first (default arm64)")
+              "architectures; most machines have the first (default arm64)")
       .one_of({"arm64", "armhf", "amd64"});
-  command.option("--source", options->source, "A checkout of the source, with tools/package")
-      .with_default();
-  command.flag("--partial", options->partial, "Leave sites out that have no proved student");
+  command.option("--source", options->source, "source checkout, with tools/package").with_default();
+  command.flag("--partial", options->partial, "skip fleet members without a proved student");
   command.footer(
-      "A class whose packages are there, of the same student, is left alone.\n"
+      "Existing packages of the same student are kept.\n"
       "Example:\n  bess-train sweep packages sweeps/fleet --out debs --arch arm64 armhf --source "
       "~/bess");
   command.runs([options] { package_sweep(*options); });

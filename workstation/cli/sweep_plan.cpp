@@ -1,4 +1,4 @@
-// bess-train sweep plan: every task, validated and numbered, before the first begins.
+// bess-train sweep plan: validation and numbering of all tasks before the first starts.
 #include <fmt/core.h>
 
 #include <memory>
@@ -23,7 +23,7 @@ void tell_plan(const PlanArguments& options, const SweepPlan& plan) {
   fmt::print("{}: {}, {} new{}\n", options.out, counted(plan.tasks.size(), "task"), added,
              options.dry_run ? " (nothing was written)" : "");
   if (!plan.sites.empty()) {
-    fmt::print("{} share {} a seed and setting\n", counted(plan.sites.size(), "site"),
+    fmt::print("{} share {} per seed and setting\n", counted(plan.sites.size(), "site"),
                counted(plan.classes, "student"));
   }
   fmt::print("  first: {}\n  last:  {}\n", settings_shown(plan.tasks.front().settings),
@@ -47,33 +47,31 @@ void plan_now(PlanArguments& options) {
 void add_sweep_plan(ProgramCommand& sweep) {
   auto options = std::make_shared<PlanArguments>();
   SweepRequest& request = options->request;
-  ProgramCommand command =
-      sweep.subcommand("plan", "Number and validate every task; nothing is learnt yet");
+  ProgramCommand command = sweep.subcommand("plan", "create and validate the tasks; no training");
   command.option("plan", request.plan, "TOML file: [grid], [[list]]");
-  command.option("--prices", request.prices, "Minute file; the sweep keeps a copy").required();
+  command.option("--prices", request.prices, "minute file; the sweep keeps a copy").required();
   request.price_input.add(command);
-  command.option("--out", options->out, "Folder of the sweep").required();
-  command.option("--set", request.sets, "An axis of the grid: section.key=VALUE[,VALUE]");
-  command.option("--seeds", request.seeds, "Seeds 1 to this of every setting")
+  command.option("--out", options->out, "folder of the sweep").required();
+  command.option("--set", request.sets, "grid axis: section.key=VALUE[,VALUE]");
+  command.option("--seeds", request.seeds, "seeds per setting (1 to N)")
       .range(1, 10'000)
       .with_default();
-  command
-      .option("--folds", request.folds,
-              "Each month learnt from the 120 days before it, a task each")
+  command.option("--folds", request.folds, "one task per month, trained on the 120 days before")
       .one_of({"monthly"});
-  command.option("--sites", request.sites, "CSV of sites; those that learn alike share a student");
+  command.option("--sites", request.sites,
+                 "CSV of fleet members; those with equal settings share a student");
   command
       .option("--c-rate-step", request.c_rate_step_percent,
-              "Percent: sites whose C-rates lie within a step share a student")
+              "step of the C-rate, %; fleet members within one step share a student (default 0)")
       .range(0.0, 20.0)
       .needs("--sites");
-  request.rules.add(command, "Rule files of all tasks");
+  request.rules.add(command, "rule files of all tasks");
   command.option("--config", request.config,
-                 "TOML file that all tasks have in common; 'bess-train config' prints all keys");
-  command.flag("--full", request.full, "Whole runs with plain student, figures and page");
-  command.flag("--dry-run", options->dry_run, "Tell what would be planned, and write nothing");
+                 "TOML file of all tasks; 'bess-train config' prints all keys");
+  command.flag("--full", request.full, "complete runs with plain student, figures and page");
+  command.flag("--dry-run", options->dry_run, "print the plan without writing");
   command.footer(
-      "Planned again with more, what is new is appended and every task keeps its number.\n"
+      "A repeated plan appends new tasks; existing tasks keep their number.\n"
       "Examples:\n"
       "  bess-train sweep plan --prices market.csv.gz --out sweeps/first --set "
       "distil.fidelity=1,2 --seeds 6\n"

@@ -1,4 +1,4 @@
-// bess-train sweep run: the tasks on this machine, by GNU parallel in this program's place.
+// bess-train sweep run: tasks on this machine, by GNU parallel, which replaces this process.
 #include <unistd.h>
 
 #include <cerrno>
@@ -30,7 +30,7 @@ struct SweepRunArguments {
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execvp(arguments[0], arguments.data());
-  fail("GNU parallel cannot be run: {}; Debian has it as 'parallel'", std::strerror(errno));
+  fail("cannot run GNU parallel: {}; install it (Debian package 'parallel')", std::strerror(errno));
 }
 
 }  // namespace
@@ -38,14 +38,13 @@ struct SweepRunArguments {
 void add_sweep_run(ProgramCommand& sweep) {
   auto options = std::make_shared<SweepRunArguments>();
   ProgramCommand command =
-      sweep.subcommand("run", "Run what is to be done on this machine, by GNU parallel");
-  command.option("folder", options->folder, "Folder of the sweep").required();
-  command.option("--jobs", options->jobs, "Tasks at once, one core each (default: all cores)")
+      sweep.subcommand("run", "run open tasks on this machine with GNU parallel");
+  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("--jobs", options->jobs, "parallel tasks, one core each (default: all cores)")
       .range(1, 1024);
-  command.flag("--again", options->again,
-               "Look at every task, also at those that parallel knows as done");
+  command.flag("--again", options->again, "check every task, also those marked done");
   command.footer(
-      "Called again, it goes on, and tries again what failed.\n"
+      "Repeat the command to continue and to retry failed tasks.\n"
       "Example:\n  bess-train sweep run sweeps/first --jobs 4");
   command.runs([options] { become_parallel(*options); });
 }

@@ -1,4 +1,4 @@
-// bess-train sweep task: one task by its number, for any engine that can count.
+// bess-train sweep task: one task by its number, for schedulers.
 #include <fmt/core.h>
 
 #include <memory>
@@ -19,20 +19,18 @@ void run_now(const TaskArguments& options) {
   const bool is_new = run_task(folder, options.number);
   fmt::print("task {}: {}{}: {}\n", options.number,
              is_proved(folder, options.number) ? "proved" : "not proved",
-             is_new ? "" : ", complete already", folder.result(options.number).string());
+             is_new ? "" : ", already complete", folder.result(options.number).string());
 }
 
 }  // namespace
 
 void add_sweep_task(ProgramCommand& sweep) {
   auto options = std::make_shared<TaskArguments>();
-  ProgramCommand command =
-      sweep.subcommand("task", "One task by its number, as an engine calls it");
-  command.option("folder", options->folder, "Folder of the sweep").required();
-  command.option("number", options->number, "From 1").range(1, 999'999).required();
+  ProgramCommand command = sweep.subcommand("task", "run one task by number (for schedulers)");
+  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("number", options->number, "task number, from 1").range(1, 999'999).required();
   command.footer(
-      "May be called for any task, at any time, on any machine, as often as you like: an output "
-      "that is complete is left alone.\n"
+      "Can be repeated for any task on any machine: complete outputs are kept.\n"
       "Example:\n  bess-train sweep task sweeps/first 17");
   command.runs([options] { run_now(*options); });
 }

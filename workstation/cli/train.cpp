@@ -1,4 +1,4 @@
-// bess-train train: prices in, teacher out.
+// bess-train train: teacher from prices.
 #include "workstation/policy/rl/train.h"
 
 #include <fmt/core.h>
@@ -39,7 +39,7 @@ struct TrainArguments {
 };
 
 fs::path checkpoint_path(const fs::path& out) { return out.string() + ".checkpoint"; }
-/// All that the weights depend on; a checkpoint is good for one of these only.
+/// Inputs of the weights; a checkpoint is valid for one identity only.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                         const std::string& day_ahead) {
   std::string text = fmt::format("bess-train {}\nseed {}\nthreads {}\nprices {}\n", BESS_VERSION,
@@ -65,7 +65,7 @@ std::string result_json(const fs::path& out, const RunConfig& config, const Trai
   return json.line();
 }
 
-/// Trains with the configuration's seed, keeping a checkpoint beside `out` until the end.
+/// Trains with the configuration's seed; keeps a checkpoint next to `out` until the end.
 TrainResult train_one(const fs::path& out, const TrainArguments& options, const RunConfig& config,
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
@@ -81,13 +81,13 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
     }
   }
   if (interruption()) {
-    fmt::print(stderr, "{} holds the run: the same command with --resume goes on\n",
+    fmt::print(stderr, "{} saved: repeat the command with --resume to continue\n",
                checkpoint.path.string());
     throw Interrupted{};
   }
-  end_when_interrupted();  // all is saved
+  end_when_interrupted();  // everything is saved
   std::error_code error;
-  fs::remove(checkpoint.path, error);  // a leftover is only wasted space
+  fs::remove(checkpoint.path, error);  // a leftover only wastes space
   warn_narrow_support(config.train, result);
   return result;
 }
@@ -126,21 +126,20 @@ void run_train(const TrainArguments& options) {
 
 void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<TrainArguments>();
-  ProgramCommand command =
-      app.subcommand("train", "Make the teacher: C51, DQN or the stochastic program");
-  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  ProgramCommand command = app.subcommand("train", "train a teacher: C51, DQN or SDP");
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--out", options->out, "Teacher file to write").required();
-  command.option("--method", options->method, "c51 (default), dqn or sdp")
+  command.option("--out", options->out, "teacher file to write").required();
+  command.option("--method", options->method, "training method (default c51)")
       .one_of({"c51", "dqn", "sdp"});
-  command.option("--steps", options->steps, "Gradient steps").positive();
-  command.option("--curve-out", options->curve_out, "CSV of the learning curve");
-  command.flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights");
-  command.flag("--json", options->json, "One JSON object");
+  command.option("--steps", options->steps, "gradient steps (default: [train] steps)").positive();
+  command.option("--curve-out", options->curve_out, "output file for the training curve (CSV)");
+  command.flag("--resume", options->resume, "resume from OUT.checkpoint; the result is identical");
+  command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);
   command.footer(
-      "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
+      "Ctrl-C saves the best teacher and a checkpoint, and exits with 3; --resume continues.\n"
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
       "  bess-train train --prices market.csv.gz --method sdp --out program.bin\n"

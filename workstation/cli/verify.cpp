@@ -1,4 +1,4 @@
-// bess-train verify: the certificate of an integer student over the whole lattice.
+// bess-train verify: proof of an integer student over the whole lattice.
 #include <fmt/core.h>
 
 #include <memory>
@@ -76,7 +76,7 @@ void run_verify(const VerifyArguments& options) {
     fmt::print("{}", broken_rule_lines(student, market, config));
   }
   if (!std::holds_alternative<ProvedStudent>(verdict)) {
-    fail("{}: {} violations ({}); distil it again before it is exported", name,
+    fail("{}: {} violations ({}); repeat bess-train distil before exporting it", name,
          student.certificate.violations(), broken_text(demand_counts(student.certificate)));
   }
 }
@@ -85,18 +85,17 @@ void run_verify(const VerifyArguments& options) {
 
 void add_verify_command(ProgramCommand& app) {
   auto options = std::make_shared<VerifyArguments>();
-  ProgramCommand command = app.subcommand(
-      "verify", "Prove an integer student over every input it can see (exit 1 if it fails)");
+  ProgramCommand command =
+      app.subcommand("verify", "prove a student over every input (exit code 1 if the proof fails)");
   command.option("--student", options->student,
-                 "Student file; without it the array compiled into this program");
-  options->rule_files.add(command,
-                          "Rule files: counted in place of the rules that it was trained for");
+                 "student file (default: the array compiled into this program)");
+  options->rule_files.add(command, "rule files to check instead of the student's own");
   command.option("--prices", options->prices,
-                 "Minute file: tells how much of what is visited a broken rule touches");
+                 "minute file: also report how often visited states break a rule");
   options->price_input.add(command);
   command.flag("--exhaustive", options->exhaustive,
-               "Evaluate every state instead of proving boxes by bounds (minutes)");
-  command.flag("--json", options->json, "One JSON object");
+               "evaluate every state instead of proving boxes by bounds (takes minutes)");
+  command.flag("--json", options->json, "one JSON object");
   options->common.add_config(command);
   options->common.add_seed_and_threads(command);
   command.footer(

@@ -52,10 +52,10 @@ class Readmes:
 
     @functools.cache
     def subcommands(self, *command):
-        """Of CLI11's list."""
+        """Of CLI11's lists, one for each group."""
         text = self.help(*command)
-        listed = re.search(r"^subcommands:\s*\n((?:  .*\n)+)", text, re.M | re.I)
-        return set(re.findall(r"^  ([a-z][a-z-]*)", listed[1], re.M)) if listed else set()
+        listed = re.findall(r"^[\w -]*commands:\s*\n((?:  .*\n)+)", text, re.M | re.I)
+        return set(re.findall(r"^  ([a-z][a-z-]*)", "".join(listed), re.M))
 
     @functools.cache
     def script_text(self, script):

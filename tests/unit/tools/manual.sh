@@ -29,7 +29,7 @@ pages=0
 for program in "$@"; do
   check_page "$program"
   pages=$((pages + 1))
-  for sub in $("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'); do
+  for sub in $("$program" --help | sed -n '/^[A-Z].*commands:$/,/^$/s/^  \([a-z]\+\) .*/\1/p'); do
     check_page "$program" "$sub"
     pages=$((pages + 1))
   done

@@ -13,19 +13,20 @@ constexpr int kThreadsMax = 256;
 }
 
 void CommonOptions::add_config(ProgramCommand& command) {
-  command.option("--config", config_path, "TOML file; 'bess-train config' prints all keys");
+  command.option("--config", config_path,
+                 "configuration file (TOML); 'bess-train config' prints all keys");
 }
 
 void CommonOptions::add_seed_and_threads(ProgramCommand& command) {
-  command.option("--seed", seed, "Seed of every random draw (default 1)").non_negative();
-  command.option("--threads", threads, "Default: all cores").range(1, kThreadsMax);
+  command.option("--seed", seed, "random seed (default 1)").non_negative();
+  command.option("--threads", threads, "threads (default: all cores)").range(1, kThreadsMax);
 }
 
 void CommonOptions::add_market(ProgramCommand& command) {
-  command.option("--delay", delay_min, "Observation delay in minutes, 0 to 5 (default 1)")
-      .range(0, 5);
-  command.option("--settlement", settlement, "minute (default) or step").one_of({"minute", "step"});
-  command.option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
+  command.option("--delay", delay_min, "observation delay, minutes (default 1)").range(0, 5);
+  command.option("--settlement", settlement, "settlement per minute or per step (default minute)")
+      .one_of({"minute", "step"});
+  command.option("--initial-soc", initial_soc_frac, "initial SoC, 0 to 1 (default 0.5)");
 }
 
 RunConfig CommonOptions::resolve(ContextKind unless_said) const {
@@ -59,7 +60,7 @@ std::string checked_base_url(std::string url, const std::string& option) {
   const long port = has_port ? std::strtol(host.c_str() + colon + 1, nullptr, 10) : 1;
   if (scheme == 0 || url.size() <= scheme || host.empty() || colon == 0 || port < 1 ||
       port > 65'535 || url.find_first_of(" \t\r\n") != url.npos) {
-    fail("{} \"{}\" is not a web address; write it as {}", option, one_line(given, 80),
+    fail("{} \"{}\" is not a web address; use the form {}", option, one_line(given, 80),
          kEliaBaseUrl);
   }
   return url;

@@ -1,5 +1,4 @@
-// Options that several subcommands share, and what they resolve to: one place for their names and
-// ranges.
+// Options shared by several subcommands, with their names and ranges.
 #pragma once
 
 #include <optional>
@@ -27,13 +26,13 @@ struct CommonOptions {
     add_seed_and_threads(command);
   }
 
-  /// The configuration file with the command line's options on top.
+  /// Configuration file overlaid with the command line's options.
   [[nodiscard]] RunConfig resolve(ContextKind unless_said = ContextKind::kLevel) const;
-  /// The same on top of `config`, whatever file is named.
+  /// The same on top of `config`; ignores --config.
   [[nodiscard]] RunConfig resolve(RunConfig config) const;
 };
 
-/// The root of a web API without its last slash; throws UserError naming `option` when it is none.
+/// Root of a web API without a trailing slash. Throws UserError naming `option` if malformed.
 std::string checked_base_url(std::string url, const std::string& option);
 
 }  // namespace bess

@@ -34,7 +34,7 @@ std::string built_in_market_provenance() {
 
 void DayAheadInput::add(ProgramCommand& command) {
   command.option("--day-ahead", path_,
-                 "Day-ahead prices to plan on: a file of 'prices fetch --day-ahead', "
+                 "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
                  "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
 }
 
@@ -62,7 +62,7 @@ void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings
   std::vector<Finding> found = joined.findings;
   for (Finding& finding : implausible_day_ahead(joined.series)) found.push_back(std::move(finding));
   std::vector<std::string> contents;
-  contents.reserve(files.size());  // the texts are views of them
+  contents.reserve(files.size());  // keeps the views of `texts` valid
   std::vector<PriceText> texts;
   for (const std::string& file : files) {
     contents.push_back(!found.empty() && std::filesystem::is_regular_file(file) ? read_file(file)
@@ -77,7 +77,7 @@ void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings
 
 namespace {
 
-/// Fewer days of a month say nothing of how it was meant to be split.
+/// A month with fewer days is not reported.
 constexpr int kDaysWorthNaming = 5;
 
 std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
@@ -104,14 +104,12 @@ std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
 
 void PriceInput::add(ProgramCommand& command) {
   command
-      .option(
-          "--accept", accept_,
-          "Findings about the prices that are meant, NAME[,NAME]: a warning instead of an error")
+      .option("--accept", accept_, "price checks to downgrade from errors to warnings, NAME[,NAME]")
       .check([](const std::string& list) -> std::string {
         try {
           static_cast<void>(AcceptedFindings(list));
         } catch (const UserError& error) {
-          const std::string what = error.what();  // the option is named in front of it
+          const std::string what = error.what();  // CLI11 adds the option name
           constexpr std::string_view kOption = "--accept: ";
           return what.starts_with(kOption) ? what.substr(kOption.size()) : what;
         }
@@ -146,7 +144,7 @@ void judge_market(const MinuteSeries& series, std::vector<Finding> found,
   for (Finding& finding : implausible(series)) found.push_back(std::move(finding));
   if (found.empty()) return;
   std::vector<std::string> contents;
-  contents.reserve(files.size());  // the texts are views of them
+  contents.reserve(files.size());  // keeps the views of `texts` valid
   std::vector<PriceText> texts;
   for (const std::string& file : files) {
     contents.push_back(std::filesystem::is_regular_file(file) ? read_file(file) : std::string());
@@ -162,7 +160,7 @@ void warn_untrained_months(const MarketSteps& market, bool learns_by_month) {
              "bess-train: warning: no training day (local days 1 to 20) in {}{}: {} "
              "[untrained-months]\n",
              learns_by_month ? "months " : "", names,
-             learns_by_month ? "a student by month learns nothing of them; give a whole year or "
+             learns_by_month ? "a student by month is not trained for them; use a whole year or "
                                "[train] context = \"level\""
                              : "these days only validate and test");
 }

@@ -1,5 +1,5 @@
-// Prices as commands take them, minutes and day-ahead: built-in or from files, checked, with
-// --accept for findings that are intended.
+// Price inputs of commands, minute and day-ahead: built-in or from files, checked, with --accept
+// for intended findings.
 #pragma once
 
 #include <memory>
@@ -17,15 +17,15 @@
 
 namespace bess {
 
-// The market of a run that was given no prices: one local year, so that every month is seen.
+// Default market of a run: one local year, so that every month occurs.
 
 inline constexpr const char* kBuiltInMarketName = "built-in market";
 
 MinuteSeries built_in_market();
-/// What its minute file says about it.
+/// Provenance line of its minute file.
 std::string built_in_market_provenance();
 
-/// How the provenance of made-up prices begins.
+/// Start of the provenance of simulated prices.
 inline constexpr const char* kSimulatedProvenance = "Simulated, not real";
 
 class PriceInput {
@@ -45,23 +45,22 @@ class PriceInput {
   std::string accept_;
 };
 
-/// The prices as decisions; what is wrong with them as a whole is told by `name`, that of their
-/// file.
+/// Prices as market steps; errors name the file `name`.
 MarketSteps market_of(const MinuteSeries& series, const MarketOptions& options,
                       const std::string& name);
 
-/// Judges what was made of `files` by its prices and by what was found while joining; rows are
-/// named by reading the files once more, which happens only when there is something to say.
+/// Checks the joined prices and the findings of the join. Reads the files again to name rows, only
+/// if there are findings.
 void judge_market(const MinuteSeries& series, std::vector<Finding> found,
                   const std::vector<std::string>& files, const AcceptedFindings& accepted);
 
-/// One line on the standard error when months have no training day: months of the year when the
-/// student learns by month, otherwise months of these prices.
+/// Warning on stderr when months have no training day: months of the year if the student's context
+/// is the month, else months of these prices.
 void warn_untrained_months(const MarketSteps& market, bool learns_by_month);
 
-// --day-ahead: the outlook that policies may plan on, read, judged and given to the market.
+// Option --day-ahead: day-ahead prices, checked and attached to the market.
 
-/// Judged by itself and by what was settled: prices filed under the wrong day are look-ahead.
+/// Checked alone and against settled prices: prices filed under the wrong day would be look-ahead.
 /// Throws UserError.
 std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& path,
                                                           const MinuteSeries& settled,
@@ -75,11 +74,11 @@ class DayAheadInput {
   /// Declares --day-ahead.
   void add(ProgramCommand& command);
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// What is learnt where no configuration says otherwise: by outlook when prices are given.
+  /// Default context: outlook when day-ahead prices are given.
   [[nodiscard]] ContextKind context_unless_said() const {
     return path_.empty() ? ContextKind::kLevel : ContextKind::kOutlook;
   }
-  /// Nothing when none is given, else read_day_ahead().
+  /// Null when none is given, else read_day_ahead().
   [[nodiscard]] std::shared_ptr<const DayAheadPublication> read(const MinuteSeries& settled,
                                                                 const AcceptedFindings& accepted,
                                                                 int published_min) const;
@@ -88,8 +87,7 @@ class DayAheadInput {
   std::string path_;
 };
 
-/// Judges what was joined of `files`, writes it and says what it is. Throws UserError, and nothing
-/// is written.
+/// Checks, writes and describes the prices joined from `files`. Throws UserError before writing.
 void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings& accepted,
                             const std::vector<std::string>& files, const std::string& provenance,
                             const std::string& out);

@@ -258,7 +258,7 @@ class Answers(unittest.TestCase):
     def commands_with_json(self, path):
         text = self.bess([*path, "--help"])
         found = {" ".join(path)} if re.search(r"^\s+--json", text, re.M) else set()
-        part = re.search(r"^Subcommands:\n(.*)", text, re.S | re.M)
+        part = re.search(r"^[A-Z][\w -]*commands:\n(.*)", text, re.S | re.M)
         for name in re.findall(r"^  ([a-z-]+)\s", part[1] if part else "", re.M):
             found |= self.commands_with_json([*path, name])
         return found
