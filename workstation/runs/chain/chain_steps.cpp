@@ -22,7 +22,7 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
   std::string text =
       fmt::format("bess-train {} {} on {}, by {}", BESS_VERSION, method_name(options.method),
                   std::filesystem::path(prices).filename().string(), context_name(options.context));
-  if (options.method == Method::kSdp) return text;  // there is no chance in it, and no step
+  if (options.method == Method::kSdp) return text;  // deterministic, without steps
   if (options.residual) {
     text += fmt::format(" on the stochastic program, {} atoms to +-{:.0f} EUR/h", options.atoms,
                         double{result.teacher.support.v_max} / double{kRewardScale});
@@ -33,12 +33,12 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
 
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result) {
   constexpr double kEdgeMassMax = 0.01;
-  constexpr double kResidualEdgeMassMax = 0.005;  // its support is measured, not given
+  constexpr double kResidualEdgeMassMax = 0.005;  // its support is measured, not configured
   if (options.method != Method::kC51 || result.curve.empty()) return;
   const double edge_mass_frac = result.curve.back().edge_mass_frac;
   if (edge_mass_frac <= (options.residual ? kResidualEdgeMassMax : kEdgeMassMax)) return;
   fmt::print(stderr,
-             "bess-train: warning: {:.1f} % of the value distribution sits on the end atoms; {}\n",
+             "bess-train: warning: {:.1f} % of the value distribution is on the end atoms; {}\n",
              100 * edge_mass_frac,
              options.residual ? "lower [train] residual_gamma"
                               : "widen [train] value_min_eur_per_h and value_max_eur_per_h");

@@ -1,4 +1,4 @@
-// Steps of the chain that `run` shares with the single subcommands.
+// Chain steps shared by `run` and the single-stage commands.
 #pragma once
 
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace bess {
 
-/// One line for the files made from this training.
+/// Provenance line of the files made from this training.
 std::string training_provenance(const std::string& prices, const TrainOptions& options,
                                 const TrainResult& result);
-/// One line on stderr when the support of C51 is too narrow for the values met.
+/// Warning on stderr when the support of C51 is too narrow for its values.
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result);
 
-/// CRC-32 of both columns: a checkpoint or a fold belongs to the prices that it was made from.
+/// CRC-32 of both price columns, which identifies the prices of a checkpoint or fold.
 std::uint32_t prices_checksum(const MinuteSeries& series);
 /// "crc32 1234abcd, 525600 minutes from 2023-01-01T00:00:00Z"
 std::string prices_hash(const MinuteSeries& series);
-/// Of a stretch of them: the checksum is of the whole.
+/// For a part of the prices; the checksum covers the whole.
 std::string prices_hash(std::uint32_t checksum, std::int64_t minutes, std::int64_t from_utc_s);
 
-/// A student that was not proved, whatever was tried.
+/// The student could not be proved.
 struct ProofFailed : UserError {
   using UserError::UserError;
 };
-/// The proved student of `result`. Throws ProofFailed with what describe_failed_proof says.
+/// Proved student of `result`. Throws ProofFailed with the text of describe_failed_proof.
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
                                    const std::string& where = "", const std::string& note = "");
 

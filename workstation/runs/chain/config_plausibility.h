@@ -1,5 +1,5 @@
-// Whether what lies within every key's range can be meant: watts written as megawatts, an
-// efficiency that no battery has, a training of years.
+// Plausibility checks of a configuration across keys: values in MW instead of W, unrealistic
+// efficiencies, training times of years.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace bess {
 
-/// Throws UserError naming the keys when power, capacity or their ratio cannot be meant; prints a
-/// warning about efficiencies that are unusual. `name` is the file's.
+/// Throws UserError naming the keys when power, capacity or their ratio is implausible; warns about
+/// unusual efficiencies. `name` is the file's.
 void require_plausible(const RunConfig& config, const std::string& name);
 
-/// What a network's training is likely to take on its cores; 0 for the stochastic program.
+/// Expected training time of a network, h; 0 for the SDP.
 double training_hours(const TrainOptions& options);
-/// One line on stderr, before anything starts, when that is more than an hour.
+/// Warning on stderr when it is more than an hour.
 void warn_long_training(const RunConfig& config);
 
 }  // namespace bess

@@ -22,9 +22,9 @@ namespace bess {
 namespace {
 
 constexpr int kExitInterrupted = 3;
-constexpr int kExitInterruptedTwice = 130;  // what a shell gives a program that Ctrl-C killed
+constexpr int kExitInterruptedTwice = 130;  // shell convention for a program killed by Ctrl-C
 
-char note_text[512] = "";  // a handler may not allocate
+char note_text[512] = "";  // a signal handler must not allocate
 std::atomic<std::size_t> note_size{0};
 
 void say(std::string_view text) {
@@ -62,7 +62,7 @@ std::atomic<bool>& interruption() {
 }
 
 void watch_interruption() {
-  interruption();  // constructed before a signal can come
+  interruption();  // constructed before the first signal
   handle_with([](int) {
     if (interruption().exchange(true)) end_now(kExitInterruptedTwice);
   });
@@ -88,20 +88,19 @@ void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
 namespace {
 
 [[noreturn]] void at_work(const std::filesystem::path& place) {
-  fail("{}: another bess-train is at work here; wait for it, or give another --out",
-       place.string());
+  fail("{}: in use by another bess-train; wait for it, or choose another --out", place.string());
 }
 
-/// A file system that gives no lock, as many a cluster's: whoever works there must know.
+/// For file systems without locks, as on many clusters.
 void warn_unlocked(const std::filesystem::path& place) {
-  fmt::print(stderr,
-             "bess-train: warning: {}: its file system gives no lock ({}): nothing keeps another "
-             "bess-train from working here at the same time [no-lock]\n",
-             place.string(), std::strerror(errno));
+  fmt::print(
+      stderr,
+      "bess-train: warning: {}: its file system has no locks ({}): do not run another bess-train "
+      "here at the same time [no-lock]\n",
+      place.string(), std::strerror(errno));
 }
 
-/// The lock file of a program that ended is taken away by it: a lock on what is no longer there is
-/// none.
+/// A program deletes its lock file when it ends; a lock on a deleted file is not valid.
 bool is_still_there(int fd, const std::filesystem::path& path) {
   struct stat held {};
   struct stat named {};
@@ -122,7 +121,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder, Of what)
 FileLock::FileLock(const std::filesystem::path& file) : path_(file.string() + ".lock") {
   do {
     fd_.emplace(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
-    if (fd_->get() < 0) return;  // whether it can be written is asked elsewhere
+    if (fd_->get() < 0) return;  // write permission is checked elsewhere
     if (flock(fd_->get(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) at_work(file);
       warn_unlocked(file);

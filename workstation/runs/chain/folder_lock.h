@@ -1,5 +1,4 @@
-// Locks on a folder or a file, released with the program however it ends and without a file left
-// behind; and interruption by a signal.
+// Locks on folders and files, released when the program ends; and interruption by signals.
 #pragma once
 
 #include <atomic>
@@ -13,43 +12,41 @@
 
 namespace bess {
 
-// Ctrl-C and SIGTERM. Whatever is written appears complete or not at all, so that a command that
-// has nothing to save ends at once; one that has is told, and a second signal ends it at once too.
+// Ctrl-C and SIGTERM. Files appear complete or not at all. A command without state to save ends
+// immediately; others see a flag, and a second signal ends them immediately.
 
-/// From here on they end the program at once, with exit code 3: files being written are removed,
-/// and `note` is said, one line on what is kept and how to go on.
+/// From now on, signals end the program immediately with exit code 3, remove unfinished files and
+/// print `note`: one line on what is kept and how to continue.
 void end_when_interrupted(const std::string& note = "");
 
-/// From here on the first only raises the flag: a loop looks at it, saves what it has and returns.
-/// The second ends the program at once, with exit code 130.
+/// From now on, the first signal only sets the flag: a loop polls it, saves its state and returns.
+/// The second ends the program immediately with exit code 130.
 void watch_interruption();
 std::atomic<bool>& interruption();
 
-/// The flag as a question. Watching begins when it is asked for the first time: before that a loop
-/// has nothing to save.
+/// The flag as a function. Its first call starts watching: before that a loop has no state to save.
 std::function<bool()> watched_from_the_first_look();
 
-/// Returns within a tenth of a second once interrupted.
+/// Returns within 0.1 s after an interruption.
 void sleep_unless(double seconds, const std::atomic<bool>& interrupted);
 
 class FolderLock {
  public:
-  /// Whoever works in the whole folder, and whoever writes one file of it.
+  /// Exclusive use of the folder, or shared use by writers of single files.
   enum class Of : std::uint8_t { kFolder, kOneFile };
 
-  /// Throws UserError when another program holds it: one in the whole folder excludes all others.
-  /// On a file system without locks it warns, and locks nothing.
+  /// Throws UserError when another program owns it; kFolder excludes all others. Only warns on a
+  /// file system without locks.
   explicit FolderLock(const std::filesystem::path& folder, Of what = Of::kFolder);
 
  private:
   FileDescriptor fd_;
 };
 
-/// One program at a time makes a file: the lock is a file NAME.lock beside it, which goes with the
-/// lock.
+/// Lock of one output file by NAME.lock in its folder, which is deleted with the lock.
 class FileLock {
  public:
-  /// Throws UserError when another program holds it.
+  /// Throws UserError when another program owns it.
   explicit FileLock(const std::filesystem::path& file);
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;

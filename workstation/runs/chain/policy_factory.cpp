@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kCompiled = "compiled";
 
-/// Keeps a model alive as long as the policy that reads it.
+/// Policy that owns its model.
 template <typename Model, typename ModelPolicy, typename View>
 std::shared_ptr<Policy> owning(Model model, View view) {
   struct Holder {
@@ -41,7 +41,7 @@ std::shared_ptr<Policy> model_policy(const std::string& path, const MarketSteps*
   const auto require_day_ahead = [&](const ContextClasses& context) {
     if (!context.is_outlook() || market == nullptr || market->day_ahead != nullptr) return;
     fail(
-        "{}: decides by the outlook: give day-ahead prices, with --day-ahead to evaluate or "
+        "{}: decides by the outlook and needs day-ahead prices: add --day-ahead to evaluate or "
         "backtest",
         path);
   };
@@ -63,15 +63,14 @@ std::string policy_help() {
   for (const Baseline& baseline : baselines()) {
     text += baseline.name + (baseline.help.empty() ? "" : " (" + baseline.help + ")") + ", ";
   }
-  return text +
-         "rbc:LOW:HIGH, compiled (the array in this program), or a teacher's or student's file";
+  return text + "rbc:LOW:HIGH, compiled (the array in this program), or a teacher or student file";
 }
 
 void require_policies(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (name == kCompiled || find_baseline(name) != nullptr) continue;
     const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
-    if (is_pipe) continue;  // it can be read once
+    if (is_pipe) continue;  // can be read only once
     name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, nullptr);
   }
 }
@@ -80,7 +79,7 @@ void require_outlook(const std::vector<std::string>& names, const std::string& d
   for (const std::string& name : names) {
     const Baseline* baseline = find_baseline(name);
     if (!day_ahead.empty() || baseline == nullptr || !baseline->is_for(kNeedsDayAhead)) continue;
-    fail("--policy {} plans on day-ahead prices: give their file with --day-ahead", name);
+    fail("--policy {} plans on day-ahead prices: add their file with --day-ahead", name);
   }
 }
 

@@ -20,7 +20,7 @@ std::string rule_count_lines(const Certificate& certificate) {
     const RuleCount& count = certificate.rule_counts()[r];
     const std::string found =
         count.binds_student ? fmt::format("{} violations in {}", count.violations, count.states)
-                            : "the guard's alone";
+                            : "enforced by the guard only";
     text += fmt::format("  rule \"{}\", {}: {}\n", rule.name, rule.text(), found);
   }
   return text;
@@ -72,7 +72,7 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
   for (std::size_t r = 0; r < broken.rules.size(); ++r) {
     if (!can_be_projected(broken.rules[r])) {
       text += fmt::format(
-          "  \"{}\" is about pairs of states: no single decision shows that it is broken\n",
+          "  \"{}\" compares pairs of states: it cannot be counted in single decisions\n",
           broken.rules[r].name);
       continue;
     }

@@ -1,4 +1,4 @@
-// The option --rules of several commands, and what a certificate and a student say about rules.
+// Option --rules, and the results of a proof for rules.
 #pragma once
 
 #include <string>
@@ -12,21 +12,21 @@
 
 namespace bess {
 
-// What a proof found of an operator's rules, in lines and in JSON.
+// Results of a proof for operator rules, as text and JSON.
 
-/// A line a rule: violations, or that it is the guard's alone. Empty without rules.
+/// One line per rule: violations, or that only the guard enforces it. Empty without rules.
 std::string rule_count_lines(const Certificate& certificate);
 
-/// "rules": a list of objects; nothing without rules.
+/// Adds the certificate, with "rules" as a list of objects.
 void add_certificate(const Certificate& certificate, Json& json);
 
-/// Of each broken rule the worst state, and the share of decisions on the days of `market` that
-/// break it, the SoC carried over; without days there is no share.
+/// For each broken rule the worst state and, with days in `market`, the share of decisions that
+/// break it (SoC carried over).
 std::string broken_rule_lines(const StudentFile& student, const MarketSteps& market,
                               const RunConfig& config);
 
-/// Into a distillation: the rules, with their thresholds in place of the configured ones. Throws
-/// UserError when they contradict each other.
+/// Adds rules to a distillation; their thresholds replace the configured ones. Throws UserError
+/// when rules conflict.
 void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind);
 
 class RuleFiles {
@@ -35,9 +35,9 @@ class RuleFiles {
   ProgramOption add(ProgramCommand& command, const std::string& help);
 
   [[nodiscard]] bool given() const { return !paths_.empty(); }
-  /// None when the option was not given.
+  /// Empty without the option.
   [[nodiscard]] RuleSet read() const;
-  /// use_rules() of read(); nothing when the option was not given.
+  /// use_rules() of read(); no effect without the option.
   void apply(RunConfig& config, ContextKind kind) const;
 
  private:

@@ -25,7 +25,7 @@ struct Key {
   std::function<std::string()> get;
 };
 
-/// The list of keys, bound to the fields of one configuration.
+/// Keys bound to the fields of one configuration.
 class KeyList {
  public:
   explicit KeyList(RunConfig& config) { list(config); }
@@ -38,7 +38,7 @@ class KeyList {
               const char* comment) {
     keys_.push_back({section_, name, use, fmt::format("{} ({:g} .. {:g})", comment, low, high),
                      [=, &field](TomlTable& table) { table.number(name, field, low, high); },
-                     [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0: never -0
+                     [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0 avoids -0
   }
   template <typename Integer>
   void integer(const char* name, KeyUse use, Integer& field, std::int64_t low, std::int64_t high,
@@ -82,92 +82,96 @@ void KeyList::list(RunConfig& c) {
   integer("observation_delay_min", kLearning, c.market.observation_delay_min, 0, 5,
           "newest row visible at minute t is t - delay; 0 is the paper's ideal");
   choice("settlement", kLearning, c.market.settlement, {"minute", "step"},
-         "pay each minute at its own quarter-hour, or the step at the one it starts in");
-  integer(
-      "day_ahead_published_min", kEvaluation, c.market.day_ahead_published_min, 0, 1439,
-      "local minute of the day before from which day-ahead prices count as known; 780 is 13:00");
+         "settlement per minute, or per step at the quarter-hour of its start");
+  integer("day_ahead_published_min", kEvaluation, c.market.day_ahead_published_min, 0, 1439,
+          "local minute of the previous day at which day-ahead prices are published; 780 is 13:00");
 
   section("battery");
   for (const BatteryKey& key : kBatteryKeys) {
     number(key.name, kLearning, key.of(c.battery), key.low, key.high, key.comment);
   }
   number("wear_eur_per_mwh", kLearning, c.battery.wear_eur_per_mwh, 0, 1000,
-         "cost of throughput, charged and discharged; every profit and reward is net of it");
+         "wear cost of energy charged or discharged, EUR/MWh; all profits are net of it");
   number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,
-         "equivalent full cycles a local day, then no further order that day; 0 is no limit");
+         "full cycles per local day, then idle until midnight; 0 is no limit");
   number("fade_percent_per_1000_cycles", kEvaluation, c.battery.fade_percent_per_1000_cycles, 0,
-         100,
-         "of capacity, as [ageing] cycle_percent_per_1000 of bess-train size; no plan knows it");
+         100, "capacity fade per 1000 full cycles, %; planners ignore it");
   number("minimum_run_min", kEvaluation, c.battery.minimum_run_min, 0, 240,
-         "that charging or discharging is kept, whatever is decided; no plan knows it");
-  number("initial_soc", kLearning, c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
+         "minimum run time of a direction, min; planners ignore it");
+  number("initial_soc", kLearning, c.initial_soc_frac, 0, 1,
+         "SoC at the start of each evaluated day");
 
   section("costs");
   TradingCosts& costs = c.battery.costs;
   number("import_adder_eur_per_mwh", kLearning, costs.import_adder_eur_per_mwh, 0, 1000,
-         "on top of the price of what is charged: grid fee, taxes, supplier");
+         "surcharge on charged energy, EUR/MWh: grid fee, taxes, supplier");
   number("import_percent", kLearning, costs.import_percent, 0, 100,
-         "the same as a share of the price's size: at -100 and 5 %, one is paid 95");
+         "surcharge in % of the absolute price: at -100 and 5 %, the receipt is 95");
   number("export_fee_eur_per_mwh", kLearning, costs.export_fee_eur_per_mwh, 0, 1000,
-         "off the price of what is discharged: grid fee, supplier");
+         "fee on discharged energy, EUR/MWh: grid fee, supplier");
   number("export_percent", kLearning, costs.export_percent, 0, 100,
-         "the same as a share of the price's size: at -100 and 5 %, one pays 105");
+         "fee in % of the absolute price: at -100 and 5 %, the payment is 105");
 
   section("train");
   choice("method", kLearning, c.train.method, {"c51", "dqn", "sdp"},
-         "distributional or plain Q-learning, or the stochastic program, exact for its model");
+         "distributional or plain Q-learning, or the stochastic program (SDP)");
   choice("context", kLearning, c.train.context, {"month", "level", "outlook"},
-         "the student's third input: local month, class of the trailing price level, or of the "
-         "break-even price of a plan on day-ahead prices: what it is with --day-ahead");
+         "the student's third input: local month, class of the trailing price level, or class of "
+         "the break-even price of a day-ahead plan (default with --day-ahead)");
   choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
-         "experience: one price move serves every SoC and action, or epsilon-greedy days");
+         "experience: each price move for every SoC and action, or epsilon-greedy days");
   choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},
-         "midnight is a truncation, or the end");
+         "midnight truncates the episode, or ends it");
   integer("steps", kLearning, c.train.steps, 1, 10'000'000, "gradient steps");
-  integer("batch_size", kLearning, c.train.batch_size, 1, 1 << 20, "transitions a step");
-  number("learning_rate", kLearning, c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
-  number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1, "at the end of a cosine");
-  number("gamma", kLearning, c.train.gamma, 0, 0.999999, "discount a step");
+  integer("batch_size", kLearning, c.train.batch_size, 1, 1 << 20, "transitions per gradient step");
+  number("learning_rate", kLearning, c.train.learning_rate, 1e-7, 1,
+         "initial learning rate of Adam");
+  number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1,
+         "final learning rate of the cosine schedule");
+  number("gamma", kLearning, c.train.gamma, 0, 0.999999, "discount per step");
   boolean("residual", kLearning, c.train.residual,
-          "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
+          "c51, dqn: learn a residual on the SDP, initialised to zero");
   number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
-         "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
+         "discount per step of the residual, instead of gamma");
   number("tau", kLearning, c.train.tau, 1e-6, 1,
          "target <- tau * online + (1 - tau) * target, each step");
-  integer("atoms", kLearning, c.train.atoms, 2, 1001, "of the value distribution");
-  number("value_min_eur_per_h", kLearning, c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
-  number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
-  number("mean_weight", kLearning, c.train.mean_weight, 0, 1000,
-         "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
+  integer("atoms", kLearning, c.train.atoms, 2, 1001, "atoms of the value distribution");
+  number("value_min_eur_per_h", kLearning, c.train.value_min_eur_per_h, -1e9, 1e9,
+         "lowest atom, EUR/h");
+  number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9,
+         "highest atom, EUR/h");
+  number(
+      "mean_weight", kLearning, c.train.mean_weight, 0, 1000,
+      "c51: weight of the squared error of the mean, added to the cross-entropy; 0 is plain C51");
   number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,
-         "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
-         "by heart");
+         "standard deviation of a random quarter-hour shift, against overfitting");
   number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
          "the same for the context class");
   number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
-         "of the averaged weights that are validated and kept");
+         "decay of the averaged weights that are validated and kept");
   integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");
 
   section("distil");
   choice("method", kLearning, c.distil.method, {"construction", "layer"},
-         "monotone by the signs of its weights, or the paper's optimisation layer");
+         "monotone by weight signs, or the paper's optimisation layer");
   number("fidelity", kLearning, c.distil.fidelity, 0, 100,
-         "construction: following the teacher's every choice, beside losing no money");
+         "construction: weight of imitating the teacher relative to regret");
   number("level_shift_eur_per_mwh", kLearning, c.distil.level_shift_eur_per_mwh, 0, 1000,
-         "construction, a teacher with a program: deviation of what visited days are moved by");
+         "construction with an SDP-based teacher: standard deviation of price shifts, EUR/MWh");
   number("omega", kLearning, c.distil.omega, 1e-8, 1,
-         "layer: the paper's trade-off, larger follows the teacher");
+         "layer: the paper's trade-off; larger follows the teacher more closely");
   number("temperature_eur_per_h", kLearning, c.distil.temperature_eur_per_h, 1e-3, 1e6,
-         "of the teacher's softmax over action values");
-  integer("epochs", kLearning, c.distil.epochs, 1, 1'000'000,
-          "of 16 Adam steps (construction), or of 64 lattices and 32,768 visited states (layer)");
-  integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64,
-          "Adam steps that share an epoch");
+         "temperature of the teacher's softmax over action values, EUR/h");
+  integer(
+      "epochs", kLearning, c.distil.epochs, 1, 1'000'000,
+      "epochs of 16 Adam steps (construction), or 64 lattices and 32,768 visited states (layer)");
+  integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64, "Adam steps per epoch");
   number("learning_rate", kLearning, c.distil.learning_rate, 1e-7, 1,
-         "of Adam, falling to a tenth");
+         "initial learning rate of Adam, falling to a tenth");
   integer("repair_rounds", kLearning, c.distil.repair_rounds, 0, 1000,
-          "proofs that may fail before giving up; each trains on its counterexamples");
-  integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000, "of each repair");
+          "maximum failed proofs; each retrains on its counterexamples");
+  integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000,
+          "epochs of each repair");
 
   section("correction");
   PriceThresholds& thresholds = c.distil.correction.thresholds;
@@ -177,11 +181,11 @@ void KeyList::list(RunConfig& c) {
           kThresholdMaxEurPerMwh,
           "property 2: discharge at or above; binds the student up to 1500");
   number("logit_margin", kLearning, c.distil.correction.logit_margin, 0.01, 100,
-         "at the thresholds");
+         "logit margin at the thresholds");
   number("price_slope", kLearning, c.distil.correction.price_slope, 0, 100,
-         "logits over the price range by which the order must fall at least");
+         "minimum logit slope over the price range");
   number("soc_slope", kLearning, c.distil.correction.soc_slope, 0, 100,
-         "the same over the SoC range");
+         "minimum logit slope over the SoC range");
 }
 
 void check_relations(const RunConfig& config, const std::string& name) {
@@ -197,19 +201,19 @@ void check_relations(const RunConfig& config, const std::string& name) {
     fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
   }
   if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
-    fail("{}: [train] horizon = \"day\" needs residual = false: the program's days have no end",
-         name);
+    fail("{}: [train] horizon = \"day\" needs residual = false: the SDP has no end of day", name);
   }
   const TrainOptions& train = config.train;
   if (train.context == ContextKind::kOutlook &&
       (!train.residual || train.source != Source::kCounterfactual)) {
     fail(
         "{}: [train] context = \"outlook\" needs residual = true and source = "
-        "\"counterfactual\": the network adds to the plan; or set context = \"level\"",
+        "\"counterfactual\", because the network is a residual on the plan; or set context = "
+        "\"level\"",
         name);
   }
   if (config.train.residual && config.train.atoms % 2 == 0) {
-    fail("{}: [train] residual needs an odd number of atoms, not {}: zero is the middle one", name,
+    fail("{}: [train] residual needs an odd number of atoms, not {}: the middle one is zero", name,
          config.train.atoms);
   }
   if (!config.distil.correction.thresholds.are_ordered()) {
@@ -217,7 +221,7 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
 }
 
-/// Sections and keys of the document, each of which must be one of `keys`. Throws UserError.
+/// Applies a document; unknown keys are an error. Throws UserError.
 void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
   std::string error;
   TomlTable root(&document, *document.file, "", error);
@@ -257,7 +261,7 @@ void set_config_key(RunConfig& config, std::string_view key, const TomlValue& va
   TomlValue document = section;
   document.held = TomlMembers{{std::string(key.substr(0, dot)), section}};
   if (name.empty()) {
-    fail("{}:{}: \"{}\" is no key of a configuration: write section.key, such as distil.fidelity",
+    fail("{}:{}: \"{}\" is not a configuration key: use section.key, such as distil.fidelity",
          *value.file, value.line, one_line(key));
   }
   const KeyList list(config);

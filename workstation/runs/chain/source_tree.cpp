@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// From the current folder when it lies below, which is how people name it.
+/// Relative to the current folder if inside it.
 fs::path shortened(const fs::path& path) {
   std::error_code error;
   const fs::path relative = fs::relative(path, error);
@@ -31,8 +31,8 @@ fs::path header_to_replace() {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (const auto header = header_in_tree_around(program.parent_path())) return shortened(*header);
   fail(
-      "there is no source tree around {} or {}, whose edge/generated/student_weights.h could be "
-      "replaced; go there, or name the header with --out",
+      "no source tree with edge/generated/student_weights.h around {} or {}; change to it, or name "
+      "the header with --out",
       fs::current_path().string(), program.string());
 }
 

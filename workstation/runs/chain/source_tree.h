@@ -1,5 +1,4 @@
-// Where the edge's header belongs: the source tree that somebody works in, or that this program was
-// built in.
+// Source tree lookup for the exported header: around the current folder or around this program.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +6,11 @@
 
 namespace bess {
 
-/// edge/generated/student_weights.h of the source tree around `folder`; none when there is no such
-/// tree.
+/// edge/generated/student_weights.h of the source tree around `folder`, if any.
 std::optional<std::filesystem::path> header_in_tree_around(const std::filesystem::path& folder);
 
-/// The same around the current folder, or else around this program. Throws UserError when neither
-/// lies in a source tree, naming the mend.
+/// The same around the current folder, else around this program. Throws UserError with a remedy
+/// when neither is in a source tree.
 std::filesystem::path header_to_replace();
 
 }  // namespace bess

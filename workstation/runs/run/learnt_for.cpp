@@ -16,10 +16,9 @@
 namespace bess {
 namespace {
 
-constexpr const char* kPricesKey = "prices";  // as in a run's record
+constexpr const char* kPricesKey = "prices";  // as in run.json
 
-/// Keys that `there` has not, with the value that they have unless set: a file from before a key
-/// was learnt as if the key were not set.
+/// Adds keys that `there` lacks, with their default: older files did not have them.
 Entries with_defaults(Entries there, const Entries& here) {
   const Entries defaults = circumstances_of(config_entries(RunConfig{}));
   for (const auto& entry : here) {
@@ -78,8 +77,9 @@ std::string unknown_regimes(const Entries& there, const MarketSteps& market,
   if (!learnt || days.empty()) return {};
   const std::string regimes = regimes_not_learnt(*learnt, market.span_of(days));
   if (regimes.empty()) return {};
-  return fmt::format("its prices are of {} to {}, these days of another regime: {}",
-                     date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
+  return fmt::format(
+      "trained on prices of {} to {}, but these days are in another price regime: {}",
+      date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
 }
 
 std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
@@ -88,8 +88,9 @@ std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
   const auto age = training_age_text({newest.view(), newest.view()}, date(now_utc_s).view());
   if (age.empty()) return {};
   return fmt::format(
-      "the newest day of these prices, {}, was {}; newer ones: bess-train prices fetch --from {} "
-      "--to {} --out FILE, then run --prices FILE",
+      "the latest day of these prices, {}, was {}; for newer prices: bess-train prices fetch "
+      "--from "
+      "{} --to {} --out FILE, then run --prices FILE",
       newest.view(), age.view(), date(now_utc_s - 365 * kSecondsPerDay).view(),
       date(now_utc_s - kSecondsPerDay).view());
 }
@@ -101,7 +102,7 @@ void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& he
   const std::string regimes = unknown_regimes(there, market, days);
   if (!regimes.empty()) other += (other.empty() ? "" : "; ") + regimes;
   if (other.empty()) return;
-  fmt::print(stderr, "bess-train: warning: {} was learnt for other circumstances: {}\n",
+  fmt::print(stderr, "bess-train: warning: {} was trained for other conditions: {}\n",
              model.string(), other);
 }
 
@@ -112,8 +113,8 @@ void warn_unknown_regimes(const std::string& what, const MarketSteps& fitting,
   const std::string regimes = regimes_not_learnt(fitting.span_of(fitted), market.span_of(days));
   if (regimes.empty()) return;
   fmt::print(stderr,
-             "bess-train: warning: {} is fitted on {} to {}, and trades in a price regime that it "
-             "saw nothing of: {}\n",
+             "bess-train: warning: {}: trained on {} to {}, but traded in a price regime without "
+             "training days: {}\n",
              what, fitted.front().date(), fitted.back().date(), regimes);
 }
 

@@ -73,19 +73,19 @@ std::string differing_decisions_csv(const Proposal& proposal) {
 
 std::string proposal_text(const Proposal& proposal) {
   const auto& days = proposal.before.days;
-  std::string text = fmt::format(
-      "judged on {} days, {} to {}, that neither student learnt from; SoC carried over\n",
-      days.size(), days.front().date, days.back().date);
+  std::string text =
+      fmt::format("evaluated on {} days, {} to {}, not used in training; SoC carried over\n",
+                  days.size(), days.front().date, days.back().date);
   for (const auto& [name, of] : {std::pair("the run's student", &proposal.before),
-                                 std::pair("the proposal's student", &proposal.now)}) {
-    text += fmt::format("  {:<24} {:>9.1f} EUR a day and MWh {:>13.2f} EUR in all\n", name,
+                                 std::pair("the candidate's student", &proposal.now)}) {
+    text += fmt::format("  {:<24} {:>9.1f} EUR per day and MWh {:>13.2f} EUR in total\n", name,
                         of->profit_eur_per_day_per_mwh(), total_eur(*of));
   }
-  text += fmt::format("  {:<24} {:>+9.1f} with a standard error of {:.1f} (by month {})\n",
+  text += fmt::format("  {:<24} {:>+9.1f} standard error {:.1f} (by month {})\n",
                       "gain, day by day", proposal.gain.mean, proposal.gain.standard_error,
                       error_text(proposal.gain.standard_error_by_month, 1));
-  text += fmt::format("  {} of {} decisions would differ\n", proposal.differing.size(),
-                      proposal.decisions);
+  text +=
+      fmt::format("  {} of {} decisions differ\n", proposal.differing.size(), proposal.decisions);
   std::map<std::string, int> changes;
   for (const DifferingDecision& d : proposal.differing) ++changes[change_of(d)];
   for (const auto& [change, count] : changes) text += fmt::format("  {:>9} {}\n", count, change);
@@ -109,7 +109,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace run_file;
 
-// A proposal's files, beside those of a run.
+// Files of a candidate, in addition to those of a run.
 constexpr const char* kMarket = "market.csv.gz";
 constexpr const char* kDayAhead = "day_ahead.csv.gz";
 constexpr const char* kDecisions = "differing_decisions.csv";
@@ -117,8 +117,8 @@ constexpr const char* kText = "proposal.txt";
 constexpr const char* kJudgement = "proposal.json";
 
 struct Judgement {
-  std::string against;  ///< mark of the student that it was held against
-  std::string refusal;  ///< why it may not be adopted; or empty
+  std::string against;  ///< mark of the student that it was compared with
+  std::string refusal;  ///< reason against adoption; may be empty
   std::string last_day;
 };
 
@@ -126,18 +126,18 @@ std::optional<Judgement> load_judgement(const RunFolder& proposal) {
   const fs::path path = proposal.file(kJudgement);
   if (!fs::exists(path)) return std::nullopt;
   const Json json = Json::parse(read_file(path));
-  const JsonReader in(json.value(), path.string(), "a proposal's judgement");
+  const JsonReader in(json.value(), path.string(), "a candidate's verdict");
   return Judgement{in.text("against"), in.text("refusal"), in.text("last_day")};
 }
 
-/// With a number behind it where there is such a folder already.
+/// Appends a number if the folder exists.
 fs::path free_name(const fs::path& path) {
   fs::path name = path;
   for (int n = 2; fs::exists(name); ++n) name = fmt::format("{}-{}", path.string(), n);
   return name;
 }
 
-/// The newest days, but for those that the run's student knows; none when they are too few.
+/// Latest days that the run's student was not trained on; none when they are too few.
 std::optional<FoldDays> fold_of(const MarketSteps& market, const std::string& last_learnt,
                                 int window_days) {
   const LocalDate last = parse_local_date(market.days.back().date(), "prices");
@@ -154,7 +154,7 @@ class Refresh {
  public:
   Refresh(const RefreshRequest& request, std::FILE* messages)
       : request_(request), messages_(messages), run_{fs::weakly_canonical(request.run)} {
-    if (!run_.path.has_filename()) run_.path = run_.path.parent_path();  // a slash behind it
+    if (!run_.path.has_filename()) run_.path = run_.path.parent_path();  // trailing slash
     proposal_ = {beside("proposal")};
   }
 
@@ -168,13 +168,13 @@ class Refresh {
     const Judgement judgement = *load_judgement(proposal_);
     tell("{}", read_file(proposal_.file(kText)));
     if (judgement.against != file_mark(run_.file(kStudent))) {
-      fail("{}: was judged beside another student than that of {}; remove it for a new one",
+      fail("{}: evaluated against another student than that of {}; remove the folder and repeat",
            proposal_.path.string(), run_.path.string());
     }
     if (!judgement.refusal.empty()) return refuse(judgement);
     if (request_.adopt) return adopt(judgement);
-    tell("{}: not worse; 'bess-train refresh --run {} --adopt' takes it\n", proposal_.path.string(),
-         run_.path.string());
+    tell("{}: not worse; to adopt it: bess-train refresh --run {} --adopt\n",
+         proposal_.path.string(), run_.path.string());
   }
 
  private:
@@ -188,17 +188,17 @@ class Refresh {
     return run_.path.string() + "." + what;
   }
 
-  /// Between the two names that an adoption changes there is no run.
+  /// Completes an adoption that was interrupted between its two renames.
   void finish_adoption() const {
     if (fs::exists(run_.path)) return;
     const std::optional<Judgement> judgement = load_judgement(proposal_);
     if (!judgement || !judgement->refusal.empty()) return;
     if (!fs::exists(beside("before-" + judgement->last_day))) return;
     fs::rename(proposal_.path, run_.path);
-    tell("{}: its adoption was broken off, and is done\n", run_.path.string());
+    tell("{}: completed an interrupted adoption\n", run_.path.string());
   }
 
-  /// False when there is nothing to propose, which is told.
+  /// False, with a message, when there is no candidate.
   [[nodiscard]] bool make_proposal(const RunRecord& present) const {
     std::optional<RunRecord> record = load_run_record(proposal_);
     if (!record && !(record = begin(present))) {
@@ -206,7 +206,7 @@ class Refresh {
       return false;
     }
     const MinuteSeries series = read_minute_file(proposal_.file(kMarket));
-    end_when_interrupted("what is done is kept: the same command goes on");
+    end_when_interrupted("finished stages are kept: repeat the command to continue");
     RunStages stages(proposal_, *record, series, messages_);
     const FoldDays days = *parse_fold_days(record->value(kFoldKey));
     Json json = Json::object(
@@ -217,14 +217,14 @@ class Refresh {
                        stages.market(), record->config(proposal_)),
            json);
     } catch (const ProofFailed& failed) {
-      json.set("refusal", "it was not proved");
+      json.set("refusal", "not proved");
       write_file(proposal_.file(kText), fmt::format("{}\n", failed.what()));
     }
     write_file(proposal_.file(kJudgement), json.text());
     return true;
   }
 
-  /// Brings the prices and says what the refit is to be; none when nothing is to be.
+  /// Provides prices and creates the record of the candidate; none without new days.
   [[nodiscard]] std::optional<RunRecord> begin(const RunRecord& present) const {
     const RunConfig config = present.config(run_);
     request_.bring_prices(proposal_.file(kMarket));
@@ -234,18 +234,17 @@ class Refresh {
     const std::optional<FoldDays> days = fold_of(market, learnt, request_.window_days);
     if (!days) {
       tell(
-          "{}: was learnt from days up to {}, and prices reach to {}: a proposal needs {} days "
-          "between\n",
+          "{}: trained on days up to {}, and prices end on {}: a candidate needs {} days after "
+          "training\n",
           run_.path.string(), learnt, market.days.back().date(), kJudgedDaysMin);
       return std::nullopt;
     }
-    (void)market_of_fold(market, days->name());  // or says what is missing
+    (void)market_of_fold(market, days->name());  // throws if days are missing
     const RunRecord record = record_of(config, present.is_lean(), series, *days);
     for (const fs::path& place : {run_.path, beside("refused-" + format_local_date(days->last))}) {
       const std::optional<RunRecord> there = load_run_record({place});
       if (!there || !differences(there->identity, record.identity).empty()) continue;
-      tell("{}: was learnt from just these days; there is nothing new to propose\n",
-           place.string());
+      tell("{}: already trained on these days; no candidate\n", place.string());
       return std::nullopt;
     }
     save_run_record(proposal_, record);
@@ -270,7 +269,7 @@ class Refresh {
   void note(const Proposal& proposal, Json& json) const {
     write_file(proposal_.file(kDecisions), differing_decisions_csv(proposal));
     write_file(proposal_.file(kText), proposal_text(proposal));
-    json.set("refusal", proposal.is_worse() ? "it is worse beyond its standard error" : "");
+    json.set("refusal", proposal.is_worse() ? "worse by more than its standard error" : "");
     json.set("judged", proposal_json(proposal));
   }
 
@@ -280,7 +279,7 @@ class Refresh {
       place = free_name(beside("refused-" + judgement.last_day));
       fs::rename(proposal_.path, place);
     }
-    tell("{}: refused: {}; {} stays as it is\n", place.string(), judgement.refusal,
+    tell("{}: rejected: {}; {} is unchanged\n", place.string(), judgement.refusal,
          run_.path.string());
   }
 
@@ -289,7 +288,7 @@ class Refresh {
     fs::rename(run_.path, before);
     fs::rename(proposal_.path, run_.path);
     tell(
-        "{}: adopted; the run before it is {}\nto the edges, all of it: tools/flash "
+        "{}: adopted; the previous run is {}\nto install it on a controller: tools/flash "
         "update-weights HOST --student {}\n",
         run_.path.string(), before.string(), run_.file(kStudent).string());
   }

@@ -1,14 +1,13 @@
-// A run refreshed: learnt anew from what was published since, as a proposal beside it, and put in
-// its place when it is not worse. Folders, of a run DIR:
+// Refresh of a run: retraining on the latest prices, evaluation and adoption of the candidate.
+// Folders of a run DIR:
 //
-//   DIR.proposal        the refit: a run folder of its own, and what the judging says of it
-//   DIR.refused-DATE    a proposal that was worse, or not proved; DATE is the last day it saw
-//   DIR.before-DATE     the run that a proposal replaced
+//   DIR.proposal        candidate: a complete run folder, with the verdict
+//   DIR.refused-DATE    rejected candidate, worse or not proved; DATE is its last day
+//   DIR.before-DATE     run that a candidate replaced
 //
-// Files appear whole and folders change their names at once, and what is next is read from what is
-// there: the prices once, the refit stage by stage (run_stages.h), the judgement last of all, the
-// two names. So a refresh that was killed anywhere is gone on with by the next one, to the same
-// bytes.
+// Files and renames are atomic, and the next step follows from the files that exist: prices, stages
+// of the retraining (run_stages.h), verdict, two renames. A killed refresh is therefore continued
+// by the next one, with the same bytes as result.
 #pragma once
 
 #include <cstdio>
@@ -26,14 +25,12 @@
 
 namespace bess {
 
-// A refit held against the run that it may replace: both traded over days that neither was learnt
-// or chosen on, each with its own charge carried over, and every decision that would differ.
-//
-// The student that is judged is the one that would be adopted: its window ends where the judged
-// days begin. What those days would have taught it costs less (workstation/README.md, "Refreshed")
-// than to let a student drive that nobody can judge.
+// Comparison of a candidate with the current run on days that neither was trained or selected on,
+// each with its own SoC carried over. The evaluated student is the one to be adopted, so its
+// training window ends before these days (cost of the lost days: workstation/README.md,
+// "Refreshed").
 
-/// A decision of the run's student, where it was with its charge, that the refit would not take.
+/// State on the current student's path in which the candidate decides differently.
 struct DifferingDecision {
   MarketStep step;
   double soc_frac;
@@ -41,12 +38,12 @@ struct DifferingDecision {
 };
 
 struct Proposal {
-  Evaluation before, now;  ///< the judged days, SoC carried over, the charge left valued
-  PairedDifference gain;   ///< of the refit, EUR per day per MWh
+  Evaluation before, now;  ///< evaluated days, SoC carried over, final charge valued
+  PairedDifference gain;   ///< of the candidate, EUR per day per MWh
   std::size_t decisions = 0;
-  std::vector<DifferingDecision> differing;  ///< in the order of time
+  std::vector<DifferingDecision> differing;  ///< in time order
 
-  /// Behind by more than the standard error of its paired days.
+  /// Worse by more than the standard error of the paired days.
   [[nodiscard]] bool is_worse() const { return gain.mean + gain.standard_error < 0; }
 };
 
@@ -59,7 +56,7 @@ std::string differing_decisions_csv(const Proposal& proposal);
 std::string proposal_text(const Proposal& proposal);
 Json proposal_json(const Proposal& proposal);
 
-/// Days that a proposal is judged by, at most; of fewer than the least none is made.
+/// Maximum and minimum number of evaluation days of a candidate.
 inline constexpr int kJudgedDays = 30;
 inline constexpr int kJudgedDaysMin = 14;
 
@@ -67,14 +64,13 @@ struct RefreshRequest {
   std::filesystem::path run;
   int window_days;
   bool adopt = false;
-  /// Writes the newest prices as a minute file, and those of day-ahead, judged, for a run by
-  /// outlook.
+  /// Write the latest prices as a minute file and, for a run by outlook, checked day-ahead prices.
   std::function<void(const std::filesystem::path& out)> bring_prices;
   std::function<void(const std::filesystem::path& out, const MinuteSeries& settled)>
       bring_day_ahead;
 };
 
-/// What it does and finds goes to `messages`. Throws UserError.
+/// Progress and results go to `messages`. Throws UserError.
 void refresh(const RefreshRequest& request, std::FILE* messages);
 
 }  // namespace bess

@@ -21,7 +21,7 @@ namespace {
 MarketSteps market_of_days(const MarketSteps& market, const FoldDays& days) {
   auto made = make_fold(market, days.name(), days.first, days.last, {days.window_days});
   if (const auto* skipped = std::get_if<SkippedMonth>(&made)) {
-    fail("fold {}: {}; give more prices or another window", skipped->month, skipped->reason);
+    fail("fold {}: {}; use more prices or another window", skipped->month, skipped->reason);
   }
   return std::move(std::get<Fold>(made).market);
 }
@@ -52,7 +52,7 @@ MarketSteps market_of_fold(const MarketSteps& market, const std::string& month) 
   Folds folds = make_folds(market, {kFoldWindowDays});
   const auto found = std::ranges::find(folds.traded, month, &Fold::month);
   if (found == folds.traded.end()) {
-    fail("fold {}: these prices have no such month with half of {} days before it", month,
+    fail("fold {}: no such month with half of the {} days before it in these prices", month,
          kFoldWindowDays);
   }
   return std::move(found->market);
@@ -73,11 +73,11 @@ JsonValue chain_of(const JsonValue& backtest) {
   return JsonValue{};
 }
 
-/// The run's folder as kRunPlace: the same run writes the same wherever its folder lies.
+/// Names the run's folder as kRunPlace, so that the text does not depend on its location.
 std::string how_to_make_one(const RunRecord& record) {
   const bool is_own = !fs::path(record.prices).is_absolute();
   return fmt::format(
-      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' makes one",
+      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' creates one",
       is_own ? kRunPlace : "", record.prices, record.day_ahead.empty() ? "" : " --day-ahead ",
       record.day_ahead, kRunPlace, run_file::kConfig, record.value("seed"), kRunPlace,
       kRunsBacktest);
@@ -103,11 +103,11 @@ std::string learning_identity(const std::string& prices_hash, const RunConfig& c
 
 WalkForwardOfRun walk_forward_of(const RunFolder& folder, const RunRecord& record) {
   if (!record.value(kRulesKey).empty()) {
-    return {std::nullopt, "this run has rules, and a backtest learns without any"};
+    return {std::nullopt, "this run has rules, and a backtest trains without rules"};
   }
   if (!record.teacher_file.empty()) {
     return {std::nullopt,
-            "this run took its teacher from elsewhere, and a backtest trains its own"};
+            "this run uses the teacher of another run, and a backtest trains its own"};
   }
   const std::string name = fmt::format("{}/{}", kRunsBacktest, kBacktestJson);
   const fs::path path = folder.path / name;
@@ -116,11 +116,11 @@ WalkForwardOfRun walk_forward_of(const RunFolder& folder, const RunRecord& recor
   const JsonValue chain = chain_of(json.value());
   const auto profit = chain[key::kProfit].number();
   if (!profit) {
-    return {std::nullopt, fmt::format("{} has none of the policy {}", name, kChainName)};
+    return {std::nullopt, fmt::format("{} lacks the policy {}", name, kChainName)};
   }
   const std::string identity = learning_identity(record.value("prices"), record.config(folder));
   if (json.value()["learnt_from"].text_or("") != identity) {
-    return {std::nullopt, fmt::format("{} is of other prices, another seed or configuration; "
+    return {std::nullopt, fmt::format("{} has other prices, seed or configuration; "
                                       "remove its folder, then {}",
                                       name, how_to_make_one(record))};
   }

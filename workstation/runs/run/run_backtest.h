@@ -1,5 +1,5 @@
-// The backtest of a run: the folder "backtest" in the run's own, made of the same prices, seed and
-// configuration; and the runs that learn one fold each.
+// Backtest of a run, in its folder "backtest" and with the same prices, seed and configuration; and
+// runs on one fold.
 #pragma once
 
 #include <filesystem>
@@ -15,13 +15,12 @@
 
 namespace bess {
 
-// A run on one fold of a walk-forward: learnt on the days before a month, or before any stretch of
-// days, and judged by that.
+// Run on one fold: trained on the days before a month or period, and evaluated on it.
 
-/// As 'bess-train backtest' has it unless told otherwise.
+/// Default of 'bess-train backtest'.
 inline constexpr int kFoldWindowDays = 120;
 
-/// A stretch of local days that a run is judged by, and the days before it that it learns from.
+/// Evaluation period of a run, local days, and the length of its training window.
 struct FoldDays {
   LocalDate first, last;
   int window_days;
@@ -29,33 +28,32 @@ struct FoldDays {
   /// "2025-06-01 to 2025-06-30, 120 days before"
   [[nodiscard]] std::string name() const;
 };
-/// None of a month's name.
+/// Nullopt for the name of a month.
 std::optional<FoldDays> parse_fold_days(const std::string& name);
 
-/// The months that can be traded, "2024-06", in order. Throws UserError when none can.
+/// Tradable months, "2024-06", in order. Throws UserError when there is none.
 std::vector<std::string> fold_months(const MarketSteps& market);
 
-/// What a run on this month, or FoldDays::name(), sees (../report/backtest/walk_forward.h). Throws
-/// UserError when it is not traded.
+/// Market of a run on this month or FoldDays::name() (../report/backtest/walk_forward.h). Throws
+/// UserError when it is not tradable.
 MarketSteps market_of_fold(const MarketSteps& market, const std::string& name);
 
-/// Where it lies in a run's folder, and its files' names.
+/// Folder within a run's folder, and file names.
 inline constexpr const char* kRunsBacktest = "backtest";
 inline constexpr const char* kBacktestJson = "backtest.json";
 inline constexpr const char* kBacktestPage = "backtest.html";
-/// The whole chain, learnt anew for each fold.
+/// Policy name of the whole chain, retrained for each fold.
 inline constexpr const char* kChainName = "student";
 
-/// The run's own folder in what its files say.
+/// Placeholder of the run's folder in its files.
 inline constexpr std::string_view kRunPlace = "RUN/";
-/// With `folder` in its place, to be shown.
+/// Replaces the placeholder by `folder`, for output.
 std::string with_run_folder(std::string text, const std::filesystem::path& folder);
 
-/// What a backtest is made of, to be held against a run: prices, seed and every key, in one text.
+/// Identity of a backtest, to compare with a run: prices, seed and configuration.
 std::string learning_identity(const std::string& prices_hash, const RunConfig& config);
 
-/// The figure of the backtest in the run's folder. None when there is none, or it is of something
-/// else.
+/// Result of the backtest in the run's folder; none when missing or of another identity.
 WalkForwardOfRun walk_forward_of(const RunFolder& folder, const RunRecord& record);
 
 }  // namespace bess

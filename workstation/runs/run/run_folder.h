@@ -1,5 +1,4 @@
-// The run folder: everything that one run of the whole chain leaves behind, and the names it goes
-// by.
+// Run folder: file names of one run of the whole chain.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +8,6 @@
 
 namespace bess {
 
-/// Names within the folder.
 namespace run_file {
 inline constexpr const char* kRecord = "run.json";
 inline constexpr const char* kTimes = "times.json";

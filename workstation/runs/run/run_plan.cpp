@@ -17,7 +17,7 @@ std::string absolute(const std::string& path) {
   return fs::absolute(path).lexically_normal().string();
 }
 
-/// Before a first run writes anything.
+/// Checks the output folder of a new run.
 void require_free(const RunFolder& folder, const RunRequest& request) {
   std::vector<GivenPath> outputs;
   for (const std::string& name : RunStages::files())
@@ -28,27 +28,26 @@ void require_free(const RunFolder& folder, const RunRequest& request) {
                              {"--from-teacher", request.from_teacher}});
   for (const std::string& name : RunStages::files()) {
     if (!fs::exists(folder.file(name))) continue;
-    fail("{}: holds {} but no {}, so that nobody knows what it was made of; give another --out",
+    fail("{}: contains {} but no {}, so its origin is unknown; choose another --out",
          folder.path.string(), name, run_file::kRecord);
   }
 }
 
-/// Unless the folder's run is the one that is asked for, and may be gone on with.
+/// Throws unless the folder contains the requested run and it may be resumed.
 void require_same(const RunRecord& there, const RunRecord& asked, const RunFolder& folder,
                   bool resume) {
   const std::string name = folder.path.string();
   const std::string other = differences(there.identity, asked.identity);
   if (!other.empty())
-    fail("{}: holds another run: {}; give another --out (--resume alone goes on with the folder's)",
+    fail("{}: contains another run: {}; choose another --out (only --resume continues this one)",
          name, other);
   if (!resume) {
-    fail("{}: holds this very run, {}; add --resume to go on with it, or give another --out", name,
+    fail("{}: contains this run, {}; add --resume to continue it, or choose another --out", name,
          there.state());
   }
 }
 
-/// What is written in the folder's config.toml is what the run was made with, whatever anybody
-/// wrote into it since: an edit would be undone without a word.
+/// An edited config.toml is an error, because resuming would silently restore it.
 void require_unedited_configuration(const RunRecord& there, const RunFolder& folder) {
   const fs::path path = folder.file(run_file::kConfig);
   if (!fs::exists(path)) return;
@@ -57,9 +56,8 @@ void require_unedited_configuration(const RunRecord& there, const RunFolder& fol
                   "in the run", "in the file");
   if (edits.empty()) return;
   fail(
-      "{}: was edited: {}; a run goes on with the configuration that it began with: put it back, "
-      "or "
-      "take the file to another run, --config {} --out ANOTHER",
+      "{}: edited: {}; a run keeps its initial configuration: restore the file, or use it for "
+      "another run, --config {} --out ANOTHER",
       path.string(), edits, path.string());
 }
 
@@ -82,7 +80,7 @@ MinuteSeries prices_of_run(const RunRecord& record, const RunFolder& folder,
   if (record.prices == run_file::kSimulatedPrices) return built_in_market();
   const fs::path prices = folder.path / record.prices;
   if (!fs::exists(prices)) {
-    fail("{}: there is no such minute file; if it moved, name it with --prices", prices.string());
+    fail("{}: no such minute file; if it moved, name it with --prices", prices.string());
   }
   return read_judged_minutes(prices, accepted);
 }
@@ -110,22 +108,22 @@ RunPlan plan_run(const RunRequest& request) {
   }
   if (config.train.context == ContextKind::kOutlook && record.day_ahead.empty()) {
     fail(
-        "[train] context = \"outlook\" plans on day-ahead prices: give their file with "
+        "[train] context = \"outlook\" plans on day-ahead prices: add their file with "
         "--day-ahead");
   }
   std::string teacher_hash;
   if (!request.from_teacher.empty()) {
     record.teacher_file = absolute(request.from_teacher);
-    if (fs::is_directory(record.teacher_file)) {  // a run's: trailing slash or not
+    if (fs::is_directory(record.teacher_file)) {  // run folder, with or without trailing slash
       record.teacher_file = absolute(request.from_teacher + "/" + run_file::kTeacher);
     }
     teacher_hash = file_mark(record.teacher_file);
     if (teacher_hash.empty()) fail("--from-teacher {}: cannot be read", record.teacher_file);
-    (void)load_teacher(record.teacher_file);  // is one
+    (void)load_teacher(record.teacher_file);  // validates it
   } else if (known && !known->teacher_file.empty()) {
     teacher_hash = known->value("teacher");
   }
-  // A run that is there accepted what it accepted: other prices than its own are refused below.
+  // An existing run already accepted its findings; other prices are refused below.
   plan.series = prices_of_run(record, plan.folder,
                               there ? AcceptedFindings::all() : request.price_input.accepted());
   record.identity = identity_of(config, prices_hash(plan.series), teacher_hash);

@@ -1,5 +1,4 @@
-// What a run is to be, from the command line and from what its folder knows already; and whether it
-// may be.
+// Run plan from the command line and the run folder.
 #pragma once
 
 #include <optional>
@@ -16,27 +15,26 @@ namespace bess {
 struct RunRequest {
   CommonOptions common;
   PriceInput price_input;
-  DayAheadInput day_ahead;  ///< none: with `resume` what the folder says
+  DayAheadInput day_ahead;  ///< none: with `resume` that of the folder
   RuleFiles rule_files;
-  std::string prices;        ///< empty: the built-in market, or with `resume` what the folder says
-  std::string from_teacher;  ///< its file, or its run's folder; empty: train one, or the same
+  std::string prices;        ///< empty: built-in market, or with `resume` those of the folder
+  std::string from_teacher;  ///< file or run folder; empty: train one, or with `resume` the same
   std::filesystem::path out;
   bool resume = false;
 };
 
 struct RunPlan {
   RunFolder folder;
-  RunRecord record;  ///< with what is done already
+  RunRecord record;  ///< with the finished stages
   MinuteSeries series;
 };
 
-/// With `resume` whatever the request leaves unsaid is the folder's. Writes nothing. Throws
-/// UserError when the folder holds another run, naming each key that differs and both values; the
-/// same run and `resume` is not given; or files of a run without its record; and when an output is
-/// one of the inputs.
+/// With `resume`, options not given keep their value. Writes nothing. Throws UserError when the
+/// folder contains another run (naming keys and both values), the same run without `resume`, or
+/// files without a record; and when an output is also an input.
 RunPlan plan_run(const RunRequest& request);
 
-/// The series that a record in `folder` names, judged. Throws UserError.
+/// Checked prices of a record in `folder`. Throws UserError.
 MinuteSeries prices_of_run(const RunRecord& record, const RunFolder& folder,
                            const AcceptedFindings& accepted);
 

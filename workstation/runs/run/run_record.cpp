@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKind = "a run's record; make the run again in another folder";
+constexpr const char* kKind = "a run manifest; repeat the run in another folder";
 
 Entries::const_iterator find(const Entries& entries, const std::string& name) {
   return std::ranges::find(entries, name, &Entries::value_type::first);
@@ -85,7 +85,7 @@ RunConfig RunRecord::config(const RunFolder& folder) const {
   std::string toml;
   std::string section;
   for (const auto& [name, value] : identity) {
-    if (!name.starts_with('[')) continue;  // an option
+    if (!name.starts_with('[')) continue;  // not a configuration key
     const std::size_t end = name.find(']') + 1;
     if (name.substr(0, end) != section) toml += (section = name.substr(0, end)) + "\n";
     toml += fmt::format("{} = {}\n", name.substr(end + 1), value);
@@ -113,7 +113,7 @@ const StageRecord* RunRecord::holds(const std::string& stage,
 
 std::string RunRecord::state() const {
   if (figures) return "finished";
-  if (stages.empty()) return "just begun";
+  if (stages.empty()) return "started";
   return has_failed() ? "ended without a proof"
                       : fmt::format("stopped after the {}", stages.back().name);
 }
@@ -172,7 +172,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
   if (!fs::exists(name)) return std::nullopt;
   const Json json = Json::parse(read_file(name));
   const JsonReader reader(json.value(), name, kKind);
-  (void)reader.object("identity");  // that of another bess-train has none
+  (void)reader.object("identity");  // missing in files of other versions
   RunRecord record;
   record.prices = reader.text("prices");
   record.prices_name = reader.text("prices_name");

@@ -36,14 +36,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes as they lie on the disk, gzip or not; none when it cannot be read.
+/// Bytes as stored, compressed or not; none when the file cannot be read.
 std::optional<std::string> bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || fs::is_directory(path)) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-/// Of this process, as it was given.
+/// Command line of this process.
 std::string command_line() {
   const std::string words = bytes_of("/proc/self/cmdline").value_or("");
   std::string line;
@@ -80,8 +80,8 @@ std::string prices_text(const RunFolder& folder) {
   const fs::path named = run.value()["prices"].text_or("");
   const fs::path path = named.has_parent_path() ? named : folder.path / named;
   const std::optional<std::string> bytes = bytes_of(path);
-  if (named.empty()) return "not named in run.json";
-  if (!bytes) return named.string() + ": is no longer there";
+  if (named.empty()) return "not in run.json";
+  if (!bytes) return named.string() + ": missing";
   Crc32 crc;
   crc.add_bytes(bytes->data(), bytes->size());
   return fmt::format("{}: crc32 {:08x}, {} bytes", path.filename().string(), crc.value(),
@@ -106,9 +106,8 @@ std::vector<Fact> making_facts(const RunFolder& folder) {
   facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
   facts.push_back({"host", host_name()});
   facts.push_back({"command", command_line()});
-  facts.push_back(
-      {"computed for", fmt::format("{:.1f} CPU seconds, this command until here",
-                                   static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
+  facts.push_back({"CPU time", fmt::format("{:.1f} s, this command until here",
+                                           static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
   const std::string times = stage_times(folder.path / "times.json");
   if (!times.empty()) facts.push_back({"stages", times});
   return facts;
@@ -126,8 +125,8 @@ std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
   facts.push_back(
       {"observation delay", fmt::format("{} minute{}", delay_min, delay_min == 1 ? "" : "s")});
   facts.push_back({"settlement", config.market.settlement == Settlement::kMinute
-                                     ? "each minute by its own quarter-hour"
-                                     : "each step by the quarter-hour in which it starts"});
+                                     ? "per minute, by its quarter-hour"
+                                     : "per step, by the quarter-hour in which it starts"});
   facts.push_back({"keys changed", changed_keys_text(config)});
   facts.push_back(
       {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)});
@@ -139,7 +138,7 @@ namespace {
 const NamedEvaluation& exported(const RunSummary& run) {
   const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
   if (found == run.evaluations.end()) {
-    fail("{}: has no \"{}\"; make the run again", run.folder.file(run_file::kDays).string(),
+    fail("{}: \"{}\" is missing; repeat the run", run.folder.file(run_file::kDays).string(),
          kExportedPolicy);
   }
   return *found;
@@ -151,7 +150,7 @@ Json row_json(const ComparisonRow& row) {
   return json;
 }
 
-/// The gain over another run, when both saw the same days.
+/// Gain over another run with the same days.
 std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
   if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
   return paired_difference(run, first);
@@ -172,7 +171,7 @@ std::string what_differs(const std::vector<RunSummary>& runs) {
   return text;
 }
 
-/// Numbers that are compared are those that the run wrote.
+/// Refuses results that were edited after the run.
 void require_unchanged(const RunRecord& record, const RunFolder& folder) {
   for (const StageRecord& stage : record.stages) {
     for (const auto& [file, mark] : stage.outputs) {
@@ -180,15 +179,15 @@ void require_unchanged(const RunRecord& record, const RunFolder& folder) {
       const std::string now = file_mark(folder.file(run_file::kDays));
       if (now == mark) return;
       fail(
-          "{}: is not what the run wrote ({} in {}, now {}); 'bess-train report --run {}' makes it "
-          "again",
+          "{}: changed since the run ({} in {}, now {}); regenerate it with 'bess-train report "
+          "--run {}'",
           folder.file(run_file::kDays).string(), mark, run_file::kRecord,
           now.empty() ? "missing" : now, folder.path.string());
     }
   }
 }
 
-/// What the figures are of, and the walk-forward one of each run that has it.
+/// Evaluation days, and the walk-forward result of each run that has one.
 std::string standing_text(const std::vector<RunSummary>& runs) {
   std::string text = "\n";
   std::string last;
@@ -225,7 +224,7 @@ std::string value_text(const RunRecord& record, const std::string& key) {
   std::string text;
   for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
     text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
-                        rule.enforce ? "; the guard's too" : "");
+                        rule.enforce ? "; also by the guard" : "");
   }
   return text;
 }
@@ -253,17 +252,17 @@ RunSummary load_run_summary(const RunFolder& folder) {
   std::optional<RunRecord> record = load_run_record(folder);
   const std::string name = folder.path.string();
   if (!record) {
-    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", name,
+    fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'", name,
          run_file::kRecord, name);
   }
   if (!record->figures && record->has_failed()) {
     fail(
-        "{}: ended without a proof, {} shows where; 'bess-train run --from-teacher {} --config NEW "
-        "--out ANOTHER' starts at its correction",
+        "{}: ended without a proof, see {}; repeat the correction with 'bess-train run "
+        "--from-teacher {} --config NEW --out ANOTHER'",
         name, folder.file(run_file::kReport).string(), name);
   }
   if (!record->figures) {
-    fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
+    fail("{}: not finished, {}; continue with 'bess-train run --resume --out {}'", name,
          record->state(), name);
   }
   require_unchanged(*record, folder);
@@ -308,7 +307,7 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
   std::size_t width = 3;
   for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
   std::string text = fmt::format(
-      "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
+      "Profit of the {} of each run on its test days, EUR per day per MWh of capacity\n"
       "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
       kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
       "s.e.", "by month", kReferenceWearHead, "foresight", "reset", "weights");
@@ -332,13 +331,13 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
         student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);
   }
   text += fmt::format(
-      "\ncarried, reset: SoC carried over from day to day, or the same at the start of each;\n"
-      "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
+      "\ncarried, reset: SoC carried over from day to day, or the same at the start of each day;\n"
+      "gain: mean day-by-day difference to the first run with the same days; s.e.: its "
       "standard error;\nby month: {}\n",
       by_month_meaning(first.errors().months));
   text += standing_text(runs);
   const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
-  if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
+  if (!differs.empty()) text += "\nDifferent settings\n" + differs;
   return text;
 }
 
@@ -357,7 +356,7 @@ NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const Run
   return named;
 }
 
-/// Before and after the correction: the properties in one line each, and a line a rule.
+/// Violations before and after the correction, by property and rule.
 std::string violations_text(const Certificate& plain, const Certificate& corrected) {
   const auto properties = [](const Certificate& c) {
     return fmt::format("{} / {} / {} in {} states", c.violations_of(1), c.violations_of(2),
@@ -376,7 +375,7 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
   for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
     text += fmt::format("violations of rule \"{}\" ({})\n", after[d].name, after[d].text);
     if (!after[d].binds_student) {
-      text += "  the guard's alone: no student is held to it\n";
+      text += "  enforced by the guard only\n";
       continue;
     }
     const auto counted = [](const DemandCount& count) {
@@ -387,7 +386,7 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
   return text;
 }
 
-/// The plain student, also as each rule would hold it.
+/// Plain student, also under each rule.
 void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
   const auto plain = std::make_shared<StudentPolicy>(run.plain->net, run.plain->outlook);
   all.push_back(evaluate_both(kPlainName, *plain, run));
@@ -400,11 +399,11 @@ void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
   if (!projected.empty()) under(kUnderAllRules, projected);
 }
 
-/// So often that a warranty may not allow it, and what to set then.
+/// Expected full cycles, with the keys that limit them for a warranty.
 std::string cycles_text(const StudentFile& student) {
   if (!student.cycles_per_day) return {};
   return fmt::format(
-      "expect about {:.1f} full cycles a day of it (validation days); limit them by [battery] "
+      "expected full cycles per day: {:.1f} (validation days); limit them with [battery] "
       "wear_eur_per_mwh or cycles_per_day_max\n",
       *student.cycles_per_day);
 }
@@ -413,7 +412,7 @@ std::string cycles_text(const StudentFile& student) {
 
 void require_test_days(const MarketSteps& market, const std::string& prices) {
   if (!market.days_of(Split::kTest).empty()) return;
-  fail("{}: no test days (local days 26 to the end); add some", prices);
+  fail("{}: no test days (local days 26 to the end); add prices", prices);
 }
 
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
@@ -425,7 +424,7 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   for (const std::string& name : baseline_names(kInRuns)) {
     if (name != kForesightName) baseline(name);
   }
-  if (run.teacher.outlook) {  // both accountings trade the same
+  if (run.teacher.outlook) {  // the same plans for both accountings
     const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
     run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
     run.teacher.book->prepare(run.market, days, run.config.train.threads);

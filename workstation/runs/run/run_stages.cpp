@@ -36,7 +36,7 @@ constexpr std::string_view kEvaluationStage = "evaluation";
 constexpr std::string_view kReportStage = "report";
 constexpr std::string_view kFailureStage = "report of the failed proof";
 
-/// times.json: seconds and end of each stage, added to or replaced.
+/// Adds or replaces seconds and end of a stage in times.json.
 void note_time(const fs::path& path, const std::string& stage, double seconds) {
   Json times = Json::object();
   const Json before = fs::exists(path) ? Json::parse(read_file(path)) : Json::object();
@@ -69,7 +69,7 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
-/// All of the prices, or what the record's fold may see of them.
+/// Market of all prices, or of the record's fold.
 MarketSteps market_of_run(const MinuteSeries& series, const RunConfig& config,
                           const RunRecord& record, const RunFolder& folder) {
   const std::string month = record.value(kFoldKey);
@@ -82,7 +82,7 @@ MarketSteps market_of_run(const MinuteSeries& series, const RunConfig& config,
   return month.empty() ? std::move(market) : market_of_fold(market, month);
 }
 
-/// A file's name while it is written (file.cpp), whoever wrote it: the folder is locked.
+/// Name of an unfinished file (file.cpp) of any process; safe because the folder is locked.
 bool is_half_written(const std::string& name) {
   const std::size_t at = name.rfind(".part.");
   return at != name.npos && name.find_first_not_of("0123456789", at + 6) == name.npos;
@@ -111,7 +111,7 @@ std::span<const RunStages::Stage> RunStages::stages() {
       {"prices", 1, "", When::kOnBuiltInPrices, &R::make_prices, {}, {kSimulatedPrices}},
       {kTeacherStage,
        2,
-       "train the teacher, or take it",
+       "train or copy the teacher",
        When::kAlways,
        &R::make_teacher,
        {},
@@ -133,7 +133,7 @@ std::span<const RunStages::Stage> RunStages::stages() {
       {"header", 5, "export", When::kAlways, &R::make_header, {kStudent}, {kHeader}},
       {kEvaluationStage,
        6,
-       "evaluate on test days and report",
+       "evaluate on test days and write the report",
        When::kAlways,
        &R::make_evaluation,
        {kTeacher, kPlainStudent, kStudent},
@@ -237,7 +237,7 @@ void RunStages::finish() {
     if (!is_due(stage)) continue;
     announce(stage);
     go_through(stage);
-    if (stage.name == kTeacherStage) tidy();  // not at the end: a failed proof ends before
+    if (stage.name == kTeacherStage) tidy();  // not at the end: a failed proof throws before
   }
 }
 
@@ -261,8 +261,8 @@ void RunStages::report_again() {
     if (stage.number > proof || stage.when == When::kOnBuiltInPrices) continue;
     if (record_.holds(std::string(stage.name), stage.inputs, folder_) != nullptr) continue;
     fail(
-        "{}: the {} is missing or was changed since; 'bess-train run --resume --out {}' makes it "
-        "again",
+        "{}: the {} is missing or changed; regenerate it with 'bess-train run --resume --out "
+        "{}'",
         folder_.path.string(), stage.name, folder_.path.string());
   }
   std::erase_if(record_.stages, [](const StageRecord& done) {
@@ -314,7 +314,7 @@ RunStages::Names RunStages::train_teacher_here() {
     if (!fs::exists(path(kCheckpoint))) return train(false);
     try {
       return train(true);
-    } catch (const UserError&) {  // damaged: it is worth no more than its time
+    } catch (const UserError&) {  // damaged: train from the start
       fs::remove(path(kCheckpoint));
       return train(false);
     }
@@ -331,7 +331,7 @@ RunStages::Names RunStages::train_teacher_here() {
                                    ? learnt_for(config_, series_)
                                    : learnt_for(config_, series_, market_, market_.fitted_days());
   save_teacher(path(kTeacher), trained.teacher);
-  (void)teacher();  // read while what was trained is there: by outlook it takes its plans over
+  (void)teacher();  // read now: by outlook it reuses the plans of the training
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
   tell(fmt::format("kept at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
                    trained.best_step, trained.best_validation_eur_per_day_per_mwh,
@@ -342,7 +342,7 @@ RunStages::Names RunStages::train_teacher_here() {
 RunStages::Names RunStages::take_teacher() {
   Teacher taken = load_teacher(record_.teacher_file);
   if ((taken.outlook != nullptr) != (config_.train.context == ContextKind::kOutlook)) {
-    fail("{}: {} by outlook, and this run is the other way: [train] context, --day-ahead",
+    fail("{}: {} by outlook, unlike this run: change [train] context or --day-ahead",
          record_.teacher_file, taken.outlook ? "decides" : "does not decide");
   }
   taken.learnt_for = learnt_for_of(record_.teacher_file);
@@ -359,7 +359,7 @@ RunStages::Names RunStages::make_plain_student() {
   save_student(path(kPlainStudent), student);
   write_file(path(kPlainViolations), counterexamples_csv(student.certificate.counterexamples));
   const std::string broken = broken_text(demand_counts(student.certificate));
-  tell(fmt::format("{} violations in {} states looked at{}", student.certificate.violations(),
+  tell(fmt::format("{} violations in {} checked states{}", student.certificate.violations(),
                    student.certificate.states_checked, broken.empty() ? "" : ": " + broken));
   return {kPlainStudent, kPlainViolations};
 }
@@ -386,8 +386,8 @@ RunStages::Names RunStages::make_corrected_student() {
   save_student(path(kStudent), student);
   const std::size_t rounds = corrected.rounds.size();
   proved_ = *proved;
-  tell(fmt::format("no violation over {} states, {} round{}", student.certificate.states_checked,
-                   rounds, rounds == 1 ? "" : "s"));
+  tell(fmt::format("proved: no violation in {} states, {} round{}",
+                   student.certificate.states_checked, rounds, rounds == 1 ? "" : "s"));
   return {kStudent, kDistilCurve, kProofRounds, kCheckpoints};
 }
 
@@ -405,15 +405,14 @@ void RunStages::fail_the_proof() {
   if (record_.is_lean()) throw ProofFailed(what);
   announce(stage_named(kFailureStage));
   report_the_failure();
-  throw ProofFailed(what +
-                    fmt::format("\n  {} shows where; then start at the correction: bess-train run "
-                                "--from-teacher {} --config NEW --out ANOTHER",
-                                path(kReport).string(), folder_.path.string()));
+  throw ProofFailed(what + fmt::format("\n  {} shows where; repeat the correction: bess-train run "
+                                       "--from-teacher {} --config NEW --out ANOTHER",
+                                       path(kReport).string(), folder_.path.string()));
 }
 
 void RunStages::report_the_failure() { go_through(stage_named(kFailureStage)); }
 
-/// The same page, of a student that nobody may export.
+/// The same page for an unproved student.
 RunStages::Names RunStages::make_failure_report() {
   const RunResults run = results(unproved_student());
   const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
@@ -421,10 +420,11 @@ RunStages::Names RunStages::make_failure_report() {
 }
 
 RunStages::Names RunStages::make_header() {
-  if (!proved_) {  // in an earlier life of this run; only a proof of now is exported
+  if (!proved_) {  // proved before a resume; export needs a new proof
     Verdict verdict = prove(load_student(path(kStudent)), config_.train.threads);
     auto* proved = std::get_if<ProvedStudent>(&verdict);
-    if (proved == nullptr) fail("{}: is not proved", path(kStudent).string());
+    if (proved == nullptr)
+      fail("{}: not proved; remove it and resume the run", path(kStudent).string());
     proved_ = std::move(*proved);
   }
   write_file(path(kHeader), format_weight_header(*proved_));
@@ -441,7 +441,7 @@ RunResults RunStages::results(StudentFile corrected) {
                      parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
                      parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string()),
                      walk_forward_of(folder_, record_)};
-  if (fs::exists(path(kCheckpoints))) {  // an older run has none
+  if (fs::exists(path(kCheckpoints))) {  // missing in older runs
     results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
   }
   if (record_.is_lean()) return results;
@@ -484,9 +484,9 @@ RunStages::Names RunStages::make_report() {
 
 std::string how_to_go_on(const RunFolder& folder, const RunRecord& record) {
   if (!record.value(kFoldKey).empty() || record.is_lean()) {
-    return "what is done is kept: the same command goes on";
+    return "finished stages are kept: repeat the command to continue";
   }
-  return fmt::format("what is done is kept: bess-train run --resume --out {} goes on",
+  return fmt::format("finished stages are kept; to continue: bess-train run --resume --out {}",
                      folder.path.string());
 }
 

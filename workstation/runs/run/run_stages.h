@@ -1,6 +1,6 @@
-// A run as stages, each from files of the run's folder to files of it: what is done and whole is
-// kept, what is not is done, in order. Every stage reads its inputs from the disk, so that a run
-// that was interrupted anywhere ends with the same bytes as one that was not.
+// Stages of a run, each from files of the run folder to files of it. Finished and unchanged stages
+// are kept, the others run in order. Every stage reads its inputs from disk, so that a resumed run
+// ends with the same bytes as an uninterrupted one.
 #pragma once
 
 #include <cstdio>
@@ -19,48 +19,48 @@ namespace bess {
 
 class RunStages {
  public:
-  /// What it is about goes to `messages`. The folder is locked by the caller.
+  /// Progress goes to `messages`. The caller locks the folder.
   RunStages(RunFolder folder, RunRecord record, const MinuteSeries& series, std::FILE* messages);
 
-  /// Every stage. Throws ProofFailed when the corrected student was not proved, now or before.
+  /// Runs all stages. Throws ProofFailed when the corrected student was not proved, now or before.
   void finish();
-  /// The report once more. Throws UserError naming what is missing.
+  /// Regenerates the report. Throws UserError naming missing stages.
   void report_again();
-  /// The closing table.
+  /// Final table.
   [[nodiscard]] std::string summary() const;
-  /// Of the days that the run may see.
+  /// Market of the days that the run may use.
   [[nodiscard]] const MarketSteps& market() const { return market_; }
 
   using Names = std::vector<std::string>;
   enum class When { kAlways, kOnBuiltInPrices, kUnlessLean, kAfterFailedProof };
   struct Stage {
     std::string_view name;  ///< in run.json and times.json
-    int number;             ///< of those that are announced
-    const char* text;       ///< empty: not announced, it goes with the one before
+    int number;             ///< of the announced stages
+    const char* text;       ///< empty: not announced
     When when;
-    Names (RunStages::*make)();  ///< the files that it wrote
-    Names inputs;                ///< by whose marks it is kept
-    Names outputs;               ///< at most; figures and their tables not named
+    Names (RunStages::*make)();  ///< returns the written files
+    Names inputs;                ///< kept while their marks are unchanged
+    Names outputs;               ///< possible files, without figures and their tables
   };
-  /// In order. Resuming, progress, help and the list of a run's files go by these rows.
+  /// In order; used for resuming, progress, help and the list of files.
   static std::span<const Stage> stages();
-  /// All files that a run writes, but for the figures.
+  /// All files that a run writes, except the figures.
   static Names files();
-  /// The number of the last stage that is announced; the first are the prices.
+  /// Number of the last announced stage; stage 1 is the prices.
   static int count();
-  /// A line a stage: its number, its name and what it writes.
+  /// One line per stage: number, name and files.
   static std::string help();
 
  private:
   static const Stage& stage_named(std::string_view name);
   [[nodiscard]] bool is_due(const Stage& stage) const;
-  /// Keeps what is whole, else makes it. Throws ProofFailed.
+  /// Keeps or runs a stage. Throws ProofFailed.
   void go_through(const Stage& stage);
-  /// Notes that the stage is done and took `seconds`.
+  /// Records a finished stage.
   void note(StageRecord stage, double seconds);
   void announce(const Stage& stage) const;
   void tell(const std::string& text) const;
-  /// Removes what was left behind half-written, and a checkpoint that has served.
+  /// Removes unfinished files and an obsolete checkpoint.
   void tidy() const;
 
   Names make_configuration();
@@ -90,13 +90,13 @@ class RunStages {
   const MinuteSeries& series_;
   MarketSteps market_;
   std::FILE* messages_;
-  std::optional<Teacher> teacher_;       ///< once it is needed
-  std::optional<Matrix> visited_;        ///< the same
-  std::optional<ProvedStudent> proved_;  ///< when it was proved just now
-  bool unproved_ = false;                ///< the stage that is being made ended without a proof
+  std::optional<Teacher> teacher_;       ///< loaded on demand
+  std::optional<Matrix> visited_;        ///< computed on demand
+  std::optional<ProvedStudent> proved_;  ///< if proved in this process
+  bool unproved_ = false;                ///< the current stage ended without a proof
 };
 
-/// One line for whoever interrupts the run.
+/// How to continue an interrupted run, in one line.
 std::string how_to_go_on(const RunFolder& folder, const RunRecord& record);
 
 }  // namespace bess

@@ -30,7 +30,7 @@ Cell run_cell(const RunLine& run, const fs::path& page) {
           name};
 }
 
-/// What was left of the demands after the last round of a proof that failed.
+/// Remaining violations after the last round of a failed proof.
 std::string left_text(const RunLine& run) {
   const std::string rounds = run.folder.file(run_file::kProofRounds).string();
   if (!fs::exists(rounds)) return {};
@@ -45,7 +45,7 @@ Cell proof_cell(const RunLine& run) {
   if (figures.violations_corrected != 0) {
     return text_cell(fmt::format("{} violations", grouped(figures.violations_corrected)));
   }
-  return text_cell(fmt::format("proved over {} states", grouped(figures.states_checked)));
+  return text_cell(fmt::format("proved in {} states", grouped(figures.states_checked)));
 }
 
 std::string state_text(const RunLine& run) {
@@ -59,7 +59,7 @@ const Evaluation* exported_days(const RunLine& run, EvaluationField field) {
   return found == run.summary->evaluations.end() ? nullptr : &((*found).*field);
 }
 
-/// Over the first run with figures, where both saw the same days.
+/// Gain over the first finished run with the same days.
 Cell gain_cell(const Evaluation& days, const Evaluation& first) {
   const bool same =
       std::ranges::equal(days.days, first.days, {}, &DayResult::date, &DayResult::date);
@@ -93,7 +93,7 @@ std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
 SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
   SortTable table{
       "runs",
-      fmt::format("What the {} of each run earned on its test days", kExportedPolicy),
+      fmt::format("Profit of the {} of each run on its test days", kExportedPolicy),
       {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over", "Gain",
        "EUR/day, whole battery", "At wear 10", "% of foresight", "Same charge each day", "Weights"},
       {}};
@@ -117,11 +117,11 @@ SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
   return table;
 }
 
-/// A column for each key that not all runs have alike; none where there is no such key.
+/// One column for each key with different values.
 SortTable settings_table(const std::vector<RunLine>& runs) {
   std::vector<const RunRecord*> records;
   for (const RunLine& run : runs) records.push_back(&run.record);
-  SortTable table{"settings", "What they differ in", {"Run"}, {}};
+  SortTable table{"settings", "Different settings", {"Run"}, {}};
   const std::vector<std::string> keys = differing_keys(records);
   table.header.insert(table.header.end(), keys.begin(), keys.end());
   for (const RunLine& run : runs) {
@@ -136,7 +136,7 @@ SortTable settings_table(const std::vector<RunLine>& runs) {
 
 RunLine load_run_line(const RunFolder& folder) {
   std::optional<RunRecord> record = load_run_record(folder);
-  if (!record) return {folder, load_run_summary(folder).record, {}, {}};  // says what to do
+  if (!record) return {folder, load_run_summary(folder).record, {}, {}};  // throws with a remedy
   RunLine line{folder, std::move(*record), {}, {}};
   if (!line.record.figures) return line;
   try {
@@ -152,15 +152,16 @@ std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
   const SortTable settings = settings_table(runs);
   const std::string differ = settings.header.size() > 1
                                  ? sort_table_html(settings)
-                                 : "<p class=\"note\">They differ in no setting.</p>\n";
+                                 : "<p class=\"note\">All settings are equal.</p>\n";
   return format_page(
       title,
       fmt::format(
-          "<h1>{}</h1>\n{}<p class=\"note\">EUR per day per MWh of "
-          "capacity unless said otherwise, \u00b1 standard error (and with the days of a month as "
-          "one draw). Carried over: the charge goes over from day to day. Gain: day-by-day "
-          "difference to the first run with figures, where both have the same days. A head sorts "
-          "by its column, once more the other way round; what is not known comes last.</p>\n{}"
+          "<h1>{}</h1>\n{}<p class=\"note\">EUR per day per MWh of capacity unless stated "
+          "otherwise, \u00b1 standard error (in brackets: by month). Carried over: the SoC is "
+          "carried from day to day. Gain: mean day-by-day difference to the first finished run "
+          "with "
+          "the same days. Click a column head to sort, again to reverse; unknown values come "
+          "last.</p>\n{}"
           "<script>\n{}</script>\n",
           title, sort_table_html(run_table(runs, page)), differ, page_file("sort.js")));
 }

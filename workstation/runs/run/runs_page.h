@@ -1,6 +1,5 @@
-// Many runs on one page: what each earned, whether it was proved, its rules, what they differ in,
-// and a link to each one's own page. A run that failed, was stopped or whose numbers were edited is
-// a line too, with what became of it.
+// Page of many runs: profit, proof, rules and settings, with a link to each run's report. Failed,
+// stopped and edited runs are listed with their state.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +14,14 @@ namespace bess {
 struct RunLine {
   RunFolder folder;
   RunRecord record;
-  std::optional<RunSummary> summary;  ///< of a finished run whose numbers are those that it wrote
-  std::string trouble;                ///< why there is none, in a sentence without its full stop
+  std::optional<RunSummary> summary;  ///< of a finished, unedited run
+  std::string trouble;                ///< why there is none, without a full stop
 };
 
-/// Throws UserError when the folder holds no run.
+/// Throws UserError when the folder contains no run.
 RunLine load_run_line(const RunFolder& folder);
 
-/// Gains are over the first run that has figures. Links are relative to the folder of `page`.
+/// Gains are over the first finished run. Links are relative to the folder of `page`.
 std::string runs_page(const std::vector<RunLine>& runs, const std::filesystem::path& page);
 
 }  // namespace bess
