@@ -20,7 +20,7 @@ constexpr double kDeadBandMw = 25;
 double shortage_of(double imbalance_mw) { return std::max(0.0, -imbalance_mw); }
 double surplus_of(double imbalance_mw) { return std::max(0.0, imbalance_mw); }
 
-/// Since 22 May 2024, without alpha: `first` bids lie at the ends of the merit order.
+/// Formula since 22 May 2024, without alpha.
 double mean_price(const ImbalanceState& state) {
   const double first_up = state.marginal_incremental_eur_per_mwh -
                           kUpwardEurPerMwhPerMw * shortage_of(state.system_imbalance_mw);
@@ -41,7 +41,7 @@ double price_of(PriceFormula formula, const ImbalanceState& state) {
   return mean_price(state) + sign * alpha;
 }
 
-/// One battery of a part, as ../data/env/evaluate.cpp runs one.
+/// One battery of a part, run as in ../data/env/evaluate.cpp.
 class PartRunner {
  public:
   PartRunner(const FleetPart& part, const FleetOptions& options)
@@ -50,7 +50,7 @@ class PartRunner {
     evaluation_.wear_eur_per_mwh = options.battery.wear_eur_per_mwh;
   }
 
-  /// At the start of minute `t`; `prices` hold every row before it.
+  /// Decides at the start of minute `t`; `prices` contains all earlier rows.
   void decide(std::size_t t, const MinuteSeries& prices) {
     const int late = part_.late_min % kMinutesPerStep;
     if (static_cast<int>(t % kMinutesPerStep) != late) return;
@@ -74,12 +74,12 @@ class PartRunner {
     soc_frac_ = moved.soc_frac;
   }
 
-  /// Given to the grid now, as a share of the rated power.
+  /// Present export, as a share of the rated power.
   [[nodiscard]] double given_share() const {
     return -power_w_ / options_.battery.power_w_max * part_.share;
   }
 
-  /// The money, once every quarter-hour is settled.
+  /// Profit, once every quarter-hour is settled.
   Evaluation settled(const MinuteSeries& prices) && {
     const BatteryParameters& battery = options_.battery;
     double soc_frac = options_.initial_soc_frac;
@@ -112,7 +112,7 @@ class PartRunner {
     double power_w, soc_frac;
   };
 
-  /// The day's cycles are; a new day has them anew.
+  /// True when the full cycles of the day are used up.
   bool is_used_up(const LocalDate& date) {
     if (date != day_) day_energy_mwh_ = 0;
     day_ = date;
@@ -122,7 +122,7 @@ class PartRunner {
                                                                     kWattsPerMegawatt;
   }
 
-  /// As make_market_steps() has it, but for what will be paid.
+  /// As in make_market_steps(), without the paid price.
   MarketStep step_at(std::size_t t, std::size_t row, const MinuteSeries& prices) {
     const double observed = prices.indicative[row];
     level_.observe(prices.utc_s(row), price_centi_of(observed));

@@ -24,12 +24,12 @@ namespace bess {
 
 namespace {
 
-/// The year whose imbalances the simulated market was fitted to.
+/// Start of the period to which the simulated market was fitted.
 constexpr LocalDate kFirstDay{2023, 1, 1};
-/// Before the test days, not counted: the trailing price level finds its place.
+/// Days before the test days in which the price level settles; not evaluated.
 constexpr int kWarmUpDays = 5;
 
-/// Wear that a shy fleet plans with beside its own, EUR/MWh.
+/// Additional wear in the planning of a cautious fleet, EUR/MWh.
 constexpr double kShynesses[] = {0, 20, 50, 100, 200, 400};
 
 using Policies = std::vector<std::shared_ptr<Policy>>;
@@ -47,7 +47,7 @@ std::vector<FleetPart> fleet_of(const Policies& policies, const ImpactVariant& v
   return fleet;
 }
 
-/// One seed's market, cut into what is learnt from and what is traded.
+/// Market of one seed, with training and test days.
 class SeedOfMarket {
  public:
   SeedOfMarket(const ImpactPlan& plan, std::uint64_t seed)
@@ -59,7 +59,7 @@ class SeedOfMarket {
     train_.paths.resize(train_.quarter_hours.size());
   }
 
-  /// What the fleet makes of the training days.
+  /// Run of the fleet on the training days.
   [[nodiscard]] FleetRun trained(const std::vector<FleetPart>& fleet,
                                  const FleetOptions& options) const {
     return run_fleet(train_, fleet, options);
@@ -122,7 +122,7 @@ Policies fitted(const ImpactPlan& plan, const MinuteSeries& prices, const FleetO
   return policies;
 }
 
-/// Of policies with more and more wear that which earned most on the training days.
+/// The candidate with the highest earnings on the training days.
 const Policies& shy(const std::vector<Policies>& candidates, const ImpactPlan& plan,
                     const FleetOptions& options, const SeedOfMarket& market) {
   const auto earned = [&](const Policies& policies) {
@@ -132,7 +132,7 @@ const Policies& shy(const std::vector<Policies>& candidates, const ImpactPlan& p
   return *std::ranges::max_element(candidates, {}, earned);
 }
 
-/// All fleets of one formula and seed: [fleet][variant].
+/// Results of one formula and seed: [fleet][variant].
 std::vector<std::vector<ImpactFigures>> figures_of(const ImpactPlan& plan,
                                                    const FleetOptions& options,
                                                    const SeedOfMarket& market) {
@@ -243,7 +243,7 @@ Table table_of(const std::vector<ImpactRow>& rows) {
       {{"formula", "", "", 0, "Formula"}, [](const R& r) { return formula_name(r.formula); }},
       {{"fleet_mw", "", "", kAllDecimals, "MW"}, &R::fleet_mw},
       {{"variant", "", "", 0, "Variant"}, &R::variant},
-      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR a MW and day"},
+      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR per MW and day"},
        [](const R& r) { return r.mean.eur_per_mw_day; }},
       {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds"}, &R::standard_error},
       {{"overshoot_share", "", "{:.3f}", 4, "Overshoot"},
@@ -252,7 +252,7 @@ Table table_of(const std::vector<ImpactRow>& rows) {
        [](const R& r) { return r.mean.imbalance_mw; }},
       {{"imbalance_alone_mw", "", "{:.1f}", 4, "Without, MW"},
        [](const R& r) { return r.mean.imbalance_alone_mw; }},
-      {{"switches_per_day", "", "{:.1f}", 4, "Switches a day"},
+      {{"switches_per_day", "", "{:.1f}", 4, "Switches/day"},
        [](const R& r) { return r.mean.switches_per_day; }},
   };
   return {kColumns, rows};
@@ -265,7 +265,7 @@ const ImpactRow& row_at(const std::vector<ImpactRow>& rows, PriceFormula formula
   });
 }
 
-/// Where the fleet as a whole earns most, and from where on the system would do better without it.
+/// Fleet size with the highest total earnings, and size from which it increases the imbalance.
 std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>& rows,
                            PriceFormula formula) {
   const auto as_it_is = [&](double mw) -> const ImpactRow& {
@@ -276,17 +276,17 @@ std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>&
   const double most = *std::ranges::max_element(plan.fleet_mw, {}, money);
   const double best = *std::ranges::min_element(plan.fleet_mw, {}, imbalance);
   std::string text =
-      fmt::format("{}: earns most in all at {:g} MW; the system's imbalance is least at {:g} MW",
+      fmt::format("{}: highest total earnings at {:g} MW; lowest system imbalance at {:g} MW",
                   formula_name(formula), most, best);
   for (const double mw : plan.fleet_mw) {
     const ImpactFigures& figures = as_it_is(mw).mean;
     if (mw <= best || figures.imbalance_mw <= figures.imbalance_alone_mw) continue;
-    return text + fmt::format(", and larger than without a fleet from {:g} MW on", mw);
+    return text + fmt::format(", and higher than without a fleet from {:g} MW", mw);
   }
   return text;
 }
 
-/// Lines over the fleet's size: `value` of each of the rows that `named` tells apart.
+/// Lines over fleet size: `value` for each of `names`.
 template <typename Value>
 Json lines_chart(const std::string& id, const ImpactPlan& plan,
                  const std::vector<std::string>& names, Value value) {
@@ -311,9 +311,8 @@ std::string with_error(const ImpactRow& row) {
 
 std::string plan_text(const ImpactPlan& plan) {
   return fmt::format(
-      "{} simulated markets, each {} days learnt from and {} traded; {}; spread: clocks 0 to {} "
-      "min "
-      "late; small steps: {:g} % of the power each two minutes",
+      "{} simulated markets with {} training days and {} traded days; {}; spread: clock delay 0 to "
+      "{} min; small steps: {:g} % of the power per two minutes",
       plan.seeds, plan.train_days, plan.test_days, fmt::join(plan.policies, " and "),
       plan.jitter_min, 100 * plan.step_share);
 }
@@ -322,7 +321,7 @@ std::string plan_text(const ImpactPlan& plan) {
 
 std::string format_impact_table(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
   std::string text =
-      fmt::format("EUR a MW and day (standard error over seeds)\n{}\n", plan_text(plan));
+      fmt::format("EUR per MW and day (standard error over seeds)\n{}\n", plan_text(plan));
   const std::vector<ImpactVariant> variants = impact_variants(plan);
   for (std::size_t f = 0; f < kFormulaNames.size(); ++f) {
     const auto formula = static_cast<PriceFormula>(f);
@@ -343,7 +342,7 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
   for (std::size_t f = 0; f < kFormulaNames.size(); ++f) {
     text += turning_points(plan, rows, static_cast<PriceFormula>(f)) + "\n";
   }
-  return text + "overshoot, |SI| and switches: of the fleet as it is\n";
+  return text + "overshoot, |SI| and switches: variant 'as it is'\n";
 }
 
 std::string impact_csv(const std::vector<ImpactRow>& rows) { return table_of(rows).csv(); }
@@ -364,9 +363,9 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
   std::vector<std::string> variants;
   for (const ImpactVariant& variant : impact_variants(plan)) variants.push_back(variant.name);
   Json charts = Json::list();
-  std::string body = fmt::format(
-      "<h1>A fleet that moves its own price</h1>\n<p>{}.</p>\n<p class=\"note\">{}</p>\n",
-      html_escaped(plan_text(plan)), csv_link("impact.csv"));
+  std::string body =
+      fmt::format("<h1>Price impact of a fleet</h1>\n<p>{}.</p>\n<p class=\"note\">{}</p>\n",
+                  html_escaped(plan_text(plan)), csv_link("impact.csv"));
   const auto figure = [&](const std::string& title, const std::string& id, Json chart,
                           const std::string& note) {
     charts.add(std::move(chart));
@@ -376,18 +375,18 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
   const auto of_formula = [&](std::size_t f, double mw) -> const ImpactFigures& {
     return row_at(rows, static_cast<PriceFormula>(f), mw, variants.front()).mean;
   };
-  figure("EUR a MW and day over the fleet's size", "money",
+  figure("EUR per MW and day by fleet size", "money",
          lines_chart("money", plan, formulas,
                      [&](std::size_t f, double mw) { return of_formula(f, mw).eur_per_mw_day; }),
-         "The fleet as it is, by price formula.");
-  figure("The system's imbalance with the fleet, mean size, MW", "imbalance",
+         "Variant 'as it is', by price formula.");
+  figure("Mean absolute system imbalance with the fleet, MW", "imbalance",
          lines_chart("imbalance", plan, formulas,
                      [&](std::size_t f, double mw) { return of_formula(f, mw).imbalance_mw; }),
          fmt::format("Without a fleet {:.1f} MW.", rows.front().mean.imbalance_alone_mw));
   for (std::size_t f = 0; f < formulas.size(); ++f) {
     const auto formula = static_cast<PriceFormula>(f);
     const std::string id = fmt::format("variants-{}", f + 1);
-    figure(fmt::format("What saves it, formula {}", formulas[f]), id,
+    figure(fmt::format("Variants, formula {}", formulas[f]), id,
            lines_chart(id, plan, variants,
                        [&](std::size_t v, double mw) {
                          return row_at(rows, formula, mw, variants[v]).mean.eur_per_mw_day;
@@ -395,10 +394,10 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
            turning_points(plan, rows, formula) + ".");
   }
   body += fmt::format("{}<script>\n{}</script>\n",
-                      sort_table_html(sort_table("rows", "Every fleet", table_of(rows))),
+                      sort_table_html(sort_table("rows", "All fleets", table_of(rows))),
                       page_file("sort.js"));
   write_file(folder / "impact.html",
-             format_chart_page("A fleet that moves its own price", body, std::move(charts)));
+             format_chart_page("Price impact of a fleet", body, std::move(charts)));
 }
 
 }  // namespace bess

@@ -20,8 +20,7 @@ NamedEvaluation run(const std::string& name, const ReadLog& read, double soc_fra
 NamedEvaluation run_named(const std::string& name, const ReadLog& read, double soc_frac) {
   const Baseline* baseline = find_baseline(name);
   if (baseline != nullptr && baseline->is_for(kFitted)) {
-    fail("--policy {} is fitted on prices: bess-train evaluate does, on the prices of these days",
-         name);
+    fail("--policy {} needs fitting: use bess-train evaluate on the prices of these days", name);
   }
   if (const auto policy = make_baseline(name, {}, read.battery)) {
     return run(name, read, soc_frac, *policy, ContextKind::kLevel);
@@ -35,7 +34,8 @@ NamedEvaluation run_named(const std::string& name, const ReadLog& read, double s
 std::vector<NamedEvaluation> compare_log(const ReadLog& read,
                                          const std::vector<std::string>& policies) {
   const MarketSteps market = market_of_log(read.log, read.prices, read.span, ContextKind::kLevel);
-  if (market.steps.empty()) fail("the log holds no cycle with a price in these days");
+  if (market.steps.empty())
+    fail("the log has no control cycle with a price on these days; change --from or --to");
   std::vector<NamedEvaluation> all{{kThisBattery, {}, evaluation_of(read.days, read.battery)}};
   const double soc_frac = all.front().carried_over.days.front().soc_start_frac;
   for (const std::string& name : policies) all.push_back(run_named(name, read, soc_frac));

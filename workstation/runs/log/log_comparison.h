@@ -1,5 +1,5 @@
-// What other policies would have earned in the cycles of a log, beside what the battery earned:
-// each decides on the price that the controller had there, with its delay, from the same charge on.
+// Log comparison: other policies in the same control cycles, with the controller's prices and their
+// delay, from the same SoC.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@ namespace bess {
 
 inline constexpr const char* kThisBattery = "this battery";
 
-/// This battery, `policies`, foresight; SoC carried over, the charge left valued. A policy is
-/// "rbc", "rbc:LOW:HIGH", or what student_for_log() takes. Throws UserError.
+/// This battery, `policies` and foresight; SoC carried over, final charge valued. A policy is
+/// "rbc", "rbc:LOW:HIGH" or a name for student_for_log(). Throws UserError.
 std::vector<NamedEvaluation> compare_log(const ReadLog& read,
                                          const std::vector<std::string>& policies);
 
-/// Of the whole battery, over all days, EUR.
+/// Earnings of the whole battery over all days, EUR.
 struct Paid {
   double paid_eur;    ///< net of costs and wear
-  double charge_eur;  ///< the charge left at the end, as money
+  double charge_eur;  ///< value of the final charge
 };
 Paid paid_of(const Evaluation& evaluation);
 

@@ -63,11 +63,11 @@ std::vector<SettledQuarter> read_settled(const std::string& path) {
     const bool is_validated = table.text(row, state) == "validated";
     const std::int64_t utc_s = table.utc_s(row, start);
     if (utc_s % kSecondsPerQuarterHour != 0) {
-      fail("{}:{}: quarter_hour_utc {} begins no quarter-hour", path, table.line(row),
+      fail("{}:{}: quarter_hour_utc {} is not the start of a quarter-hour", path, table.line(row),
            table.text(row, start));
     }
     if (!is_validated && table.text(row, state) != "published") {
-      fail("{}:{}: state \"{}\" is neither published nor validated", path, table.line(row),
+      fail("{}:{}: state \"{}\": expected published or validated", path, table.line(row),
            table.text(row, state));
     }
     settled.push_back({utc_s, table.number(row, price),
@@ -128,7 +128,7 @@ Evaluation evaluation_of(const std::vector<LoggedDay>& days, const BatteryParame
                                .soc_end_frac = end_frac,
                                .throughput_mwh = throughput_mwh,
                                .soc_start_frac = soc_frac});
-    soc_frac = end_frac;  // each goes on where the one before ended
+    soc_frac = end_frac;  // the next day starts at this SoC
   }
   return evaluation;
 }
@@ -162,7 +162,7 @@ MarketSteps market_of_log(const CycleLog& log, const QuarterPrices& prices, cons
     today = date;
     const auto first = prices.find(c.utc_s);
     if (!c.has_price || !c.is_price_usable || !first) continue;
-    // The log may end in the step, with nothing known of the quarter-hour of its second minute.
+    // The log may end before the quarter-hour of the second minute.
     const auto second = prices.find(c.utc_s + 60);
     market.steps.push_back(step_of(c, context));
     market.steps.back().paid_eur_per_mwh =
@@ -183,8 +183,8 @@ void require_same_battery(const CycleLog& log, const BatteryParameters& battery,
   const double most_w = most_ordered_w(log);
   if (most_w == 0 || (most_w <= battery.power_w_max && most_w >= battery.power_w_max / 20)) return;
   fail(
-      "the orders of the log reach {:g} W, [battery] power_w of {} is {:g}: name the battery of "
-      "the log with --config",
+      "orders in the log reach {:g} W, but [battery] power_w of {} is {:g}: name the "
+      "configuration of this battery with --config",
       most_w, config.empty() ? "the defaults" : config, battery.power_w_max);
 }
 
@@ -203,23 +203,26 @@ void tell(const std::string& file, const CycleLog& log, const std::vector<Logged
     if (count == 0) return;
     fmt::print(stderr, "{}: {} {}\n", file, counted(static_cast<std::size_t>(count), noun), what);
   };
-  tell_one(log.torn, "last line", "without a line end: passed over");
-  tell_one(log.duplicates, "row", "of a time that there is already: passed over");
-  tell_one(missing, "tick", "without a row: what flowed there is told by the state of charge");
+  tell_one(log.torn, "last line", "without a line end: ignored");
+  tell_one(log.duplicates, "row", "with a duplicate time: ignored");
+  tell_one(missing, "tick", "without a row: energy estimated from the state of charge");
 }
 
 }  // namespace
 
 void LogInput::add(ProgramCommand& command, bool counts_money) {
   counts_money_ = counts_money;
-  command.option("files", files_, "Of bess-edge log --csv, or [log] csv; several are one log")
+  command
+      .option("files", files_,
+              "controller logs (bess-edge log --csv or [log] csv); several are joined")
       .required();
-  command.option("--from", from_, "First local day, YYYY-MM-DD (default: that of the log)");
-  command.option("--to", to_, "Last local day, YYYY-MM-DD");
+  command.option("--from", from_, "first local day, YYYY-MM-DD (default: first of the log)");
+  command.option("--to", to_, "last local day, YYYY-MM-DD (default: last of the log)");
   if (!counts_money) return;
   command.option("--settled", settled_,
-                 "settled.csv of bess-prices; without: the last minute's price, an estimate");
-  command.option("--config", config_, "TOML file with [battery] and [costs] of the log's battery");
+                 "settled.csv of bess-prices (default: estimate from the last minute's price)");
+  command.option("--config", config_,
+                 "configuration (TOML) with [battery] and [costs] of this battery");
 }
 
 ReadLog LogInput::read() const {
@@ -229,7 +232,8 @@ ReadLog LogInput::read() const {
   const LoggedSpan span{day_of(from_, "--from", 0), day_of(to_, "--to", 99'999'999)};
   QuarterPrices prices = prices_of(log, read_settled(settled_));
   std::vector<LoggedDay> days = days_of(log, prices, battery, span);
-  if (days.empty()) fail("{}: the log holds no cycle of these days", files_.front());
+  if (days.empty())
+    fail("{}: the log has no control cycle on these days; change --from or --to", files_.front());
   tell(files_.front(), log, days);
   return {std::move(log), battery, span, std::move(prices), std::move(days)};
 }

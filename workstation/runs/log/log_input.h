@@ -1,5 +1,4 @@
-// The input of every command on a controller's log: its files, settled prices, days and battery;
-// and the logged days made of them.
+// Input of the log commands: files, settled prices, days and battery; and the logged days.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +15,12 @@
 
 namespace bess {
 
-// What a controller's log says of its local days: energy and money as `bess-edge earned` counts
-// them, by the same code (exchanged_days.h), and the market that other policies are run on.
+// Local days of a log: energy and money as in `bess-edge earned` (exchanged_days.h), and the market
+// on which other policies run.
 //
-// Of the two conventions the edge's counts the battery: what flowed is reconstructed to the second
-// and paid by quarter-hours, as a bill is. Every policy beside it is counted by evaluate(), with
-// its order from tick to tick: some 3 s early, 0.5 % of a month. Costs, wear and the charge left at
-// the end are those of the workstation for all.
+// The battery is accounted as on the edge: energy is reconstructed to the second and paid by
+// quarter-hour, as on a bill. Other policies are accounted by evaluate(), from tick to tick: about
+// 3 s early, 0.5 % of a month. Costs, wear and final charge are those of the workstation for all.
 
 /// Local days as 20231126, both ends included.
 struct LoggedSpan {
@@ -39,37 +37,37 @@ struct LoggedDay {
   bool has_reading = false;
   int cycles = 0, driven_cycles = 0;
   int missing = 0;                       ///< ticks without a row
-  int switches = 0;                      ///< changes between charging, rest and discharging
-  std::map<std::string, int> stopped{};  ///< cycles by reason, where the student did not decide
+  int switches = 0;                      ///< changes between charging, idle and discharging
+  std::map<std::string, int> stopped{};  ///< cycles not decided by the student, by reason
 };
 
 /// `settled.csv` of bess-prices: "quarter_hour_utc,eur_per_mwh,state"; an empty path: none. Throws
 /// UserError naming file, line and column.
 std::vector<SettledQuarter> read_settled(const std::string& path);
 
-/// What the log's quarter-hours are paid at.
+/// Prices of the log's quarter-hours.
 QuarterPrices prices_of(const CycleLog& log, const std::vector<SettledQuarter>& settled);
 
-/// The days of `span` that have a cycle, oldest first. Costs, wear and capacity are of `battery`.
+/// Days of `span` with a cycle, oldest first. Costs, wear and capacity from `battery`.
 std::vector<LoggedDay> days_of(const CycleLog& log, const QuarterPrices& prices,
                                const BatteryParameters& battery, const LoggedSpan& span);
 
-/// Those days as an evaluation, SoC carried over; the charge left is not valued yet.
+/// The days as an evaluation, SoC carried over; final charge not valued.
 Evaluation evaluation_of(const std::vector<LoggedDay>& days, const BatteryParameters& battery);
 
-/// A step for each cycle of `dates` with a price that can be decided on: in the others all rest.
-/// The level of the steps is that of the log; by outlook it is the break-even price that the log
-/// has, which is known at the battery's own charge alone.
+/// One step for each cycle of `span` with a usable price; in other cycles all policies are idle.
+/// The level of the steps is that of the log; by outlook it is the logged break-even price, which
+/// is known only at the battery's own SoC.
 MarketSteps market_of_log(const CycleLog& log, const QuarterPrices& prices, const LoggedSpan& span,
                           ContextKind context);
-/// Of one cycle with a price; the price that is paid stays 0.
+/// Step of one cycle with a price; the paid price stays 0.
 MarketStep step_of(const LoggedCycle& cycle, ContextKind context);
 
-/// Largest order of either direction, W.
+/// Largest order in either direction, W.
 double most_ordered_w(const CycleLog& log);
 
-/// Throws UserError where the orders of the log are not those of a battery of this power; `config`
-/// names where it came from.
+/// Throws UserError when the orders of the log do not fit the power of `battery`; `config` names
+/// its file.
 void require_same_battery(const CycleLog& log, const BatteryParameters& battery,
                           const std::string& config);
 
@@ -83,11 +81,11 @@ struct ReadLog {
 
 class LogInput {
  public:
-  /// Declares the files, --from and --to, and where money is counted --config and --settled.
+  /// Declares files, --from and --to, and with `counts_money` --config and --settled.
   void add(ProgramCommand& command, bool counts_money);
-  /// Tells on the standard error what of the log was passed over. Throws UserError.
+  /// Reports ignored rows on stderr. Throws UserError.
   [[nodiscard]] ReadLog read() const;
-  /// Refuses an output that is read.
+  /// Refuses an output that is also an input.
   void require_not_read(const std::string& option, const std::string& output) const;
 
  private:
@@ -96,8 +94,8 @@ class LogInput {
   bool counts_money_ = false;
 };
 
-/// "compiled", a student's file, or a run's folder. By outlook it decides on the break-even price
-/// that the log has. Throws UserError.
+/// "compiled", a student file or a run folder. By outlook it decides on the logged break-even
+/// price. Throws UserError.
 StudentFile student_for_log(const std::string& name);
 
 }  // namespace bess

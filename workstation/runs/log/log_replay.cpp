@@ -63,18 +63,18 @@ LogReplay replay_log(const CycleLog& log, const LoggedSpan& span, const StudentN
   if (replay.compared > 0) return replay;
   if (replay.without_context > 0) {
     fail(
-        "the student decides by the outlook, and none of the log's {} decisions has one: it is of "
-        "a controller without",
+        "the student decides by the outlook, but none of the {} logged decisions has one: use a "
+        "log "
+        "of a controller with [outlook]",
         replay.without_context);
   }
-  fail("the log holds no decision of a student in these days");
+  fail("the log has no decision of a student on these days; change --from or --to");
 }
 
 std::string LogReplay::text() const {
-  std::string text = fmt::format(
-      "student {:08x} would decide otherwise in {} of {} cycles ({:.2f} %), for about {:+.2f} "
-      "EUR\n",
-      student_hash, differing, compared, differing_percent(), gained_eur);
+  std::string text =
+      fmt::format("student {:08x} changes {} of {} decisions ({:.2f} %), worth about {:+.2f} EUR\n",
+                  student_hash, differing, compared, differing_percent(), gained_eur);
   for (const Action before : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
     for (const Action now : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
       const int cycles = decisions[index(before)][index(now)];
@@ -82,15 +82,16 @@ std::string LogReplay::text() const {
       text += fmt::format("{:<9} -> {:<9} {:6}\n", action_name(before), action_name(now), cycles);
     }
   }
-  if (without_context > 0) text += fmt::format("{} cycles without an outlook\n", without_context);
+  if (without_context > 0)
+    text += fmt::format("{} control cycles without an outlook\n", without_context);
   if (differing == 0) return text;
   const ReplayedDay& worst = *std::ranges::min_element(days, {}, &ReplayedDay::gained_eur);
-  return text + fmt::format(
-                    "worst day  {}: {} of {}, {:+.2f} EUR\n"
-                    "estimate: each decision by itself, at full power for two minutes, what it "
-                    "moves given "
-                    "back at the day's mean price\n",
-                    worst.date, worst.differing, worst.compared, worst.gained_eur);
+  return text +
+         fmt::format(
+             "worst day  {}: {} of {}, {:+.2f} EUR\n"
+             "estimate: each decision alone, full power for two minutes, offset at the day's "
+             "mean price\n",
+             worst.date, worst.differing, worst.compared, worst.gained_eur);
 }
 
 Json LogReplay::json() const {

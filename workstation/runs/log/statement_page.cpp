@@ -41,16 +41,16 @@ std::string day_cells(const ExchangedDay& day) {
 std::string notes(const ExchangedDay& all, double stored_kwh) {
   const QuarterHourMoney& money = all.money;
   std::string text = fmt::format(
-      "<p>{} of {} quarter-hours stand at their settled price, {} of those validated; the others "
-      "at the last price of their minutes",
+      "<p>{} of {} quarter-hours have their settled price, {} of them validated; the others have "
+      "the last price of their minutes",
       money.published, money.quarter_hours, money.validated);
-  if (money.unpriced > 0) text += fmt::format(", and {} without any", money.unpriced);
+  if (money.unpriced > 0) text += fmt::format(", and {} have none", money.unpriced);
   return text +
          fmt::format(
              ": {:.2f} EUR is an estimate. Before validation a settled price may still change. "
-             "{:.3f} kWh flowed while nobody looked, by the state of charge. At the end {:.3f} kWh "
-             "more are stored than at the beginning. Taxes are in it as far as [costs] of the "
-             "configuration names them.</p>\n",
+             "Unmetered energy (estimated from the SoC): {:.3f} kWh. Change of the stored energy: "
+             "{:.3f} kWh. Taxes are included only as [costs] of the configuration contains "
+             "them.</p>\n",
              money.estimated_eur, all.unseen_wh / 1'000, stored_kwh);
 }
 
@@ -59,12 +59,12 @@ std::string contract_table(const BatteryParameters& battery) {
   const auto line = [](const char* name, double value, const char* unit) {
     return row(name, fmt::format("<td>{:g} {}</td>", value, unit));
   };
-  return table("The contract, beside the price", {},
-               line("on top of what is taken", costs.import_adder_eur_per_mwh, "EUR/MWh") +
-                   line("and of the price's size", costs.import_percent, "%") +
-                   line("off what is given", costs.export_fee_eur_per_mwh, "EUR/MWh") +
-                   line("and of the price's size", costs.export_percent, "%") +
-                   line("wear, of both", battery.wear_eur_per_mwh, "EUR/MWh"));
+  return table("Contract terms in addition to the price", {},
+               line("surcharge on imports", costs.import_adder_eur_per_mwh, "EUR/MWh") +
+                   line("surcharge, of the absolute price", costs.import_percent, "%") +
+                   line("fee on exports", costs.export_fee_eur_per_mwh, "EUR/MWh") +
+                   line("fee, of the absolute price", costs.export_percent, "%") +
+                   line("wear, imports and exports", battery.wear_eur_per_mwh, "EUR/MWh"));
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ std::string statement_page(const std::vector<LoggedDay>& days, const BatteryPara
     missing += day.missing;
     for (const auto& [reason, count] : day.stopped) stopped[reason] += count;
   }
-  rows += row("together", day_cells(all), " class=\"sum\"");
+  rows += row("total", day_cells(all), " class=\"sum\"");
   for (const auto& [reason, count] : stopped) {
     stops += row(html_escaped(reason), fmt::format("<td>{}</td>", count));
   }
@@ -96,15 +96,16 @@ std::string statement_page(const std::vector<LoggedDay>& days, const BatteryPara
              "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"/>\n"
              "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
              title, kStyle) +
-         table("By days",
-               {"day", "charged kWh", "discharged kWh", "by quarter-hours EUR", "contract EUR",
-                "net EUR", "quarter-hours / settled / validated"},
+         table("By day",
+               {"day", "charged kWh", "discharged kWh", "at quarter-hour prices EUR",
+                "contract EUR", "net EUR", "quarter-hours / settled / validated"},
                rows) +
          notes(all, stored_kwh) + contract_table(battery) +
-         fmt::format("<p>Driven {:.1f} % of the time; {} ticks have no row in the log.</p>\n",
+         fmt::format("<p>Controlled {:.1f} % of the time; {} ticks have no row in the log.</p>\n",
                      100.0 * driven / (cycles + missing), missing) +
-         (stops.empty() ? ""
-                        : table("Where the student did not decide", {"reason", "cycles"}, stops)) +
+         (stops.empty()
+              ? ""
+              : table("Control cycles not decided by the student", {"reason", "cycles"}, stops)) +
          "</body>\n</html>\n";
 }
 

@@ -1,4 +1,4 @@
-// The statement of some days as a page to print, whole in one file: to be held beside the bill.
+// Statement of days as a printable, self-contained page, to compare with the bill.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace bess {
 
-/// HTML that is XML as well. `days` are not empty; costs and wear are of `battery`.
+/// HTML that is also XML. `days` is not empty; costs and wear from `battery`.
 std::string statement_page(const std::vector<LoggedDay>& days, const BatteryParameters& battery);
 
 }  // namespace bess

@@ -34,11 +34,11 @@ std::vector<double> read_kilos(TomlTable& table, std::string_view key) {
     if (!(kilos >= kKiloMin && kilos <= kKiloMax)) {
       table.fail_at(value, std::string(key) + ": expected numbers from 0.01 to 1000000");
     } else if (std::ranges::find(sizes, kilos * 1e3) != sizes.end()) {
-      table.fail_at(value, std::string(key) + ": a value stands there twice");
+      table.fail_at(value, std::string(key) + ": a value is repeated");
     }
     sizes.push_back(kilos * 1e3);
   }
-  if (list->empty()) table.fail(key, "is empty: give one value at least");
+  if (list->empty()) table.fail(key, "is empty: add at least one value");
   return sizes;
 }
 
@@ -75,7 +75,7 @@ void read_contracts(TomlTable& top, const RunConfig& base, SizePlan& plan) {
     plan.contracts.push_back(read_contract(table, base));
     const auto same =
         std::ranges::count(plan.contracts, plan.contracts.back().name, &SizeContract::name);
-    if (same > 1) top.fail_at(value, "[[contract]]: this name stands there twice");
+    if (same > 1) top.fail_at(value, "[[contract]]: this name is used twice");
   }
 }
 
@@ -116,13 +116,14 @@ SizePlan read_size_plan(const std::string& path, const RunConfig& base) {
   top.finish();
   if (!error.empty()) throw UserError(error);
   const std::size_t cells = plan.power_w.size() * plan.capacity_wh.size() * plan.contracts.size();
-  if (cells > kCellsMax) fail("{}: {} cells are more than {}", path, cells, kCellsMax);
+  if (cells > kCellsMax)
+    fail("{}: {} cells exceed the maximum of {}; use fewer values", path, cells, kCellsMax);
   return plan;
 }
 
 namespace {
 
-/// All days that are traded, as days of the whole market.
+/// Traded days, as days of the whole market.
 std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& traded) {
   std::vector<MarketDay> days;
   auto next = traded.days.begin();
@@ -134,7 +135,7 @@ std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& 
   return days;
 }
 
-/// One plan over the whole series, as walk_forward() has it for each of its months.
+/// One plan over the whole series, as in walk_forward() for each month.
 double foresight_profit(const MarketSteps& market, const RunConfig& config,
                         const std::vector<MarketDay>& days) {
   const auto policy = make_baseline(kForesightName, market, config.battery);
@@ -158,7 +159,7 @@ SizeClass trade_class(const RunConfig& config, const SizeTrial& trial) {
           bound > 0 ? profit / bound : NAN};
 }
 
-/// Power taken, summed over the minutes of one quarter-hour after the other.
+/// Mean import by quarter-hour, from consecutive minutes.
 class PeakMeter {
  public:
   explicit PeakMeter(double power_w_max) : power_w_max_(power_w_max) {}
@@ -219,7 +220,7 @@ constexpr double kDaysPerYear = 365.25;
 constexpr int kMonthsPerYear = 12;
 constexpr int kLifeMonthsMax = 50 * kMonthsPerYear;
 
-/// What each day leaves of the class's money: wear given back, a share taken of months that earn.
+/// Daily cash: profit without wear, less the share of months with a profit.
 std::vector<DayValue> cash_of(const SizeClass& of, double share_percent) {
   std::vector<DayValue> days;
   std::map<std::string, double> months;
@@ -320,7 +321,7 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
 
 LifeOfBattery life_of(const SizeCell& cell, const Ageing& ageing) {
   LifeOfBattery life{0, NAN, -cell.price_eur};
-  double capacity = 1;  // of what was bought
+  double capacity = 1;  // of the initial capacity
   const double cycles = cell.cycles_per_day * kDaysPerYear / kMonthsPerYear;
   for (int month = 0; month < kLifeMonthsMax && capacity > ageing.end_percent / 100; ++month) {
     const double eur =

@@ -1,6 +1,5 @@
-// The money of one battery under one contract: what a year brings after the costs of the contract,
-// and how long until it has earned its price, while it ages; the plan of sizes, and classes of
-// sizes that share a policy.
+// Economics of one battery under one contract: yearly earnings after contract costs, and payback
+// with ageing; the plan of sizes, and classes of sizes that share a policy.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +11,22 @@
 
 namespace bess {
 
-// What is to be weighed up before a battery is bought: powers x capacities x contracts, what buying
-// costs and how it ages. A TOML file; README.md has an example with every key.
+// Size plan: powers x capacities x contracts, purchase costs and ageing. A TOML file; README.md has
+// an example with every key.
 
-/// What trading costs, and what whoever lets one trade keeps.
+/// Trading costs and the aggregator's share.
 struct SizeContract {
   std::string name;
-  TradingCosts costs;  ///< these and the next two change what is decided
+  TradingCosts costs;  ///< these and the next two change decisions
   double wear_eur_per_mwh = 0;
   double cycles_per_day_max = 0;
-  double share_percent = 0;  ///< of what a month earns; of a month's loss nothing
+  double share_percent = 0;  ///< of the earnings of months with a profit
   double fee_eur_per_month = 0;
-  double capacity_eur_per_kw_year = 0;  ///< on the mean of the months' highest quarter-hours taken
-  double capacity_free_kw = 0;          ///< of it, that the site pays for anyway
+  double capacity_eur_per_kw_year = 0;  ///< on the mean of the monthly import peaks (quarter-hours)
+  double capacity_free_kw = 0;          ///< already paid for by the site
 };
 
-/// What a battery costs. All 0: nothing is said of paying back.
+/// Purchase price. All 0: no payback is computed.
 struct Purchase {
   double eur = 0, eur_per_kw = 0, eur_per_kwh = 0;
 
@@ -36,14 +35,14 @@ struct Purchase {
   }
 };
 
-/// Capacity that is lost, of what was bought: so much a year in any case, and so much by use. Data
-/// sheets of LFP promise 80 % after 6,000 cycles (3.3 % a thousand); with 1 % a year beside it a
-/// battery of one cycle a day has 78 % after ten years, inside of the 8 to 15 years to 70 or 80 %
-/// that a survey of home batteries reports (cleanenergyreviews.info, "Battery life explained").
+/// Capacity fade, % of the initial capacity, by calendar and by use. LFP data sheets state 80 %
+/// after 6,000 cycles (3.3 % per 1000); with 1 % per year, a battery with one full cycle per day
+/// has 78 % after ten years, within the 8 to 15 years to 70 or 80 % reported for home batteries
+/// (cleanenergyreviews.info, "Battery life explained").
 struct Ageing {
   double calendar_percent_per_year = 1;
-  double cycle_percent_per_1000 = 3.3;  ///< equivalent full cycles of the capacity bought
-  double end_percent = 70;              ///< of that capacity: then it is replaced
+  double cycle_percent_per_1000 = 3.3;  ///< full cycles of the initial capacity
+  double end_percent = 70;              ///< of the initial capacity, at replacement
 };
 
 struct SizePlan {
@@ -55,16 +54,14 @@ struct SizePlan {
   int window_days = 120;
 };
 
-/// `base` is the configuration that all cells have in common: what a contract does not name is as
-/// there. Throws UserError naming file and line.
+/// `base` is the configuration of all cells; contracts override it. Throws UserError naming file
+/// and line.
 SizePlan read_size_plan(const std::string& path, const RunConfig& base);
 
-// What a battery of one C-rate earns under the linear terms of a contract, walk-forward, of any
-// size: profit, throughput and peaks of two batteries that differ in size alone are as their sizes,
-// so a class is traded once at the size of the defaults (chain/learning_class.h).
+// Walk-forward results by C-rate and linear contract terms. Profit, throughput and peaks are
+// proportional to size, so a class is traded once at the default size (chain/learning_class.h).
 
-/// Of a calendar month: the highest mean power taken from the grid in a quarter-hour, as a share of
-/// the rated power.
+/// Import peak of a calendar month: highest quarter-hour mean, as a share of the rated power.
 struct MonthPeak {
   std::string month;  ///< local, "2024-08"
   double power_share;
@@ -72,12 +69,12 @@ struct MonthPeak {
 
 struct SizeClass {
   BatteryParameters battery;
-  Evaluation traded;                ///< the charge left at the end is valued
+  Evaluation traded;                ///< final charge valued
   std::vector<MonthPeak> peaks;     ///< of the traded months
-  double share_of_foresight = 0.0;  ///< NaN when foresight earns nothing
+  double share_of_foresight = 0.0;  ///< NaN if foresight earns nothing
 };
 
-/// What is asked of the market: days, policies by name, threads.
+/// Common inputs of all backtests.
 struct SizeTrial {
   const MarketSteps& market;
   const Folds& folds;
@@ -85,16 +82,15 @@ struct SizeTrial {
   int threads;
 };
 
-/// A class for each of `configs`, which are canonical. Throws UserError.
+/// One class for each of the canonical `configs`. Throws UserError.
 std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs, const SizeTrial& trial);
 
-/// Highest quarter-hour of each local month; `steps` ascending. Energy of a step that two
-/// quarter-hours share is each one's by half.
+/// Highest quarter-hour of each local month; `steps` ascending. A step in two quarter-hours counts
+/// half in each.
 std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max);
 
-/// All in EUR of the whole battery. Wear steers decisions and is in the profit that `evaluate`
-/// tells; it is no money that leaves the account, and ageing counts it in its own way: it is in
-/// `profit` alone.
+/// In EUR for the whole battery. Wear affects decisions and `profit` only; it is not a payment, and
+/// ageing accounts for it separately.
 struct SizeCell {
   double power_w, capacity_wh;
   const SizeContract* contract;
@@ -102,45 +98,44 @@ struct SizeCell {
   double profit_eur_per_day_per_mwh;  ///< net of wear, before share, fees and capacity tariff
   double margin_eur_per_year;         ///< after the share, before fees and capacity tariff
   double fixed_eur_per_year;          ///< fees and capacity tariff
-  double error_eur_per_year;          ///< standard error of the year, by month; NaN of one month
+  double error_eur_per_year;          ///< standard error per year, by month; NaN for one month
   double cycles_per_day;
   double share_of_foresight;
   double price_eur;
-  double life_years;      ///< until the capacity has fallen to what ends it
-  double pay_back_years;  ///< NaN: not within its life, or no price
-  double life_eur;        ///< what it has brought by then, less its price
+  double life_years;      ///< until replacement
+  double pay_back_years;  ///< NaN: not within its lifetime, or no price
+  double life_eur;        ///< earnings over the lifetime less the price
 
   [[nodiscard]] double eur_per_year() const { return margin_eur_per_year - fixed_eur_per_year; }
   [[nodiscard]] double eur_per_kwh_year() const { return eur_per_year() / (capacity_wh / 1e3); }
   [[nodiscard]] double eur_per_cycle() const;
 };
 
-/// The cells of a plan, powers outermost, contracts innermost, and the classes that they are of.
+/// Cells of a plan (powers outermost, contracts innermost) and their classes.
 struct SizeCells {
-  std::vector<SizeCell> cells;  ///< their contracts are the plan's
+  std::vector<SizeCell> cells;  ///< point to the plan's contracts
   std::vector<SizeClass> classes;
 };
 
-/// The configuration of one battery under one contract.
+/// Configuration of one battery under one contract.
 RunConfig cell_config(const RunConfig& base, double power_w, double capacity_wh,
                       const SizeContract& contract);
 
-/// The money of one battery of a class.
+/// Economics of one battery of a class.
 SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const SizeClass& of,
                    double power_w, double capacity_wh);
 
 /// Throws UserError.
 SizeCells weigh_up(const SizePlan& plan, const RunConfig& base, const SizeTrial& trial);
 
-/// What the battery brings month by month until it is replaced: the margin falls with the capacity
-/// that is left, the fixed costs do not.
+/// Lifetime result by month: the margin falls with the remaining capacity, fixed costs do not.
 struct LifeOfBattery {
   double years, pay_back_years, eur;
 };
 LifeOfBattery life_of(const SizeCell& cell, const Ageing& ageing);
 
-/// Whoever pays back soonest; without prices, or when nobody does, who leaves most at its end or
-/// brings most a year and kWh.
+/// Shortest payback; if none pays back, the highest lifetime result; without prices, the highest
+/// yearly earnings per kWh.
 const SizeCell& best_of(const std::vector<SizeCell>& cells);
 
 }  // namespace bess

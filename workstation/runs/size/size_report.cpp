@@ -24,18 +24,19 @@ std::vector<Column<SizeCell>> columns() {
       {{"capacity_kwh", "kWh", "", kAllDecimals, "kWh"},
        [](const C& c) { return c.capacity_wh / 1e3; }},
       {{"contract", "contract", "", 0, "Contract"}, [](const C& c) { return c.contract->name; }},
-      {{"year_eur", "EUR/year", "{:.0f}", 4, "EUR a year"}, &C::eur_per_year},
-      {{"year_standard_error_by_month", "s.e.", "{:.0f}", 4, "Its s.e. by month"},
+      {{"year_eur", "EUR/year", "{:.0f}", 4, "EUR/year"}, &C::eur_per_year},
+      {{"year_standard_error_by_month", "s.e.", "{:.0f}", 4, "s.e. by month"},
        &C::error_eur_per_year},
       {{"fixed_eur_per_year", "fixed", "{:.0f}", 4, "Fees, capacity"}, &C::fixed_eur_per_year},
-      {{"year_eur_per_kwh", "per kWh", "{:.1f}", 4, "EUR a year and kWh"}, &C::eur_per_kwh_year},
-      {{"cycle_eur", "a cycle", "{:.2f}", 4, "EUR a full cycle"}, &C::eur_per_cycle},
-      {{"cycles_per_day", "cycles", "{:.2f}", 4, "Cycles a day"}, &C::cycles_per_day},
-      {{key::kShareOfForesight, "foresight", "{:.3f}", 4, "Of foresight"}, &C::share_of_foresight},
+      {{"year_eur_per_kwh", "per kWh", "{:.1f}", 4, "EUR/year/kWh"}, &C::eur_per_kwh_year},
+      {{"cycle_eur", "per cycle", "{:.2f}", 4, "EUR per full cycle"}, &C::eur_per_cycle},
+      {{"cycles_per_day", "cycles", "{:.2f}", 4, "Full cycles/day"}, &C::cycles_per_day},
+      {{key::kShareOfForesight, "foresight", "{:.3f}", 4, "Share of foresight"},
+       &C::share_of_foresight},
       {{"price_eur", "price", "{:.0f}", 4, "Price"}, &C::price_eur},
-      {{"pay_back_years", "pay-back", "{:.1f}", 4, "Paid back, years"}, &C::pay_back_years},
-      {{"life_years", "life", "{:.1f}", 4, "Life, years"}, &C::life_years},
-      {{"life_eur", "at end", "{:.0f}", 4, "EUR at its end"}, &C::life_eur},
+      {{"pay_back_years", "pay-back", "{:.1f}", 4, "Payback, years"}, &C::pay_back_years},
+      {{"life_years", "life", "{:.1f}", 4, "Lifetime, years"}, &C::life_years},
+      {{"life_eur", "at end", "{:.0f}", 4, "Lifetime result, EUR"}, &C::life_eur},
       {{key::kProfit, "", "{:.4f}", 4, "EUR/day/MWh net of wear"}, &C::profit_eur_per_day_per_mwh},
   };
 }
@@ -46,15 +47,15 @@ std::string kilo(double value) { return fmt::format("{:g}", value / 1e3); }
 
 std::string best_text(const SizeCells& weighed) {
   const SizeCell& best = best_of(weighed.cells);
-  const std::string what =
-      std::isnan(best.pay_back_years)
-          ? std::string("nothing pays back; least bad")
-          : fmt::format("pays back soonest, in {:.1f} years", best.pay_back_years);
-  return fmt::format("{}: {} kW, {} kWh, {}", best.price_eur > 0 ? what : "most a year and kWh",
+  const std::string what = std::isnan(best.pay_back_years)
+                               ? std::string("none pays back; best lifetime result")
+                               : fmt::format("shortest payback, {:.1f} years", best.pay_back_years);
+  return fmt::format("{}: {} kW, {} kWh, {}",
+                     best.price_eur > 0 ? what : "highest yearly earnings per kWh",
                      kilo(best.power_w), kilo(best.capacity_wh), best.contract->name);
 }
 
-/// A contract's cells as the heat map takes them.
+/// Heat map points of a contract.
 std::vector<HeatPoint> points_of(const SizeReport& report, const SizeContract& contract,
                                  double (*value)(const SizeCell&)) {
   std::vector<HeatPoint> points;
@@ -74,9 +75,9 @@ std::string maps_html(const SizeReport& report) {
                             {"kW", "kWh", what, fmt::format("map-{}", ++number)});
     };
     text += fmt::format("<h2>{}</h2>\n", html_escaped(contract.name));
-    map("EUR a year and kWh", [](const SizeCell& c) { return c.eur_per_kwh_year(); });
+    map("EUR per year and kWh", [](const SizeCell& c) { return c.eur_per_kwh_year(); });
     if (report.weighed.cells.front().price_eur > 0) {
-      map("Years until it has paid back", [](const SizeCell& c) { return c.pay_back_years; });
+      map("Payback, years", [](const SizeCell& c) { return c.pay_back_years; });
     }
   }
   return text;
@@ -107,20 +108,20 @@ void write_size_page(const SizeReport& report, const std::filesystem::path& fold
   const Evaluation& traded = report.weighed.classes.front().traded;
   const Ageing& ageing = report.plan.ageing;
   const std::string body = fmt::format(
-      "<h1>What size, which contract</h1>\n<p>{}. {}.</p>\n<p class=\"note\">A year as the {} from "
-      "{} to {} were, each month traded by what was fitted before it; after the contract's costs, "
-      "share, fees and capacity tariff. Ageing: {:g} % a year and {:g} % a thousand cycles, to "
-      "{:g} "
-      "% of the capacity; the margin falls with it. By month: the standard error with the days of "
-      "a month as one draw. {}</p>\n{}<h2>Every battery</h2>\n{}<script>\n{}</script>\n",
+      "<h1>Battery size and contract</h1>\n<p>{}. {}.</p>\n<p class=\"note\">Yearly values from "
+      "the {} from {} to {}; each month is traded by a policy fitted on the days before it; after "
+      "the contract's costs, share, fees and capacity tariff. Ageing: {:g} % per year and {:g} % "
+      "per 1000 full cycles, to {:g} % of the capacity; the margin falls with it. By month: "
+      "standard error with each month as one sample. {}</p>\n{}<h2>All "
+      "batteries</h2>\n{}<script>\n{}</script>\n",
       html_escaped(report.provenance), html_escaped(best_text(report.weighed)),
       counted(traded.days.size(), "day"), traded.days.front().date, traded.days.back().date,
       ageing.calendar_percent_per_year, ageing.cycle_percent_per_1000, ageing.end_percent,
       csv_link("size.csv"), maps_html(report),
-      sort_table_html(sort_table("cells", "Every battery", table_of(report))),
+      sort_table_html(sort_table("cells", "All batteries", table_of(report))),
       page_file("sort.js"));
   write_file(folder / "size.html",
-             format_chart_page("What size, which contract", body, Json::list()));
+             format_chart_page("Battery size and contract", body, Json::list()));
 }
 
 }  // namespace bess

@@ -1,5 +1,4 @@
-// What came of weighing up: a table for the terminal, CSV, JSON, and a page with a heat map a
-// contract.
+// Size report: table, CSV, JSON, and a page with a heat map per contract.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +12,11 @@ namespace bess {
 struct SizeReport {
   const SizePlan& plan;
   const SizeCells& weighed;
-  std::string provenance;  ///< a line: prices, policy, window
+  std::string provenance;  ///< one line: prices, policy, window
 };
 
 std::string format_size_table(const SizeReport& report);
-/// Header `power_kw,capacity_kwh,contract,...`, a row a cell.
+/// Header `power_kw,capacity_kwh,contract,...`, one row per cell.
 std::string size_csv(const SizeReport& report);
 Json size_json(const SizeReport& report);
 /// Writes size.html into `folder`.

@@ -21,10 +21,10 @@ void require_host_name(const std::string& id) {
   constexpr const char* kOfAName =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_";
   if (id.find_first_not_of(kOfAName) == id.npos) return;
-  fail("site \"{}\" is no name of a host: use letters, digits, dots, hyphens and underscores", id);
+  fail("site \"{}\" is not a host name: use letters, digits, dots, hyphens and underscores", id);
 }
 
-/// Of its newest package, by the date in it; empty: there is none.
+/// Version of the newest package; empty: none.
 std::string version_in(const fs::path& folder, const std::string& architecture) {
   const std::string begin = "bess-edge_", end = "_" + architecture + ".deb";
   std::string newest;
@@ -54,7 +54,7 @@ void make_packages(const PackageRequest& request, const fs::path& folder, const 
   std::string said = program.read_all();
   if (program.wait() == 0) return;
   while (said.ends_with('\n')) said.pop_back();
-  fail("class {}: its package was not made: {}", name, said.substr(said.rfind('\n') + 1));
+  fail("class {}: tools/package failed: {}", name, said.substr(said.rfind('\n') + 1));
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ std::vector<PackagedClass> classes_to_package(const std::vector<CollectedTask>& 
                                               const std::vector<CollectedSite>& sites,
                                               bool partial) {
   if (!tasks.empty() && !tasks.front().task.value(setting::kFold).empty())
-    fail("a sweep by months has no student for a site: plan one without folds");
+    fail("a sweep with --folds has no student for a site: plan one without --folds");
   std::vector<PackagedClass> classes;
   std::map<std::string, std::size_t> place;
   for (const CollectedSite& site : sites) {
@@ -71,13 +71,14 @@ std::vector<PackagedClass> classes_to_package(const std::vector<CollectedTask>& 
     require_host_name(site.site.id);
     if (site.header.empty() && partial) continue;
     if (site.header.empty())
-      fail("site \"{}\": none of {} tasks of its class {} is proved; --partial leaves it out",
+      fail("site \"{}\": none of {} tasks of its class {} is proved; skip it with --partial",
            site.site.id, site.tasks, name);
     const auto [at, is_new] = place.try_emplace(name, classes.size());
     if (is_new) classes.push_back({name, {}, {}, {}});
     classes[at->second].sites.push_back(site);
   }
-  if (classes.empty()) fail("no site has a proved student: nothing to package");
+  if (classes.empty())
+    fail("no site has a proved student: run open tasks with bess-train sweep run");
   return classes;
 }
 
@@ -86,7 +87,7 @@ bool package_class(const SweepFolder& sweep, const PackageRequest& request, Pack
   const std::string header = read_file(sweep.path / one.sites.front().header);
   const bool is_due = !is_packaged(folder, header, request.architectures);
   if (is_due) {
-    fs::remove_all(folder);  // never a header beside packages of another
+    fs::remove_all(folder);  // never combine a header with other packages
     write_file(folder / run_file::kHeader, header);
     make_packages(request, folder, one.name);
   }
@@ -105,9 +106,9 @@ int rollout_percent(const std::string& id) {
 std::string format_inventory(const std::vector<PackagedClass>& classes,
                              const std::string& architecture) {
   std::string text = fmt::format(
-      "# By bess-train sweep packages, for tools/delivery/ansible/roll_out.yml. Addresses, and "
-      "another\n"
-      "# bess_architecture, go into host_vars beside this file or into a second inventory.\n"
+      "# Written by bess-train sweep packages, for tools/delivery/ansible/roll_out.yml. Put "
+      "addresses\n"
+      "# and other bess_architecture into host_vars next to this file or into a second inventory.\n"
       "all:\n  vars: {{bess_architecture: {}}}\n  children:\n",
       architecture);
   std::map<int, std::string> shares{{1, ""}, {10, ""}, {100, ""}};

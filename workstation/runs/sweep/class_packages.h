@@ -1,7 +1,6 @@
-// From a sweep to the machines: each class of sites gets a folder with its header, what a program
-// with it decides, and its packages, all by tools/package; the sites get an inventory for
-// tools/delivery/ansible: package, expected student, and with which share of the fleet it is rolled
-// out.
+// Packages of a sweep: for each class of fleet members a folder with header, signature and Debian
+// packages (tools/package); and an inventory for tools/delivery/ansible with package, expected
+// student and rollout share.
 #pragma once
 
 #include <filesystem>
@@ -13,29 +12,29 @@
 namespace bess {
 
 struct PackageRequest {
-  std::filesystem::path source;  ///< a checkout: tools/package is in it
+  std::filesystem::path source;  ///< source checkout with tools/package
   std::filesystem::path out;
-  std::vector<std::string> architectures;  ///< as Debian names them; the first is the inventory's
+  std::vector<std::string> architectures;  ///< Debian names; the first is used in the inventory
 };
 
 struct PackagedClass {
   std::string name;
   std::vector<CollectedSite> sites;  ///< each with a header
-  std::string student;               ///< once packaged: under which hash its program tells it
+  std::string student;               ///< after packaging: hash reported by the program
   std::string version;
 };
 
-/// In the order of their first site. Throws UserError where a site has no proved student or its id
-/// is no host's name; with `partial` those without a student are left out.
+/// In the order of their first member. Throws UserError when a member has no proved student (with
+/// `partial` it is skipped) or its id is not a host name.
 std::vector<PackagedClass> classes_to_package(const std::vector<CollectedTask>& tasks,
                                               const std::vector<CollectedSite>& sites,
                                               bool partial);
 
-/// Makes its packages unless they are there; false: they were. Throws UserError with the last that
-/// tools/package said.
+/// Makes the packages; false if they existed. Throws UserError with the last line of
+/// tools/package.
 bool package_class(const SweepFolder& sweep, const PackageRequest& request, PackagedClass& one);
 
-/// 1, 10 or 100: by the id alone, so that a site stays in its share when others are added.
+/// 1, 10 or 100, by the id only, so that added members do not change the share of others.
 int rollout_percent(const std::string& id);
 
 std::string format_inventory(const std::vector<PackagedClass>& classes,

@@ -32,12 +32,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace run_file;
 
-/// What a lean task leaves: what is exported and what it earned; or where its proof failed.
+/// Files of a lean task: exported student and results, or the failed proof.
 const std::set<std::string> kLeanFiles{kRecord,      kConfig, kStudent,         kHeader,
                                        kTable,       kDays,   kUnprovedStudent, kUnprovedViolations,
                                        kProofRounds, kTimes};
 
-/// That nobody else works in.
+/// Folder for this process only.
 fs::path make_own_folder(const fs::path& parts) {
   fs::create_directories(parts);
   std::string name = (parts / "XXXXXX").string();
@@ -57,7 +57,7 @@ Log open_log(const fs::path& path) {
   return log;
 }
 
-/// A rename never replaces a folder that holds something.
+/// A rename never replaces a non-empty folder.
 void publish(const SweepFolder& folder, int task, const fs::path& own) {
   const fs::path result = folder.result(task);
   std::error_code error;
@@ -67,7 +67,7 @@ void publish(const SweepFolder& folder, int task, const fs::path& own) {
   fs::rename(own, result);
 }
 
-/// Prices go by their content: what a file is called changes no byte of a result.
+/// Prices are identified by content, so that file names do not change results.
 RunRecord record_of(const SweepRecord& sweep, const SweepTask& task, const RunConfig& config) {
   RunRecord record;
   record.prices = "prices of the sweep";
@@ -83,7 +83,7 @@ MinuteSeries prices_of(const SweepFolder& folder, const SweepRecord& sweep) {
   const std::string name = folder.prices().string();
   MinuteSeries series = read_judged_minutes(name, AcceptedFindings::all());
   if (prices_hash(series) == sweep.prices) return series;
-  fail("{}: holds other prices ({}) than the sweep was planned with ({})", name,
+  fail("{}: these prices ({}) differ from those of the plan ({}); restore the file", name,
        prices_hash(series), sweep.prices);
 }
 
@@ -106,12 +106,12 @@ bool complete_task(const SweepFolder& folder, int task, const TaskWork& work) {
     work(own, log.get());
     publish(folder, task, own);
   } catch (const std::exception& error) {
-    if (!is_complete(folder, task)) {  // else another was first, and cleared up
+    if (!is_complete(folder, task)) {  // else another attempt completed first
       fmt::print(log.get(), "{}{}\n", kFailedLine, error.what());
       throw;
     }
   }
-  // Of those who died, or are too late. Two that clear up at once may each give up on the other's.
+  // Removes folders of dead and late attempts; concurrent removals may collide, hence the retries.
   for (int tries = 0; tries < 10 && fs::exists(folder.parts(task), ignored); ++tries) {
     fs::remove_all(folder.parts(task), ignored);
   }
@@ -123,7 +123,7 @@ bool run_task(const SweepFolder& folder, int number) {
   const SweepRecord sweep = load_own_sweep(folder);
   const std::vector<SweepTask> tasks = load_tasks(folder);
   if (number < 1 || number > std::ssize(tasks)) {
-    fail("there is no task {}: {} has {} of them", number, folder.tasks().string(), tasks.size());
+    fail("no task {}: {} has {} tasks", number, folder.tasks().string(), tasks.size());
   }
   const SweepTask& task = tasks[static_cast<std::size_t>(number - 1)];
   setenv("SOURCE_DATE_EPOCH", fmt::format("{}", sweep.date_utc_s).c_str(), 1);
@@ -154,7 +154,7 @@ struct Column {
 };
 constexpr const char* kProfit = "profit_eur_per_day_per_mwh";
 constexpr const char* kCycles = "cycles_per_day";
-/// Of the row that is carried over; the profit by days of the same charge is the other row's.
+/// Columns of the carried-over row; the day-reset profit is from the other row.
 constexpr Column kBefore[] = {{"days", 0},
                               {kProfit, 4},
                               {"profit_standard_error", 4},
@@ -173,7 +173,7 @@ std::string columns_of(const CsvTable& table, std::size_t row, std::span<const C
   return text;
 }
 
-/// The exported student's two rows of a run's table.
+/// Results from the two rows of the exported student.
 TaskFigures figures_in(const fs::path& result) {
   const std::string name = (result / run_file::kTable).string();
   const CsvTable table = CsvTable::read(name);
@@ -182,11 +182,14 @@ TaskFigures figures_in(const fs::path& result) {
     if (table.text(row, table.column("policy")) != kExportedPolicy) continue;
     (table.text(row, table.column("carry_soc")) == "true" ? carried : reset) = row;
   }
-  if (!reset || !carried) fail("{}: has no two rows of the {}", name, kExportedPolicy);
+  if (!reset || !carried)
+    fail("{}: two rows of the {} expected; delete the folder and repeat the task", name,
+         kExportedPolicy);
   const std::string record = (result / run_file::kRecord).string();
   const Json json = Json::parse(read_file(record));
   const std::string hash = json.value()["figures"]["weights_hash"].text_or("");
-  if (hash.empty()) fail("{}: tells no weights' hash", record);
+  if (hash.empty())
+    fail("{}: weights_hash is missing; delete the folder and repeat the task", record);
   const std::size_t profit = table.column(kProfit);
   return {table.number(*carried, profit), table.number(*carried, table.column(kCycles)),
           fmt::format("{},{:.4f}{},{}", columns_of(table, *carried, kBefore),
@@ -209,7 +212,7 @@ double seconds_in(const fs::path& result) {
   return seconds;
 }
 
-/// Names of settings, in the order in which tasks have them first.
+/// Names of settings, in order of first use.
 std::vector<std::string> names_in(const std::vector<CollectedTask>& tasks) {
   std::vector<std::string> names;
   for (const CollectedTask& one : tasks) {
@@ -220,13 +223,12 @@ std::vector<std::string> names_in(const std::vector<CollectedTask>& tasks) {
   return names;
 }
 
-/// All tasks of the same settings.
+/// All tasks with the same settings.
 struct FoldedSettings {
   const SweepTask* first = nullptr;
   int tasks = 0;
-  std::vector<DayValue> profits =
-      {};                      ///< of proved ones, each with its month; no month without folds
-  double sum = 0, cycles = 0;  ///< of these
+  std::vector<DayValue> profits = {};  ///< of proved tasks, with month if there are folds
+  double sum = 0, cycles = 0;          ///< of proved tasks
 };
 
 std::string columns_of(const FoldedSettings& row) {

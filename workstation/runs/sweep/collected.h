@@ -1,6 +1,5 @@
-// What a sweep came to: a row a task, seeds and months folded to a row of settings, a row a site.
-// Read from the tasks' outputs, their tables of figures, never from their days: ten thousand of
-// them are read in seconds.
+// Collected sweep results: one row per task, per setting (seeds and months combined) and per fleet
+// member. Reads only the tables of results, not the days: ten thousand tasks take seconds.
 #pragma once
 
 #include <cstdint>
@@ -16,39 +15,36 @@
 
 namespace bess {
 
-// One task of a sweep, whoever runs it and however often: the whole chain from its prices to a
-// proved student and what that earns, on one thread, so that every machine with the same program
-// makes the same bytes. A student that was not proved is a result as well.
+// Task of a sweep: the whole chain on one thread, so that every machine with the same program makes
+// the same bytes. An unproved student is a result too.
 //
-// Its files are made in a folder of its own beside the output folder, which one rename publishes.
-// So a task that dies leaves nothing under the final name, and of two at once the second finds the
-// name taken and has nothing to do.
+// Files are made in a separate folder, which one rename publishes. A task that dies leaves nothing
+// under the final name; of two parallel attempts the second finds the name taken.
 
-/// Makes the files of a task, run.json among them, in an empty folder.
+/// Makes the files of a task, including run.json, in an empty folder.
 using TaskWork = std::function<void(const std::filesystem::path& folder, std::FILE* log)>;
 
-/// The last line of a failed task's log begins with it.
+/// Start of the last line in a failed task's log.
 inline constexpr const char* kFailedLine = "failed: ";
 
-/// False when the output was complete before. What `work` throws is noted in the log and thrown
-/// again.
+/// False when the output was already complete. Exceptions of `work` are logged and rethrown.
 bool complete_task(const SweepFolder& folder, int task, const TaskWork& work);
 
-/// The same with a task's own work. Throws UserError when there is no such task, or when the
-/// program or the prices are not the sweep's.
+/// Runs the task's own work. Throws UserError when there is no such task, or when program or prices
+/// differ from the sweep's.
 bool run_task(const SweepFolder& folder, int task);
 
-/// A folder without its record is half of an output, as a copy by hand leaves it: no output.
+/// A folder without run.json is incomplete.
 bool is_complete(const SweepFolder& folder, int task);
-/// True of a complete task whose student was proved.
+/// True for a complete task whose student was proved.
 bool is_proved(const SweepFolder& folder, int task);
 
-/// Complete are kProved and kUnproved: a proof that fails is a result.
+/// kProved and kUnproved are complete: a failed proof is a result.
 enum class TaskState : std::uint8_t { kProved, kUnproved, kFailed, kMissing };
 
-/// Of the exported student on test days; EUR per day per MWh of capacity.
+/// Results of the exported student on test days; EUR per day per MWh of capacity.
 struct TaskFigures {
-  double profit = 0;  ///< carried over from day to day
+  double profit = 0;  ///< SoC carried over
   double cycles_per_day = 0;
   std::string columns;  ///< of tasks.csv, from days to weights_hash
 };
@@ -56,16 +52,16 @@ struct TaskFigures {
 struct CollectedTask {
   SweepTask task;
   TaskState state = TaskState::kMissing;
-  std::optional<TaskFigures> figures = {};  ///< of a proved one
-  double seconds = 0;                       ///< of one core; 0: not told
-  std::string said = {};  ///< the last line of its log; empty: it is complete, or never began
+  std::optional<TaskFigures> figures = {};  ///< of a proved student
+  double seconds = 0;                       ///< of one core; 0: unknown
+  std::string said = {};  ///< last line of its log; empty: complete, or not started
 };
 
 struct CollectedSite {
   Site site;
   int tasks = 0, proved = 0;
   double profit_sum = 0;    ///< over the proved tasks of its class
-  std::string header = {};  ///< of the first of them; empty: there is none
+  std::string header = {};  ///< of the first of them; empty: none
 
   [[nodiscard]] double profit() const { return profit_sum / proved; }
   /// Of the whole battery.
@@ -80,8 +76,8 @@ std::vector<CollectedSite> collect_sites(const SweepFolder& folder,
                                          const std::vector<Site>& sites);
 
 std::string tasks_csv(const std::vector<CollectedTask>& tasks);
-/// A row for all tasks of the same settings, seeds and months folded. The standard error is over
-/// months, or over seeds where there is one month.
+/// One row per setting, seeds and months combined. The standard error is over months, or over seeds
+/// for a single month.
 std::string settings_csv(const std::vector<CollectedTask>& tasks);
 std::string sites_csv(const std::vector<CollectedSite>& sites);
 

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kArrayMax = 1'000;  // Slurm's default of MaxArraySize, 1001, is one more
+constexpr int kArrayMax = 1'000;  // Slurm's default MaxArraySize is 1001
 
 std::string task_command(const SweepFolder& folder) {
   return shell_line({fs::read_symlink("/proc/self/exe").string(), "sweep", "task",
@@ -60,7 +60,7 @@ std::string array_script(const SweepFolder& folder) {
 }
 
 std::string sbatch_lines(const SweepFolder& folder, const std::vector<int>& tasks) {
-  std::map<int, std::vector<int>> indices;  // by their offset
+  std::map<int, std::vector<int>> indices;  // by offset
   for (const int task : tasks) {
     const int offset = (task - 1) / kArrayMax * kArrayMax;
     indices[offset].push_back(task - offset);

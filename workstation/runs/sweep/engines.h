@@ -1,5 +1,5 @@
-// Engines that run a sweep's tasks: the command of GNU parallel, which works here, and the script
-// and commands of a Slurm array. Any other engine calls `bess-train sweep task FOLDER INDEX`.
+// Engines of a sweep: command of GNU parallel for this machine, and script and commands of a Slurm
+// array. Other schedulers call `bess-train sweep task FOLDER NUMBER`.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace bess {
 
-/// Runs every task but those that ended well by its joblog; `jobs` at once, or one a core.
+/// Runs all tasks without a success in the joblog; `jobs` in parallel (default: one per core).
 std::vector<std::string> parallel_command(const SweepFolder& folder, std::optional<int> jobs = {});
 
-/// As a shell reads them.
+/// Words quoted for a shell.
 std::string shell_line(const std::vector<std::string>& words);
 
 std::string array_script(const SweepFolder& folder);
-/// A command a line, for a thousand numbers each.
+/// One command per line, for up to a thousand tasks each.
 std::string sbatch_lines(const SweepFolder& folder, const std::vector<int>& tasks);
 
 }  // namespace bess

@@ -1,16 +1,16 @@
-// The folder of a sweep: names, and nothing else.
+// Sweep folder: file names.
 //
-//   sweep.json      which program, prices and kind of tasks
-//   base.toml       what all tasks have in common
-//   minutes.csv.gz  the prices, as they were given
+//   sweep.json      program, prices and kind of tasks
+//   base.toml       configuration of all tasks
+//   minutes.csv.gz  copy of the prices
 //   rules/          rule files, by content
-//   tasks.tsv       a task a line; more may be appended, none is changed
-//   sites.tsv       which class of students each site belongs to
-//   array.sbatch    runs one task on Slurm
-//   joblog          what GNU parallel ran
-//   tasks/000/000017        the output of task 17, complete from the moment it has this name
-//   tasks/000/000017.part/  folders of those who work on it
-//   log/000017.txt          what they said, until it is complete
+//   tasks.tsv       one task per line; only appended
+//   sites.tsv       fleet members with their class
+//   array.sbatch    Slurm script for one task
+//   joblog          log of GNU parallel
+//   tasks/000/000017        complete output of task 17
+//   tasks/000/000017.part/  folders of running attempts
+//   log/000017.txt          their log, until the task is complete
 #pragma once
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ struct SweepFolder {
   [[nodiscard]] std::filesystem::path sites() const { return path / "sites.tsv"; }
   [[nodiscard]] std::filesystem::path array_script() const { return path / "array.sbatch"; }
   [[nodiscard]] std::filesystem::path joblog() const { return path / "joblog"; }
-  /// A thousand to a folder: no file system likes ten thousand.
+  /// At most a thousand per folder, for file system performance.
   [[nodiscard]] std::filesystem::path result(int task) const {
     return path / "tasks" / fmt::format("{:03}", task / 1000) / fmt::format("{:06}", task);
   }

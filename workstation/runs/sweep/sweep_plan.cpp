@@ -32,7 +32,7 @@ namespace {
   fail("{}:{}: {}", *value.file, value.line, what);
 }
 
-/// As the configuration writes it.
+/// Value in the format of the configuration.
 std::string canonical_value(const std::string& key, const TomlValue& value) {
   RunConfig config;
   set_config_key(config, key, value);
@@ -50,13 +50,13 @@ std::vector<std::string> canonical_values(const std::string& key, const TomlValu
   for (const TomlValue& one : *list) {
     values.push_back(canonical_value(key, one));
     if (std::ranges::count(values, values.back()) > 1) {
-      complain(one, fmt::format("{}: {} stands there twice", key, values.back()));
+      complain(one, fmt::format("{}: {} is repeated", key, values.back()));
     }
   }
   return values;
 }
 
-/// KEY of a plan: written "section.key" in quotes, or as section.key, which TOML makes a table of.
+/// Keys of a plan, as "section.key" in quotes or as section.key, which TOML parses as a table.
 void for_each_key(const TomlValue& table,
                   const std::function<void(const std::string&, const TomlValue&)>& take) {
   const auto* members = table.as<TomlMembers>();
@@ -82,7 +82,7 @@ std::vector<Entries> read_list(const TomlArray& list) {
   return points;
 }
 
-/// Each of them once for each value.
+/// Combines each point with each value.
 void combine(std::vector<Entries>& points, const std::string& key, const TomlValue& values) {
   std::vector<Entries> more;
   for (const Entries& point : points) {
@@ -98,7 +98,7 @@ void combine_with_set(std::vector<Entries>& points, const std::string& set) {
   const std::size_t equals = set.find('=');
   const std::string name = "--set " + set;
   if (equals == set.npos || equals == 0 || equals + 1 == set.size()) {
-    fail("{}: write --set section.key=VALUE[,VALUE], such as --set distil.fidelity=1,2", name);
+    fail("{}: use --set section.key=VALUE[,VALUE], such as --set distil.fidelity=1,2", name);
   }
   const std::string values = set.substr(equals + 1);
   TomlValue document;
@@ -140,7 +140,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSitesHeader = "id,class,power_w,capacity_wh,region";
 
-/// Of the CSV, each by its name.
+/// Columns of the CSV by name.
 using Columns = std::map<std::string, std::size_t>;
 
 Columns columns_of(std::string_view header, const CsvTable& table, const std::string& name) {
@@ -165,7 +165,7 @@ struct SiteRow {
   const CsvTable& table;
   const Columns& columns;
   std::size_t row;
-  fs::path folder;  ///< that files are named from
+  fs::path folder;  ///< base of relative file names
 
   [[nodiscard]] std::string value(const char* column) const {
     const auto found = columns.find(column);
@@ -210,10 +210,12 @@ Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_pe
     const SiteRow own{table, columns, row, csv.parent_path()};
     const std::string id = own.value("id");
     if (id.empty() || id.find_first_of("\t\n,/") != id.npos) {
-      fail("{}: \"{}\" is no id of a site: it may not be empty or hold a comma, slash or tab",
-           where, one_line(id, 40));
+      fail(
+          "{}: \"{}\" is not a valid site id: it must not be empty or contain a comma, slash or "
+          "tab",
+          where, one_line(id, 40));
     }
-    if (!ids.insert(id).second) fail("{}: site \"{}\" stands there twice", where, id);
+    if (!ids.insert(id).second) fail("{}: site \"{}\" is repeated", where, id);
     try {
       const RunConfig config = config_of(own, base);
       require_consistent(config, where);
@@ -222,7 +224,8 @@ Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_pe
       const RunConfig learnt = canonical(config, rate_step_percent);
       const std::string key = learning_key(learnt, rules_text);
       const auto [at, is_new] = names.try_emplace(key, fmt::format("{:016x}", fnv1a(key)));
-      if (is_new && !used.insert(at->second).second) fail("two classes named {}", at->second);
+      if (is_new && !used.insert(at->second).second)
+        fail("hash collision of two classes: {}", at->second);
       if (is_new) read.classes.push_back({at->second, learnt, rules_text});
       read.sites.push_back({id, own.value("region"), config.battery.power_w_max,
                             config.battery.capacity_wh, at->second});
@@ -305,7 +308,7 @@ std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& nam
     std::string_view line = take_line(text);
     SweepTask task{static_cast<int>(tasks.size()) + 1, {}};
     if (take_field(line) != std::to_string(task.number)) {
-      fail("{}:{}: does not begin with its number; plan the sweep again in another folder", name,
+      fail("{}:{}: does not start with its number; plan the sweep again in another folder", name,
            task.number);
     }
     while (!line.empty()) {
@@ -323,10 +326,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More would not fit the six digits of a folder's name.
+/// Limit of the six digits in folder names.
 constexpr std::size_t kTasksMax = 999'999;
 
-/// A rule file of the sweep, by its content.
+/// Adds a rule file, named by its content.
 std::string keep_rules(SweepPlan& plan, const std::string& text) {
   const std::string stem = fmt::format("{:016x}", fnv1a(text));
   plan.rules[stem] = text;
@@ -339,7 +342,7 @@ std::string dotted(const std::string& listed) {
   return listed.substr(1, end - 1) + "." + listed.substr(end + 2);
 }
 
-/// What sets a class of sites apart from the sweep's configuration.
+/// Settings of a class that differ from the sweep's configuration.
 Entries class_settings(const SiteClass& one, const RunConfig& base, SweepPlan& plan) {
   Entries settings;
   if (!one.rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, one.rules));
@@ -354,14 +357,15 @@ Entries class_settings(const SiteClass& one, const RunConfig& base, SweepPlan& p
   return settings;
 }
 
-/// Each class, or once what the plan's own rules set.
+/// One entry per class; without fleet members, the plan's own rules.
 std::vector<Entries> class_axis(const SweepRequest& request, SweepPlan& plan) {
   const RuleSet rules = request.rules.read();
   if (request.sites.empty()) {
     if (rules.empty()) return {Entries{}};
     return {Entries{{setting::kRules, keep_rules(plan, format_rules(rules))}}};
   }
-  if (!rules.empty()) fail("{}: with sites, rules stand in their column \"rules\"", request.sites);
+  if (!rules.empty())
+    fail("{}: with --sites, set rules in the column \"rules\" instead of --rules", request.sites);
   Sites sites = read_sites(request.sites, plan.base, request.c_rate_step_percent);
   std::vector<Entries> axis;
   for (const SiteClass& one : sites.classes) axis.push_back(class_settings(one, plan.base, plan));
@@ -370,13 +374,13 @@ std::vector<Entries> class_axis(const SweepRequest& request, SweepPlan& plan) {
   return axis;
 }
 
-/// The number of all of them is known before the first is made.
+/// All combinations; their number is checked first.
 std::vector<Entries> combinations(const SweepRequest& request, const std::vector<Entries>& classes,
                                   const std::vector<std::string>& folds) {
   const std::vector<Entries> points = read_points(request.plan, request.sets);
   const std::size_t count =
       points.size() * classes.size() * folds.size() * static_cast<std::size_t>(request.seeds);
-  if (count > kTasksMax) fail("the plan has {} tasks; {} is the most", count, kTasksMax);
+  if (count > kTasksMax) fail("the plan has {} tasks; the maximum is {}", count, kTasksMax);
   std::vector<Entries> all;
   for (int seed = 1; seed <= request.seeds; ++seed) {
     for (const Entries& one : classes) {
@@ -394,7 +398,7 @@ std::vector<Entries> combinations(const SweepRequest& request, const std::vector
   return all;
 }
 
-/// `rules`: the text of its rule file.
+/// `rules`: text of the rule file.
 RunConfig with_settings(RunConfig config, const SweepTask& task, const std::string& rules,
                         const std::string& name) {
   std::string text;
@@ -408,7 +412,7 @@ RunConfig with_settings(RunConfig config, const SweepTask& task, const std::stri
   return config;
 }
 
-/// Every task that is new, before the first begins: seeds and months change nothing of it.
+/// Validates new tasks; seeds and months do not matter.
 void validate(const SweepPlan& plan) {
   std::unordered_set<std::string> seen;
   for (std::size_t t = plan.known; t < plan.tasks.size(); ++t) {
@@ -418,7 +422,7 @@ void validate(const SweepPlan& plan) {
         fmt::format("task {} ({})", alike.number, settings_shown(plan.tasks[t].settings));
     std::unordered_set<std::string> keys;
     for (const auto& [key, value] : alike.settings) {
-      if (!keys.insert(key).second) fail("{}: {} stands on more than one axis", name, key);
+      if (!keys.insert(key).second) fail("{}: {} is on more than one axis; remove one", name, key);
     }
     const std::string stem = alike.value(setting::kRules);
     const std::string rules = stem.empty() ? "" : plan.rules.at(stem);
@@ -433,7 +437,7 @@ void validate(const SweepPlan& plan) {
   }
 }
 
-/// Those that stand there keep their numbers; what is new follows.
+/// Existing tasks keep their numbers; new tasks follow.
 void number_tasks(SweepPlan& plan, std::vector<Entries> all, std::vector<SweepTask> there) {
   std::unordered_set<std::string> wanted;
   for (const Entries& settings : all) wanted.insert(settings_text(settings));
@@ -442,8 +446,8 @@ void number_tasks(SweepPlan& plan, std::vector<Entries> all, std::vector<SweepTa
     known.insert(settings_text(task.settings));
     if (wanted.contains(settings_text(task.settings))) continue;
     fail(
-        "{}: holds another plan: its task {} ({}) is none of the {} of this one, the first of "
-        "which is {}; plan in another folder, or keep what was planned and add to it",
+        "{}: contains another plan: its task {} ({}) is not among the {} tasks of this plan, the "
+        "first of which is {}; plan in another folder, or only add to the existing plan",
         plan.folder.path.string(), task.number, settings_shown(task.settings), all.size(),
         settings_shown(all.front()));
   }
@@ -455,7 +459,7 @@ void number_tasks(SweepPlan& plan, std::vector<Entries> all, std::vector<SweepTa
   }
 }
 
-/// Unless the folder's sweep is of the same program, prices, kind and configuration.
+/// Throws unless program, prices, kind and configuration are equal.
 void require_same_sweep(const SweepPlan& plan) {
   const auto entries_of = [](const SweepRecord& record, const RunConfig& config) {
     Entries entries = config_entries(config);
@@ -467,7 +471,8 @@ void require_same_sweep(const SweepPlan& plan) {
       differences(entries_of(load_sweep_record(plan.folder), load_run_config(plan.folder.base())),
                   entries_of(plan.record, plan.base));
   if (!other.empty())
-    fail("{}: holds another sweep: {}; plan in another folder", plan.folder.path.string(), other);
+    fail("{}: contains another sweep: {}; plan in another folder", plan.folder.path.string(),
+         other);
 }
 
 }  // namespace
@@ -504,18 +509,18 @@ void write_plan(const SweepPlan& plan, const SweepRequest& request) {
                                             {"date_utc_s", record.date_utc_s}})
                                   .text());
   write_file(folder.array_script(), array_script(folder));
-  fs::create_directories(folder.path / "log");           // Slurm writes there before a task does
-  write_file(folder.tasks(), format_tasks(plan.tasks));  // from here on it is planned
+  fs::create_directories(folder.path / "log");           // Slurm writes there first
+  write_file(folder.tasks(), format_tasks(plan.tasks));  // last: marks the plan as complete
 }
 
 SweepRecord load_sweep_record(const SweepFolder& folder) {
   const std::string name = folder.record().string();
   if (!fs::exists(folder.tasks())) {
-    fail("{}: holds no sweep; plan one with 'bess-train sweep plan --prices FILE --out {}'",
+    fail("{}: no sweep here; plan one with 'bess-train sweep plan --prices FILE --out {}'",
          folder.path.string(), folder.path.string());
   }
   const Json json = Json::parse(read_file(name));
-  const JsonReader reader(json.value(), name, "a sweep's record; plan it again in another folder");
+  const JsonReader reader(json.value(), name, "a sweep record; plan it again in another folder");
   return {reader.text("program"), reader.text("prices"), reader.text("kind"),
           reader.whole("date_utc_s", 0, std::int64_t{1} << 40)};
 }
@@ -524,8 +529,8 @@ SweepRecord load_own_sweep(const SweepFolder& folder) {
   SweepRecord record = load_sweep_record(folder);
   if (record.program == program_text()) return record;
   fail(
-      "{}: was planned by {}, and this is {}; what they make may differ: run it by the one that "
-      "planned it, or plan again in another folder",
+      "{}: planned by {}, but this is {}; results may differ: use the program that planned it, or "
+      "plan again in another folder",
       folder.path.string(), record.program, program_text());
 }
 
