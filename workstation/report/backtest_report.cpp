@@ -41,7 +41,7 @@ constexpr const char* kBacktestCsvKeys =
     "profit_at_wear_10_eur_per_day_per_mwh,fitted_days,profit_standard_error,"
     "profit_standard_error_by_month,gain_standard_error_by_month,cycles_per_day";
 
-/// Gains are over the first policy; its own is 0.
+/// Gains are over the first policy.
 Table rows_of(const BacktestResults& results, Evaluation WalkForward::*days) {
   const WalkForward& first = results.policies.front();
   std::vector<ComparisonRow> rows;
@@ -52,7 +52,7 @@ Table rows_of(const BacktestResults& results, Evaluation WalkForward::*days) {
   return figures_table(rows);
 }
 
-/// All months.
+/// Totals over all months.
 Table total_table(const BacktestResults& results) {
   Table table = rows_of(results, &WalkForward::total);
   table.add<WalkForward>({{"drawdown_eur_per_mwh", "drawdown", "{:.0f}", 2, "Drawdown"},
@@ -61,19 +61,19 @@ Table total_table(const BacktestResults& results) {
   return table;
 }
 
-/// The same days, each from the same SoC; empty unless that was asked for.
+/// Day-reset accounting; empty unless requested.
 Table day_reset_table(const BacktestResults& results) {
   if (results.policies.front().day_reset.days.empty()) return {};
   return rows_of(results, &WalkForward::day_reset);
 }
 
-/// "the 90 to 120 days before it, of 120 that were asked for": a fold takes what is there.
+/// "the 90 to 120 days before it, of 120 requested": a fold uses the available days.
 std::string window_text(const BacktestResults& results) {
   const auto [least, most] = std::ranges::minmax(results.fitted_days);
   const std::string days = least == most ? fmt::format("the {} days before it", most)
                                          : fmt::format("the {} to {} days before it", least, most);
   const bool is_short = least < static_cast<std::size_t>(results.window_days);
-  return is_short ? fmt::format("{}, of {} that were asked for", days, results.window_days) : days;
+  return is_short ? fmt::format("{}, of {} requested", days, results.window_days) : days;
 }
 
 std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) {
@@ -85,11 +85,8 @@ std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) 
 }
 
 std::string fall_text(double drawdown_eur_per_mwh) {
-  if (drawdown_eur_per_mwh == 0) return "no day ended below an earlier one";
-  return fmt::format(
-      "its deepest fall, from the end of a day to that of a later one, was {:.0f} EUR "
-      "per MWh",
-      drawdown_eur_per_mwh);
+  if (drawdown_eur_per_mwh == 0) return "no drawdown";
+  return fmt::format("its maximum drawdown by day was {:.0f} EUR per MWh", drawdown_eur_per_mwh);
 }
 
 std::string chart_caption(const BacktestResults& results) {
@@ -97,19 +94,19 @@ std::string chart_caption(const BacktestResults& results) {
   const auto best = std::ranges::max_element(
       shown, {}, [](const WalkForward* p) { return p->total.profit_eur_per_day_per_mwh(); });
   return fmt::format(
-      "Each month was traded by what was fitted on {}, the charge carried over. {} earned most: "
+      "Each month was traded by policies fitted on {}, SoC carried over. {} earned most: "
       "{:.1f} EUR per day per MWh; {}.",
       window_text(results), (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
 
-/// What a month was fitted on and trades, where a boundary of the market lies between or in them.
+/// Price regimes of months whose fold crosses a regime boundary.
 std::vector<std::string> crossing_lines(const BacktestResults& results) {
   std::vector<std::string> lines;
   for (std::size_t m = 0; m < results.regimes.size(); ++m) {
     const FoldRegimes& of = results.regimes[m];
     if (!of.crosses()) continue;
-    lines.push_back(fmt::format("{} crosses a boundary of the market: fitted {}; traded {}",
+    lines.push_back(fmt::format("{} crosses a price regime boundary: fitted on {}; traded in {}",
                                 results.policies.front().months[m], regime_names(of.fitted),
                                 regime_names(of.traded)));
   }
@@ -120,7 +117,7 @@ Json names_json(const std::vector<const PriceRegime*>& regimes) {
   return Json::list_from(regimes, &PriceRegime::name);
 }
 
-/// A line a policy over the traded days, EUR per MWh: what `values` makes of its cumulative profit.
+/// One line per policy over the traded days: `values` of the cumulative profit, EUR per MWh.
 template <typename Values>
 Json lines_chart(const char* id, const BacktestResults& results, Values values) {
   Json series = Json::list();
@@ -138,13 +135,13 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
                        {"series", std::move(series)}});
 }
 
-/// Profit by month, and the gain over the first; below it, on how many days it was fitted.
+/// Profit by month and gain over the first policy; last row: number of training days.
 Table month_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
   Table table;
   std::vector<std::string> cells;
   for (const WalkForward& policy : results.policies) cells.push_back(policy.name);
-  cells.emplace_back("fitted on days");
+  cells.emplace_back("training days");
   table.add<std::string>({{"", "policy", "", 0, "Policy"}, std::identity{}}, cells);
   for (std::size_t m = 0; m < first.months.size(); ++m) {
     cells.clear();
@@ -162,11 +159,11 @@ Table month_table(const BacktestResults& results) {
 std::string day_reset_html(const BacktestResults& results) {
   const Table table = day_reset_table(results);
   if (table.size() == 0) return {};
-  return format_table("EUR per day per MWh, each day from the same SoC, its end given away",
+  return format_table("EUR per day per MWh, day-reset accounting: each day starts at the same SoC",
                       table.only(std::string("policy,") + kDayResetKeys));
 }
 
-/// What is to be known of single months: those that cross, those that are not traded.
+/// Months that cross a regime boundary or are not traded.
 std::string months_html(const BacktestResults& results) {
   std::string text;
   for (const std::string& line : crossing_lines(results)) {
@@ -184,19 +181,19 @@ std::string months_html(const BacktestResults& results) {
 std::string format_backtest_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
   std::string text = fmt::format(
-      "{} months, {} days, each month by what was fitted on {}; SoC carried over;\nEUR per day per "
+      "{} months, {} days, each month traded by policies fitted on {};\nSoC carried over; EUR per "
+      "day per "
       "MWh of capacity\n{}",
       first.months.size(), first.total.days.size(), window_text(results),
       total_table(results).only(kBacktestShownKeys).text());
   if (const Table reset = day_reset_table(results); reset.size() > 0) {
-    text += "\nEach day starts at the same SoC and its end is given away\n" +
+    text += "\nDay-reset accounting: each day starts at the same SoC, its end is not valued\n" +
             reset.only(std::string("policy,") + kDayResetKeys).text();
   }
   text += fmt::format("\nprofit by month (gain)\n{}", month_table(results).text());
   text += fmt::format(
       "\ngain: day-by-day difference to {}; by month: {}\n{}\n{}: {}\n"
-      "cycles: equivalent full cycles a day; drawdown: deepest fall from the end of a "
-      "day to that\nof a later one, EUR per MWh\n",
+      "cycles: full cycles per day; drawdown: maximum fall between ends of days, EUR per MWh\n",
       first.name, by_month_meaning(first.total.errors().months),
       charge_left_meaning(first.total.charge_price_eur_per_mwh), kReferenceWearHead,
       reference_wear_meaning(first.total.wear_eur_per_mwh));
@@ -284,14 +281,13 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   });
   if (any_falls) {
     charts.add(lines_chart("falls", results, below_peak));
-    pictures += "<p class=\"note\">Below its peak, EUR per MWh</p>\n" +
-                chart_html("falls", "How far each policy lies under its own peak");
+    pictures += "<p class=\"note\">Drawdown, EUR per MWh</p>\n" +
+                chart_html("falls", "Drawdown of each policy");
   }
   const std::string body = fmt::format(
       "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">Gain: day by day, over {}. "
-      "By month: {}. The charge is carried over; {}. At wear 10: {}. Drawdown: deepest fall from "
-      "the end of a day to that of a later one, "
-      "EUR per MWh.</p>\n<figure>\n<h2>Profit month after month, EUR per MWh</h2>\n{}"
+      "By month: {}. SoC carried over; {}. At wear 10: {}. Drawdown: maximum fall between ends of "
+      "days, EUR per MWh.</p>\n<figure>\n<h2>Cumulative profit, EUR per MWh</h2>\n{}"
       "<figcaption>{} {}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance),
       format_table("EUR per day per MWh of capacity, all traded days",
@@ -301,7 +297,7 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
       html_escaped(with_true_minus(chart_caption(results))), csv_link("backtest_days.csv"),
-      format_table(fmt::format("Profit by month, and the gain over {}", first.name),
+      format_table(fmt::format("Profit by month, and gain over {}", first.name),
                    month_table(results)),
       months_html(results));
   write_file(folder / "backtest.html",

@@ -133,7 +133,7 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
   text += "\n";
   if (evaluations.size() > 1) {
     text += fmt::format(
-        "gain: day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
+        "gain: mean day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
         "cycles, switches: per day; foresight: share of the perfect-foresight profit\n",
         evaluations.front().name);
   }
@@ -149,8 +149,8 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
 
 std::string charge_left_meaning(double price_eur_per_mwh) {
   return fmt::format(
-      "the charge left at the end is valued at {:.2f} EUR/MWh, the mean settled price of these "
-      "days, with losses and costs",
+      "the final charge is valued at {:.2f} EUR/MWh, the mean settled price of these days, with "
+      "losses and costs",
       price_eur_per_mwh);
 }
 
@@ -158,7 +158,8 @@ std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations) {
   const Evaluation& carried = evaluations.front().carried_over;
   std::string text;
   if (!evaluations.front().day_reset.days.empty()) {
-    text = "same SoC each day: the friendlier accounting, which gives the end of each day away\n";
+    text =
+        "same SoC each day: the more favourable accounting, as the end of each day is not valued\n";
   }
   if (!carried.values_charge_left()) return text;
   return text + "carried over: " + charge_left_meaning(carried.charge_price_eur_per_mwh) + "\n";
@@ -171,8 +172,8 @@ int months_of(const std::vector<NamedEvaluation>& evaluations) {
 
 std::string reference_wear_meaning(double wear_eur_per_mwh) {
   return fmt::format(
-      "profit of the same decisions if wear cost {:g} EUR per MWh charged or discharged;\n"
-      "in all other columns it costs what is configured: {:g}",
+      "profit of the same decisions at a wear cost of {:g} EUR per MWh charged or discharged;\n"
+      "other columns use the configured wear cost: {:g}",
       kReferenceWearEurPerMwh, wear_eur_per_mwh);
 }
 

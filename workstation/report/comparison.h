@@ -1,5 +1,5 @@
-// Policies side by side: what each earned on the same days, and how sure the difference to the
-// first one is. One computation, three shapes: terminal table, CSV, and the report's HTML table.
+// Comparison of policies on the same days, with standard errors of the differences to the first
+// one, as text, CSV and HTML.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@
 
 namespace bess {
 
-/// One policy on the same days in both ways of counting. An Evaluation without days was not made.
+/// One policy in both accountings; an Evaluation without days was not made.
 struct NamedEvaluation {
   std::string name;
   Evaluation day_reset;
   Evaluation carried_over;
-  std::string description{};  ///< what was chosen in fitting it; may be empty
+  std::string description{};  ///< fitted parameters; may be empty
 };
 
-/// Wear at which every table shows the profit once more, whatever wear is configured: policies that
-/// trade more or less are compared by what wearing out the battery leaves of it.
+/// Reference wear cost: every table also shows the profit at this wear, to compare policies with
+/// different throughput.
 inline constexpr double kReferenceWearEurPerMwh = 10;
 inline constexpr const char* kReferenceWearKey = "profit_at_wear_10_eur_per_day_per_mwh";
 
-/// One line of a table. Money in EUR per day per MWh of capacity.
+/// One row of a table, in EUR per day per MWh of capacity.
 struct ComparisonRow {
   std::string name;
   bool carry_soc;
@@ -35,49 +35,49 @@ struct ComparisonRow {
   ChargeLeft charge_left;                      ///< of the profit
   double profit_at_reference_wear;             ///< of the same decisions
   std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
-  std::string gain_over{};                     ///< whose the difference is to
+  std::string gain_over{};                     ///< name of the first policy
   double worst_day;
   double cycles_per_day;
   double switches_per_day;
   double soc_end_frac_mean;
-  std::optional<double> foresight_share;  ///< of the foresight profit, when it is there and > 0
+  std::optional<double> foresight_share;  ///< of the foresight profit, if known and > 0
 };
 
-/// Which of the two evaluations a table is about.
+/// Accounting of a table.
 using EvaluationField = Evaluation NamedEvaluation::*;
 
-/// One row per policy that has this evaluation, in order. Shares are of the policy named foresight
-/// or, when it is not among them, of `given`.
+/// One row per policy with this evaluation, in order. Shares are of the policy named foresight,
+/// else of `given`.
 std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
                                            EvaluationField field,
                                            const NamedEvaluation* given = nullptr);
 
-/// The row of one evaluation; `first` null: without a gain.
+/// Row of one evaluation; without gain if `first` is null.
 ComparisonRow comparison_row(const std::string& name, const Evaluation& evaluation,
                              const Evaluation* first, const Evaluation* foresight = nullptr);
 
-/// Every figure of the rows; its keys are those that answers and tables share (../base/answer.h).
+/// Table with all columns; its keys are shared with answers (../base/answer.h).
 Table figures_table(const std::vector<ComparisonRow>& rows);
-/// The figures of `row` that every answer has.
+/// Adds the figures of `row` to an answer.
 void add_figures(const ComparisonRow& row, Json& json);
 
-/// Aligned columns for the terminal: a block per way of counting, the missing one left out.
+/// Text table, one block per available accounting.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight = nullptr);
 
-/// At what the charge left at the end is valued, for people.
+/// Valuation of the final charge, as text.
 std::string charge_left_meaning(double price_eur_per_mwh);
-/// How both ways of counting treat the charge at the end; for people, with line ends.
+/// Treatment of the final charge in both accountings, as text with line ends.
 std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations);
 
-/// In how many months the days of these lie; all have the same.
+/// Number of months of the days, which are the same for all.
 int months_of(const std::vector<NamedEvaluation>& evaluations);
 
-/// The head of its column.
+/// Head of its column.
 inline constexpr const char* kReferenceWearHead = "at wear 10";
-/// What the profit at the reference wear is, for people, where `wear_eur_per_mwh` is configured.
+/// Meaning of the profit at the reference wear, as text; `wear_eur_per_mwh` is configured.
 std::string reference_wear_meaning(double wear_eur_per_mwh);
-/// The wear that the profits of these are net of.
+/// Wear cost included in the profits.
 double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations);
 
 /// Header `policy,soc,days,...`; an empty field is "not applicable".

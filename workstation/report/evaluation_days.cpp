@@ -15,7 +15,7 @@ namespace bess {
 
 namespace {
 
-/// As the split is made in ../data/env/market_steps.cpp.
+/// Splits as in ../data/env/market_steps.cpp.
 struct SplitMeaning {
   Split split;
   const char* name;
@@ -70,12 +70,13 @@ std::string judged_days_text(const JudgedDays& judged) {
   if (judged.last_learnt.empty()) return text;
   const std::size_t earlier = judged.before_last_learnt();
   if (earlier == 0) {
-    return text + fmt::format(" All of them come after the days that were learnt from, to {}.",
-                              judged.last_learnt);
+    return text +
+           fmt::format(" All of them are after the training and validation days, which end on {}.",
+                       judged.last_learnt);
   }
   return text + fmt::format(
-                    " Learning saw days to {}, later than {} of them: what is learnt before it "
-                    "trades may earn less.",
+                    " Training and validation days end on {}, after {} of them: a policy trained "
+                    "only on earlier days may earn less.",
                     judged.last_learnt, earlier == days ? "all" : fmt::format("{}", earlier));
 }
 
@@ -86,9 +87,9 @@ Json judged_days_json(const JudgedDays& judged) {
                             {"months", judged.months()},
                             {"from", judged.dates.front()},
                             {"to", judged.dates.back()}});
-  const bool is_told = !judged.last_learnt.empty();
-  json.set("last_learnt_day", is_told ? Json(judged.last_learnt) : Json::null());
-  json.set("days_before_last_learnt", is_told ? Json(judged.before_last_learnt()) : Json::null());
+  const bool is_known = !judged.last_learnt.empty();
+  json.set("last_learnt_day", is_known ? Json(judged.last_learnt) : Json::null());
+  json.set("days_before_last_learnt", is_known ? Json(judged.before_last_learnt()) : Json::null());
   return json;
 }
 

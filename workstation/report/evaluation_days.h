@@ -1,5 +1,5 @@
-// The days an evaluation judges, and every day of every policy as CSV, each number in the shortest
-// form that reads back exactly: tables and paired differences can be made again from it.
+// Evaluation days: their split and relation to training, and daily results as CSV with exact
+// numbers, from which tables and paired differences can be recomputed.
 #pragma once
 
 #include <string>
@@ -12,33 +12,34 @@
 
 namespace bess {
 
-// Which days a figure is about, and whether what is judged had learnt from later ones: days 26 to
-// the end of each month are kept from learning, but the months after them are not.
+// Evaluation days of a result. Days 26 to the end of each month are held out, but training may
+// include later months.
 
 struct JudgedDays {
   Split split;
-  std::vector<std::string> dates;  ///< of the days, ascending, "2023-01-31"
-  std::string last_learnt;         ///< the last day that was trained or chosen on; empty: not known
+  std::vector<std::string> dates;  ///< ascending, "2023-01-31"
+  std::string last_learnt;         ///< last training or validation day; empty: unknown
 
-  [[nodiscard]] std::size_t before_last_learnt() const;  ///< how many of the days are
+  [[nodiscard]] std::size_t before_last_learnt() const;  ///< number of evaluation days before it
   [[nodiscard]] std::size_t months() const;
 };
 
-/// The last training or validation day; empty without any.
+/// Last training or validation day; empty without any.
 std::string last_learnt_day(const MarketSteps& market);
 
 JudgedDays judged_days(const MarketSteps& market, Split split);
 
-/// Two sentences for people: the rule of the split with the days' span, and what learning saw.
+/// Two sentences: split with its days, and relation to the training days.
 std::string judged_days_text(const JudgedDays& judged);
 Json judged_days_json(const JudgedDays& judged);
 
 /// Header `policy,date,profit_eur,cycles,switches,throughput_mwh,carry_soc,soc_end_frac,
-/// soc_start_frac,charge_value_eur,charge_price_eur_per_mwh`; no price: the charge is not valued.
+/// soc_start_frac,charge_value_eur,charge_price_eur_per_mwh`; no price: the final charge is not
+/// valued.
 std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations);
 
-/// Reads it back for the battery that was evaluated; policies keep their order. Throws UserError
-/// naming `name` and the line.
+/// Reads it for the evaluated battery; policies keep their order. Throws UserError naming `name`
+/// and the line.
 std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
                                                        const std::string& name,
                                                        const BatteryParameters& battery);

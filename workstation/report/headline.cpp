@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-/// " ± 1.1", and " (1.4 by month)", each where it is known.
+/// " ± 1.1" and " (1.4 by month)", if known.
 std::string plain_error(const DayErrors& errors) {
   return std::isnan(errors.plain) ? "" : fmt::format(" \u00b1 {:.1f}", errors.plain);
 }
@@ -28,13 +28,13 @@ std::string signed_text(double value) {
   return fmt::format("{}{:.1f}", value < 0 ? "\u2212" : "+", std::abs(value));
 }
 
-/// Half of the interval in which a gain shows nothing; 0 where it is not known.
+/// Half width of the confidence interval; 0 if unknown.
 double half_width(const PairedDifference& difference) {
   const double half = interval_half_width(difference.errors(), kShownCoverage);
   return std::isnan(half) ? 0 : half;
 }
 
-/// Half the width of the bars' axis, EUR per day per MWh: foresight is far beyond all others.
+/// Half width of the bars' axis, EUR per day per MWh, without foresight.
 double bar_reach(const Headline& headline) {
   double reach = 1;
   for (const HeadlineGain& gain : headline.gains) {
@@ -46,7 +46,7 @@ double bar_reach(const Headline& headline) {
   return reach;
 }
 
-/// Mean and interval on an axis whose middle is zero, drawn by the style sheet.
+/// Mean and interval on an axis centred at zero, drawn by the style sheet.
 std::string bar(const PairedDifference& difference, double reach) {
   const auto percent = [&](double value) { return 50 + 50 * std::clamp(value / reach, -1.0, 1.0); };
   const double half = half_width(difference);
@@ -73,22 +73,22 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
   return row + "</tr>\n";
 }
 
-/// The price of correction in words; a difference is claimed only beyond its interval.
+/// Cost of the correction as text; a difference is claimed only outside its interval.
 std::string correction_text(const HeadlineGain& correction) {
   const PairedDifference& d = correction.difference.front();
   if (!is_shown(d)) {
-    return fmt::format("Price of the correction: none shown, {} against the {}", difference_text(d),
-                       correction.against);
+    return fmt::format("Cost of the correction: not significant, {} against the {}",
+                       difference_text(d), correction.against);
   }
   const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors()));
-  return d.mean < 0 ? "Price of the correction: " + size
-                    : "The correction costs nothing: it earns " + size + " more";
+  return d.mean < 0 ? "Cost of the correction: " + size
+                    : "The correction has no cost: it earns " + size + " more";
 }
 
-/// A price is what is lost: the change with its sign turned round.
+/// Cost of the rules: the change with opposite sign.
 std::string rules_text(const HeadlineGain& rules) {
   const PairedDifference& d = rules.difference.front();
-  if (!is_shown(d)) return fmt::format("none shown, {}", difference_text(d));
+  if (!is_shown(d)) return fmt::format("not significant, {}", difference_text(d));
   return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors()))
                     : "none, they earn " + difference_text(d);
 }
@@ -145,8 +145,7 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
                     .gains = {}};
   if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
   const auto add = [&](const std::string& name, const std::string& meaning) {
-    const NamedEvaluation* other =
-        carried_over_by(evaluations, name);  // what was not evaluated is left out
+    const NamedEvaluation* other = carried_over_by(evaluations, name);  // null if not evaluated
     if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, meaning));
   };
   add(kPlainName, "the student without correction");
@@ -166,19 +165,19 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
 }
 
 std::string headline_accounting(const Headline& headline) {
-  std::string text = "The charge is carried over from day to day";
+  std::string text = "The SoC is carried over from day to day";
   if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
     text += fmt::format(
-        ", and what is left of it at the end is valued at {:.1f} EUR/MWh, the mean "
-        "settled price of these days, with losses and costs: {} of the figure",
+        "; the final charge is valued at {:.1f} EUR/MWh, the mean settled price of these "
+        "days, with losses and costs: {} of the result",
         headline.charge_left.price_eur_per_mwh,
         signed_text(headline.charge_left.value_eur_per_day_per_mwh));
   }
   text += ".";
   if (!headline.reset_profit) return text;
   return text + fmt::format(
-                    " The friendlier accounting, each day from the same charge and its end given "
-                    "away, says {:.1f}.",
+                    " Day-reset accounting (each day starts at the same SoC, its end is not "
+                    "valued): {:.1f}.",
                     *headline.reset_profit);
 }
 
@@ -208,7 +207,7 @@ Json headline_json(const Headline& headline) {
 std::string headline_html(const Headline& headline) {
   std::string text = fmt::format(
       "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
-      "of capacity{}<br>the {}, over {} test days, charge carried over</span></p>\n"
+      "of capacity{}<br>{}, {} test days, SoC carried over</span></p>\n"
       "<p class=\"note\" id=\"headline-accounting\">{}</p>\n<ul class=\"badges\">\n",
       headline.profit, errors_text(headline.errors), headline.student, headline.days,
       html_escaped(headline_accounting(headline)));
@@ -217,28 +216,28 @@ std::string headline_html(const Headline& headline) {
                         html_escaped(correction_text(*headline.correction)));
   }
   if (headline.rules) {
-    text += fmt::format("<li id=\"price-of-rules\">Price of the rules: {}</li>\n",
+    text += fmt::format("<li id=\"price-of-rules\">Cost of the rules: {}</li>\n",
                         html_escaped(rules_text(*headline.rules)));
   }
   if (headline.foresight_share) {
-    text += fmt::format("<li>{:.1f} % of what perfect foresight would have earned</li>\n",
+    text += fmt::format("<li>{:.1f} % of the profit of perfect foresight</li>\n",
                         100 * *headline.foresight_share);
   }
   text += "</ul>\n";
   if (headline.gains.empty()) return text;
   text += fmt::format(
-      "<table class=\"gains\">\n<caption>What it earns more than each of these, day by day, EUR "
-      "per day per MWh of capacity, \u00b1 standard error, and by month</caption>\n<thead><tr><th "
+      "<table class=\"gains\">\n<caption>Gain over each alternative: mean day-by-day difference, "
+      "EUR per day per MWh of capacity, \u00b1 standard error (by month)</caption>\n<thead><tr><th "
       "scope=\"col\">Against</th><th scope=\"col\">No wear</th><th scope=\"col\">Wear {:g} "
       "EUR/MWh</th></tr></thead>\n<tbody>\n",
       kHeadlineWears[1]);
   const double reach = bar_reach(headline);
   for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
   return text + fmt::format(
-                    "</tbody></table>\n<p class=\"note\">Wear is counted per MWh charged and per "
-                    "MWh discharged. A bar spans the interval of 95 %, that of the wider error by "
-                    "Student's t; one that touches the line shows no difference. By month: {}. The "
-                    "charge is carried over.</p>\n",
+                    "</tbody></table>\n<p class=\"note\">Wear is per MWh charged and per MWh "
+                    "discharged. A bar spans the 95 % interval of the larger error (Student's t); "
+                    "one that touches the line is not significant. By month: {}. SoC carried "
+                    "over.</p>\n",
                     html_escaped(by_month_meaning(headline.errors.months)));
 }
 

@@ -1,6 +1,5 @@
-// What an operator asks first of a run: what would the policy that would be exported have earned,
-// what did its correction cost, and how does it stand against each alternative, without wear and
-// with it.
+// Headline result of a run: profit of the exported policy, cost of its correction, and gains over
+// each alternative, with and without wear.
 #pragma once
 
 #include <array>
@@ -14,20 +13,20 @@
 
 namespace bess {
 
-/// Names by which the evaluations of a run are recognised.
+/// Names of the evaluations of a run.
 inline constexpr const char* kCorrectedName = "corrected student";
 inline constexpr const char* kPlainName = "plain student";
-/// In place of the corrected one where its proof failed: nobody may export it.
+/// Replaces the corrected student when its proof failed; not exported.
 inline constexpr const char* kUnprovedName = "unproved student";
 
-/// The wears, EUR/MWh, at which gains are shown, whatever is configured.
+/// Wear costs at which gains are shown, EUR/MWh.
 inline constexpr std::array<double, 2> kHeadlineWears{0, kReferenceWearEurPerMwh};
 
 /// Exported policy minus another one, same days, EUR per day per MWh of capacity, at each of
 /// kHeadlineWears.
 struct HeadlineGain {
   std::string against;  ///< name of the evaluation
-  std::string meaning;  ///< for people
+  std::string meaning;  ///< as text
   std::array<PairedDifference, kHeadlineWears.size()> difference;
 };
 
@@ -35,47 +34,45 @@ struct HeadlineGain {
 HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
                        std::string_view meaning);
 
-/// Charge carried over from day to day, what is left of it at the end valued; EUR per day per MWh
-/// of capacity, net of the configured wear.
+/// SoC carried over, final charge valued; EUR per day per MWh of capacity, net of the configured
+/// wear.
 struct Headline {
   std::string student;  ///< kCorrectedName or kUnprovedName
   std::size_t days;
   double profit;
   DayErrors errors;                    ///< of the profit
-  std::optional<double> reset_profit;  ///< friendlier: each day from the same charge, its end free
-  ChargeLeft charge_left;              ///< a part of the profit
+  std::optional<double> reset_profit;  ///< day-reset accounting
+  ChargeLeft charge_left;              ///< part of the profit
   std::optional<double> foresight_share;
   std::optional<HeadlineGain>
-      correction;  ///< against the plain student under the rules: the price of correction, negated
-  std::optional<HeadlineGain> rules;  ///< what they change of the plain student; none without any
-  std::vector<HeadlineGain> gains;    ///< the plain student first, foresight last
+      correction;  ///< over the plain student under the rules: minus the cost of the correction
+  std::optional<HeadlineGain> rules;  ///< their effect on the plain student; none without rules
+  std::vector<HeadlineGain> gains;    ///< plain student first, foresight last
 };
 
-/// The same decisions, had wear cost this much instead.
+/// The same decisions at another wear cost.
 Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh);
 
-/// The policy that a run is about: corrected student or, where its proof failed, unproved one; null
-/// without both.
+/// Own student of a run: corrected or, if its proof failed, unproved; null without both.
 const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations);
 
-/// None without an evaluation of the run's own student, SoC carried over. An unproved student has
-/// no price of correction: its correction was not finished.
+/// None without a carried-over evaluation of the run's own student. An unproved student has no cost
+/// of correction.
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations);
 
-/// Beyond the interval of 95 %; never of one day.
+/// Outside the 95 % interval; never for one day.
 bool is_shown(const PairedDifference& difference);
 
-/// "+5.2 ± 1.1 (1.4 by month)", with a true minus; an error that is not known is left out.
+/// "+5.2 ± 1.1 (1.4 by month)", with a true minus; unknown errors are left out.
 std::string difference_text(const PairedDifference& difference);
 
-/// How the figure counts: carried over, the charge left at what price, and the friendlier figure.
-/// For people.
+/// Accounting of the result, as text, with the day-reset figure.
 std::string headline_accounting(const Headline& headline);
-/// The figure in a line, for the terminal, with how it counts.
+/// Result and accounting, for the terminal.
 std::string headline_text(const Headline& headline);
-/// The figure with its errors, the valued charge and the friendlier figure.
+/// Result with errors, value of the final charge, and day-reset figure.
 Json headline_json(const Headline& headline);
-/// The head of the page: the figure, the badges, the gains. Escaped.
+/// Head of the page: result, badges, gains. Escaped.
 std::string headline_html(const Headline& headline);
 
 }  // namespace bess

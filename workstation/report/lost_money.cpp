@@ -8,30 +8,30 @@
 namespace bess {
 namespace {
 
-/// An end of the SoC window is reached within half a percent, which the student cannot tell apart.
+/// Tolerance at the ends of the SoC window, below the resolution of the student.
 constexpr double kAtTheEndFrac = 0.005;
 
 struct CauseText {
   std::string_view key, name, meaning;
 };
 constexpr std::array<CauseText, kLossCauseCount> kTexts{{
-    {"dear_missed", "dear moment missed", "selling was best at that moment, and it did not sell"},
-    {"cheap_missed", "cheap moment missed", "buying was best at that moment, and it did not buy"},
-    {"empty", "empty when it was dear",
-     "too little charge was kept or bought: later that day, at a dear moment, the battery was "
-     "empty"},
-    {"full", "full when it was cheap",
-     "too much charge was kept or bought: later that day, at a cheap moment, the battery was full"},
-    {"timing", "sold or bought too early", "resting was best at that moment"},
-    {"newest_price", "newest price not the one paid",
-     "shown the price that is paid, the student would have decided better"},
-    {"outage", "prices failed to come",
-     "the same, while the newest price was older than it should be"},
-    {"rules", "a rule or the guard", "without the rules the plain student would have done better"},
+    {"dear_missed", "missed high price",
+     "discharging was optimal, but the policy did not discharge"},
+    {"cheap_missed", "missed low price", "charging was optimal, but the policy did not charge"},
+    {"empty", "empty at a high price",
+     "too little charge kept or bought: the battery was empty at a high price later that day"},
+    {"full", "full at a low price",
+     "too much charge kept or bought: the battery was full at a low price later that day"},
+    {"timing", "sold or bought too early", "idle was optimal"},
+    {"newest_price", "newest price differs from paid price",
+     "with the paid price as input, the student would have decided better"},
+    {"outage", "price outage", "the same, while the newest price was late"},
+    {"rules", "a rule or the guard",
+     "without the rules the plain student would have decided better"},
     {"correction", "the correction",
-     "the student without correction would have done better at the same charge"},
-    {"cycle_limit", "the limit of cycles", "the day's cycles were used up, or worth saving"},
-    {"rounding", "rounding", "of the bound, which is planned on a grid of charges"},
+     "the student without correction would have decided better at the same SoC"},
+    {"cycle_limit", "cycle limit", "the full cycles of the day were used up, or saved for later"},
+    {"rounding", "rounding", "of the foresight plan, which uses a SoC grid"},
 }};
 
 const CauseText& text_of(LossCause cause) { return kTexts[static_cast<std::size_t>(cause)]; }
@@ -43,12 +43,11 @@ double median_paid(const std::vector<StepRecord>& records) {
   return paid[paid.size() / 2];
 }
 
-/// What the day still holds behind each step: the prices at which the battery is at an end of its
-/// window.
+/// Extreme prices after each step at which the battery is at an end of its SoC window.
 struct EndsAhead {
-  std::vector<double> dearest_while_empty;  ///< paid, EUR/MWh; -inf: it is not empty any more
-  std::vector<double> cheapest_while_full;  ///< +inf
-  double usual_eur_per_mwh;                 ///< the day's median
+  std::vector<double> dearest_while_empty;  ///< paid, EUR/MWh; -inf: not empty later
+  std::vector<double> cheapest_while_full;  ///< +inf: not full later
+  double usual_eur_per_mwh;                 ///< median of the day
 
   EndsAhead(const std::vector<StepRecord>& records, const BatteryParameters& battery)
       : dearest_while_empty(records.size()),
@@ -69,8 +68,7 @@ struct EndsAhead {
     }
   }
 
-  /// Whether being empty later is the reason: at a price above this one, and further from the
-  /// usual.
+  /// Empty later at a higher price that is further from the median.
   [[nodiscard]] bool empty_is_to_blame(std::size_t i, double paid) const {
     const double dear = dearest_while_empty[i];
     return dear >= paid && dear - usual_eur_per_mwh >= usual_eur_per_mwh - paid;
@@ -81,20 +79,20 @@ struct EndsAhead {
   }
 };
 
-/// The step as it would be with the price that is paid already published.
+/// Step with the paid price as newest price.
 MarketStep shown_the_paid_price(MarketStep step) {
   step.observed_eur_per_mwh = step.paid_eur_per_mwh;
   step.observed_age_min = 0;
   return step;
 }
 
-/// What an action at a step and SoC is, and what it is worth.
+/// Action at a step and SoC, with its value.
 struct Answer {
   Action action;
   double worth_eur;
 };
 
-/// One day of one policy.
+/// Losses of one day of one policy.
 class DayJudge {
  public:
   DayJudge(const LossChain& chain, const BatteryParameters& battery, const ForesightPolicy& bound,
@@ -107,8 +105,8 @@ class DayJudge {
     for (std::size_t i = 0; i < steps.size(); ++i) judge_step(i, steps[i], records[i], ends, loss);
     double sum = 0;
     for (const double part : loss.part_eur) sum += part;
-    // Under a limit of cycles the plan counts throughput at its shadow price, which no profit
-    // holds.
+    // With a cycle limit, the plan includes the shadow price of throughput, which is not in
+    // profits.
     const LossCause rest =
         battery_.cycles_per_day_max > 0 ? LossCause::kCycleLimit : LossCause::kRounding;
     loss.part_eur[static_cast<std::size_t>(rest)] += loss.missed_eur() - sum;
@@ -152,7 +150,7 @@ class DayJudge {
     };
     const Policy* last = &chain_.policy;
     const Answer wanted = ask(*last, step, i, soc);
-    if (wanted.action != record.action) {  // no order was left to give, whatever anyone wanted
+    if (wanted.action != record.action) {  // cycle limit reached
       add(LossCause::kCycleLimit, optimum);
       return;
     }

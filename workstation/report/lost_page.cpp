@@ -16,7 +16,7 @@ namespace bess {
 namespace {
 
 constexpr std::size_t kWorstDays = 8;
-constexpr double kNamedShare = 0.1;  ///< of what a day missed, from which on a cause is named
+constexpr double kNamedShare = 0.1;  ///< minimum share of a day's gap for a named cause
 
 LossCause cause_at(std::size_t index) { return static_cast<LossCause>(index); }
 
@@ -54,7 +54,7 @@ std::map<std::string, std::array<double, kHoursPerDay>> regret_by_month(
   return months;
 }
 
-/// Causes in the order of their size, those that took no part left out.
+/// Causes by size, without zero parts.
 std::vector<LossCause> causes_of(const std::array<double, kLossCauseCount>& part) {
   std::vector<LossCause> causes;
   for (std::size_t c = 0; c < kLossCauseCount; ++c) {
@@ -68,10 +68,10 @@ std::vector<LossCause> causes_of(const std::array<double, kLossCauseCount>& part
 std::string causes_html(const Means& means) {
   std::string text =
       "<figure id=\"lost-causes\"><figcaption>By cause<small>mean over the test days, EUR per day "
-      "per MWh; the parts add up to what was missed " +
+      "per MWh; the parts add up to the gap " +
       csv_link("lost_causes.csv") +
       "</small></figcaption>\n<table class=\"causes\"><thead><tr><th scope=\"col\">Cause</th><th "
-      "scope=\"col\">EUR/day/MWh</th><th scope=\"col\">% of it</th></tr></thead>\n<tbody>\n";
+      "scope=\"col\">EUR/day/MWh</th><th scope=\"col\">% of gap</th></tr></thead>\n<tbody>\n";
   double reach = 0;
   for (const double part : means.part) reach = std::max(reach, std::abs(part));
   for (const LossCause cause : causes_of(means.part)) {
@@ -79,15 +79,16 @@ std::string causes_html(const Means& means) {
     text += fmt::format(
         "<tr><th scope=\"row\">{}<small>{}</small><i class=\"{}\" "
         "style=\"--share:{:.1f}%\"></i></th><td data-label=\"EUR/day/MWh\">{}</td><td "
-        "data-label=\"% of it\">{}</td></tr>\n",
+        "data-label=\"% of gap\">{}</td></tr>\n",
         loss_cause_name(cause), loss_cause_meaning(cause), part < 0 ? "helped" : "lost",
         100 * std::abs(part) / reach, number(part), number(100 * part / means.missed));
   }
-  return text + fmt::format(
-                    "<tr class=\"sum\"><th scope=\"row\">missed</th><td "
-                    "data-label=\"EUR/day/MWh\">{}</td><td data-label=\"% of it\">100.0</td></tr>\n"
-                    "</tbody></table></figure>\n",
-                    number(means.missed));
+  return text +
+         fmt::format(
+             "<tr class=\"sum\"><th scope=\"row\">gap</th><td "
+             "data-label=\"EUR/day/MWh\">{}</td><td data-label=\"% of gap\">100.0</td></tr>\n"
+             "</tbody></table></figure>\n",
+             number(means.missed));
 }
 
 std::string heat_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
@@ -95,9 +96,10 @@ std::string heat_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   double most = 0;
   for (const auto& [month, hours] : months) most = std::max(most, std::ranges::max(hours));
   std::string text = fmt::format(
-      "<figure id=\"lost-hours\"><figcaption>By hour and month<small>what the decisions of each "
-      "local hour missed, mean over the month's test days, EUR per day per MWh; the darkest is "
-      "{:.1f} {}</small></figcaption>\n<table class=\"heat\"><thead><tr><th scope=\"col\">Month"
+      "<figure id=\"lost-hours\"><figcaption>By hour and month<small>gap by decisions of each "
+      "local "
+      "hour, mean over the month's test days, EUR per day per MWh; darkest: {:.1f} "
+      "{}</small></figcaption>\n<table class=\"heat\"><thead><tr><th scope=\"col\">Month"
       "</th>",
       most, csv_link("lost_hours.csv"));
   for (std::size_t h = 0; h < kHoursPerDay; ++h) {
@@ -121,7 +123,7 @@ std::string clock_text(const MarketStep& step) {
   return fmt::format("{:02}:{:02}", minute / 60, minute % 60);
 }
 
-/// "dear moment missed 312.4, the correction −20.1"
+/// "missed high price 312.4, the correction −20.1"
 std::string parts_text(const DayLoss& day, double capacity_mwh) {
   std::string text;
   for (const LossCause cause : causes_of(day.part_eur)) {
@@ -132,13 +134,13 @@ std::string parts_text(const DayLoss& day, double capacity_mwh) {
   return text;
 }
 
-/// The dearest decision of the main cause, in words.
+/// Most expensive decision of the main cause, as text.
 std::string moment_html(const DayLoss& day, double capacity_mwh) {
   const LossMoment& m = day.moment[static_cast<std::size_t>(day.main_cause())];
   if (m.eur <= 0) return {};
   return fmt::format(
-      "<a href=\"#day\" data-day=\"{}\" data-minute=\"{}\">{}</a> at {:.0f} %: {}, best was {}; "
-      "paid {}, newest price {} EUR/MWh; cost {}",
+      "<a href=\"#day\" data-day=\"{}\" data-minute=\"{}\">{}</a> at {:.0f} %: {}, optimum {}; "
+      "paid {}, newest price {} EUR/MWh; loss {}",
       day.date, m.step.utc_s / 60, clock_text(m.step), 100 * m.soc_frac, action_name(m.done),
       action_name(m.best), number(m.step.paid_eur_per_mwh), number(m.step.observed_eur_per_mwh),
       number(m.eur / capacity_mwh));
@@ -146,21 +148,22 @@ std::string moment_html(const DayLoss& day, double capacity_mwh) {
 
 std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   std::string text =
-      "<figure id=\"lost-days\"><figcaption>Worst days<small>by the money missed against perfect "
-      "foresight, EUR per MWh; a date opens the day below, a time its moment; causes of less than "
-      "a tenth are in the file " +
+      "<figure id=\"lost-days\"><figcaption>Worst days<small>largest gap to perfect "
+      "foresight, EUR per MWh; click a date or time to open it below; causes below a tenth are in "
+      "the file " +
       csv_link("lost_days.csv") +
       "</small></figcaption>\n<table id=\"worst-days\"><thead><tr><th scope=\"col\">Day</th><th "
-      "scope=\"col\">Missed</th><th scope=\"col\">Earned</th><th scope=\"col\">Foresight</th><th "
-      "scope=\"col\" class=\"why\">Why</th><th scope=\"col\" class=\"why\">Dearest decision of the "
-      "first cause</th></tr>"
+      "scope=\"col\">Gap</th><th scope=\"col\">Earned</th><th scope=\"col\">Foresight</th><th "
+      "scope=\"col\" class=\"why\">Causes</th><th scope=\"col\" class=\"why\">Most expensive "
+      "decision "
+      "of the first cause</th></tr>"
       "</thead>\n<tbody>\n";
   const std::vector<const DayLoss*> worst = by_missed(losses);
   for (std::size_t d = 0; d < std::min(kWorstDays, worst.size()); ++d) {
     const DayLoss& day = *worst[d];
     text += fmt::format(
         "<tr><th scope=\"row\"><a href=\"#day\" data-day=\"{0}\">{0}</a></th><td "
-        "data-label=\"Missed\">{1}</td><td data-label=\"Earned\">{2}</td><td "
+        "data-label=\"Gap\">{1}</td><td data-label=\"Earned\">{2}</td><td "
         "data-label=\"Foresight\">{3}</td><td class=\"why\">{4}</td><td class=\"why\">{5}</td>"
         "</tr>\n",
         day.date, number(day.missed_eur() / capacity_mwh), number(day.earned_eur / capacity_mwh),
@@ -259,16 +262,15 @@ std::string lost_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
              number(means.missed)) +
          causes_html(means) + heat_html(losses, capacity_mwh) + "</div>\n" +
          days_html(losses, capacity_mwh) +
-         "<p class=\"note\">Every decision is charged with what it cost if all later ones were the "
-         "best: what an empty battery could not sell, the decision that emptied it. At the same "
-         "step and charge others are asked in turn: the plain student under the rules (what it "
-         "would have done better is the correction's), the plain student (the rules'), the same "
-         "shown the price that is paid (the newest price's, or the outage's). What is left no "
-         "price "
-         "of that moment tells: of the moment itself and a later one at which the battery is empty "
-         "or full, the price further from the day's median is to blame. A negative part helped. "
-         "Each day starts at the same charge; wear as configured. The correction's part is counted "
-         "decision by decision; the price of the correction above compares two whole runs.</p>\n";
+         "<p class=\"note\">The loss of a decision assumes optimal later decisions: energy that an "
+         "empty battery could not sell is charged to the decision that emptied it. At the same "
+         "step and SoC, other policies are evaluated in turn: the plain student under the rules "
+         "(difference: the correction), the plain student (rules), and the plain student with the "
+         "paid price as input (newest price or outage). The rest is attributed to the price of "
+         "that moment or to a later price at which the battery is empty or full, whichever is "
+         "further from the day's median. A negative part is a gain. Each day starts at the same "
+         "SoC; wear as configured. The part of the correction is by decision; the cost of the "
+         "correction above compares two whole runs.</p>\n";
 }
 
 std::vector<PictureTable> lost_tables(const std::vector<DayLoss>& losses, double capacity_mwh) {

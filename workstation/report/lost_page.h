@@ -1,5 +1,4 @@
-// The page's chapter on what was missed: by cause, by hour and month, and the worst days with their
-// causes.
+// Page section on the profit gap: by cause, by hour and month, and the worst days.
 #pragma once
 
 #include <string>
@@ -11,17 +10,17 @@
 
 namespace bess {
 
-/// Of the exported policy over the test days, or of what there is of its chain; empty without any
+/// Losses of the exported policy, or of another own student, over the test days; empty without a
 /// student.
 std::vector<DayLoss> losses_of(const ReportInputs& inputs);
 
-/// Days in the order of what was missed, the worst first.
+/// Days by profit gap, largest first.
 std::vector<const DayLoss*> by_missed(const std::vector<DayLoss>& losses);
 
-/// Empty without losses. Money in EUR per MWh of capacity.
+/// Empty without losses. EUR per MWh of capacity.
 std::string lost_html(const std::vector<DayLoss>& losses, double capacity_mwh);
 
-/// What lost_html draws: lost_causes, lost_hours, lost_days (of all days).
+/// Data of lost_html: lost_causes, lost_hours, lost_days (all days).
 std::vector<PictureTable> lost_tables(const std::vector<DayLoss>& losses, double capacity_mwh);
 
 }  // namespace bess
