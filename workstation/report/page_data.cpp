@@ -65,7 +65,7 @@ Json rules_json(const RuleSet& rules, ContextKind kind) {
 
 namespace {
 
-/// Calls `look` with each step of the days that the page holds and its index among all records.
+/// Calls `look` with each step on the page and its index among all records.
 template <typename Look>
 void for_each_step(const ReportInputs& in, const PageSteps& steps, Look look) {
   std::size_t first = 0;
@@ -102,7 +102,7 @@ PictureTable step_table(const ReportInputs& in, const PageSteps& steps) {
   return table;
 }
 
-/// A row a run of prices with the same action, at each SoC.
+/// One row per interval of prices with the same action, at each SoC.
 PictureTable map_table(const ReportInputs& in) {
   PictureTable table{"policy_map",
                      {"student", "context_class", "quarter_hour", "minute", "soc_frac",
@@ -201,7 +201,7 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   return list;
 }
 
-/// Each day by itself starts at the same SoC, as where it lost.
+/// Day-reset accounting, as in the section on the profit gap.
 std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
   std::vector<PolicySteps> all;
   for (const ShownPolicy& shown : shown_policies(in)) {
@@ -224,8 +224,7 @@ std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const Pol
   return profits;
 }
 
-/// Less what perfect foresight would have earned, where it was evaluated: how bad a day was, as the
-/// page ranks them.
+/// Profits minus those of perfect foresight, if evaluated: the ranking of days on the page.
 std::vector<double> against_foresight(const ReportInputs& in, std::vector<double> profits) {
   const auto bound = std::ranges::find(in.evaluations, kForesightName, &NamedEvaluation::name);
   if (bound == in.evaluations.end() || bound->day_reset.days.size() != profits.size()) {
@@ -270,7 +269,7 @@ Json state_json(const LatticeState& s) {
   return std::span(state);
 }
 
-/// The state of each broken demand, null where none is known: of the buttons of failure_html().
+/// State of each broken demand (null if unknown), for the buttons of failure_html().
 Json broken_json(const ReportInputs& in) {
   return Json::list_from(in.broken, [](const BrokenDemand& demand) {
     return demand.state ? state_json(*demand.state) : Json(NAN);
@@ -401,7 +400,7 @@ PolicyContext first_map(const ReportInputs& in) {
   return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
 }
 
-/// Name and colour of each baseline that is drawn beside the exported policy.
+/// Name and colour of each baseline drawn with the exported policy.
 Json rivals_json() {
   return Json::list_from(rival_names(), [](const std::string& name) {
     return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});

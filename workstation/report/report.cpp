@@ -23,23 +23,22 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPage = "report.html";
-constexpr const char* kPageTitle = "Battery arbitrage: what was learned, corrected and proved";
-constexpr const char* kFailedTitle =
-    "Battery arbitrage: what was learned, and where its proof failed";
+constexpr const char* kPageTitle = "Battery arbitrage: trained, corrected and proved policy";
+constexpr const char* kFailedTitle = "Battery arbitrage: trained policy, proof failed";
 
-/// What the corrected student was distilled for, besides the properties.
+/// Rules of the corrected student.
 RuleSet rules_of(const ReportInputs& in) {
   return in.corrected ? in.corrected->certificate.rules : RuleSet{};
 }
 
 std::string battery_text(const BatteryParameters& battery) {
-  return fmt::format("{:g} MW, {:g} MWh, round trip {:.1f} %, charge {:.0f} to {:.0f} %",
+  return fmt::format("{:g} MW, {:g} MWh, round-trip efficiency {:.1f} %, SoC {:.0f} to {:.0f} %",
                      battery.power_w_max / 1e6, battery.capacity_wh / 1e6,
                      100 * battery.charge_efficiency * battery.discharge_efficiency,
                      100 * battery.soc_min_frac, 100 * battery.soc_max_frac);
 }
 
-/// What the figure is not: of days that came after all learning.
+/// Relation of the result to training days, and the walk-forward result.
 std::string standing_html(const ReportInputs& in) {
   return fmt::format(
       "<div class=\"standing\">\n<p class=\"note\" id=\"test-days\">{}</p>\n<p class=\"note\" "
@@ -57,7 +56,7 @@ std::string head_of(const ReportInputs& in) {
   }
   const std::optional<Headline> headline = headline_of(in.evaluations);
   if (headline) return text + headline_html(*headline) + standing_html(in);
-  return text + "<p>No student of a correction was evaluated: there is no policy to export.</p>\n";
+  return text + "<p>No corrected student was evaluated, so there is no policy to export.</p>\n";
 }
 
 std::string section_of(const std::string& id, const std::string& title, const std::string& body) {
@@ -89,23 +88,23 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
       {{"title", has_failed ? kFailedTitle : kPageTitle},
        {"head", head_of(in)},
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
-       {"failure_link", has_failed ? "<li><a href=\"#failure\">Where it failed</a></li>\n" : ""},
+       {"failure_link", has_failed ? "<li><a href=\"#failure\">Failed proof</a></li>\n" : ""},
        {"comparison",
-        section_of("comparison", "What each policy earned",
+        section_of("comparison", "Profit of each policy",
                    comparison_html(in.evaluations) + same_program_html(in.evaluations) +
                        whole_battery_html(in.evaluations))},
        {"lost",
-        section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
-       {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},
+        section_of("lost", "Gap to perfect foresight", lost_html(losses, capacity_mwh_of(in)))},
+       {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Gap to foresight</a></li>\n"},
        {"rules", section_of("rules", "Rules",
                             rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
                                        context_classes_of(in).kind, prices ? &*prices : nullptr))},
        {"rules_link", rules_of(in).empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
        {"proof",
-        section_of("proof", "The proof",
+        section_of("proof", "Proof",
                    proof_html(certificate_of(in.uncorrected), certificate_of(in.corrected)))},
        {"provenance",
-        section_of("provenance", "Where this comes from", provenance_html(facts, in.provenance))}},
+        section_of("provenance", "Provenance", provenance_html(facts, in.provenance))}},
       page_data(in, steps));
 }
 
@@ -147,7 +146,7 @@ PriceThresholds thresholds_of(const ReportInputs& in) {
 
 std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path& folder) {
   if (inputs.market.days_of(Split::kTest).empty()) {
-    fail("no test days (local days 26 to the end) in these prices; add some");
+    fail("no test days (local days 26 to the end) in these prices; add prices");
   }
   std::error_code error;
   fs::create_directories(folder, error);

@@ -1,6 +1,5 @@
-// The report of a run: one HTML page that needs nothing beside it, and the numbers of its pictures
-// as CSV files, from results that the caller already has. Only what nobody kept is computed here:
-// the rule-based validation profit, and the steps of the test days.
+// Report of a run: one self-contained HTML page, and CSV files of its pictures. Computes only the
+// rule-based validation profit and the steps of the test days; other results come from the caller.
 #pragma once
 
 #include <filesystem>
@@ -22,36 +21,35 @@ namespace bess {
 struct ReportInputs {
   const MarketSteps& market;  ///< delay and settlement as trained
   BatteryParameters battery = {};
-  double initial_soc_frac = 0.5;                    ///< with which each test day starts
-  std::vector<NamedEvaluation> evaluations = {};    ///< on the test days; the first is rule-based
+  double initial_soc_frac = 0.5;                    ///< at the start of each test day
+  std::vector<NamedEvaluation> evaluations = {};    ///< on the test days; rule-based first
   std::vector<CurvePoint> training_curve = {};      ///< may be empty
   std::vector<DistilPoint> distil_curve = {};       ///< may be empty
   std::vector<StudentCheckpoint> checkpoints = {};  ///< of the corrected student; may be empty
-  const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
-  const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
+  const Teacher* teacher = nullptr;                 ///< null pointers are omitted
+  const StudentFile* uncorrected = nullptr;         ///< both students with their certificate
   const StudentFile* corrected = nullptr;
-  std::vector<BrokenDemand> broken = {};  ///< of a corrected student that was not proved
+  std::vector<BrokenDemand> broken = {};  ///< of an unproved student
   WalkForwardOfRun walk_forward = {};
-  std::string provenance = {};   ///< lines, shown as they are
-  std::vector<Fact> facts = {};  ///< when, where, from what and how
+  std::string provenance = {};   ///< shown unchanged
+  std::vector<Fact> facts = {};  ///< date, host, inputs and command
 };
 
-/// Of what there is: corrected student's, uncorrected student's, teacher's.
+/// Of the corrected student, else the uncorrected student, else the teacher.
 ContextClasses context_classes_of(const ReportInputs& inputs);
-/// The class of a step; by outlook that of a battery in the middle of its SoC window.
+/// Class of a step; by outlook for a battery in the middle of its SoC window.
 int context_class_of(const ReportInputs& inputs, const MarketStep& step);
-/// What the students were checked against.
+/// Price thresholds of the proof.
 PriceThresholds thresholds_of(const ReportInputs& inputs);
 
-/// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected
-/// one's; may be null.
+/// Student whose counterexamples are shown: the corrected one if it has any, else the uncorrected
+/// one; may be null.
 const StudentFile* shown_as_wrong(const ReportInputs& inputs);
-/// What it is called on the page.
+/// Its name on the page.
 const char* shown_as_wrong_name(const ReportInputs& inputs);
 
-/// Writes report.html and the CSV file of each picture into `folder`, which is created; each file
-/// appears complete or not at all. Returns the names of all of them. Throws UserError without room
-/// to write, or without test days.
+/// Writes report.html and a CSV file for each picture into `folder` atomically; returns their
+/// names. Throws UserError when writing fails, or without test days.
 std::vector<std::string> write_report(const ReportInputs& inputs,
                                       const std::filesystem::path& folder);
 

@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-/// In the order in which they build on each other.
+/// In order of dependency.
 constexpr std::string_view kScripts[] = {
     "chart.min.js", "student.js",    "archive.js",    "charts.js",   "tear_sheet.js",
     "day.js",       "rule_boxes.js", "policy_map.js", "learning.js", "page.js"};

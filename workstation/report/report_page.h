@@ -1,5 +1,4 @@
-// The page of a report, put together: page/report.html with its style, its scripts and its data
-// inside.
+// Report page: page/report.html with style, scripts and data embedded.
 #pragma once
 
 #include <map>
@@ -9,15 +8,14 @@
 
 namespace bess {
 
-/// Complete document: light and dark, phone and print, nothing fetched from outside. `parts` fill
-/// the
-/// {{placeholders}} of page/report.html by name, as HTML; `data` is for the scripts.
+/// Complete, self-contained document for light, dark, phone and print. `parts` replace the
+/// {{placeholders}} of page/report.html, as HTML; `data` is for the scripts.
 std::string format_report_page(const std::map<std::string, std::string>& parts, const Json& data);
 
-/// A page of text and tables whose charts page/plain_charts.js draws from `charts`, a list.
+/// Page of text and tables, with a list of `charts` for page/plain_charts.js.
 std::string format_chart_page(std::string_view title, std::string body, Json charts);
 
-/// Where such a chart stands; `alt` tells what is to be seen.
+/// Canvas of such a chart; `alt` describes it.
 std::string chart_html(std::string_view id, std::string_view alt);
 
 /// `template_text` with every {{name}} replaced by its part. Throws std::logic_error for a name
@@ -25,7 +23,7 @@ std::string chart_html(std::string_view id, std::string_view alt);
 std::string filled_in(std::string_view template_text,
                       const std::map<std::string, std::string>& parts);
 
-/// JSON that may stand inside a script element: no "<" in it.
+/// JSON for a script element, without "<".
 std::string script_safe(std::string json);
 
 }  // namespace bess

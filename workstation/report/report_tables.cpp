@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kNoFigure = "\u2013";
 constexpr const char* kProgramAsTeacher = "sdp teacher";
-constexpr std::string_view kTeacherEnd = " teacher";  ///< of its name, whatever its method
+constexpr std::string_view kTeacherEnd = " teacher";  ///< end of its name
 
 const NamedEvaluation* evaluation_named(const std::vector<NamedEvaluation>& evaluations,
                                         std::string_view name) {
@@ -36,7 +36,7 @@ std::string capacity_text(double capacity_mwh) {
                           : fmt::format("{:g} MWh", capacity_mwh);
 }
 
-/// EUR per day of all of it.
+/// EUR per day of the whole battery.
 std::string eur_per_day(const Evaluation& evaluation) {
   if (evaluation.days.empty()) return kNoFigure;
   return fmt::format("{:.{}f}", evaluation.profit_eur_per_day_per_mwh() * evaluation.capacity_mwh,
@@ -49,7 +49,7 @@ std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) 
   if (evaluations.empty()) return {};
   HtmlTable table{
       "The configured battery of " + capacity_text(capacity_mwh_in(evaluations.front())),
-      {"Policy", "EUR/day, each day from the same charge", "EUR/day, charge carried over"},
+      {"Policy", "EUR/day, day-reset", "EUR/day, SoC carried over"},
       {}};
   for (const NamedEvaluation& named : evaluations) {
     if (is_under_rules(named.name)) continue;
@@ -63,8 +63,8 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
   const NamedEvaluation* exported = find_own_student(evaluations);
   if (exported == nullptr) return {};
   return fmt::format(
-      "the configured battery of {}: the {} {} EUR a day, {} with the SoC carried over (only "
-      "the ratio power_w / capacity_wh matters to the student; [battery] sets the size)\n",
+      "the configured battery of {}: {} {} EUR per day, {} with the SoC carried over (only the "
+      "ratio power_w / capacity_wh matters to the student; [battery] sets the size)\n",
       capacity_text(capacity_mwh_in(*exported)), exported->name, eur_per_day(exported->day_reset),
       eur_per_day(exported->carried_over));
 }
@@ -83,12 +83,13 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
   }
   if (teacher->name != kProgramAsTeacher) {
     return fmt::format(
-        "{} and {} decide the same at every step: nothing that was learnt is shown to "
-        "earn more on validation days than the program that it began as",
+        "{} and {} make the same decision at every step: training showed no significant gain "
+        "over the stochastic program on validation days, so the program is kept, which is normal",
         program->name, teacher->name);
   }
   return fmt::format(
-      "{} and {} are the same program, fitted on the same days: they decide the same at every step",
+      "{} and {} are the same program, fitted on the same days, with the same decision at every "
+      "step",
       program->name, kProgramAsTeacher);
 }
 
@@ -125,9 +126,9 @@ std::string capital(std::string text) {
 
 std::string rules_table(const Certificate* uncorrected, const Certificate& corrected,
                         ContextKind kind) {
-  HtmlTable table{"Rules, and how often they are broken",
-                  {"Rule", "Held to it", "States", "Plain student breaks, %",
-                   capital(own_student_name(corrected)) + " breaks"},
+  HtmlTable table{"Rules and their violations",
+                  {"Rule", "Enforced by", "States", "Plain student: violations, %",
+                   capital(own_student_name(corrected)) + ": violations"},
                   {}};
   const std::vector<DemandCount> after = demand_counts(corrected);
   const std::vector<DemandCount> before =
@@ -160,12 +161,12 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
   const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
   if (reset.empty() && carried.empty()) return {};
   return fmt::format(
-      "{}{}<p class=\"note\">Money in EUR per day per MWh of capacity. Gain: mean day-by-day "
-      "difference to {}; s.e.: standard error of the mean to its left; by month: {}. A gain within "
-      "{} shows nothing. Cycles: energy through the battery over twice its capacity; switches: "
-      "changes of the order. At wear {:g}: {}.</p>\n",
-      comparison_table("Charge carried over from day to day", carried),
-      comparison_table("Each day starts at the same charge: the friendlier accounting", reset),
+      "{}{}<p class=\"note\">EUR per day per MWh of capacity. Gain: mean day-by-day difference to "
+      "{}; s.e.: standard error of the mean to its left; by month: {}. A gain within {} is not "
+      "significant. Cycles: full cycles (throughput over twice the capacity); switches: changes of "
+      "the order. At wear {:g}: {}.</p>\n",
+      comparison_table("SoC carried over from day to day", carried),
+      comparison_table("Day-reset: each day starts at the same SoC", reset),
       html_escaped(evaluations.front().name),
       html_escaped(by_month_meaning(months_of(evaluations))), kIntervalMeaning,
       kReferenceWearEurPerMwh,
@@ -174,8 +175,8 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
 
 std::string proof_html(const Certificate* uncorrected, const Certificate* corrected) {
   HtmlTable table{"Violations before and after the correction",
-                  {"Student", "States checked", "Not charging when cheap",
-                   "Not discharging when dear", "Pairs out of order"},
+                  {"Student", "States checked", "Not charging at low price",
+                   "Not discharging at high price", "Pairs out of order"},
                   {}};
   if (uncorrected != nullptr) table.rows.push_back(proof_cells(kPlainName, *uncorrected));
   if (corrected != nullptr) {
@@ -184,9 +185,9 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
   if (table.rows.empty()) return {};
   const PriceThresholds t = (corrected != nullptr ? corrected : uncorrected)->thresholds;
   return fmt::format(
-      "{}<p class=\"note\">Checked over the lattice of minute, quarter-hour, context class, charge "
-      "and price that the edge can meet: charge at {} EUR/MWh and below{}, discharge at {} and "
-      "above{}, and never a larger action at a higher price or a fuller battery.</p>\n",
+      "{}<p class=\"note\">Checked over all lattice states of minute, quarter-hour, context class, "
+      "SoC and price: charge at or below {} EUR/MWh{}, discharge at or above {}{}, and never more "
+      "charging at a higher price or SoC.</p>\n",
       format_table(table), with_true_minus(fmt::format("{}", t.low_eur_per_mwh)),
       guard_alone_note(t.low_binds_student()), t.high_eur_per_mwh,
       guard_alone_note(t.high_binds_student()));
@@ -196,17 +197,16 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
                        ContextKind kind, const RulePrices* prices) {
   if (corrected == nullptr || corrected->rules.empty()) return {};
   std::string text = rules_table(uncorrected, *corrected, kind);
-  std::string note = fmt::format("The plain student is looked at in part, the {} everywhere.",
+  std::string note = fmt::format("The plain student is checked on a sample, the {} in all states.",
                                  own_student_name(*corrected));
   if (prices != nullptr) {
-    text += format_table("What they change", rule_prices_table(*prices));
+    text += format_table("Effect of the rules", rule_prices_table(*prices));
     note += fmt::format(
-        " Money in EUR per day per MWh of capacity, \u00b1 standard error, the charge carried "
-        "over. "
-        "What a rule changes is counted on the plain student: each decision is moved to "
-        "the nearest one that the rule leaves, and the days are run again, one rule at a time and "
-        "all together. What lies between that and the {} is {}. A direction of time or context "
-        "cannot be counted so: it is in the correction.",
+        " EUR per day per MWh of capacity, \u00b1 standard error, SoC carried over. The effect of "
+        "a "
+        "rule is measured on the plain student: each decision is moved to the nearest allowed one, "
+        "and the days are run again, for each rule and all together. The difference to the {} is "
+        "{}. Rules on the direction of time or context are part of the correction.",
         prices->student, prices->correction.meaning);
   }
   return text + fmt::format("<p class=\"note\">{}</p>\n", note);
@@ -219,20 +219,19 @@ std::string failure_html(const std::vector<BrokenDemand>& broken) {
     const BrokenDemand& demand = broken[i];
     const std::string example =
         demand.example.empty() ? "" : fmt::format("; its action is {}", demand.example);
-    text += fmt::format(
-        "<dt>{}</dt><dd>{}: <strong>{} violations</strong>{}. To mend: {}.{}</dd>\n",
-        html_escaped(demand.count.label()), html_escaped(with_true_minus(demand.count.text)),
-        grouped(demand.count.violations), html_escaped(with_true_minus(example)),
-        html_escaped(demand.advice),
-        demand.state ? fmt::format(" <button type=\"button\" data-broken=\"{}\">"
-                                   "Show that state on the map</button>",
-                                   i)
-                     : "");
+    text += fmt::format("<dt>{}</dt><dd>{}: <strong>{} violations</strong>{}. Remedy: {}.{}</dd>\n",
+                        html_escaped(demand.count.label()),
+                        html_escaped(with_true_minus(demand.count.text)),
+                        grouped(demand.count.violations), html_escaped(with_true_minus(example)),
+                        html_escaped(demand.advice),
+                        demand.state ? fmt::format(" <button type=\"button\" data-broken=\"{}\">"
+                                                   "Show this state on the map</button>",
+                                                   i)
+                                     : "");
   }
   return text +
-         "</dl>\n<p class=\"note\">What this page calls the unproved student is that of the last "
-         "round. Nobody may export it; the button over its map goes through more states where it "
-         "is wrong.</p>\n";
+         "</dl>\n<p class=\"note\">The unproved student is that of the last round and cannot be "
+         "exported. The button above its map shows more violations.</p>\n";
 }
 
 std::string proof_sentence(const Certificate& c) {
@@ -243,14 +242,13 @@ std::string proof_sentence(const Certificate& c) {
       which += fmt::format("{}{}: {}", which.empty() ? "" : ", ", count.label(),
                            grouped(count.violations));
     }
-    return fmt::format(
-        "Not proved: it still breaks its constraints {} times ({}) and may not be exported",
-        grouped(c.violations()), which);
+    return fmt::format("Not proved: {} violations ({}); it cannot be exported",
+                       grouped(c.violations()), which);
   }
   const auto bound = std::ranges::count_if(c.rule_counts(), &RuleCount::binds_student);
   return fmt::format(
       "{}: no violation {}in {} states",
-      c.covers_lattice_without_violation() ? "Proved" : "Looked at in part",
+      c.covers_lattice_without_violation() ? "Proved" : "Partly checked",
       bound == 0 ? "" : fmt::format("of the properties and {} ", counted(bound, "rule")),
       grouped(c.states_checked));
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kUnder = "plain student under ";
 
-/// A rule alone, all together, the correction or both.
+/// One rule, all rules, the correction, or both.
 struct Part {
   const char* kind;
   const HeadlineGain* gain;
@@ -60,7 +60,7 @@ Table rule_prices_table(const RulePrices& prices) {
   parts.push_back({"both", &prices.total});
   Table table{{Column<P>{{"part"}, &P::kind},
                {{"rule"}, [](const P& p) { return p.is_rule() ? p.gain->meaning : ""; }},
-               {{"", "of what the plain student earns", "", 0, "Of what the plain student earns"},
+               {{"", "change against the plain student", "", 0, "Change against the plain student"},
                 [](const P& p) { return p.gain->meaning + (p.is_rule() ? ", alone" : ""); }}},
               parts};
   for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
@@ -84,8 +84,8 @@ Table rule_prices_table(const RulePrices& prices) {
 
 std::string rule_prices_text(const RulePrices& prices) {
   return fmt::format(
-      "What the rules change, in EUR per day per MWh of capacity: the plain student's decisions "
-      "moved to the\nnearest that they leave; what is left between that and the {} is {}\n{}",
+      "Effect of the rules, EUR per day per MWh of capacity: decisions of the plain student are "
+      "moved to\nthe nearest allowed ones; the difference to the {} is {}\n{}",
       prices.student, prices.correction.meaning, rule_prices_table(prices).text());
 }
 

@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "the page's arrays are
 
 constexpr double kMilliPerEur = 1000;
 constexpr int kSecondsPerMinute = 60;
-/// A settled price of a million EUR/MWh is refused wherever steps are made.
+/// Larger prices are refused when steps are made.
 static_assert(1'000'000 * kMilliPerEur < std::numeric_limits<std::int32_t>::max());
 
 /// One array: `value` of each item.
@@ -95,7 +95,7 @@ std::string base64(std::string_view bytes) {
 Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
                   const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
                   const ClassOfStep& class_of) {
-  std::vector<std::size_t> first_record{0};  // of each day
+  std::vector<std::size_t> first_record{0};  // by day
   for (const MarketDay& day : days) first_record.push_back(first_record.back() + day.step_count);
   std::string bytes;
   Json index = Json::list();

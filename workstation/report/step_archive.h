@@ -1,6 +1,5 @@
-// The steps of many days, small enough for a page: what was published and paid, and what each
-// policy did. page/archive.js unpacks it. A day is one block of little-endian arrays, one after the
-// other:
+// Archive of steps for a page: prices, and actions of each policy; page/archive.js unpacks it. A
+// day is one block of consecutive little-endian arrays:
 //
 //   minute int32 (UTC, since 1970) | observed int32 (hundredths of EUR/MWh, as the edge reads it)
 //   | paid int32 (thousandths: a mean of two) | local minute of the day int16 | context class int8
@@ -18,7 +17,7 @@
 
 namespace bess {
 
-/// Every step of one policy on the days, in order.
+/// Steps of one policy, in order.
 struct PolicySteps {
   std::string name;
   std::vector<StepRecord> records;
@@ -26,9 +25,8 @@ struct PolicySteps {
 
 using ClassOfStep = std::function<int(const MarketStep&)>;
 
-/// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. The
-/// policies' records are of all `days`, one after the other; `kept` are the indices of the days to
-/// pack, ascending.
+/// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. Records
+/// cover all `days`, in order; `kept` are the indices of the days to pack, ascending.
 Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
                   const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
                   const ClassOfStep& class_of);

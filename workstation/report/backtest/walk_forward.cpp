@@ -16,14 +16,14 @@ constexpr double kWindowShareMin = 0.5;
 
 LocalDate date_of(const MarketDay& day) { return {day.year, day.month, day.day}; }
 
-/// Index of the first day that is not before `date`.
+/// Index of the first day on or after `date`.
 std::size_t day_from(const MarketSteps& market, const LocalDate& date) {
   const auto found = std::ranges::lower_bound(market.days, date, {}, date_of);
   return static_cast<std::size_t>(found - market.days.begin());
 }
 
-/// The days [first, known) and [traded, end) of `market`, the latter as test days, and no step that
-/// is earlier or later.
+/// Days [first, known) and [traded, end) of `market`, the latter as test days, without earlier and
+/// later steps.
 MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t known,
                     std::size_t traded, std::size_t end) {
   const std::size_t first_step = market.days[first].first_step;
@@ -42,11 +42,11 @@ MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t kn
     }
     cut.days.push_back(day);
   }
-  cut.day_ahead = market.day_ahead;  // its steps point to it
+  cut.day_ahead = market.day_ahead;  // referenced by its steps
   return cut;
 }
 
-/// The stretches that a plan trades, from the first day to the last.
+/// Traded periods of a plan, first and last day.
 std::vector<std::pair<LocalDate, LocalDate>> stretches(const std::vector<MarketDay>& days,
                                                        const FoldPlan& plan) {
   std::vector<std::pair<LocalDate, LocalDate>> all;
@@ -81,13 +81,13 @@ std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std:
   const std::size_t traded = day_from(market, first);
   const std::size_t end = day_from(market, add_days(last, 1));
   if (static_cast<double>(known - window) < kWindowShareMin * plan.window_days) {
-    return SkippedMonth{name, fmt::format("{} of the {} days before it are there", known - window,
-                                          plan.window_days)};
+    return SkippedMonth{name, fmt::format("only {} of the {} days before it have prices",
+                                          known - window, plan.window_days)};
   }
   Fold fold{name, cut_out(market, window, known, traded, end)};
   if (fold.market.days_of(Split::kTrain).empty() ||
       fold.market.days_of(Split::kValidation).empty()) {
-    return SkippedMonth{name, "no training or no validation days before it"};
+    return SkippedMonth{name, "no training or validation days before it"};
   }
   return fold;
 }
@@ -112,8 +112,10 @@ Folds make_folds(const MarketSteps& market, const FoldPlan& plan) {
     }
   }
   if (folds.traded.empty()) {
-    fail("no month has {} complete days in the {} before it; give more prices or a shorter window",
-         static_cast<int>(std::ceil(kWindowShareMin * plan.window_days)), plan.window_days);
+    fail(
+        "no month has {} complete days in the {} days before it; use more prices or a shorter "
+        "window",
+        static_cast<int>(std::ceil(kWindowShareMin * plan.window_days)), plan.window_days);
   }
   return folds;
 }

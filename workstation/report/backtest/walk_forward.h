@@ -1,6 +1,6 @@
-// Walk-forward backtest: fit on the days before a month, freeze, trade that month, roll on. A fold
-// holds nothing later than its own month, so what is fitted in it cannot have seen what it is
-// judged by; the battery's charge goes over from fold to fold as it would.
+// Walk-forward backtest: fit on the days before a month, trade that month, repeat. A fold contains
+// no later prices, so policies cannot have seen their evaluation days; the SoC is carried over from
+// fold to fold.
 #pragma once
 
 #include <functional>
@@ -14,22 +14,22 @@
 
 namespace bess {
 
-/// One traded month with the window that its policies are fitted on. Of the window, local days 21
-/// to 25 are validation days and all others training days; the month's are test days.
+/// Traded month with its training window: local days 21 to 25 of the window are validation days,
+/// the others training days; days of the month are test days.
 struct Fold {
-  std::string month;  ///< "2024-06"; of other stretches their first day, "2024-06-08"
+  std::string month;  ///< "2024-06"; for other periods the first day, "2024-06-08"
   MarketSteps market;
 };
 
-/// Of the price regimes, those that a fold's window lies in and those that it trades.
+/// Price regimes of a fold's window and of its traded days.
 struct FoldRegimes {
   std::vector<const PriceRegime*> fitted, traded;
-  /// A boundary of the market lies in the fold.
+  /// The fold crosses a regime boundary.
   [[nodiscard]] bool crosses() const { return fitted != traded || traded.size() > 1; }
 };
 FoldRegimes regimes_of(const Fold& fold);
 
-/// A month that is not traded, and why.
+/// Month that is not traded.
 struct SkippedMonth {
   std::string month;
   std::string reason;
@@ -42,38 +42,38 @@ struct Folds {
 
 struct FoldPlan {
   int window_days;
-  int lag_days = 0;     ///< between the window and what is traded
-  int traded_days = 0;  ///< by one fold; 0: a calendar month
+  int lag_days = 0;     ///< between window and traded days
+  int traded_days = 0;  ///< per fold; 0: a calendar month
 };
 
-/// A fold for each month, or stretch of days, that has at least half of its window in complete
-/// days, and training and validation days among them. Throws UserError when none has.
+/// One fold for each month or period with at least half of its window in complete days, including
+/// training and validation days. Throws UserError when there is none.
 Folds make_folds(const MarketSteps& market, const FoldPlan& plan);
 
-/// The days of `market` from `first` to `last`, with their window.
+/// Fold of the days from `first` to `last`.
 std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std::string& name,
                                            const LocalDate& first, const LocalDate& last,
                                            const FoldPlan& plan);
 
-/// What a policy did, in the order of the days.
+/// Results of a policy, in order of days.
 struct WalkForward {
   std::string name;
   Evaluation total;
   std::vector<std::string> months;   ///< as in Folds::traded
   std::vector<Evaluation> by_month;  ///< parallel to `months`
-  Evaluation day_reset{};  ///< the days, each from the initial SoC; empty unless asked for
+  Evaluation day_reset{};            ///< day-reset accounting; empty unless requested
 
-  /// As drawdown.h defines it, EUR per MWh of capacity.
+  /// Defined in drawdown.h, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
   /// Profit after each day, EUR per MWh of capacity.
   [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;
 };
 
-/// Makes the policy of a fold, from its training and validation days alone.
+/// Makes the policy of a fold from its training and validation days.
 using FoldPolicy = std::function<std::shared_ptr<Policy>(const Fold&)>;
 
-/// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a
-/// whole. Appends every step to `records` when it is given.
+/// Trades all folds in order. A policy that sees the future plans over the whole `market`. Appends
+/// steps to `records` if given.
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
                          const MarketSteps& market, bool and_day_reset = false,

@@ -13,7 +13,7 @@ namespace bess {
 
 namespace {
 
-constexpr double kShownTail = 0.005;  ///< left out on either side
+constexpr double kShownTail = 0.005;  ///< omitted on either side
 
 std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
   std::vector<double> prices =
@@ -76,8 +76,7 @@ constexpr std::string_view kTrainingHeader =
     "gain_at_least_eur_per_day_per_mwh";
 constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
-/// Rows of `kColumns` numbers under a known header; none for a run that was over before its first
-/// point.
+/// Rows of `kColumns` numbers under a known header; may be empty.
 template <std::size_t kColumns>
 std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
                                                      std::string_view name) {

@@ -1,5 +1,4 @@
-// Curves of the report: learning and distillation as CSV, written and read back, their smoothing,
-// and the histogram of prices.
+// Curves of the report: training and distillation curves as CSV, smoothing, and price histogram.
 #pragma once
 
 #include <string>
@@ -13,7 +12,7 @@
 
 namespace bess {
 
-// How often each observed price occurs on training and on test days.
+// Histogram of observed prices on training and test days.
 
 inline constexpr double kPriceBinEurPerMwh = 20;
 
@@ -21,20 +20,20 @@ struct PriceHistogram {
   std::vector<double> train;  ///< observed prices, ascending
   std::vector<double> test;
   double low,
-      high;  ///< left edges of the first and the last bin: multiples of it, the far tails left out
+      high;  ///< left edges of the first and last bin, without the far tails
 
   /// Percent of `sorted` in each bin from low to high.
   [[nodiscard]] std::vector<double> percent_by_bin(const std::vector<double>& sorted) const;
-  /// Percent of `sorted` beyond them on either side.
+  /// Percent of `sorted` outside these bins.
   [[nodiscard]] double percent_outside(const std::vector<double>& sorted) const;
 };
 
 PriceHistogram price_histogram(const MarketSteps& market);
 
-/// A row a bin.
+/// One row per bin.
 PictureTable histogram_table(const std::string& name, const PriceHistogram& shown);
 
-/// Neighbours on either side of a validation profit that its smoothed value is the mean of.
+/// Neighbours on either side in the moving average of validation profits.
 inline constexpr int kSmoothingReach = 2;
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve);
@@ -43,7 +42,7 @@ std::string distil_curve_csv(const std::vector<DistilPoint>& curve);
 /// Mean over each point and up to `reach` neighbours on either side.
 std::vector<double> centred_mean(const std::vector<double>& values, int reach);
 
-/// Read back what the writers wrote; throw UserError naming `name` and the line otherwise.
+/// Read the CSV; throw UserError naming `name` and the line.
 std::vector<CurvePoint> parse_training_curve_csv(std::string_view text, std::string_view name);
 std::vector<DistilPoint> parse_distil_curve_csv(std::string_view text, std::string_view name);
 

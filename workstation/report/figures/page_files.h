@@ -1,5 +1,5 @@
-// The files of the page that are neither C++ nor made of results: embedded into the program by
-// page/embed.cmake, so that a page is one file and needs nothing that is installed.
+// Static files of the page, embedded into the program (page/page.cmake), so that a page is one
+// self-contained file.
 #pragma once
 
 #include <string_view>

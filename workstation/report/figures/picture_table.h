@@ -1,5 +1,4 @@
-// The numbers of a picture as a CSV file beside the page. Each picture of a page has one and links
-// it.
+// CSV file of a picture, in the folder of the page and linked from it.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +9,22 @@ namespace bess {
 
 inline constexpr std::size_t kMonthTextLength = 7;  ///< of "2023-01"
 
-/// A number to six decimals, nothing without a minus.
+/// Number with six decimals, never -0.
 std::string exact(double value);
 
 struct PictureTable {
-  std::string name;  ///< of the file, without its ending
+  std::string name;  ///< of the file, without extension
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< as many fields as there are columns
-  bool packed = false;                         ///< too long to lie about unpacked
+  std::vector<std::vector<std::string>> rows;  ///< one field per column
+  bool packed = false;                         ///< compressed file
 };
 
-/// "lost_days.csv", or ".csv.gz" of a packed one.
+/// "lost_days.csv", or ".csv.gz" if packed.
 std::string picture_file(const PictureTable& table);
 std::string picture_csv(const PictureTable& table);
 void write_picture(const PictureTable& table, const std::filesystem::path& folder);
 
-/// The link to a file beside the page.
+/// Link to a file in the folder of the page.
 std::string csv_link(std::string_view file);
 
 }  // namespace bess

@@ -15,7 +15,7 @@ namespace bess {
 
 namespace {
 
-/// Numbers as numbers, other values as texts.
+/// Numeric order for numbers, else alphabetical.
 bool comes_before(const std::string& a, const std::string& b) {
   char* end_a = nullptr;
   char* end_b = nullptr;
@@ -41,7 +41,7 @@ struct Mean {
   [[nodiscard]] double value() const { return sum / count; }
 };
 
-/// Faint for the lowest, strong for the highest: both leave the number legible, light and dark.
+/// Colour from faint (lowest) to strong (highest); numbers stay legible in light and dark.
 std::string cell_html(const Mean& mean, double low, double high, const std::string& label) {
   const double share = high > low ? (mean.value() - low) / (high - low) : 0.5;
   return fmt::format(

@@ -1,5 +1,4 @@
-// Heat maps: a student as its action at every lattice price and SoC of one month and time of day,
-// and a figure over two settings.
+// Heat maps: a student's actions over price and SoC, and a result over two settings.
 #pragma once
 
 #include <compare>
@@ -12,28 +11,27 @@
 
 namespace bess {
 
-// Heat map: means over two settings as a table whose cells are coloured, which can be read aloud,
-// copied and printed.
+// Heat map of means over two settings, as an accessible table with coloured cells.
 
 struct HeatPoint {
-  std::string across, down;  ///< the values of the two settings; empty: as configured
-  double value;              ///< NaN: not known, its place stays empty
+  std::string across, down;  ///< values of the two settings; empty: as configured
+  double value;              ///< NaN: unknown, shown empty
 };
 
-/// The names of the two settings; `what` is the caption, `id` the table's, once on a page.
+/// Names of the two settings; `what` is the caption, `id` the unique id of the table.
 struct HeatMapText {
   std::string across, down, what, id;
 };
 
-/// Points at the same place become their mean.
+/// Points with equal settings are averaged.
 std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text);
 
-// Where a price regime begins among the days that a picture shows.
+// Starts of price regimes within the days of a picture.
 
-/// [place, what changed] of each boundary between two of `dates`, which are ascending.
+/// [index, change] of each boundary within `dates`, which are ascending.
 Json regime_marks(const std::vector<std::string>& dates);
 
-/// The part of a state that stays fixed over one map.
+/// Fixed part of the state in a map.
 struct PolicyContext {
   int context_class;           ///< 1..12
   int quarter_hour;            ///< local, 0..95

@@ -1,5 +1,5 @@
-// A table that sorts by its heads (page/sort.js): each cell is what it shows and what it is sorted
-// by. On a narrow screen every row is a list.
+// Sortable table (page/sort.js): each cell has a text and a sort value. Narrow screens show rows as
+// lists.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace bess {
 
-/// What a cell shows, and what it is sorted by; what is not known comes last.
+/// Text and sort value of a cell; unknown values come last.
 struct Cell {
   std::string html;
   std::string sort{};
-  bool is_text = false;  ///< read from the left, and may be broken
+  bool is_text = false;  ///< left-aligned, may wrap
 };
 
 Cell text_cell(const std::string& text);
 Cell no_text_cell();
-/// NaN: nothing.
+/// NaN: empty.
 Cell number_cell(const std::string& text, double value);
 Cell number_cell(double value, int decimals);
 
@@ -28,7 +28,7 @@ struct SortTable {
   std::vector<std::vector<Cell>> rows;
 };
 
-/// The columns that have a title.
+/// Shows columns with a title.
 SortTable sort_table(const std::string& id, const std::string& caption, const Table& table);
 std::string sort_table_html(const SortTable& table);
 

@@ -56,9 +56,8 @@ namespace {
 
 std::string figure_text(const WalkForwardFigure& figure) {
   return fmt::format(
-      "Walk-forward, each month traded by what was learnt before it: {:.1f} \u00b1 {} ({} by "
-      "month) "
-      "over all {} of {}",
+      "Walk-forward (retrained before each traded month): {:.1f} \u00b1 {} ({} by month) over {} "
+      "in {}",
       figure.profit, error_text(figure.errors.plain, 1), error_text(figure.errors.by_month, 1),
       counted(static_cast<std::size_t>(figure.errors.days), "day"),
       counted(static_cast<std::size_t>(figure.errors.months), "month"));
@@ -67,13 +66,13 @@ std::string figure_text(const WalkForwardFigure& figure) {
 }  // namespace
 
 std::string walk_forward_text(const WalkForwardOfRun& walk_forward) {
-  if (!walk_forward.figure) return "No walk-forward figure: " + walk_forward.why_none + ".";
+  if (!walk_forward.figure) return "No walk-forward result: " + walk_forward.why_none + ".";
   return figure_text(*walk_forward.figure) + ".";
 }
 
 std::string walk_forward_html(const WalkForwardOfRun& walk_forward) {
   if (!walk_forward.figure) return html_escaped(walk_forward_text(walk_forward));
-  return fmt::format("{}: <a href=\"{}\">its page</a>.",
+  return fmt::format("{}: <a href=\"{}\">backtest page</a>.",
                      html_escaped(figure_text(*walk_forward.figure)),
                      html_escaped(walk_forward.figure->page));
 }

@@ -1,6 +1,5 @@
-// The walk-forward figure beside that of a run: what its chain would have earned had it been
-// retrained before each month it traded, so that it saw no later one
-// (report/backtest/walk_forward.h). And the table of students over omega.
+// Walk-forward result of a run's chain, retrained before each traded month
+// (report/backtest/walk_forward.h); and the table of students by omega.
 #pragma once
 
 #include <optional>
@@ -14,16 +13,15 @@
 
 namespace bess {
 
-// The paper's trade-off omega [Paper, Eq. 12] as table and CSV: students distilled through
-// the layer from one teacher, each with its own omega and before any repair, so that what a larger
-// omega costs in violations is seen, and what it brings in fidelity and money.
+// Trade-off omega [Paper, Eq. 12] as table and CSV: students of one teacher, distilled through the
+// layer without repair, with violations, fidelity and profit by omega.
 
-/// One student. Days are those of validation and test, SoC carried over.
+/// One student, on validation and test days, SoC carried over.
 struct OmegaPoint {
   double omega;
-  Certificate certificate;  ///< of all lattice states
-  double divergence_nats;  ///< KL(student || teacher) where the teacher goes on training days, mean
-  double agreement;  ///< share of the teacher's decisions on the days that are the student's too
+  Certificate certificate;  ///< over all lattice states
+  double divergence_nats;   ///< mean KL(student || teacher) on the teacher's training states
+  double agreement;         ///< share of equal decisions of teacher and student
   Evaluation evaluation;
 };
 
@@ -32,22 +30,22 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
 /// Header `omega,violations_property_1,...`
 std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& teacher);
 
-/// Of the whole chain, SoC carried over; EUR per day per MWh of capacity.
+/// Profit of the chain, SoC carried over; EUR per day per MWh of capacity.
 struct WalkForwardFigure {
   double profit;
   DayErrors errors;
-  std::string page;  ///< the backtest's, as a link from the run's folder
+  std::string page;  ///< link to the backtest's page from the run's folder
 };
 
-/// There is one, or there is none and why.
+/// Result, or the reason why there is none.
 struct WalkForwardOfRun {
   std::optional<WalkForwardFigure> figure;
-  std::string why_none;  ///< and how to make one
+  std::string why_none;  ///< with the command to make one
 };
 
-/// A sentence for people.
+/// As a sentence.
 std::string walk_forward_text(const WalkForwardOfRun& walk_forward);
-/// The same, escaped, with a link to the backtest's page.
+/// As escaped HTML, with a link to the backtest's page.
 std::string walk_forward_html(const WalkForwardOfRun& walk_forward);
 Json walk_forward_json(const WalkForwardFigure& figure);
 
