@@ -71,9 +71,9 @@ TEST_F(Log, EarnsByQuarterHoursLessTheContract) {
   EXPECT_NEAR(day.money.estimated_eur, 0.4, 1e-9);
   const std::string page = statement_page(log.days, battery_);
   EXPECT_THAT(page, HasSubstr("<title>Battery: 2026-11-22 to 2026-11-22</title>"));
-  EXPECT_THAT(page, HasSubstr("together</th><td>2.000</td><td>2.000</td><td>0.40</td>"
+  EXPECT_THAT(page, HasSubstr("total</th><td>2.000</td><td>2.000</td><td>0.40</td>"
                               "<td>0.14</td><td>0.26</td>"));
-  EXPECT_THAT(page, HasSubstr("on top of what is taken</th><td>45 EUR/MWh</td>"));
+  EXPECT_THAT(page, HasSubstr("surcharge on imports</th><td>45 EUR/MWh</td>"));
 }
 
 /// The first quarter-hour at 90 instead of 50: 1 kWh, 4 cents less.
@@ -136,7 +136,7 @@ TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   EXPECT_EQ(replay.compared, 20);
   EXPECT_EQ(replay.differing, 3);
   EXPECT_NEAR(replay.gained_eur, 3 * (500 + 600) / 7'500.0, 1e-9);
-  EXPECT_THAT(replay.text(), HasSubstr("otherwise in 3 of 20 cycles (15.00 %), for about +0.44"));
+  EXPECT_THAT(replay.text(), HasSubstr("changes 3 of 20 decisions (15.00 %), worth about +0.44"));
   EXPECT_THAT(replay.text(), HasSubstr("idle      -> charge         3\n"));
   EXPECT_EQ(replay.others.front().utc_s, kStart + kSecondsPerStep);
   EXPECT_EQ(replay.others.front().now, Action::kCharge);

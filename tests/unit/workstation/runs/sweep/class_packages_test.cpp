@@ -75,7 +75,7 @@ TEST_F(ClassPackages, OneAClassAndAgainOnlyWhereItsStudentIsAnother) {
 TEST_F(ClassPackages, TheInventoryHasEachSiteInItsClassAndInOneShare) {
   std::vector<PackagedClass> classes{{"22", {site("site-184", "22", "x")}, "0a0b0c0d", "1.g1.22"},
                                      {"11", {site("site-2", "11", "x")}, "00000001", "1.g1.11"}};
-  EXPECT_EQ(format_inventory(classes, "armhf").substr(0, 5), "# By ");
+  EXPECT_EQ(format_inventory(classes, "armhf").substr(0, 10), "# Written ");
   EXPECT_THAT(format_inventory(classes, "armhf"),
               AllOf(HasSubstr("all:\n  vars: {bess_architecture: armhf}\n  children:\n"),
                     HasSubstr("    class_22:\n      vars:\n        bess_class: \"22\"\n"
