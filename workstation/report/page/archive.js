@@ -1,4 +1,4 @@
-// The steps of the days, as step_archive.cpp packs them: zlib, base64, one block a day.
+// Steps of the days, packed by step_archive.cpp: zlib, base64, one block per day.
 "use strict";
 
 /** Bytes of a deflated base64 text. */

@@ -1,4 +1,4 @@
-// Charts in the page's colours: drawn with Chart.js, drawn again when the page turns dark or light.
+// Charts with Chart.js in the page's colours, redrawn when the colour scheme changes.
 "use strict";
 
 const shownCharts = new Map();  // canvas id -> {chart, configure}
@@ -22,19 +22,19 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 }
 
-/** The colours of the chain's own policies; page.js adds those of its rivals. */
+/** Colours of the run's own policies; page.js adds those of the baselines. */
 const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1",
                         "plain student": "line-2", "teacher": "line-3"};
 
-/** The colour of each policy, everywhere on the page. */
+/** Colour of a policy on the whole page. */
 function policyColour(name) {
   return colour(kPolicyColours[name] || "muted");
 }
 
-/** So few that none is left out for want of room: of -30, -20 ... it would be the zero. */
+/** Few enough that Chart.js drops none. */
 const kFewTicks = {maxTicksLimit: 7};
 
-/** An axis of the page's look. */
+/** Axis in the style of the page. */
 function axis(options = {}) {
   const {ticks, grid, ...rest} = options;
   return {
@@ -44,7 +44,7 @@ function axis(options = {}) {
   };
 }
 
-/** Options that every chart has. */
+/** Options of all charts. */
 function baseOptions(options) {
   return {
     responsive: true, maintainAspectRatio: false, animation: false, normalized: true,
@@ -57,7 +57,7 @@ function baseOptions(options) {
   };
 }
 
-/** Upright lines where something changed; `marks`: [place among the labels, what changed] each. */
+/** Vertical lines; `marks`: [label index, text] each. */
 const marksDrawn = marks => ({
   id: "marks",
   afterDatasetsDraw({ctx, chartArea: {top, bottom}, scales: {x}}) {
@@ -78,8 +78,7 @@ const marksDrawn = marks => ({
 });
 
 /**
- * Draws the chart of a canvas; `configure` makes its configuration, and makes it anew for other
- * colours.
+ * Draws the chart of a canvas; `configure` returns its configuration, again for each colour scheme.
  */
 function drawChart(id, configure) {
   const before = shownCharts.get(id);
@@ -95,7 +94,7 @@ function redrawCharts() {
   for (const [id, {configure}] of [...shownCharts]) drawChart(id, configure);
 }
 
-/** Calls back when light becomes dark or dark light. */
+/** Calls back when the colour scheme changes. */
 function onColourScheme(callback) {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", callback);
 }
@@ -115,7 +114,7 @@ function clockText(minute) {
   return padded(Math.floor(minute / 60)) + ":" + padded(minute % 60);
 }
 
-/** The buttons of a choice: one is pressed; `chosen` is told its value. */
+/** Buttons of a choice; calls `chosen` with the value of the pressed one. */
 function bindChoice(id, key, chosen) {
   const buttons = [...document.querySelectorAll(`#${id} button`)];
   for (const button of buttons) {
@@ -126,7 +125,7 @@ function bindChoice(id, key, chosen) {
   }
 }
 
-/** Shows `value` as the one that is pressed; none when no button has it. */
+/** Shows the button of `value` as pressed, if any. */
 function pressChoice(id, key, value) {
   for (const button of document.querySelectorAll(`#${id} button`)) {
     button.setAttribute("aria-pressed", String(button.dataset[key] === value));

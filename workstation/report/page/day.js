@@ -1,13 +1,12 @@
-// One day, chosen: prices, power, state of charge and money, step by step, of the run's own
-// policies.
+// Day view: prices, power, state of charge and profit of the run's own policies, step by step.
 "use strict";
 
-const kOrdinaryShare = 20 / 24;  // of the day's steps, that the ordinary scale shows
+const kOrdinaryShare = 20 / 24;  // of the day's steps, shown without extreme prices
 const kLaneNamePx = 17;              // above a lane of the power chart
 const kDayCharts = ["chart-price", "chart-power", "chart-soc", "chart-eur"];
 
 class DayView {
-  /** `showOnMap(state)` is given a step as a state of the policy. */
+  /** `showOnMap(state)` receives the state of a step. */
   constructor(data, days, showOnMap) {
     this.data = data;
     this.days = days;
@@ -31,7 +30,7 @@ class DayView {
     });
   }
 
-  /** EUR of the first policy. */
+  /** Profit of the first policy, EUR. */
   earned(day) {
     return day.policies[0].profit.reduce((sum, eur) => sum + eur, 0);
   }
@@ -77,7 +76,7 @@ class DayView {
     this.moveTo(this.step);
   }
 
-  /** The step that is looked at, as the policy's map shows it. */
+  /** State of the selected step, for the policy map. */
   state() {
     const {day, step} = this;
     return {contextClass: day.contextClass[step],
@@ -101,13 +100,12 @@ class DayView {
     const left = this.data.archive.days_left_out;
     document.getElementById("day-note").textContent = `${this.day.date}: ${earned.join(", ")}.` +
       (left > 0
-        ? ` ${left} of the test days are not in this page: it holds the newest and the worst.`
+        ? ` ${left} of the test days are not on this page, which has only the newest and the worst.`
         : "");
   }
 
   /**
-   * Ends of the price axis: of the whole day, or without the few steps whose prices are far from
-   * all others.
+   * Ends of the price axis, for all prices or without extreme ones.
    */
   priceRange() {
     const sorted = [...this.day.observed, ...this.day.paid].sort((a, b) => a - b);
@@ -121,7 +119,7 @@ class DayView {
     const {low, high} = this.priceRange();
     const beyond = Array.from(this.day.paid).filter((price) => price < low || price > high).length;
     document.getElementById("price-note").textContent = "EUR/MWh" + (beyond > 0
-      ? `; ${beyond} steps are paid beyond this scale, marked at its edge: from ` +
+      ? `; ${beyond} steps outside this scale are marked at its edge: paid ` +
         `${trueMinus(Math.min(...this.day.paid).toFixed(0))} to ` +
         `${trueMinus(Math.max(...this.day.paid).toFixed(0))}`
       : "");
@@ -140,7 +138,7 @@ class DayView {
     }));
   }
 
-  /** A lane a policy: what flowed, and how strongly. */
+  /** One lane per policy, shaded by power. */
   drawPower() {
     drawChart("chart-power", () => ({
       type: "line",
@@ -151,7 +149,7 @@ class DayView {
     }));
   }
 
-  /** One line a policy; the first is the widest. */
+  /** One line per policy; the first is the widest. */
   drawSteps(id, valuesOf, {min, max}) {
     drawChart(id, () => ({
       type: "line",
@@ -172,7 +170,7 @@ class DayView {
             pointRadius: 0, ...more};
   }
 
-  /** Of a chart over the day's hours; `y` tells more about its other axis. */
+  /** Options of a chart over the day's hours; `y`: options of the other axis. */
   options(y) {
     const end = this.hours.at(-1) + 2 / 60;
     return {
@@ -190,7 +188,7 @@ class DayView {
     };
   }
 
-  /** Local time of an hour since the day's begin. */
+  /** Local time of an hour after the start of the day. */
   timeAt(hour) {
     return hour >= this.hours.at(-1) ? "24:00" : clockText(this.day.localMinute[this.stepAt(hour)]);
   }
@@ -200,7 +198,7 @@ class DayView {
     return Math.max(0, (step < 0 ? this.day.steps : step) - 1);
   }
 
-  /** Looks at one step: the line through the charts, the numbers above them. */
+  /** Selects a step: cursor line and numbers. */
   moveTo(step) {
     this.step = step;
     const {day} = this;
@@ -274,7 +272,7 @@ class DayView {
     };
   }
 
-  /** Steps that are paid beyond the scale: a mark at its edge. */
+  /** Marks at the edge for steps outside the scale. */
   edgePlugin(low, high) {
     return {
       id: "edge",

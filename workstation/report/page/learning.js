@@ -1,9 +1,9 @@
-// How teacher and student learned, and on which prices.
+// Training curves of teacher and student, and histogram of prices.
 "use strict";
 
 /**
- * Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; with a
- * radius there is no line.
+ * Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; a radius
+ * gives points without a line.
  */
 function drawLines(id, series, scales) {
   drawChart(id, () => ({
@@ -21,23 +21,23 @@ function drawLines(id, series, scales) {
   }));
 }
 
-/** Step 0 is a residual's: there it is still the stochastic program. */
+/** Step 0 of a residual teacher is the SDP. */
 function drawTraining({training, rule}) {
-  // A program is fitted, not trained.
+  // An SDP is not trained.
   document.getElementById("training-figure").hidden = training.length < 2;
   if (training.length < 2) return;
   const kept = training.find((point) => point[2] === 1);
   const level = (profit) =>
     [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
   const began = training[0][0] === 0
-    ? [["the program, step 0", level(training[0][1]), "line-4", [6, 4], 0]] : [];
+    ? [["SDP (step 0)", level(training[0][1]), "line-4", [6, 4], 0]] : [];
   drawLines("chart-training", [["checkpoint", training, "line-1"],
-                               ["chosen", [kept], "line-2", undefined, 6], ...began,
+                               ["selected", [kept], "line-2", undefined, 6], ...began,
     ["rule-based", level(rule), "muted", [2, 3], 0]], () => ({}));
 }
 
 /**
- * Every student that was looked at: [epoch, profit on validation days, "chosen" | "disobeys" |
+ * Every checked student: [epoch, profit on validation days, "chosen" | "disobeys" |
  * "passed over"].
  */
 function drawCheckpoints({checkpoints}) {
@@ -45,8 +45,8 @@ function drawCheckpoints({checkpoints}) {
   if (checkpoints.length === 0) return;
   const of = (state) => checkpoints.filter((point) => point[2] === state);
   drawLines("chart-checkpoints", [
-    ["checkpoint", checkpoints, "line-1"], ["disobeys", of("disobeys"), "muted", undefined, 6],
-    ["chosen", of("chosen"), "line-2", undefined, 6]], () => ({}));
+    ["checkpoint", checkpoints, "line-1"], ["violations", of("disobeys"), "muted", undefined, 6],
+    ["selected", of("chosen"), "line-2", undefined, 6]], () => ({}));
 }
 
 function drawDistillation({distil, by_construction}) {
@@ -54,10 +54,10 @@ function drawDistillation({distil, by_construction}) {
   if (distil.length === 0) return;
   const column = (c) => distil.map((row) => [row[0], row[c]]);
   document.getElementById("distil-note").textContent = by_construction
-    ? "loss over passes; its order holds by construction" : "losses over epochs, logarithmic";
-  const visited = ["on the states that the teacher visits", column(3), "line-1"];
+    ? "loss by epoch; monotone by construction" : "losses by epoch, logarithmic";
+  const visited = ["on visited states", column(3), "line-1"];
   const losses = [["distance to the teacher", column(1), "line-3"],
-                  ["distance to the ordered", column(2), "line-2"], visited];
+                  ["correction loss", column(2), "line-2"], visited];
   drawLines("chart-distil", by_construction ? [visited] : losses.map(
     ([name, points, ink]) => [name, points.filter(([, y]) => y > 0), ink]),
             () => (by_construction ? {} : {y: axis({type: "logarithmic"})}));
@@ -65,7 +65,7 @@ function drawDistillation({distil, by_construction}) {
 
 function drawPriceHistogram({low, bin, train, test, outside_train, outside_test}) {
   document.getElementById("prices-note").textContent =
-    `; the far tails are left out: ${outside_train.toFixed(2)} % of the training and ` +
+    `; without the far tails: ${outside_train.toFixed(2)} % of the training and ` +
     `${outside_test.toFixed(2)} % of the test prices`;
   drawChart("chart-prices", () => ({
     type: "bar",

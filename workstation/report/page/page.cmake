@@ -1,5 +1,4 @@
-# The page of a report: its style sheets, its scripts and the chart library, embedded into
-# bess-train.
+# Files of the report page, with the chart library, embedded into bess-train.
 find_package(ZLIB REQUIRED)
 include(${CMAKE_SOURCE_DIR}/shared/host/made/pages.cmake)
 

@@ -1,7 +1,7 @@
-// Puts the page together: data, charts, day and maps. What goes wrong is told on the page.
+// Start of the page: data, charts, day and maps. Errors are shown on the page.
 "use strict";
 
-/** Everything that a test or the console may want to look at. */
+/** State for tests and the console. */
 const page = {};
 
 async function openPage() {
@@ -33,7 +33,7 @@ openPage().catch((error) => {
   const text = document.createElement("p");
   text.className = "failure";
   text.textContent =
-    `Part of this page could not be shown: ${error.message}. It needs a browser of 2023 or newer.`;
+    `Part of this page could not be shown: ${error.message}. Use a browser of 2023 or newer.`;
   document.querySelector("main").prepend(text);
   throw error;
 });

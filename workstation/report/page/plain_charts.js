@@ -1,5 +1,4 @@
-// The charts of pages other than a run's: lines over days, dots. The page's data says what they
-// show.
+// Charts of pages other than a run's: lines and dots, from the page's data.
 "use strict";
 
 const kKinds = {
@@ -17,7 +16,7 @@ const kKinds = {
     options: {scales: {x: axis(), y: axis({ticks: kFewTicks})}},
   }),
 
-  /** `points`: [x, y, what it is] each. */
+  /** `points`: [x, y, label] each. */
   dots: ({points, x, y}) => ({
     type: "scatter",
     data: {

@@ -1,17 +1,16 @@
-// The students' decisions over price and state of charge, evaluated here by their integers
-// (student.js). Computed in slices between frames: the sliders stay quick, and what stands there
-// when it is done is exact, cell by cell.
+// Policy maps: decisions over price and SoC, evaluated exactly (student.js), in time slices so that
+// sliders stay responsive.
 "use strict";
 
 const kSliceMs = 20;
 const kPaintEveryMs = 120;
-const kCoarseRows = 8;       // of the first, quick look
+const kCoarseRows = 8;       // row stride of the first pass
 const kWindowRoundTo = 10;   // EUR/MWh
 const kMargin = {left: 46, right: 8, top: 10, bottom: 38};  // CSS pixels around a map
-const kMarkPx = 3;           // of a violation, at least
-const kHatchPx = 8;          // between the lines over states that break a rule
+const kMarkPx = 3;           // minimum size of a violation
+const kHatchPx = 8;          // distance of hatching lines
 
-/** One student's map: its canvas, and the grid that it shows. */
+/** Map of one student: canvas and grid. */
 class StudentMap {
   constructor(name, student, host) {
     this.name = name;
@@ -91,8 +90,7 @@ class PolicyMap {
   }
 
   /**
-   * Prices between which an ordered policy changes its mind, nearly always: over classes, hours
-   * and charges.
+   * Price range of nearly all decision boundaries over classes, hours and SoCs.
    */
   decisionWindow(student) {
     const {price_min, price_max, soc_count} = this.lattice;
@@ -102,7 +100,7 @@ class PolicyMap {
         for (const share of [.2, .4, .6, .8]) {
           student.beginRow(
             {contextClass, quarterHour, minute: 7}, Math.round(share * (soc_count - 1)));
-          for (const level of [1, 0]) {  // from which price on is the action at most this
+          for (const level of [1, 0]) {  // lowest price at which the action is at most this
             let low = price_min, high = price_max;
             while (low < high) {
               const middle = (low + high) >> 1;
@@ -135,7 +133,7 @@ class PolicyMap {
     this.setWindow(first < last ? {first, last} : this.window);
   }
 
-  /** A state at which a student breaks a property or rule, one after the other. */
+  /** Shows the next counterexample. */
   showViolation() {
     const state = this.data.counterexamples[this.nextViolation];
     this.nextViolation = (this.nextViolation + 1) % this.data.counterexamples.length;
@@ -147,7 +145,7 @@ class PolicyMap {
       {minute, quarterHour, contextClass, price, soc: soc / (this.lattice.soc_count - 1)});
   }
 
-  /** Goes to a state, and marks its price and charge. */
+  /** Shows a state and marks its price and SoC. */
   showState({contextClass, quarterHour, minute, price, soc}) {
     this.context = {contextClass, quarterHour, minute};
     this.marked = {price, soc};
@@ -176,7 +174,7 @@ class PolicyMap {
           button = document.getElementById("next-violation");
     button.hidden = count === 0;
     button.textContent =
-      `a violation of the ${this.data.counterexamples_of} ` +
+      `violation of the ${this.data.counterexamples_of} ` +
       `(${this.nextViolation + 1} of ${count} kept)`;
     this.rules.showLegend(document.getElementById("rule-keys"), this.context, () => this.paint());
   }
@@ -189,7 +187,7 @@ class PolicyMap {
     if (!this.ticking) this.tick();
   }
 
-  /** Some work, a picture, and on in the next frame until all is done. */
+  /** One time slice of work, repeated in the next frame until finished. */
   tick() {
     const end = performance.now() + kSliceMs;
     while (this.work.length > 0 && performance.now() < end) {
@@ -203,7 +201,7 @@ class PolicyMap {
     }
   }
 
-  /** Evaluates one map, a row at a time: every eighth first, then all. */
+  /** Evaluates one map by rows: every eighth first, then the others. */
   *evaluation(map) {
     const {first, last} = this.window, context = {...this.context}, rows = this.lattice.soc_count;
     const width = last - first + 1, grid = new Int8Array(rows * width).fill(-1);
@@ -245,16 +243,16 @@ class PolicyMap {
   describe(map) {
     const {order, threshold, rules} = map.violations;
     const found = [[order.length, "neighbouring pairs out of order"],
-                   [threshold.length, "states beyond a threshold not obeyed"],
+                   [threshold.length, "states that violate a threshold"],
                    ...rules.map(({rule, cells}) =>
                      [cells.length, `states against \u201c${rule.name}\u201d`])];
     const some = found.filter(([count]) => count > 0);
-    map.found.textContent = some.length === 0 ? "no violation in what is shown"
+    map.found.textContent = some.length === 0 ? "no violation in this range"
       : some.map(([count, what]) => `${count} ${what}`).join(", ");
     map.found.classList.toggle("some", some.length > 0);
   }
 
-  /** Where prices and charges lie on a canvas. */
+  /** Geometry of a canvas. */
   frame(map) {
     const width = map.canvas.clientWidth, height = map.canvas.clientHeight;
     const plot = {x: kMargin.left, y: kMargin.top, w: width - kMargin.left - kMargin.right,
@@ -290,7 +288,7 @@ class PolicyMap {
     const pixels = new Uint32Array(image.data.buffer);
     const inks = kActions.map((name) => pixelOf(colour(name)));
     for (let soc = 0; soc < rows; ++soc) {
-      // A row that was looked at.
+      // The nearest evaluated row.
       const from = map.grid[soc * columns] < 0 ? soc - soc % kCoarseRows : soc;
       for (let column = 0; column < columns; ++column) {
         const action = map.grid[from * columns + column];
@@ -302,7 +300,7 @@ class PolicyMap {
     ctx.drawImage(cells, plot.x, plot.y, plot.w, plot.h);
   }
 
-  /** States against a rule, hatched, so that what is done there still shows. */
+  /** Hatching of states that break a rule; the action stays visible. */
   paintBrokenRules(ctx, map, {plot, columns, rows}) {
     if (map.violations.rules.length === 0) return;
     const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
@@ -365,7 +363,7 @@ class PolicyMap {
     const {first, last} = map.window, step = niceStep((last - first) / (width / 60));
     for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
       const label = trueMinus(price), half = ctx.measureText(label).width / 2;
-      // The last one ends with the canvas.
+      // Keeps the last label on the canvas.
       ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);
       ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
     }
@@ -391,7 +389,7 @@ class PolicyMap {
     }
   }
 
-  /** What all students do where the pointer is. */
+  /** Shows the actions at the pointer. */
   tell(map, event) {
     const {plot, columns, rows} = this.frame(map);
     const column = Math.floor((event.offsetX - plot.x) / plot.w * columns);
@@ -408,11 +406,11 @@ class PolicyMap {
     document.getElementById("map-readout").textContent =
       `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ` +
       actions.join(", ") +
-      (names.length > 0 ? `. Rules that hold there: ${names.join(", ")}` : "");
+      (names.length > 0 ? `. Rules that apply: ${names.join(", ")}` : "");
     this.point(rules.length > 0 ? rules.at(-1) : null);
   }
 
-  /** Names a rule on the maps; null: none. */
+  /** Highlights a rule; null: none. */
   point(rule) {
     if (rule === this.rules.pointed) return;
     this.rules.pointed = rule;
@@ -420,19 +418,19 @@ class PolicyMap {
   }
 }
 
-/** A pixel of an image on a little-endian machine, of "#rrggbb". */
+/** Little-endian pixel value of "#rrggbb". */
 function pixelOf(hex) {
   const [red, green, blue] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
   return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
 }
 
-/** The key of the maps, in the page's colours. */
+/** Legend of the maps. */
 function showMapKeys(hasRules) {
   const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"],
                 ["mark", "violation"],
-                ["", "dashed across: charge that the battery keeps"],
-                ...(hasRules ? [["", "outlined, with its number: where a rule holds, dashed the " +
-                                     "guard\u2019s alone; hatched: states that break one"]] : [])];
+                ["", "dashed line: minimum SoC"],
+                ...(hasRules ? [["", "outlined with number: region of a rule, dashed if only " +
+                                     "the guard enforces it; hatched: violations"]] : [])];
   document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
     const item = document.createElement("li");
     if (name) {

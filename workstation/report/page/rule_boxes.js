@@ -1,57 +1,55 @@
-// The operator's rules on the maps: where each holds, what breaks it, and its entry in the legend
-// below. As rules_json() of page_data.h has them.
+// Operator rules on the maps: region, violations and legend (rules_json() in page_data.h).
 "use strict";
 
 const kRuleBadgePx = 16;
-// Directions that one map alone does not show.
+// Directions across maps.
 const kHeldByAPair = ["minute", "quarterHour", "contextClass"];
 
 class RuleBoxes {
-  /** `show(context)` goes to another map. */
+  /** `show(context)` opens another map. */
   constructor(rules, lattice, show) {
     this.rules = rules.map((rule, i) => ({...rule, number: i + 1}));
     this.lattice = lattice;
     this.show = show;
-    this.pointed = null;  // the rule that is pointed at, here or in the legend
+    this.pointed = null;  // rule under the pointer
   }
 
-  /** Whether the box of a rule holds at this hour and context class. */
+  /** True if a rule applies at this hour and context class. */
   isAt(rule, {quarterHour, contextClass}) {
     if (!rule.hours) return false;
     const [first, count] = rule.hours, since = (quarterHour - first + 96) % 96;
     return since < count && (rule.classes >> (contextClass - 1) & 1) === 1;
   }
 
-  /** Rules with a region on the map of a context. */
+  /** Rules with a region on this map. */
   at(context) {
     return this.rules.filter((rule) => rule.price && this.isAt(rule, context));
   }
 
-  /** Of these, the ones that hold at a price and charge. */
+  /** Rules of this map that apply at a price and SoC. */
   atState(context, soc, price) {
     return this.at(context).filter((rule) => price >= rule.price[0] && price <= rule.price[1] &&
                                              soc >= rule.soc[0] && soc <= rule.soc[1]);
   }
 
   /**
-   * Rules whose violations a map shows only beside the map of the next minute, quarter-hour or
-   * class.
+   * Rules that compare this map with that of the next minute, quarter-hour or class.
    */
   pairRules() {
     return this.rules.filter((rule) =>
       rule.binds_student && rule.direction && kHeldByAPair.includes(rule.direction.input));
   }
 
-  /** The context after this one along an input; null after its last value. */
+  /** Next context along an input; null after its last value. */
   nextContext(context, input) {
     const last = {minute: 14, quarterHour: 95, contextClass: 12}[input];
     return context[input] === last ? null : {...context, [input]: context[input] + 1};
   }
 
   /**
-   * Cells of a map that break a rule, by rule: [{rule, cells}], those without any left out.
-   * `nextGrids[input]` is the same part of the next context's map, for pairRules(). Directions with
-   * price and charge are property 3.
+   * Cells with violations, by rule: [{rule, cells}], without empty ones. `nextGrids[input]` is the
+   * same part of the next context's map, for pairRules(). Directions of price and SoC are property
+   * 3.
    */
   violations(grid, {first, last}, context, nextGrids) {
     const width = last - first + 1, found = [];
@@ -79,8 +77,7 @@ class RuleBoxes {
   }
 
   /**
-   * A context at which a rule holds, the nearest to this one in time; null for one without a
-   * region.
+   * Nearest context in time at which a rule applies; null for a rule without a region.
    */
   contextOf(rule, context) {
     if (!rule.price) return null;
@@ -94,7 +91,7 @@ class RuleBoxes {
     return null;
   }
 
-  /** Outlines with their numbers; the one that is pointed at is thicker, and named. */
+  /** Outlines with numbers; the one under the pointer is thicker and named. */
   paint(ctx, frame, window, context) {
     const {plot, cellW, cellH, rows} = frame;
     ctx.save();
@@ -126,8 +123,7 @@ class RuleBoxes {
   }
 
   /**
-   * The rule's number in the upper left corner of its region, with its name while it is pointed
-   * at.
+   * Number of the rule in the upper left corner of its region, with its name under the pointer.
    */
   paintBadge(ctx, {rule, x, y}, plot, taken) {
     const pointed = this.pointed === rule;
@@ -150,8 +146,7 @@ class RuleBoxes {
   }
 
   /**
-   * What stands below the maps: each rule with its number, its text, and whether it holds in what
-   * is shown.
+   * Legend: each rule with number, text, and whether it applies on this map.
    */
   showLegend(host, context, repaint) {
     host.hidden = this.rules.length === 0;
@@ -162,12 +157,12 @@ class RuleBoxes {
       badge.textContent = String(rule.number);
       name.textContent = rule.name;
       const elsewhere = this.contextOf(rule, context);
-      const here = rule.direction ? "everywhere, no region of its own"
-        : !rule.price ? "beyond the prices of the map"
-        : this.isAt(rule, context) ? "holds on this map"
-        : "does not hold at this time: tap to go where it does";
+      const here = rule.direction ? "applies everywhere, no region"
+        : !rule.price ? "outside the prices of the map"
+        : this.isAt(rule, context) ? "applies on this map"
+        : "does not apply at this time: click to go to a time when it does";
       const text = rule.text.replace(/(^|\s)-(?=\d)/g, "$1\u2212");
-      button.append(badge, name, ` ${text}. Held to it: ${rule.held_by}; ${here}.`);
+      button.append(badge, name, ` ${text}. Enforced by: ${rule.held_by}; ${here}.`);
       button.disabled = elsewhere === null;
       button.addEventListener("click", () => {
         this.pointed = rule;

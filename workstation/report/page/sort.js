@@ -1,10 +1,8 @@
-// Tables of class "sortable": a head sorts by its column; where heads are hidden, on a narrow
-// screen, a list does.
+// Sortable tables (class "sortable"): by column head, or by a list on narrow screens.
 "use strict";
 
 /**
- * Rows by what `data-sort` of a column says, numbers as numbers; what is empty comes last either
- * way.
+ * Sorts rows by `data-sort` of a column, numerically if possible; empty values come last.
  */
 function sortTable(table, column, descending) {
   const value = (row) => row.cells[column].dataset.sort;

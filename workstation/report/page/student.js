@@ -1,7 +1,6 @@
-// The edge's student in the browser: the same integers, the same shifts, hence the same decisions,
-// bit for bit (shared/nn/student_net.h). JavaScript's bit operations and Math.imul are two's
-// complement on 32 bits, as the edge's; the exporter proves that no accumulator leaves them. No
-// floating point takes part.
+// Student in the browser, bit-identical to the controller's (shared/nn/student_net.h): JavaScript's
+// bit operations and Math.imul are 32-bit two's complement, and the exporter proves that no
+// accumulator overflows. No floating point is used.
 "use strict";
 
 const kHidden1 = 64;
@@ -9,12 +8,12 @@ const kHidden2 = 32;
 const kActions = ["discharge", "idle", "charge"];
 const kActivationMax = 32767;
 
-/** What is added before a shift to the right, so that it rounds to nearest, halves up. */
+/** Added before a right shift, to round to nearest, halves up. */
 function halfOf(shift) {
   return shift === 0 ? 0 : 1 << (shift - 1);
 }
 
-/** Index of the largest of three logits; the lowest action keeps a tie. */
+/** Index of the largest of three logits; ties give the lower action. */
 function argmaxAction(logits) {
   let best = 0;
   for (let a = 1; a < kActions.length; ++a) if (logits[a] > logits[best]) best = a;
@@ -39,7 +38,7 @@ class Student {
     this.logits = new Int32Array(kActions.length);
   }
 
-  /** Sums of the first layer over all inputs but the price: the same for a whole row of a map. */
+  /** Sums of the first layer without the price, which are constant in a row of a map. */
   beginRow(context, socIndex) {
     const l = this.lattice;
     const inputs = [context.minute * l.minute_scale, context.quarterHour * l.quarter_hour_scale,
@@ -54,7 +53,7 @@ class Student {
   }
 
   /**
-   * Action 0..2 of the row's state at `price`, EUR/MWh of the lattice; leaves its logits behind.
+   * Action 0..2 of the row's state at `price`, EUR/MWh of the lattice; also sets `logits`.
    */
   decideInRow(price) {
     const x = this.priceMap[price - this.lattice.price_min];
@@ -91,7 +90,7 @@ class Student {
 }
 
 /**
- * Where a map breaks a property. `grid[soc * width + column]`, columns from `priceFirst` on.
+ * Violations of properties in a map. `grid[soc * width + column]`, columns from `priceFirst` on.
  * Returns lists of cells: `order` with the neighbour towards which the action increases ("price" or
  * "soc"), and `threshold`.
  */

@@ -1,4 +1,4 @@
-// The tear sheet: what the exported policy earned over the test days, and beside whom.
+// Tear sheet: profit of the exported policy and baselines over the test days.
 "use strict";
 
 const kReferenceWear = 10;  // EUR/MWh
@@ -16,13 +16,13 @@ class TearSheet {
     });
   }
 
-  /** Of these, those that were evaluated. */
+  /** Evaluated policies among `names`. */
   policies(names) {
     return names.map((name) => this.data.policies.find((policy) => policy.name === name))
       .filter(Boolean);
   }
 
-  /** The first `count` rivals, or all. */
+  /** The first `count` baselines, or all. */
   rivals(count) {
     return this.policies(this.data.rivals.slice(0, count).map((rival) => rival.name));
   }
@@ -64,8 +64,7 @@ class TearSheet {
   }
 
   /**
-   * By day: the cumulative profit at its end minus the highest at the end of a day before, 0 at
-   * the beginning.
+   * By day: cumulative profit minus its earlier maximum, starting at 0.
    */
   drawdowns(policy) {
     let peak = 0;
@@ -108,7 +107,7 @@ class TearSheet {
     }));
   }
 
-  /** Means over the days that are here, of the exported policy. */
+  /** Means of the exported policy over the days of the page. */
   profitByHour() {
     const charging = new Array(24).fill(0), discharging = new Array(24).fill(0);
     const share = 1 / (this.days.length * this.data.battery.capacity_mwh);
@@ -128,7 +127,7 @@ class TearSheet {
       data: {
         labels: charging.map((_, hour) => padded(hour)),
         datasets: [
-          {type: "line", label: "together", data: net, borderColor: colour("ink"),
+          {type: "line", label: "total", data: net, borderColor: colour("ink"),
            backgroundColor: colour("ink"),
            borderWidth: 2, pointRadius: 2, order: 0},
           {type: "bar", label: "charging", data: charging, backgroundColor: colour("charge"),
@@ -142,7 +141,7 @@ class TearSheet {
     }));
   }
 
-  /** Bars side by side; `series`: [name, values] each; `y` tells more about its axis. */
+  /** Grouped bars; `series`: [name, values] each; `y`: options of its axis. */
   drawBars(id, labels, series, y = {}) {
     drawChart(id, () => ({
       type: "bar",
