@@ -182,8 +182,7 @@ std::string format_backtest_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
   std::string text = fmt::format(
       "{} months, {} days, each month traded by policies fitted on {};\nSoC carried over; EUR per "
-      "day per "
-      "MWh of capacity\n{}",
+      "day per MWh of capacity\n{}",
       first.months.size(), first.total.days.size(), window_text(results),
       total_table(results).only(kBacktestShownKeys).text());
   if (const Table reset = day_reset_table(results); reset.size() > 0) {

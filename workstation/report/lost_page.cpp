@@ -97,10 +97,8 @@ std::string heat_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   for (const auto& [month, hours] : months) most = std::max(most, std::ranges::max(hours));
   std::string text = fmt::format(
       "<figure id=\"lost-hours\"><figcaption>By hour and month<small>gap by decisions of each "
-      "local "
-      "hour, mean over the month's test days, EUR per day per MWh; darkest: {:.1f} "
-      "{}</small></figcaption>\n<table class=\"heat\"><thead><tr><th scope=\"col\">Month"
-      "</th>",
+      "local hour, mean over the month's test days, EUR per day per MWh; darkest: {:.1f} "
+      "{}</small></figcaption>\n<table class=\"heat\"><thead><tr><th scope=\"col\">Month</th>",
       most, csv_link("lost_hours.csv"));
   for (std::size_t h = 0; h < kHoursPerDay; ++h) {
     text += fmt::format("<th scope=\"col\">{:02}</th>", h);
@@ -155,9 +153,7 @@ std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
       "</small></figcaption>\n<table id=\"worst-days\"><thead><tr><th scope=\"col\">Day</th><th "
       "scope=\"col\">Gap</th><th scope=\"col\">Earned</th><th scope=\"col\">Foresight</th><th "
       "scope=\"col\" class=\"why\">Causes</th><th scope=\"col\" class=\"why\">Most expensive "
-      "decision "
-      "of the first cause</th></tr>"
-      "</thead>\n<tbody>\n";
+      "decision of the first cause</th></tr></thead>\n<tbody>\n";
   const std::vector<const DayLoss*> worst = by_missed(losses);
   for (std::size_t d = 0; d < std::min(kWorstDays, worst.size()); ++d) {
     const DayLoss& day = *worst[d];

@@ -203,10 +203,9 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
     text += format_table("Effect of the rules", rule_prices_table(*prices));
     note += fmt::format(
         " EUR per day per MWh of capacity, \u00b1 standard error, SoC carried over. The effect of "
-        "a "
-        "rule is measured on the plain student: each decision is moved to the nearest allowed one, "
-        "and the days are run again, for each rule and all together. The difference to the {} is "
-        "{}. Rules on the direction of time or context are part of the correction.",
+        "a rule is measured on the plain student: each decision is moved to the nearest allowed "
+        "one, and the days are run again, for each rule and all together. The difference to the {} "
+        "is {}. Rules on the direction of time or context are part of the correction.",
         prices->student, prices->correction.meaning);
   }
   return text + fmt::format("<p class=\"note\">{}</p>\n", note);

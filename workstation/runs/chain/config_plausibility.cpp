@@ -58,8 +58,7 @@ void require_plausible(const RunConfig& config, const std::string& name) {
   if (!(rate_per_h >= kRateMin_per_h && rate_per_h <= kRateMax_per_h)) {
     fail(
         "{}: [battery] power_w = {:g} and capacity_wh = {:g} give a C-rate of {:.2g}/h, outside "
-        "{:g} "
-        "to {:g}/h: is one of them in kW or MW?",
+        "{:g} to {:g}/h: is one of them in kW or MW?",
         name, battery.power_w_max, battery.capacity_wh, rate_per_h, kRateMin_per_h, kRateMax_per_h);
   }
   const double round_trip = battery.charge_efficiency * battery.discharge_efficiency;

@@ -64,8 +64,7 @@ LogReplay replay_log(const CycleLog& log, const LoggedSpan& span, const StudentN
   if (replay.without_context > 0) {
     fail(
         "the student decides by the outlook, but none of the {} logged decisions has one: use a "
-        "log "
-        "of a controller with [outlook]",
+        "log of a controller with [outlook]",
         replay.without_context);
   }
   fail("the log has no decision of a student on these days; change --from or --to");

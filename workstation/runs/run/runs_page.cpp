@@ -159,10 +159,8 @@ std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
           "<h1>{}</h1>\n{}<p class=\"note\">EUR per day per MWh of capacity unless stated "
           "otherwise, \u00b1 standard error (in brackets: by month). Carried over: the SoC is "
           "carried from day to day. Gain: mean day-by-day difference to the first finished run "
-          "with "
-          "the same days. Click a column head to sort, again to reverse; unknown values come "
-          "last.</p>\n{}"
-          "<script>\n{}</script>\n",
+          "with the same days. Click a column head to sort, again to reverse; unknown values come "
+          "last.</p>\n{}<script>\n{}</script>\n",
           title, sort_table_html(run_table(runs, page)), differ, page_file("sort.js")));
 }
 
