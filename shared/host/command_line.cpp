@@ -225,6 +225,7 @@ ProgramOption ProgramCommand::option(const std::string& name, T& value, const st
   CLI::Option* option = app_->add_option(name, value, wrapped(help));
   option->check(CLI::Validator(refuse_empty, ""));
   using Value = typename ValueOf<T>::type;
+  if constexpr (std::is_arithmetic_v<Value>) option->type_name("N");
   if constexpr (std::is_integral_v<Value>) {
     option->check(CLI::Validator(refuse_overflow<Value>, ""));
   }

@@ -85,12 +85,13 @@ void add_impact_command(ProgramCommand& app) {
   ImpactPlan& plan = options->plan;
   ProgramCommand command = app.subcommand(
       "impact", "simulate a fleet that changes the price: EUR/MW by fleet size and price formula");
-  command.option("--out", options->out, "folder for table and page").required();
+  command.option("--out", options->out, "folder for table and page").value_name("DIR").required();
   command.option("--fleet-mw", options->fleet_mw,
                  "fleet sizes, MW; 0 has no impact (default 0 50 100 200 300 450 600 800 1200)");
   command
       .option("--policy", plan.policies,
               std::string("policies of the fleet, in equal parts: ") + policy_help())
+      .value_name("POLICY")
       .with_default();
   command.option("--train-days", plan.train_days, "training days").range(10, 300).with_default();
   command.option("--test-days", plan.test_days, "test days after the training days")

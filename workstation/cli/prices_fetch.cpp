@@ -75,19 +75,28 @@ void add_prices_fetch(ProgramCommand& prices) {
   auto options = std::make_shared<PricesFetchArguments>();
   ProgramCommand command =
       prices.subcommand("fetch", "download minute and settled prices from Elia's open data");
-  command.option("--from", options->from, "first local day, YYYY-MM-DD").required();
-  command.option("--to", options->to, "last local day, YYYY-MM-DD, included").required();
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
+  command.option("--from", options->from, "first local day, YYYY-MM-DD")
+      .value_name("DATE")
+      .required();
+  command.option("--to", options->to, "last local day, YYYY-MM-DD, included")
+      .value_name("DATE")
+      .required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
+      .value_name("FILE")
+      .required();
   command.flag("--allow-gaps", options->allow_gaps,
                "accept missing rows and list them (default: error)");
   options->price_input.add(command);
   command.flag("--day-ahead", options->day_ahead,
                "download day-ahead prices from energy-charts instead; writes a day-ahead file");
   command.option("--zone", options->zone, "bidding zone of --day-ahead (default BE)")
+      .value_name("ZONE")
       .needs("--day-ahead");
-  command.option(
-      "--base-url", options->base_url,
-      fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl, kEnergyChartsBaseUrl));
+  command
+      .option("--base-url", options->base_url,
+              fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl,
+                          kEnergyChartsBaseUrl))
+      .value_name("URL");
   command.footer(
       "After an interruption, repeat the command: finished months are kept in OUT.fetch.\n"
       "Rows are counted against the calendar and the server's total. Elia's minutes have gaps in\n"

@@ -57,14 +57,18 @@ void add_prices_import(ProgramCommand& prices) {
       .option("files", options->files,
               "downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
               "minute files, or your own CSV; plain or .gz")
+      .value_name("FILE")
       .required();
   command.flag(
       "--day-ahead", options->day_ahead,
       "the files contain day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
       "datetime_utc and price_eur_mwh, or day-ahead files");
-  command.option("--time-column", options->own.time_column,
-                 "time column of your CSV: start of each minute or quarter-hour");
-  command.option("--price-column", options->own.price_column, "price column of your CSV, EUR/MWh");
+  command
+      .option("--time-column", options->own.time_column,
+              "time column of your CSV: start of each minute or quarter-hour")
+      .value_name("NAME");
+  command.option("--price-column", options->own.price_column, "price column of your CSV, EUR/MWh")
+      .value_name("NAME");
   command.option("--date-format", options->own.times.date_format, "date format of your CSV")
       .one_of({"yyyy-mm-dd", "yyyy/mm/dd", "dd/mm/yyyy", "dd-mm-yyyy", "dd.mm.yyyy", "mm/dd/yyyy"})
       .with_default();
@@ -72,7 +76,9 @@ void add_prices_import(ProgramCommand& prices) {
                                            {{"utc", WallClock::kUtc}, {"local", WallClock::kLocal}},
                                            "time zone of times without an offset; local: Belgium");
   options->price_input.add(command);
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
+      .value_name("FILE")
+      .required();
   command.footer(
       "Where two downloads have the same minute, the later file wins; minute files must agree "
       "(--accept overlap: the later file wins). Semicolons with decimal commas are accepted. "

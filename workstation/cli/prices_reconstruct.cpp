@@ -61,10 +61,13 @@ void add_prices_reconstruct(ProgramCommand& prices) {
       .option("--quarter-hours", options->files,
               "settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
               "(XML), or output of 'prices import'; plain or .gz")
+      .value_name("FILE")
       .required();
   options->price_input.add(command);
   command.option("--seed", options->seed, "random seed").non_negative().with_default();
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
+      .value_name("FILE")
+      .required();
   command.footer(
       "For sources without a system imbalance (ENTSO-E A85, minute files) its sign is inferred\n"
       "from the price. ENTSO-E sends a ZIP archive: unzip it first.\n"

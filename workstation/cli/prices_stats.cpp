@@ -76,6 +76,7 @@ void add_prices_stats(ProgramCommand& prices) {
   command
       .option("file", options->file,
               "minute file, day-ahead file, or a download of Elia (CSV, JSON); plain or .gz")
+      .value_name("FILE")
       .required();
   command.flag("--json", options->json, "one JSON object");
   command.footer(

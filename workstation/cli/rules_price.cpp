@@ -166,11 +166,14 @@ void add_rules_price(ProgramCommand& rules) {
   ProgramCommand command = rules.subcommand(
       "price", "estimate the daily cost of each rule, alone and together, before training");
   options->rule_files.add(command, "rule files (TOML)").required();
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
+      .value_name("FILE")
+      .required();
   options->price_input.add(command);
   command
       .option("--policy", options->policy,
               std::string("policy to which the rules are applied; one of ") + policy_help())
+      .value_name("POLICY")
       .with_default();
   command.option("--split", options->split, "traded days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})

@@ -78,15 +78,18 @@ void add_run_command(ProgramCommand& app) {
   RunRequest& request = options->request;
   ProgramCommand command =
       app.subcommand("run", "run the whole chain: train, correct, prove, export, evaluate, report");
-  command.option("--prices", request.prices, "minute file (default: a built-in simulated year)");
+  command.option("--prices", request.prices, "minute file (default: a built-in simulated year)")
+      .value_name("FILE");
   request.price_input.add(command);
   request.day_ahead.add(command);
   request.rule_files.add(command, "rule files: operator rules to train and prove as well");
-  command.option("--out", options->out, "run folder").required();
+  command.option("--out", options->out, "run folder").value_name("DIR").required();
   command.flag("--resume", request.resume,
                "resume the run in --out; options not given keep their value");
-  command.option("--from-teacher", request.from_teacher,
-                 "skip training; use this teacher (file or run folder)");
+  command
+      .option("--from-teacher", request.from_teacher,
+              "skip training; use this teacher (file or run folder)")
+      .value_name("FILE");
   command.flag("--json", options->json, "one JSON object");
   request.common.add_all(command);
   command.footer(

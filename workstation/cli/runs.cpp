@@ -77,10 +77,14 @@ void add_runs_commands(ProgramCommand& app) {
   runs.requires_subcommand();
   ProgramCommand command =
       runs.subcommand("compare", "compare results and settings of finished runs");
-  command.option("folders", options->folders, "run folders, or folders of run folders").required();
+  command.option("folders", options->folders, "run folders, or folders of run folders")
+      .value_name("DIR")
+      .required();
   command.flag("--json", options->json, "JSON, one line per run");
-  command.option("--html", options->html,
-                 "write a sortable HTML table instead, including failed and stopped runs");
+  command
+      .option("--html", options->html,
+              "write a sortable HTML table instead, including failed and stopped runs")
+      .value_name("FILE");
   command.footer(
       "Gains are day-by-day differences to the first run.\n"
       "Examples:\n"

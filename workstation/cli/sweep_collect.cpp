@@ -80,7 +80,7 @@ void add_sweep_collect(ProgramCommand& sweep) {
   auto options = std::make_shared<CollectArguments>();
   ProgramCommand command = sweep.subcommand(
       "collect", "write tasks.csv, settings.csv and sites.csv from finished tasks");
-  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("folder", options->folder, "folder of the sweep").value_name("DIR").required();
   command.flag("--partial", options->partial, "accept missing or failed tasks");
   command.flag("--json", options->json, "one JSON object: number of tasks by state");
   command.footer("Example:\n  bess-train sweep collect sweeps/first --partial");

@@ -54,14 +54,17 @@ void add_sweep_packages(ProgramCommand& sweep) {
   ProgramCommand command = sweep.subcommand(
       "packages",
       "Debian packages of bess-edge by class of fleet members, and an Ansible inventory");
-  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("folder", options->folder, "folder of the sweep").value_name("DIR").required();
   command.option("--out", options->out, "output folder for inventory.yml and one folder per class")
+      .value_name("DIR")
       .required();
   command
       .option("--arch", options->architectures,
               "architectures; most machines have the first (default arm64)")
       .one_of({"arm64", "armhf", "amd64"});
-  command.option("--source", options->source, "source checkout, with tools/package").with_default();
+  command.option("--source", options->source, "source checkout, with tools/package")
+      .value_name("DIR")
+      .with_default();
   command.flag("--partial", options->partial, "skip fleet members without a proved student");
   command.footer(
       "Existing packages of the same student are kept.\n"

@@ -39,7 +39,7 @@ void add_sweep_run(ProgramCommand& sweep) {
   auto options = std::make_shared<SweepRunArguments>();
   ProgramCommand command =
       sweep.subcommand("run", "run open tasks on this machine with GNU parallel");
-  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("folder", options->folder, "folder of the sweep").value_name("DIR").required();
   command.option("--jobs", options->jobs, "parallel tasks, one core each (default: all cores)")
       .range(1, 1024);
   command.flag("--again", options->again, "check every task, also those marked done");

@@ -27,7 +27,7 @@ void run_now(const TaskArguments& options) {
 void add_sweep_task(ProgramCommand& sweep) {
   auto options = std::make_shared<TaskArguments>();
   ProgramCommand command = sweep.subcommand("task", "run one task by number (for schedulers)");
-  command.option("folder", options->folder, "folder of the sweep").required();
+  command.option("folder", options->folder, "folder of the sweep").value_name("DIR").required();
   command.option("number", options->number, "task number, from 1").range(1, 999'999).required();
   command.footer(
       "Can be repeated for any task on any machine: complete outputs are kept.\n"

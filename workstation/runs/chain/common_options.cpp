@@ -13,8 +13,10 @@ constexpr int kThreadsMax = 256;
 }
 
 void CommonOptions::add_config(ProgramCommand& command) {
-  command.option("--config", config_path,
-                 "configuration file (TOML); 'bess-train config' prints all keys");
+  command
+      .option("--config", config_path,
+              "configuration file (TOML); 'bess-train config' prints all keys")
+      .value_name("FILE");
 }
 
 void CommonOptions::add_seed_and_threads(ProgramCommand& command) {

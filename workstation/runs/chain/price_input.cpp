@@ -33,9 +33,11 @@ std::string built_in_market_provenance() {
 }
 
 void DayAheadInput::add(ProgramCommand& command) {
-  command.option("--day-ahead", path_,
-                 "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
-                 "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
+  command
+      .option("--day-ahead", path_,
+              "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
+              "'prices import --day-ahead' or 'prices simulate --day-ahead-out'")
+      .value_name("FILE");
 }
 
 std::shared_ptr<const DayAheadPublication> DayAheadInput::read(const MinuteSeries& settled,
@@ -105,6 +107,7 @@ std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
 void PriceInput::add(ProgramCommand& command) {
   command
       .option("--accept", accept_, "price checks to downgrade from errors to warnings, NAME[,NAME]")
+      .value_name("NAMES")
       .check([](const std::string& list) -> std::string {
         try {
           static_cast<void>(AcceptedFindings(list));
