@@ -320,7 +320,8 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, program)) {
   app_->require_subcommand(1);
-  app_->set_version_flag("--version", version);
+  app_->set_help_flag("-h,--help", "print this help and exit");
+  app_->set_version_flag("--version", version, "print the version and exit");
 }
 CommandLine::~CommandLine() = default;
 
