@@ -24,12 +24,6 @@ std::size_t terminal_columns() {
   return (is_known ? size.ws_col : kColumns) - 1;
 }
 
-/// Three digits or whole numbers, never an exponent.
-std::string rate_text(double per_s) {
-  if (per_s >= 100) return fmt::format("{:.0f}", per_s);
-  return per_s == 0 || per_s >= 0.001 ? fmt::format("{:.3g}", per_s) : "<0.001";
-}
-
 std::string duration_text(double seconds) {
   if (!(seconds < 100 * 3600)) return "days";
   const auto s = static_cast<std::int64_t>(seconds + 0.5);
