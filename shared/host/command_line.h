@@ -51,9 +51,9 @@ class ProgramOption {
 class ProgramCommand {
  public:
   explicit ProgramCommand(CLI::App* app) : app_(app) {}
-  ProgramCommand subcommand(const std::string& name, const std::string& description);
-  /// Heading in the help for subcommands that are declared already.
+  /// Heading in the help for subcommands declared before.
   void group(const std::string& heading, const std::vector<std::string>& names);
+  ProgramCommand subcommand(const std::string& name, const std::string& description);
   /// One of the subcommands must be given.
   void requires_subcommand();
   /// A name without dashes is a positional argument. Text, whole and decimal numbers, each also

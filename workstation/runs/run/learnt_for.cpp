@@ -88,7 +88,7 @@ std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
   const auto age = training_age_text({newest.view(), newest.view()}, date(now_utc_s).view());
   if (age.empty()) return {};
   return fmt::format(
-      "the latest day of these prices, {}, was {}; for newer prices: bess-train prices fetch "
+      "the newest day of these prices, {}, was {}; for newer prices: bess-train prices fetch "
       "--from {} --to {} --out FILE, then run --prices FILE",
       newest.view(), age.view(), date(now_utc_s - 365 * kSecondsPerDay).view(),
       date(now_utc_s - kSecondsPerDay).view());

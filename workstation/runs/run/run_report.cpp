@@ -403,7 +403,7 @@ void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
 std::string cycles_text(const StudentFile& student) {
   if (!student.cycles_per_day) return {};
   return fmt::format(
-      "expected full cycles per day: {:.1f} (validation days); limit them with [battery] "
+      "expect about {:.1f} full cycles a day (validation days); limit them with [battery] "
       "wear_eur_per_mwh or cycles_per_day_max\n",
       *student.cycles_per_day);
 }
