@@ -35,7 +35,7 @@ void read_battery_file(const std::string& path, BatteryParameters& battery) {
   }
   for (const char* of_workstation : {"wear_eur_per_mwh", "cycles_per_day_max", "initial_soc",
                                      "fade_percent_per_1000_cycles", "minimum_run_min"}) {
-    double ignored = 0;  // a simulator has none of it, and the workstation's file may
+    double ignored = 0;  // keys that only the workstation uses
     table.number(of_workstation, ignored, 0, 1'000);
   }
   table.finish();
@@ -78,7 +78,7 @@ void run_replay(const ReplayOptions& options, const BatteryServerSettings& serve
 
 namespace {
 
-/// Any free port; meters serve several; a fault lasts from its begin to its end.
+/// Any free port, several clients; a meter fault applies for its whole time span.
 BatteryServerSettings meter_defaults() {
   BatteryServerSettings settings;
   settings.port = 0;
@@ -116,10 +116,10 @@ const BatteryFaultInfo* find_fault(const std::string& name) {
 }
 
 std::string known_fault(const std::string& name) {
-  return find_fault(name) != nullptr ? "" : "there is no fault " + name;
+  return find_fault(name) != nullptr ? "" : "unknown fault " + name;
 }
 
-/// What the options say; then what the file says of it.
+/// Options first; the battery file overrides them.
 BatteryParameters battery_of(const BatteryOptions& options) {
   BatteryParameters battery = options.battery;
   battery.charge_efficiency = battery.discharge_efficiency =
@@ -128,7 +128,7 @@ BatteryParameters battery_of(const BatteryOptions& options) {
   return battery;
 }
 
-/// The meter at the house's connection, on a thread of its own until it is ended.
+/// Meter at the house connection, served by its own thread.
 class MeterThread {
  public:
   MeterThread(const BatteryOptions& options, SimulatedBattery& battery, const ScaledClock& clock,
@@ -137,9 +137,9 @@ class MeterThread {
     if (!load_register_map(options.meter_map_path, options.meter_variant, map_, error)) {
       throw UserError(error);
     }
-    if (!map_.is_meter) fail("--meter-map {}: not a meter's map", options.meter_map_path);
+    if (!map_.is_meter) fail("--meter-map {}: is not a meter map", options.meter_map_path);
     server_.emplace(options.meter, map_, battery, clock, &house);
-    if (pipe2(stop_, O_CLOEXEC) != 0) fail("no pipe for the meter");
+    if (pipe2(stop_, O_CLOEXEC) != 0) fail("cannot create a pipe for the meter");
     thread_ = std::thread([this] { server_->run(stop_[0]); });
   }
   MeterThread(const MeterThread&) = delete;
@@ -159,7 +159,7 @@ class MeterThread {
   std::thread thread_;
 };
 
-/// A fault that this bus does not have would be waited for in vain.
+/// Refuses faults that this kind of bus cannot have.
 void take_faults(const std::vector<std::string>& names, BatteryServerSettings& server) {
   const bool rtu = !server.serial_device.empty();
   for (const std::string& name : names) {
@@ -173,24 +173,25 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
 
 void require_span(const char* name, const FaultSchedule& faults) {
   if (faults.on_s > 0 && faults.off_s == 0) {
-    fail("--{}-on-s {:g}: needs --{}-off-s, so long it is away", name, faults.on_s, name);
+    fail("--{}-on-s {:g}: requires --{}-off-s", name, faults.on_s, name);
   }
   if (faults.from_s < faults.to_s) return;
-  fail("--{}-from-s {:g}: is not before --{}-to-s {:g}, so that no fault would strike", name,
-       faults.from_s, name, faults.to_s);
+  fail("--{}-from-s {:g}: must be before --{}-to-s {:g}; no fault would occur", name, faults.from_s,
+       name, faults.to_s);
 }
 
-/// What would be simulated in vain is said before anything listens.
+/// Checks the options before anything listens.
 void require_consistent(const BatteryOptions& options) {
   const BatteryParameters& battery = options.battery;
   if (!(battery.soc_min_frac < battery.soc_max_frac)) {
-    fail("--soc-min {:g}: is not below --soc-max {:g}", battery.soc_min_frac, battery.soc_max_frac);
+    fail("--soc-min {:g}: must be below --soc-max {:g}", battery.soc_min_frac,
+         battery.soc_max_frac);
   }
   require_span("fault", options.server.faults);
   require_span("meter-fault", options.meter.faults);
   if (!options.meter_map_path.empty() && options.meter.port != 0 &&
       options.meter.port == options.server.port && options.server.serial_device.empty()) {
-    fail("--meter-port {}: is the battery's own --port; give another", options.meter.port);
+    fail("--meter-port {}: is already the battery's --port; use another port", options.meter.port);
   }
   require_distinct({{"--record", options.record_path}}, {{"--map", options.map_path},
                                                          {"--meter-map", options.meter_map_path},
@@ -206,7 +207,7 @@ void run_battery(BatteryOptions& options) {
   take_faults(options.fault_names, options.server);
   take_faults(options.meter_fault_names, options.meter);
   const ScaledClock clock = options.clock.clock();
-  // Fails before serving rather than after a day.
+  // Fails before serving, not at the end of the run.
   if (!options.record_path.empty()) require_writable(options.record_path);
   if (!options.events_path.empty()) require_writable(options.events_path);
   static RegisterMap map;
@@ -216,7 +217,7 @@ void run_battery(BatteryOptions& options) {
   }
   const BatteryParameters battery = battery_of(options);
   if (battery.power_w_max > map.charge_w_max || battery.power_w_max > map.discharge_w_max) {
-    fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
+    fail("--power-w {}: exceeds the range of the map {}", battery.power_w_max, map.name.view());
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
   std::optional<MeteredHouse> house;
@@ -258,8 +259,8 @@ std::string footer() {
       "  bess-sim battery --port 1502 --house daily --meter-map edge/device/meters/sunspec.toml "
       "--meter-port 1503\n"
       "  bess-sim battery --port 1502 --replay inverter.jsonl\n"
-      "A serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
-      "--serial a here and device = \"b\" at the edge.\n"
+      "Serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
+      "--serial a here and device = \"b\" in the controller's configuration.\n"
       "Faults:\n";
   for (const BatteryFaultInfo& fault : battery_faults()) {
     text += fmt::format("  {:<20} {}\n", fault.name, fault.text);
@@ -269,36 +270,43 @@ std::string footer() {
 
 void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
   command.option("--host", server.host, "Numeric IPv4 address to listen on").ipv4().with_default();
-  command.option("--port", server.port, "TCP port, 0 = any free one")
+  command.option("--port", server.port, "TCP port; 0: any free port")
       .range(0, 65'535)
       .with_default();
-  command.option("--clients-max", server.clients_max, "More are refused, like the real device")
+  command.option("--clients-max", server.clients_max, "Maximum number of clients; more are refused")
       .range(1, 32)
       .with_default();
-  command.option("--serial", server.serial_device, "Serve RTU on this serial line instead")
+  command.option("--serial", server.serial_device, "Serial device for Modbus RTU, instead of TCP")
       .excludes("--host")
       .excludes("--port")
       .excludes("--clients-max");
-  command.option("--baud", server.baud, "Of the serial line").with_default().needs("--serial");
+  command.option("--baud", server.baud, "Baud rate of the serial line")
+      .with_default()
+      .needs("--serial");
   command
       .choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
-                    "none, even or odd")
+                    "Parity of the serial line: none, even or odd")
       .needs("--serial");
-  command.option("--stop-bits", server.stop_bits, "1 or 2").range(1, 2).needs("--serial");
-  command.option("--response-delay-ms", server.response_delay_ms, "Before every answer")
+  command.option("--stop-bits", server.stop_bits, "Stop bits: 1 or 2")
+      .range(1, 2)
+      .needs("--serial");
+  command.option("--response-delay-ms", server.response_delay_ms, "Delay before each response, ms")
       .range(0, 60'000);
 }
 
-/// From when to when a fault strikes, and whether it comes and goes.
+/// Time span of a fault, and its on-off cycle.
 void add_fault_span(ProgramCommand& command, const std::string& fault, FaultSchedule& faults) {
-  command.option(fault + "-from-s", faults.from_s, "Simulated seconds after the start")
+  command
+      .option(fault + "-from-s", faults.from_s, "Start of the fault, simulated s after the start")
       .non_negative()
       .needs(fault);
-  command.option(fault + "-to-s", faults.to_s, "And until when").non_negative().needs(fault);
-  command.option(fault + "-on-s", faults.on_s, "Comes and goes: so long it may strike")
+  command.option(fault + "-to-s", faults.to_s, "End of the fault, simulated s after the start")
+      .non_negative()
+      .needs(fault);
+  command.option(fault + "-on-s", faults.on_s, "Intermittent fault: on-time, s")
       .positive()
       .needs(fault);
-  command.option(fault + "-off-s", faults.off_s, "And then so long not")
+  command.option(fault + "-off-s", faults.off_s, "Intermittent fault: off-time, s")
       .positive()
       .needs(fault + "-on-s");
 }
@@ -308,98 +316,109 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   FaultSchedule& faults = server.faults;
   command
       .option("--fault", options.fault_names,
-              "Misbehave now and then; of several, one at random each time (see below)")
+              "Faults to inject, see below; with several, one at random each time")
       .check(known_fault)
       .value_name("NAME");
-  command.option("--fault-every", faults.every, "At every Nth chance")
+  command.option("--fault-every", faults.every, "Inject at every Nth opportunity")
       .range(1, 1'000'000)
       .with_default()
       .needs("--fault");
-  command.option("--fault-probability", faults.probability, "At each chance, instead of every")
+  command
+      .option("--fault-probability", faults.probability, "Probability at each opportunity, 0 to 1")
       .range(0.0, 1.0)
       .needs("--fault")
       .excludes("--fault-every");
-  command.option("--fault-seed", faults.seed, "Of what is random").with_default().needs("--fault");
+  command.option("--fault-seed", faults.seed, "Random seed of the faults")
+      .with_default()
+      .needs("--fault");
   add_fault_span(command, "--fault", faults);
-  command.option("--fault-period-s", faults.period_s, "Of what ends or replaces orders")
+  command
+      .option("--fault-period-s", faults.period_s,
+              "Interval of faults that end or replace orders, s")
       .range(1, 86'400)
       .with_default()
       .needs("--fault");
-  command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
+  command.option("--late-ms", server.late_ms, "Delay of the faults late and byte-gap, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
-  command.option("--drip-ms", server.drip_ms, "Between the bytes of drip")
+  command.option("--drip-ms", server.drip_ms, "Interval between bytes of the fault drip, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
-  command.option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
+  command
+      .option("--exception-code", server.exception_code,
+              "Modbus exception code: 1, 2, 3, 4, 6 or vendor code")
       .range(1, 255)
       .with_default()
       .needs("--fault");
 }
 
 void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
-  command.option("--map", options.map_path, "Register map (TOML): the device to act");
-  command.option("--variant", options.map_variant, "Of the map; default: its first");
-  command.option("--soc", options.soc_frac, "State of charge at start, 0..1")
+  command.option("--map", options.map_path, "Register map of the simulated device (TOML)");
+  command.option("--variant", options.map_variant, "Map variant (default: the first)");
+  command.option("--soc", options.soc_frac, "State of charge at start, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--power-w", options.battery.power_w_max, "Rated power").positive().with_default();
-  command.option("--capacity-wh", options.battery.capacity_wh, "Capacity")
+  command.option("--power-w", options.battery.power_w_max, "Rated power, W")
       .positive()
       .with_default();
-  command.option("--soc-min", options.battery.soc_min_frac, "The battery's own floor")
+  command.option("--capacity-wh", options.battery.capacity_wh, "Capacity, Wh")
+      .positive()
+      .with_default();
+  command.option("--soc-min", options.battery.soc_min_frac, "Battery's minimum SoC, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--soc-max", options.battery.soc_max_frac, "The battery's own ceiling")
+  command.option("--soc-max", options.battery.soc_max_frac, "Battery's maximum SoC, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--efficiency", options.round_trip_efficiency, "Round trip")
+  command.option("--efficiency", options.round_trip_efficiency, "Round-trip efficiency, 0 to 1")
       .range(0.01, 1.0)
       .with_default();
   command.option("--battery", options.battery_path,
-                 "Act [battery] of this file, as bess-train battery fit writes it");
+                 "File with battery parameters in [battery] (bess-train battery fit)");
   command
       .option("--time-constant-s", options.battery.response.time_constant_s,
-              "Its power follows an order as a first-order lag of so many seconds; 0 = at once")
+              "Time constant of the first-order power response, s; 0: immediate")
       .range(0.0, 600.0)
       .with_default();
   command.option("--record", options.record_path,
-                 "CSV of energy and SoC per simulated minute, written at exit");
+                 "CSV file of energy and SoC per simulated minute, written at exit");
   command.option("--events", options.events_path,
-                 "CSV of every order, and of how each ended, written at exit");
+                 "CSV file of every order and its end, written at exit");
 }
 
 void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
   command.option(
       "--replay", replay.path,
-      "Answer as this recorded device did (bess-edge record), by address and time; no other "
-      "option of battery, house or faults counts then");
+      "Replay a recording (bess-edge record) by address and time; other options of battery, "
+      "house and faults are ignored");
   command.flag("--accept-cut", replay.accept_cut,
-               "Replay a recording without its last line up to where it was cut");
+               "Accept a recording that ends without its last line");
 }
 
 void add_house_options(ProgramCommand& command, BatteryOptions& options) {
-  command.option("--house", options.house,
-                 "House behind the same meter: daily, watts, or a CSV file (minute_utc,house_w)");
-  command.option("--house-seed", options.house_seed, "Of --house daily")
+  command.option(
+      "--house", options.house,
+      "House load behind the same meter: daily, power in W, or CSV file (minute_utc,house_w)");
+  command.option("--house-seed", options.house_seed, "Random seed of --house daily")
       .with_default()
       .needs("--house");
   command
-      .option("--meter-map", options.meter_map_path,
-              "Act the meter of this map too (edge/device/meters); a battery map's own grid point "
-              "needs none")
+      .option(
+          "--meter-map", options.meter_map_path,
+          "Register map of a meter to simulate as well (edge/device/meters); not needed when the "
+          "battery map has a grid point")
       .needs("--house");
-  command.option("--meter-variant", options.meter_variant, "Of the map; default: its first")
+  command.option("--meter-variant", options.meter_variant, "Map variant (default: the first)")
       .needs("--meter-map");
-  command.option("--meter-port", options.meter.port, "TCP port, 0 = any free one")
+  command.option("--meter-port", options.meter.port, "TCP port of the meter; 0: any free port")
       .range(0, 65'535)
       .with_default()
       .needs("--meter-map");
   command
       .option("--meter-fault", options.meter_fault_names,
-              "The meter misbehaves, at every chance: silence, frozen, wrong-sign, grid-scaled ...")
+              "Meter faults, at every opportunity: silence, frozen, wrong-sign, grid-scaled, ...")
       .check(known_fault)
       .value_name("NAME")
       .needs("--meter-map");
@@ -411,7 +430,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
 void add_battery_command(ProgramCommand& app) {
   auto options = std::make_shared<BatteryOptions>();
   ProgramCommand command =
-      app.subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
+      app.subcommand("battery", "Simulate a Modbus battery (TCP or RTU) of any register map");
   command.footer(footer());
   add_bus_options(command, options->server);
   options->clock.add_to(command);

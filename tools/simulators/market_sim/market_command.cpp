@@ -25,9 +25,11 @@ struct MarketOptions {
 
 void check_coverage(const MarketView& view, std::int64_t now_utc_s) {
   if (now_utc_s >= view.first_utc_s() && now_utc_s <= view.last_utc_s()) return;
-  std::fprintf(stderr, "bess-sim market: note: %s is outside the file (%s to %s): no new rows\n",
-               utc_text(now_utc_s).c_str(), utc_text(view.first_utc_s()).c_str(),
-               utc_text(view.last_utc_s()).c_str());
+  std::fprintf(
+      stderr,
+      "bess-sim market: note: %s is outside the file (%s to %s): no rows will be published\n",
+      utc_text(now_utc_s).c_str(), utc_text(view.first_utc_s()).c_str(),
+      utc_text(view.last_utc_s()).c_str());
 }
 
 std::optional<AuctionView> auction_of(const MarketOptions& options, const ScaledClock& clock) {
@@ -35,7 +37,7 @@ std::optional<AuctionView> auction_of(const MarketOptions& options, const Scaled
   AuctionSettings settings = options.auction;
   std::int64_t at_s = 0;
   if (!parse_utc("1970-01-01T" + options.day_ahead_at + "Z", at_s)) {
-    fail("--day-ahead-at {}: not a local time such as 12:57", options.day_ahead_at);
+    fail("--day-ahead-at {}: is not a local time such as 12:57", options.day_ahead_at);
   }
   settings.published_min = static_cast<std::int32_t>(at_s / 60);
   settings.start_utc_s = clock.start_utc_ns() / kNanosecondsPerSecond;
@@ -67,18 +69,20 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
   constexpr const char *kFault = "--day-ahead-fault", *kFile = "--day-ahead";
   AuctionSettings& auction = options.auction;
   command.option(kFile, options.day_ahead_path,
-                 "Day-ahead file: published too, as energy-charts does (/price)");
+                 "Day-ahead file, published as energy-charts does (/price)");
   command
       .option("--day-ahead-at", options.day_ahead_at,
-              "Local time of the day before at which a day comes, unless the file says when")
+              "Local time of publication on the previous day, unless given in the file")
       .with_default()
       .needs(kFile);
   std::vector<std::pair<std::string, AuctionFault>> faults;
   for (std::size_t f = 1; f < std::size(kAuctionFaultNames); ++f) {
     faults.emplace_back(kAuctionFaultNames[f], static_cast<AuctionFault>(f));
   }
-  command.choice(kFault, auction.fault, faults, "Spoils days that come from now on").needs(kFile);
-  command.option("--day-ahead-fault-every", auction.every, "Every Nth day")
+  command
+      .choice(kFault, auction.fault, faults, "Fault of the day-ahead prices published from now on")
+      .needs(kFile);
+  command.option("--day-ahead-fault-every", auction.every, "Inject on every Nth day")
       .range(1, 1'000)
       .with_default()
       .needs(kFault);
@@ -86,10 +90,11 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
     command.option(name, value, help).non_negative().needs(kFault);
   };
   seconds("--day-ahead-fault-from-s", auction.from_s,
-          "Days that come so many simulated seconds after the start, or later");
-  seconds("--day-ahead-fault-to-s", auction.to_s, "And before this");
+          "Start of the day-ahead fault, simulated s after the start");
+  seconds("--day-ahead-fault-to-s", auction.to_s,
+          "End of the day-ahead fault, simulated s after the start");
   seconds("--day-ahead-mend-s", auction.mend_s,
-          "Simulated seconds after which a spoilt day is mended; default: never, late: 21600");
+          "Delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ void add_market_command(ProgramCommand& app) {
   auto options = std::make_shared<MarketOptions>();
   ProgramCommand command =
       app.subcommand("market",
-                     "A price server with the APIs of Elia (ods161, ods162, ods133) and "
+                     "Simulate a price server with the APIs of Elia (ods161, ods162, ods133) and "
                      "energy-charts (day-ahead)");
   command.footer(
       "Examples:\n"
@@ -109,15 +114,17 @@ void add_market_command(ProgramCommand& app) {
       "  bess-sim market --prices minutes.csv.gz --day-ahead day_ahead.csv.gz --port 8080 "
       "--utc-start 2025-03-28T12:00:00Z --day-ahead-fault half --day-ahead-mend-s 3600\n"
       "  curl 'http://127.0.0.1:8080/price?bzn=BE&start=2025-03-28&end=2025-03-29'");
-  command.option("--prices", options->prices_path, "Minute file, CSV or .csv.gz").required();
-  command.option("--host", options->server.host, "Address to listen on").with_default();
-  command.option("--port", options->server.port, "TCP port, 0 = any free one")
+  command.option("--prices", options->prices_path, "Minute file with the prices, CSV or .csv.gz")
+      .required();
+  command.option("--host", options->server.host, "Numeric IPv4 address to listen on")
+      .with_default();
+  command.option("--port", options->server.port, "TCP port; 0: any free port")
       .range(0, 65'535)
       .with_default();
   options->clock.add_to(command);
   command
       .option("--latency-s", options->latency_s,
-              "Simulated seconds from the end of a minute until its row is readable")
+              "Delay from the end of a minute to its publication, simulated s")
       .range(0.0, 3'600.0)
       .with_default();
   command.choice<MarketFault>("--fault", options->server.faults.fault,
@@ -129,25 +136,29 @@ void add_market_command(ProgramCommand& app) {
                                {"twice", MarketFault::kTwice},
                                {"frozen", MarketFault::kFrozen},
                                {"all", MarketFault::kAll}},
-                              "Misbehave now and then");
-  command.option("--fault-every", options->server.faults.every, "At every Nth request")
+                              "Fault to inject");
+  command.option("--fault-every", options->server.faults.every, "Inject at every Nth request")
       .range(1, 1'000'000)
       .with_default()
       .needs("--fault");
   command
-      .option("--fault-from-s", options->server.faults.from_s, "Simulated seconds after the start")
+      .option("--fault-from-s", options->server.faults.from_s,
+              "Start of the fault, simulated s after the start")
       .non_negative()
       .needs("--fault");
-  command.option("--fault-to-s", options->server.faults.to_s, "And until when")
+  command
+      .option("--fault-to-s", options->server.faults.to_s,
+              "End of the fault, simulated s after the start")
       .non_negative()
       .needs("--fault");
   add_day_ahead_options(command, *options);
   ProgramOption certificate = command.option("--tls-cert", options->server.tls_certificate,
-                                             "PEM certificate: serves HTTPS");
-  command.option("--tls-key", options->server.tls_key, "Its PEM key").needs("--tls-cert");
+                                             "PEM certificate; enables HTTPS");
+  command.option("--tls-key", options->server.tls_key, "PEM private key of the certificate")
+      .needs("--tls-cert");
   certificate.needs("--tls-key");
   command.flag("--close-each", options->server.close_each,
-               "Close the connection after each answer");
+               "Close the connection after each response");
   command.runs([options] { run_market(*options); });
 }
 

@@ -61,26 +61,32 @@ void print_text(const RunSettlement& s) {
   latency("price received to order read back", s.total);
 }
 
-/// Named and limited as the keys of bess-train's configuration, so that both count alike.
+/// Same names and ranges as the keys of bess-train's configuration.
 void add_costs(ProgramCommand& command, BatteryParameters& battery) {
   TradingCosts& costs = battery.costs;
   command
       .option("--import-adder-eur-per-mwh", costs.import_adder_eur_per_mwh,
-              "On top of the price of what is charged")
+              "Surcharge on charged energy, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
-  command.option("--import-percent", costs.import_percent, "The same, as a share of |price|")
+  command
+      .option("--import-percent", costs.import_percent,
+              "Surcharge on charged energy, % of the absolute price")
       .range(0.0, 100.0)
       .with_default();
   command
       .option("--export-fee-eur-per-mwh", costs.export_fee_eur_per_mwh,
-              "Off the price of what is discharged")
+              "Fee on discharged energy, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
-  command.option("--export-percent", costs.export_percent, "The same, as a share of |price|")
+  command
+      .option("--export-percent", costs.export_percent,
+              "Fee on discharged energy, % of the absolute price")
       .range(0.0, 100.0)
       .with_default();
-  command.option("--wear-eur-per-mwh", battery.wear_eur_per_mwh, "Of energy charged or discharged")
+  command
+      .option("--wear-eur-per-mwh", battery.wear_eur_per_mwh,
+              "Wear cost of energy charged or discharged, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
 }
@@ -89,20 +95,21 @@ void add_costs(ProgramCommand& command, BatteryParameters& battery) {
 
 void add_settle_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  ProgramCommand command = app.subcommand(
-      "settle", "Count a run's energy and money from the battery's record and from the edge's log");
-  command.option("--record", options->record, "Battery record (bess-sim battery --record)")
+  ProgramCommand command =
+      app.subcommand("settle", "Compare energy and money of a run: battery trace against edge log");
+  command.option("--record", options->record, "Battery trace, CSV (bess-sim battery --record)")
       .required();
-  command.option("--edge-log", options->edge_log, "The edge's CSV log").required();
+  command.option("--edge-log", options->edge_log, "Decision log, CSV (bess-edge log --csv)")
+      .required();
   command.option("--prices", options->prices, "Minute file with settled prices").required();
-  command.option("--power-w", options->battery.power_w_max, "Battery's power")
+  command.option("--power-w", options->battery.power_w_max, "Rated power, W")
       .positive()
       .with_default();
-  command.option("--capacity-wh", options->battery.capacity_wh, "Battery's capacity")
+  command.option("--capacity-wh", options->battery.capacity_wh, "Capacity, Wh")
       .positive()
       .with_default();
   add_costs(command, options->battery);
-  command.flag("--json", options->json, "One JSON object");
+  command.flag("--json", options->json, "Output as one JSON object");
   command.footer(
       "Example:\n"
       "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz\n"

@@ -7,13 +7,13 @@ namespace bess {
 
 void ClockOptions::add_to(ProgramCommand& app) {
   app.option("--utc-start", utc_start,
-             "UTC at the anchor, e.g. 2023-03-26T00:00:00Z; default: real time");
+             "UTC at the anchor, e.g. 2023-03-26T00:00:00Z (default: real time)");
   app.option("--time-scale", time_scale, "Simulated seconds per second (900: a day in 96 s)")
       .range(1, 100'000)
       .needs("--utc-start");
   app.option("--anchor-monotonic-ns", anchor_monotonic_ns,
-             "CLOCK_MONOTONIC at which the clock shows --utc-start; default: now. Give all "
-             "processes the same, from: bess-sim clock")
+             "CLOCK_MONOTONIC at --utc-start, ns (default: now); the same for all processes, from: "
+             "bess-sim clock")
       .non_negative()
       .needs("--utc-start");
 }
@@ -22,7 +22,7 @@ ScaledClock ClockOptions::clock() const {
   if (utc_start.empty()) return {};
   ScaledClock clock{.scale = time_scale};
   if (!parse_utc(utc_start, clock.anchor_utc_s)) {
-    fail("--utc-start {}: not a UTC instant such as 2023-03-26T00:00:00Z", utc_start);
+    fail("--utc-start {}: is not a UTC time such as 2023-03-26T00:00:00Z", utc_start);
   }
   clock.anchor_monotonic_ns =
       anchor_monotonic_ns != 0 ? anchor_monotonic_ns : clock_ns(CLOCK_MONOTONIC);

@@ -1,4 +1,4 @@
-// The options that put several processes on the same simulated clock (shared/scaled_clock.h).
+// Options that set several processes to the same simulated clock (shared/scaled_clock.h).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct ClockOptions {
 
   /// Declares --utc-start, --time-scale and --anchor-monotonic-ns.
   void add_to(ProgramCommand& app);
-  /// Throws UserError when they do not make sense. Without any of them: real time.
+  /// Real time without any of them. Throws UserError when they are inconsistent.
   [[nodiscard]] ScaledClock clock() const;
 };
 

@@ -1,5 +1,4 @@
-// The subcommands of bess-sim; each declares its options, its help with examples, and runs as a
-// callback.
+// Subcommands of bess-sim: each declares its options and help, and runs as a callback.
 #pragma once
 
 #include "shared/host/command_line.h"

@@ -1,5 +1,4 @@
-// bess-sim: the other two ends of the edge, a Modbus battery and a price server, in scaled time,
-// and the settlement of what they exchanged.
+// bess-sim: simulated Modbus battery and price server in scaled time, and the settlement of a run.
 //   exit 0 stopped   1 the input is bad or a port is in use   2 the command line is bad
 
 #include <cstdio>
@@ -15,8 +14,8 @@ namespace {
 void add_clock_command(bess::ProgramCommand& app) {
   static double in_s = 0;
   bess::ProgramCommand command = app.subcommand(
-      "clock", "Print CLOCK_MONOTONIC in ns: the common anchor of several simulated processes");
-  command.option("--in-s", in_s, "Seconds from now, so that all are up before it begins")
+      "clock", "Print CLOCK_MONOTONIC in ns, as common anchor of several simulated processes");
+  command.option("--in-s", in_s, "Offset from now, s, for the start of the processes")
       .range(0.0, 1.0 * bess::kSecondsPerDay);
   command.runs([] {
     const auto ahead_ns = static_cast<long long>(in_s * 1e9);

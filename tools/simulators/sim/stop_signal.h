@@ -1,4 +1,4 @@
-// SIGTERM and SIGINT as a file descriptor: the servers end their loops instead of dying half-way.
+// SIGTERM and SIGINT as a file descriptor, so that servers end their loops in order.
 #pragma once
 
 #include <pthread.h>
@@ -10,7 +10,7 @@ namespace bess {
 
 class StopSignal {
  public:
-  /// Construct before any thread is started, so that all of them leave the signals to this object.
+  /// Construct before any thread starts, so that all threads block these signals.
   StopSignal() {
     sigset_t set;
     sigemptyset(&set);

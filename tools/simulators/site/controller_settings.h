@@ -1,5 +1,5 @@
-// The configuration with which bess-edge drives the battery of a simulated site on the prices of
-// its market, and the scaled clock of both: for demonstrations, scenarios and tests of processes.
+// Configuration of bess-edge for a simulated battery and market, and their scaled clock: for
+// demonstrations, scenarios and tests of processes.
 #pragma once
 
 #include <fmt/core.h>
@@ -13,7 +13,7 @@
 
 namespace bess {
 
-// The simulated clock that all programs of a site share.
+// Simulated clock that all programs of the testbed share.
 
 struct SiteClock {
   std::int64_t start_utc_s = 0;
@@ -34,22 +34,22 @@ struct SiteClock {
   }
 };
 
-/// Lines of TOML, by their table; each whole, with its end.
+/// Lines of TOML by table, each with its line end.
 struct ControllerSettings {
   bool control = true;
-  std::string battery{};  ///< map, and where it is
+  std::string battery{};  ///< map and address
   std::string market = "http://127.0.0.1:8080";
-  std::string price{};  ///< beside the URL
+  std::string price{};  ///< keys other than the URL
   std::string guard{};
   std::string state = "folder = \"state\"\n";
-  std::string tables{};  ///< whole ones
+  std::string tables{};  ///< complete tables
   std::string csv = "edge.csv";
   std::optional<SiteClock> clock{};
 };
 
 std::string controller_settings(const ControllerSettings& settings);
 
-/// Of a market as bess-sim market plays it, without its end: "http://127.0.0.1:8080", "ods161".
+/// URL of a dataset of bess-sim market, such as "http://127.0.0.1:8080" and "ods161".
 std::string records_url(const std::string& market, const std::string& dataset);
 
 }  // namespace bess

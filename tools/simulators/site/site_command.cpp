@@ -1,5 +1,4 @@
-// bess-sim site: battery, market and the controller's configuration in one folder, until it is
-// stopped.
+// bess-sim site: testbed of battery, market and controller configuration in one folder.
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -24,7 +23,7 @@ struct SiteOptions {
   std::string folder, prices, day_ahead, map, program;
   ClockOptions clock;
   double in_s = 2;
-  std::string battery, market;        ///< options of theirs
+  std::string battery, market;        ///< options passed to them
   std::vector<std::string> settings;  ///< TABLE.KEY=VALUE
   bool is_watching = false;
 };
@@ -44,7 +43,7 @@ void set(Tables& tables, const std::string& text) {
   const std::string table = text.substr(0, dot);
   if (dot == std::string::npos || equals == std::string::npos || equals < dot ||
       !tables.contains(table)) {
-    fail("--set {}: TABLE.KEY=VALUE, of the tables battery, price, outlook, guard and state", text);
+    fail("--set {}: use TABLE.KEY=VALUE with table battery, price, outlook, guard or state", text);
   }
   tables[table][text.substr(dot + 1, equals - dot - 1)] = text.substr(equals + 1);
 }
@@ -86,12 +85,12 @@ void run_site(const SiteOptions& options) {
   const StopSignal stop;
   fs::create_directories(options.folder);
   if (options.clock.utc_start.empty())
-    fail("--utc-start is missing: a site lives in simulated time");
+    fail("--utc-start is missing: bess-sim site needs a simulated clock");
   const ScaledClock clock = options.clock.clock();
   const std::string program =
       options.program.empty() ? fs::read_symlink("/proc/self/exe").string() : options.program;
   SitePrograms programs(program, options.folder);
-  fs::remove(programs.file("edge.toml"));  // an earlier site's: this one is told when it is there
+  fs::remove(programs.file("edge.toml"));  // of an earlier run; its presence shows that both listen
   programs.clock = {.start_utc_s = clock.anchor_utc_s, .time_scale = clock.scale};
   programs.start_clock(options.in_s);
   if (options.clock.anchor_monotonic_ns != 0) {
@@ -121,10 +120,8 @@ void run_site(const SiteOptions& options) {
 
 void add_site_command(ProgramCommand& app) {
   auto options = std::make_shared<SiteOptions>();
-  ProgramCommand command = app.subcommand(
-      "site",
-      "A battery, a market, and the settings with which bess-edge drives the one on the "
-      "prices of the other");
+  ProgramCommand command =
+      app.subcommand("site", "Start a battery, a market and a matching configuration of bess-edge");
   command.footer(
       "Examples:\n"
       "  bess-sim site --folder site --prices minutes.csv --map edge/device/maps/alphaess.toml "
@@ -136,23 +133,27 @@ void add_site_command(ProgramCommand& app) {
       "--utc-start 2023-03-26T00:00:00Z \\\n"
       "    --battery \"--soc 0.3 --house daily\" --market \"--fault all --fault-every 7\" "
       "--set guard.soc_min=0.2\n"
-      "The folder gets edge.toml when both listen, battery.csv and orders.csv at the end, and what "
-      "they say.\n"
+      "Files in the folder: edge.toml once both listen, battery.csv and orders.csv at the end, and "
+      "their logs.\n"
       "Exit codes: 0 stopped, 1 bad input or port in use, 2 bad command line.");
-  command.option("--folder", options->folder, "Where all of it goes").required();
-  command.option("--prices", options->prices, "Minute file, CSV or .csv.gz").required();
-  command.option("--day-ahead", options->day_ahead, "Day-ahead file that the market publishes too");
-  command.option("--map", options->map, "Register map (TOML) of the battery").required();
+  command.option("--folder", options->folder, "Output folder").required();
+  command.option("--prices", options->prices, "Minute file with the prices, CSV or .csv.gz")
+      .required();
+  command.option("--day-ahead", options->day_ahead,
+                 "Day-ahead file that the market publishes as well");
+  command.option("--map", options->map, "Register map of the battery (TOML)").required();
   options->clock.add_to(command);
-  command.option("--in-s", options->in_s, "Simulated time begins so long after the start")
+  command.option("--in-s", options->in_s, "Delay until simulated time begins, s")
       .range(0.0, 1.0 * kSecondsPerDay)
       .with_default();
-  command.option("--battery", options->battery, "More options of bess-sim battery, in one word");
-  command.option("--market", options->market, "More options of bess-sim market, in one word");
-  command.option("--set", options->settings, "A key of edge.toml: guard.soc_max=0.9")
+  command.option("--battery", options->battery,
+                 "Options passed to bess-sim battery, one quoted argument");
+  command.option("--market", options->market,
+                 "Options passed to bess-sim market, one quoted argument");
+  command.option("--set", options->settings, "Key of edge.toml, e.g. guard.soc_max=0.9")
       .value_name("TABLE.KEY=VALUE");
-  command.option("--program", options->program, "bess-sim to start; default: this one");
-  command.flag("--no-control", options->is_watching, "The controller only watches");
+  command.option("--program", options->program, "Path of bess-sim (default: this program)");
+  command.flag("--no-control", options->is_watching, "Read-only controller (control = false)");
   command.runs([options] { run_site(*options); });
 }
 

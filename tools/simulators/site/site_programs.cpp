@@ -17,7 +17,7 @@ bool names(const std::vector<std::string>& options, const char* option) {
   return std::ranges::find(options, option) != options.end();
 }
 
-/// Of "... listening on HOST:PORT, ..."; of a serial line 1.
+/// Port in "... listening on HOST:PORT, ..."; 1 for a serial line.
 int port_in(const std::string& line) {
   const std::size_t colon = line.find(':', line.find("127.0.0.1"));
   return colon == std::string::npos ? 1 : std::atoi(line.c_str() + colon + 1);
@@ -27,7 +27,7 @@ int port_in(const std::string& line) {
 
 std::unique_ptr<ChildProcess> start_logged(std::vector<std::string> arguments,
                                            const std::string& log) {
-  // A small system has no setpriv: there it ends when it is told to.
+  // Without setpriv (small systems) the child does not end with its parent.
   constexpr const char* kShell =
       "log=$0; command -v setpriv >/dev/null && set -- setpriv --pdeathsig TERM \"$@\"; "
       "exec \"$@\" >>\"$log\" 2>&1";
@@ -102,7 +102,7 @@ std::unique_ptr<ChildProcess> SitePrograms::start(const std::string& name,
   arguments.insert(arguments.end(), shared.begin(), shared.end());
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::error_code ignored;
-  std::filesystem::remove(log_of(name), ignored);  // of an earlier site in this folder
+  std::filesystem::remove(log_of(name), ignored);  // of an earlier run in this folder
   return start_logged(arguments, log_of(name));
 }
 
@@ -112,7 +112,7 @@ std::string SitePrograms::listening(const std::string& name, const std::string& 
   constexpr useconds_t kLookUs = 2'000;
   const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + kWaitNs;
   while (clock_ns(CLOCK_MONOTONIC) < until_ns) {
-    const bool has_ended = process.has_ended();  // asked first: its last words count
+    const bool has_ended = process.has_ended();  // read first, so that its last lines count
     std::ifstream log(log_of(name));
     for (std::string line; std::getline(log, line);) {
       const bool is_whole = !log.eof();

@@ -1,5 +1,5 @@
-// The programs of a simulated site: bess-sim battery, with its house and its meter, and bess-sim
-// market, on free ports and one clock. They end with whoever started them, however that ends.
+// Programs of a testbed: bess-sim battery with house and meter, and bess-sim market, on free ports
+// and one clock. They end when the parent process ends.
 #pragma once
 
 #include <filesystem>
@@ -12,44 +12,43 @@
 
 namespace bess {
 
-/// A program whose output goes to a file: a pipe that nobody reads would stop it. It ends with this
-/// one.
+/// Starts a program with its output in a file: an unread pipe would block it. It ends with this
+/// process.
 std::unique_ptr<ChildProcess> start_logged(std::vector<std::string> arguments,
                                            const std::string& log);
-/// That is not empty; empty: there is none.
+/// Last line that is not empty; empty: none.
 std::string last_line_of(const std::string& log);
 
 class SitePrograms {
  public:
-  /// `simulators`: the program bess-sim. What they write and say goes to files of `folder`.
+  /// `simulators`: path of bess-sim. Output files and logs go to `folder`.
   SitePrograms(std::string simulators, std::string folder);
   SitePrograms(const SitePrograms&) = delete;
   SitePrograms& operator=(const SitePrograms&) = delete;
-  /// What a killed controller leaves where all controllers of a machine lock their batteries goes
-  /// too.
+  /// Also removes the battery locks that a killed controller leaves.
   ~SitePrograms();
 
-  /// Simulated time begins so long from now, for simulators that are started after this.
+  /// Simulated time begins `in_s` from now, for simulators started after this call.
   void start_clock(double in_s);
 
-  /// On any free port unless the options name one, or a serial line; recorded in battery.csv and
+  /// On any free port unless the options name a port or a serial line. Writes battery.csv and
   /// orders.csv. Throws UserError with its last line when it does not listen.
   void start_battery(const std::vector<std::string>& options);
-  /// Options say at least --prices.
+  /// The options must contain --prices.
   void start_market(const std::vector<std::string>& options);
 
-  /// As a person would: SIGTERM, also to one that stands still. Its exit code.
+  /// Sends SIGTERM, also to a paused process; returns its exit code.
   static int stop(ChildProcess& process);
 
-  /// File of the folder.
+  /// Path of a file in the folder.
   [[nodiscard]] std::string file(const std::string& name) const {
     return (folder_ / name).string();
   }
-  /// Of the newest one, "battery" or "market".
+  /// Log of the newest "battery" or "market".
   [[nodiscard]] std::string log_of(const std::string& name) const;
 
   SiteClock clock;
-  // Nobody listens at port 1 before a simulator does.
+  // No process listens on port 1.
   int battery_port = 1;
   int meter_port = 1;
   int market_port = 1;
