@@ -1,5 +1,5 @@
-# The second compiler and the sanitizers together, for what runs beside the battery; built in a
-# minute. Use: cmake -C toolchains/clang-asan-edge.cmake -S . -B build-edge-clang
+# Second compiler and sanitizers for the edge; builds in a minute.
+# Use: cmake -C toolchains/clang-asan-edge.cmake -S . -B build-edge-clang
 set(BESS_UNITY ON CACHE BOOL "")
 include(${CMAKE_CURRENT_LIST_DIR}/clang.cmake)
 set(BESS_SANITIZE "address,undefined" CACHE STRING "")

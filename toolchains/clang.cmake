@@ -1,7 +1,7 @@
-# The second compiler, same warnings as errors. Use: cmake -C toolchains/clang.cmake -S . -B
-# build-clang
+# Second compiler, same warnings as errors.
+# Use: cmake -C toolchains/clang.cmake -S . -B build-clang
 set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
-set(CMAKE_BUILD_TYPE Debug CACHE STRING "") # quick to build: it is about the warnings
+set(CMAKE_BUILD_TYPE Debug CACHE STRING "") # quick to build; only warnings matter
 set(BESS_NATIVE OFF CACHE BOOL "")
-set(BESS_UNITY OFF CACHE BOOL "") # each file by itself: an include that is missing shows
+set(BESS_UNITY OFF CACHE BOOL "") # detects missing includes

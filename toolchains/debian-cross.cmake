@@ -1,8 +1,8 @@
-# What the two Raspberry Pi toolchains share; included by them, not used by itself. They set
-#   BESS_TRIPLE          aarch64-linux-gnu, of the compiler and of the library folders
-#   BESS_DEBIAN_ARCH     arm64, of the sysroot that tools/sysroot makes
-#   BESS_QEMU            the emulator that runs the tests on this machine
-#   BESS_TARGET_FLAGS    above all the oldest processor that the programs must run on
+# Common part of the two Raspberry Pi toolchains, which include it and set
+#   BESS_TRIPLE          prefix of compiler and library folders, e.g. aarch64-linux-gnu
+#   BESS_DEBIAN_ARCH     architecture of the sysroot (tools/sysroot), e.g. arm64
+#   BESS_QEMU            emulator for the tests
+#   BESS_TARGET_FLAGS    compiler flags, mainly the oldest supported processor
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_C_COMPILER ${BESS_TRIPLE}-gcc)
 set(CMAKE_CXX_COMPILER ${BESS_TRIPLE}-g++)
@@ -14,7 +14,7 @@ set(BESS_SYSROOT "${CMAKE_CURRENT_LIST_DIR}/../build-sysroot-${BESS_DEBIAN_ARCH}
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES BESS_SYSROOT)
 cmake_path(ABSOLUTE_PATH BESS_SYSROOT NORMALIZE OUTPUT_VARIABLE CMAKE_SYSROOT)
 if(NOT EXISTS "${CMAKE_SYSROOT}/MANIFEST")
-  message(FATAL_ERROR "${CMAKE_SYSROOT}: no sysroot here; "
+  message(FATAL_ERROR "${CMAKE_SYSROOT}: no sysroot; "
                       "make it with: tools/sysroot --arch ${BESS_DEBIAN_ARCH}")
 endif()
 find_program(BESS_CROSS_COMPILER ${BESS_TRIPLE}-g++)
@@ -31,11 +31,11 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
 set(ENV{PKG_CONFIG_LIBDIR}
     ${CMAKE_SYSROOT}/usr/lib/${BESS_TRIPLE}/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
-# Libraries of libraries: the linker looks for them to resolve their symbols.
+# Indirect libraries, which the linker needs to resolve symbols.
 set(CMAKE_EXE_LINKER_FLAGS_INIT
     "-Wl,-rpath-link,${CMAKE_SYSROOT}/lib/${BESS_TRIPLE}:${CMAKE_SYSROOT}/usr/lib/${BESS_TRIPLE}")
 
-# ctest runs the tests in the emulator, where it is installed.
+# ctest runs the tests in the emulator, if installed.
 find_program(BESS_EMULATOR ${BESS_QEMU})
 if(BESS_EMULATOR)
   set(CMAKE_CROSSCOMPILING_EMULATOR ${BESS_EMULATOR} -L ${CMAKE_SYSROOT})

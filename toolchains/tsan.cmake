@@ -1,5 +1,4 @@
-# Thread sanitizer, for the programs that have threads: edge and simulators. The release's tests
-# start them:
+# Thread sanitizer for programs with threads: edge and simulators. Tests of the release start them:
 #   cmake -C toolchains/tsan.cmake -S . -B build-tsan && cmake --build build-tsan
 #   BESS_EDGE_UNDER_TEST=$PWD/build-tsan/bess-edge BESS_SIM_UNDER_TEST=$PWD/build-tsan/bess-sim \
 #     build/processes_test

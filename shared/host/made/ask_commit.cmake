@@ -1,5 +1,5 @@
-# Writes HEADER with the commit of the working folder, unless it says so already: GIVEN when that is
-# not empty, otherwise what git says, "unknown" without it. Changed files are told by "-dirty".
+# HEADER with the commit of the working folder, written only on a change: GIVEN if not empty, else
+# from git, else "unknown". The suffix "-dirty" marks changed files.
 set(commit "${GIVEN}")
 if(commit STREQUAL "")
   execute_process(COMMAND git describe --always --dirty --abbrev=12 --exclude=*

@@ -1,5 +1,5 @@
 # cmake -DOUTPUT=page_files.cpp -DHEADER=PATH "-DFILES=a.js|b.css" -P embed.cmake
-# The files as raw literals in one C++ source, by their names; HEADER declares page_file().
+# Files as raw literals in one C++ source; page_file() of HEADER finds them by name.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(delimiter embedded_file)
 set(literals "")
@@ -8,7 +8,7 @@ set(index 0)
 foreach(file ${FILES})
   file(READ "${file}" text)
   if(text STREQUAL "" OR text MATCHES "\\)${delimiter}\"")
-    message(FATAL_ERROR "${file}: is empty, or holds what ends a literal")
+    message(FATAL_ERROR "${file}: is empty, or contains the end of a literal")
   endif()
   get_filename_component(name "${file}" NAME)
   string(APPEND literals "constexpr std::string_view kFile${index} = "

@@ -39,7 +39,7 @@ refuses() {  # refuses WHAT LINE ARGUMENTS...
 head -c 100000 /dev/urandom >noise.img
 refuses "no image" "noise.img" noise.img "$card"
 refuses "a missing image" "absent.img: no such image" absent.img "$card"
-refuses "no device" "os.img: is no disk" os.img os.img
+refuses "no device" "os.img: is not a disk" os.img os.img
 refuses "a small disk" "has 8 MB, the image 25 MB" os.img "$small"
 mke2fs -q -F -t ext4 "$small"
 if mount "$small" mounted 2>/dev/null; then

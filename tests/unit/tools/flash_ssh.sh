@@ -147,7 +147,7 @@ refuses "no certificate" "a package without a certificate is not installed" \
   --package "$(made_up_package spoilt arm64 3.1)"
 spoil=''
 echo "no package" >noise.deb
-refuses "no package" "noise.deb: is no package of bess-edge" --package noise.deb
+refuses "no package" "noise.deb: is not a package of bess-edge" --package noise.deb
 refuses "a missing package" "absent.deb: no such package" --package absent.deb
 code=0
 flash --bogus || code=$?

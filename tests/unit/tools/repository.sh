@@ -54,7 +54,7 @@ refuses "an older version" "bess-edge_2.0_amd64.deb; --older"
 made_up_package spoilt amd64 3.0 >/dev/null
 mkdir no_gpg && printf '#!/bin/sh\ncase "$*" in *--clearsign*) exit 2 ;; esac\nexec %s "$@"\n' \
   "$(command -v gpg)" >no_gpg/gpg && chmod 755 no_gpg/gpg
-PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" "what is served is as it was"
+PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" "the served index is unchanged"
 packages_now() {
   grep -h ^Version: repository/dists/stable/main/binary-amd64/Packages | sort | tr '\n' ' '
 }

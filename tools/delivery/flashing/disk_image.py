@@ -1,5 +1,5 @@
-"""The two partitions of an image file, without root and without mounting: FAT for the boot by
-mtools, ext4 for the system by debugfs. What is written is read back. Used by tools/flash image."""
+"""Partitions of an image file, accessed without root and mounting: FAT boot partition with mtools,
+ext4 system partition with debugfs. Writes are verified. Used by tools/flash image."""
 import json
 import os
 import subprocess
@@ -7,11 +7,11 @@ import tempfile
 
 
 class Refused(Exception):
-    """One line for the person, with the mend."""
+    """Error message of one line, with the remedy."""
 
 
 def run(*command, text=None, check=True, binary=False):
-    """Output of a program; Refused with its last line when it fails."""
+    """Output of a program; raises Refused with its last line on failure."""
     data = text.encode() if isinstance(text, str) else text
     done = subprocess.run(command, input=data, capture_output=True)
     if check and done.returncode != 0:
@@ -21,20 +21,20 @@ def run(*command, text=None, check=True, binary=False):
 
 
 class Image:
-    """The two partitions of an image file: FAT for the boot, ext4 for the system."""
+    """FAT boot partition and ext4 system partition of an image file."""
 
     def __init__(self, path):
         self.path = path
         try:
             table = json.loads(run("sfdisk", "--json", path))["partitiontable"]
         except (Refused, ValueError, KeyError):
-            raise Refused("is no disk image: it has no partition table")
+            raise Refused("is not a disk image: no partition table")
         sector = int(table.get("sectorsize", 512))
         self.boot = self.root = None
         for part in table["partitions"]:
             start = int(part["start"]) * sector
             if start + int(part["size"]) * sector > os.path.getsize(path):
-                raise Refused("is not whole: its partition table names more than is there;"
+                raise Refused("is incomplete: its partition table exceeds its size;"
                               " download it again")
             with open(path, "rb") as file:
                 file.seek(start)
@@ -44,8 +44,8 @@ class Image:
             if self.root is None and len(head) == 2048 and head[1080:1082] == b"\x53\xef":
                 self.root = f"{path}?offset={start}"
         if self.boot is None or self.root is None:
-            raise Refused("has not the two partitions of Raspberry Pi OS, FAT and ext4:"
-                          " is it whole?")
+            raise Refused("lacks the FAT and ext4 partitions of Raspberry Pi OS:"
+                          " download it again")
 
     # Boot partition.
     def read_boot(self, name):
@@ -60,9 +60,9 @@ class Image:
         try:
             run("mcopy", "-o", "-i", self.boot, "-", f"::{name}", text=text)
         except Refused as refused:
-            raise Refused(f"{name} does not go onto the boot partition: {refused}")
+            raise Refused(f"{name} cannot be written to the boot partition: {refused}")
         if self.read_boot(name) != (text.encode() if isinstance(text, str) else text):
-            raise Refused(f"{name} reads back differently from the boot partition: is it full?")
+            raise Refused(f"{name} differs when read back: is the boot partition full?")
 
     # System partition.
     def debugfs(self, *commands, write=False):
@@ -91,7 +91,7 @@ class Image:
                      f"sif {path} gid 0", write=True)
 
     def write(self, path, data, mode=0o644):
-        """Owned by root; what is there is replaced. Read back."""
+        """Replaces the file, owned by root, and verifies it."""
         data = data.encode() if isinstance(data, str) else data
         self.make_folder(os.path.dirname(path))
         with tempfile.NamedTemporaryFile() as file:
@@ -102,13 +102,13 @@ class Image:
                          f"sif {path} uid 0", f"sif {path} gid 0"]
             self.debugfs(*commands, write=True)
         if self.read(path) != data:
-            raise Refused(f"{path} reads back differently: its system partition is full")
+            raise Refused(f"{path} differs when read back: its system partition is full")
 
     def link(self, path, target):
         self.make_folder(os.path.dirname(path))
         self.debugfs(f"symlink {path} {target}", write=True)
         if target not in self.debugfs(f"stat {path}"):
-            raise Refused(f"{path} reads back differently: its system partition is full")
+            raise Refused(f"{path} differs when read back: its system partition is full")
 
     def check(self):
         done = subprocess.run(["e2fsck", "-fn", self.root], capture_output=True)

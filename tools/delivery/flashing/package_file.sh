@@ -1,10 +1,9 @@
-# Sourced by the commands of tools/flash: which package is meant, and may it be installed at all.
-#   package_for ARCH RELEASE [FILE]   prints the file: FILE, or the newest that tools/package made
-#                             for both; RELEASE is as the machine's /etc/os-release names it
-#   require_whole FILE        dies unless its archive can be read to the end
-#   require_certified FILE    dies unless the package carries a proved student and the certificate
-#                             of just that one
-# They use die of the command that sources them.
+# Package selection and checks, sourced by the commands of tools/flash.
+#   package_for ARCH RELEASE [FILE]   prints FILE, or the newest package for both; RELEASE is the
+#                             codename in the machine's /etc/os-release
+#   require_whole FILE        fails unless the archive can be read to the end
+#   require_certified FILE    fails unless the package has a proved student with its certificate
+# They call die of the sourcing command.
 
 flashing_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 # shellcheck source=tools/delivery/packaging/release.sh
@@ -22,17 +21,17 @@ package_for() {
   fi
   [ -f "$file" ] || die "$file: no such package"
   [ "$(dpkg-deb -f "$file" Package 2>/dev/null)" = bess-edge ] ||
-    die "$file: is no package of bess-edge"
+    die "$file: is not a package of bess-edge"
   found=$(dpkg-deb -f "$file" Architecture)
   [ "$found" = "$1" ] || die "$file is for $found, the machine is $1; $make"
-  # Of a version without a mark apt judges by the dependencies.
+  # For a version without a mark, apt checks the dependencies.
   found=$(release_of "$file")
   [ "${found:-$release}" = "$release" ] ||
     die "$file is for $found, the machine has $release; $make"
   echo "$file"
 }
 
-# All of it is read: a package that lost its end is no package.
+# Reads the whole archive, to detect truncated packages.
 require_whole() {
   dpkg-deb --fsys-tarfile "$1" 2>/dev/null | tar -t >/dev/null 2>&1 ||
     die "${1##*/} is damaged: its archive cannot be read to the end"

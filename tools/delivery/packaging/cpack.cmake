@@ -1,10 +1,10 @@
-# The Debian packages, by CPack; tools/package is how to make them. It gives, when it calls cpack:
+# Debian packages by CPack, made with tools/package, which sets:
 #   BESS_PACKAGE_VERSION     0.1.0+20261122131500.g234f6f8
-#   BESS_EDGE_DEPENDS, BESS_WORKSTATION_DEPENDS    computed from what the programs are linked with
+#   BESS_EDGE_DEPENDS, BESS_WORKSTATION_DEPENDS    computed from the linked libraries
 include(${CMAKE_SOURCE_DIR}/edge/delivery/package/install.cmake)
 if(TARGET bess-train)
   install(TARGETS bess-train bess-sim DESTINATION bin COMPONENT workstation)
-  # Its own copies: on a workstation bess-edge need not be installed, and may be.
+  # Separate copies, because bess-edge may or may not be installed on a workstation.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/edge/device/maps ${CMAKE_SOURCE_DIR}/edge/device/meters
           DESTINATION share/bess-workstation
           COMPONENT workstation FILES_MATCHING PATTERN *.toml)
@@ -18,7 +18,7 @@ endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME bess)
-set(CPACK_PACKAGE_CONTACT "the committer")  # tools/package says who
+set(CPACK_PACKAGE_CONTACT "the committer")  # set by tools/package
 set(CPACK_PACKAGE_VENDOR bess)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -30,16 +30,16 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_DEBIAN_PACKAGE_HOMEPAGE "")
 set(CPACK_DEBIAN_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-# What runs is a copy of what dpkg delivers: edge/delivery/package.
+# The running version is a copy of the delivered files: edge/delivery/package.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/tools/delivery/packaging/arrange_delivery.cmake)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/tools/delivery/packaging/cpack_project.cmake)
 
 set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_NAME bess-edge)
 set(CPACK_DEBIAN_BESS-EDGE_DESCRIPTION "battery controller on the imbalance price
 Charges when the imbalance price is low and discharges when it is high, every
-two minutes, over Modbus, by a fixed-point policy that was proved over every
-input. With the notifier bess-notify, register maps, and a supervisor of its
-own upgrades: what does not confirm itself is rolled back.")
+two minutes, over Modbus, with a fixed-point policy that was proved over every
+input. Includes the notifier bess-notify, register maps, and supervised
+upgrades: a version that fails its probation is rolled back.")
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/delivery/package)
 set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_CONTROL_EXTRA
     "${package_dir}/preinst;${package_dir}/postinst;${package_dir}/prerm;${package_dir}/postrm;${package_dir}/conffiles")
@@ -47,8 +47,8 @@ set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 set(CPACK_DEBIAN_BESS-WORKSTATION_PACKAGE_NAME bess-workstation)
 set(CPACK_DEBIAN_BESS-WORKSTATION_DESCRIPTION "trains, corrects and proves the policy of bess-edge
 Learns a policy from imbalance prices, corrects it, proves it over every input
-and exports it as a C array (bess-train); plays battery and market so that all
-of it can be tried on one machine (bess-sim).")
+and exports it as a C array (bess-train); simulates battery and market for
+tests on one machine (bess-sim).")
 
 include(CPack)
 cpack_add_component_group(bess-edge)

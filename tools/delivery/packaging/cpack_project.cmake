@@ -1,4 +1,4 @@
-# Read by cpack itself: what tools/package found out once the programs were built.
+# Settings read by cpack: values that tools/package determined after the build.
 set(CPACK_PACKAGE_VERSION "$ENV{BESS_PACKAGE_VERSION}")
 set(CPACK_DEBIAN_PACKAGE_VERSION "$ENV{BESS_PACKAGE_VERSION}")
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "$ENV{BESS_PACKAGE_MAINTAINER}")

@@ -1,10 +1,10 @@
-# Sourced: the Debian releases that packages are made for.
-#   own_release     bookworm or trixie: this machine's. BESS_OWN_RELEASE is that of the machine
-#                   around the root of another release that tools/package works in.
-#   is_release R    whether R is one of them
-#   suffix_of R     of the folders of that release: nothing for this machine's own, else -trixie
-#   mark_of R       the end of its packages' versions: +deb12, +deb13
-#   release_of DEB  by that mark; nothing: the package has none
+# Debian releases of the packages; to be sourced.
+#   own_release     release of this machine, bookworm or trixie; in a root of another release
+#                   (tools/package) BESS_OWN_RELEASE, that of the host
+#   is_release R    whether R is supported
+#   suffix_of R     folder suffix of a release: empty for that of this machine, else -trixie
+#   mark_of R       version suffix of a release: +deb12, +deb13
+#   release_of DEB  release by that suffix; empty: no suffix
 own_release=${BESS_OWN_RELEASE:-$(. /etc/os-release && echo "${VERSION_CODENAME:-}")}
 [ "$own_release" = trixie ] || own_release=bookworm
 is_release() { [[ "$1" =~ ^(bookworm|trixie)$ ]]; }
