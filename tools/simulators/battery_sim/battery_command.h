@@ -1,4 +1,4 @@
-// The command bess-sim battery: acts the [battery] of a configuration, or replays a recording.
+// bess-sim battery: simulates the [battery] of a configuration, or replays a recording.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace bess {
 
-/// Sets what the file has of shared/battery_keys.h. Throws UserError naming file, line and key.
+/// Reads the keys of shared/battery_keys.h. Throws UserError naming file, line and key.
 void read_battery_file(const std::string& path, BatteryParameters& battery);
 
-// bess-sim battery --replay: serves a recorded device in place of a simulated one.
+// bess-sim battery --replay: serves a recorded device instead of a simulated one.
 
 struct ReplayOptions {
-  std::string path;  ///< empty: nothing is replayed
+  std::string path;  ///< empty: no replay
   bool accept_cut = false;
 };
 
-/// Serves until it is stopped. Throws UserError.
+/// Serves until stopped. Throws UserError.
 void run_replay(const ReplayOptions& options, const BatteryServerSettings& server,
                 const ClockOptions& clock);
 

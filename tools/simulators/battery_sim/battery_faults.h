@@ -1,7 +1,6 @@
-// What the simulated battery can do wrong, and when: the faults by name, each with what it does,
-// and a schedule that draws them (every Nth chance, or with a probability from a seed, within a
-// span of simulated time). How a fault looks on the bus: bus_reply; what it does to values:
-// battery_server.
+// Faults of the simulated battery, by name, and their schedule: at every Nth opportunity or with a
+// probability from a seed, within a span of simulated time. Effect on the bus: bus_reply; on
+// values: faulty_device.
 #pragma once
 
 #include <cstdint>
@@ -69,7 +68,7 @@ enum class BatteryFault : std::uint8_t {
   kGridOtherPhase,
 };
 
-/// A moment at which a fault may strike.
+/// Opportunity of a fault.
 enum class FaultChance : std::uint8_t { kConnect = 1, kRead = 2, kWrite = 4 };
 
 struct BatteryFaultInfo {
@@ -81,10 +80,10 @@ struct BatteryFaultInfo {
   bool rtu = true;
 };
 
-/// Of what a device shows of the grid's power: a meter, or a battery's own grid point.
+/// Faults of the displayed grid power: of a meter, or of a battery's grid point.
 constexpr bool is_of_grid(BatteryFault fault) { return fault >= BatteryFault::kGridScaled; }
 
-/// Of what acts by itself, every `period_s`, on the order in force.
+/// Faults that act on the order in force by themselves, every `period_s`.
 constexpr bool is_by_period(BatteryFault fault) {
   using enum BatteryFault;
   return fault == kOtherMaster || fault == kMasterStops || fault == kMasterMode ||
@@ -95,33 +94,32 @@ constexpr bool is_by_period(BatteryFault fault) {
 std::span<const BatteryFaultInfo> battery_faults();
 
 struct FaultSchedule {
-  std::vector<BatteryFault> faults;  ///< one of them at each strike
-  std::int32_t every = 10;           ///< at every Nth chance
-  double probability = 0;            ///< above 0: at each chance with this, instead of `every`
+  std::vector<BatteryFault> faults;  ///< one of them at a time
+  std::int32_t every = 10;           ///< at every Nth opportunity
+  double probability = 0;            ///< above 0: per opportunity, instead of `every`
   std::uint64_t seed = 1;
   double from_s = 0;  ///< simulated seconds since the simulator's start
   double to_s = std::numeric_limits<double>::infinity();
-  /// Within its span it comes and goes: so long it may strike, then so long not. 0 = it stays.
+  /// Intermittent within its span: on-time and off-time. 0: permanent.
   double on_s = 0;
   double off_s = 0;
-  std::int32_t period_s = 30;  ///< at which somebody, or the device, ends or replaces the order
+  std::int32_t period_s = 30;  ///< between ends or replacements of the order
 };
 
-/// Several schedules, each with its own chances and its own seed; where two strike at once, the
-/// first.
+/// Several schedules, each with its own opportunities and seed; the first one takes precedence.
 class FaultPlan {
  public:
   FaultPlan(const std::vector<FaultSchedule>& schedules, bool rtu);
   FaultPlan(const FaultSchedule& schedule, bool rtu) : FaultPlan(std::vector{schedule}, rtu) {}
 
-  /// The fault that strikes now, or kNone. `at_s` counts from the start.
+  /// Fault at this opportunity, or kNone. `at_s` counts from the start.
   BatteryFault draw(FaultChance chance, double at_s);
-  /// A fault that lasts is in force.
+  /// Whether a lasting fault is active.
   [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
-  /// One of those that act by themselves, every `period_s`.
+  /// Whether a fault acts by itself, every `period_s`.
   [[nodiscard]] bool acts() const;
   [[nodiscard]] std::int32_t period_s() const;
-  /// Which schedule the last fault was of.
+  /// Schedule of the last fault.
   [[nodiscard]] std::size_t struck() const { return struck_; }
   std::mt19937_64& random() { return parts_[struck_].random; }
 
@@ -137,7 +135,7 @@ class FaultPlan {
     BatteryFault draw(FaultChance chance, double at_s);
   };
 
-  std::vector<Part> parts_;  ///< one at least
+  std::vector<Part> parts_;  ///< at least one
   std::size_t struck_ = 0;
 };
 

@@ -60,7 +60,7 @@ std::vector<MinuteRecord> read_battery_record(const std::string& path) {
 
 std::vector<DispatchEvent> read_dispatch_events(const std::string& path) {
   const std::string text = read_file(path);
-  if (std::ranges::count(text, '\n') < 2) return {};  // it was never given an order
+  if (std::ranges::count(text, '\n') < 2) return {};  // no order was ever given
   const CsvTable table(text, path);
   const std::size_t utc = table.column("utc_ms"), event = table.column("event");
   const std::size_t power = table.column("power_w"), duration = table.column("duration_s");
@@ -68,7 +68,7 @@ std::vector<DispatchEvent> read_dispatch_events(const std::string& path) {
   std::vector<DispatchEvent> events;
   for (std::size_t r = 0; r < table.row_count(); ++r) {
     const auto kind = std::ranges::find(kKindNames, table.text(r, event));
-    if (kind == kKindNames.end()) fail("{}: an event \"{}\"", path, table.text(r, event));
+    if (kind == kKindNames.end()) fail("{}: unknown event \"{}\"", path, table.text(r, event));
     events.push_back({.utc_ns = static_cast<std::int64_t>(table.number(r, utc)) * 1'000'000,
                       .kind = static_cast<DispatchEvent::Kind>(kind - kKindNames.begin()),
                       .power_w = table.number(r, power),

@@ -1,6 +1,6 @@
-// The battery's own account of what it exchanged: one CSV row per simulated minute, to be held
-// against the edge's log and the market. Written beside and renamed, so a file under its name is
-// always complete.
+// Battery trace: energy that the battery exchanged, one CSV row per simulated minute, for
+// comparison with the decision log and the market. Written to a temporary file and renamed, so it
+// is always complete.
 #pragma once
 
 #include <string>
@@ -15,11 +15,10 @@ namespace bess {
 void write_battery_record(const std::string& path, const std::vector<MinuteRecord>& minutes,
                           const HouseLoad* house = nullptr);
 
-/// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order,
-/// stop, expiry).
+/// `utc_ms,event,power_w,duration_s,soc`: every order and its end (order, stop, expiry).
 void write_dispatch_events(const std::string& path, const SimulatedBattery& battery);
 
-/// What the two have written, again. Throws UserError naming file and line.
+/// Read both files. Throw UserError naming file and line.
 std::vector<MinuteRecord> read_battery_record(const std::string& path);
 std::vector<DispatchEvent> read_dispatch_events(const std::string& path);
 

@@ -25,7 +25,7 @@ std::uint16_t word_at(const BusRequest& request, int offset) {
   return static_cast<std::uint16_t>(request.bytes[at] << 8 | request.bytes[at + 1]);
 }
 
-/// False for a function that no recording holds.
+/// False for a function that recordings do not have.
 bool read_request(const BusRequest& request, BusExchange& exchange) {
   exchange.unit = request.unit();
   exchange.function = static_cast<std::uint8_t>(request.function());
@@ -94,7 +94,7 @@ namespace {
 constexpr int kBytesMax = 256;  ///< unit, PDU of 253, CRC
 constexpr int kBytesMin = 4;
 
-/// How many more bytes the frame has; its seventh tells at the latest.
+/// Missing bytes of the frame; known after seven bytes at most.
 int missing_bytes(const BusRequest& request) {
   if (request.size < 7) return 7 - request.size;
   switch (request.function()) {
@@ -109,8 +109,8 @@ int missing_bytes(const BusRequest& request) {
   }
 }
 
-/// Over a whole frame, its CRC included, it is 0. Not the edge's own: two ends that share it share
-/// its mistakes.
+/// 0 over a complete frame with its CRC. Independent of the edge's implementation, so that errors
+/// do not cancel.
 std::uint16_t crc_of(const BusRequest& request) {
   std::uint16_t crc = 0xFFFF;
   for (int i = 0; i < request.size; ++i) {
@@ -141,7 +141,7 @@ SerialRead read_serial_request(int fd, int byte_timeout_ms, BusRequest& request)
 
 namespace {
 
-constexpr int kByteTimeoutMs = 500;  ///< of a frame on a serial line, as libmodbus has it
+constexpr int kByteTimeoutMs = 500;  ///< within a frame on a serial line, as in libmodbus
 
 }  // namespace
 
@@ -182,9 +182,9 @@ void BatteryServer::listen_tcp() {
 }
 
 void BatteryServer::open_serial() {
-  modbus_set_slave(context_.get(), map_.unit);  // libmodbus wants one; all are served
+  modbus_set_slave(context_.get(), map_.unit);  // required by libmodbus; all units are served
   if (modbus_connect(context_.get()) != 0) {
-    fail("{}: cannot open this serial line: {}", settings_.serial_device, std::strerror(errno));
+    fail("{}: cannot open the serial line: {}", settings_.serial_device, std::strerror(errno));
   }
   clients_.push_back({.fd = modbus_get_socket(context_.get())});
 }
@@ -197,7 +197,7 @@ void BatteryServer::run(int stop_fd) {
     for (const Client& c : clients_) events.push_back({.fd = c.fd, .events = POLLIN, .revents = 0});
     if (poll(events.data(), events.size(), -1) < 0 && errno != EINTR) return;
     if (events[0].revents != 0) break;
-    // Clients first: a master that closed and came back must not be refused as the second one.
+    // Clients first: a reconnecting master must not be refused as a second client.
     for (std::size_t i = 0; i + 2 < events.size(); ++i) {
       if (events[i + 2].revents != 0) serve(clients_[i]);
     }
@@ -223,11 +223,12 @@ void BatteryServer::close_client(Client& client, bool reset) {
   client.fd = -1;
 }
 
-/// False: nothing to answer.
+/// False: no request to answer.
 bool BatteryServer::receive(Client& client, BusRequest& request) {
   if (rtu_) {
     const SerialRead read = read_serial_request(client.fd, kByteTimeoutMs, request);
-    if (read == SerialRead::kGone) fail("{}: the serial line is gone", settings_.serial_device);
+    if (read == SerialRead::kGone)
+      fail("{}: the serial line has disappeared", settings_.serial_device);
     return read == SerialRead::kRequest;
   }
   request.header = kTcpHeaderBytes;
@@ -240,7 +241,7 @@ bool BatteryServer::receive(Client& client, BusRequest& request) {
 void BatteryServer::serve(Client& client) {
   BusRequest request{};
   if (!receive(client, request)) return;
-  // Another unit, or a connection that has gone dead: silence, as on a bus.
+  // Other unit or half-open connection: no answer, as on a bus.
   const bool is_here = recorded_ != nullptr ? recorded_->serves_unit(request.unit())
                                             : device_->serves_unit(request.unit());
   if (!is_here || client.half_open) return;
@@ -264,7 +265,7 @@ void BatteryServer::answer_as_recorded(Client& client, const BusRequest& request
     case BusOutcome::kAnswered:
       break;
   }
-  // What was wrong with a bad reply is not known.
+  // The recording does not contain the fault of a bad reply.
   const bool is_bad = recorded.outcome == BusOutcome::kBadReply;
   const BatteryFault fault = is_bad ? BatteryFault::kWrongUnit : BatteryFault::kNone;
   send(client, device_->frame(request, ReplayedBus::content(recorded), fault));
@@ -311,7 +312,7 @@ void BatteryServer::drip(Client& client, const Bytes& bytes) {
   }
 }
 
-/// False when the simulator is to stop.
+/// False when a stop was requested.
 bool BatteryServer::wait(std::int32_t ms) const {
   pollfd stop{.fd = stop_fd_, .events = POLLIN, .revents = 0};
   return ms <= 0 || poll(&stop, 1, ms) == 0;

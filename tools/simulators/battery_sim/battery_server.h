@@ -1,6 +1,5 @@
-// The bus side of the simulated battery, TCP or a serial line: takes requests, lets the device
-// answer, and misbehaves by schedule. One client at a time like the real device, unless told
-// otherwise.
+// Bus server of the simulated battery, TCP or serial line: receives requests, lets the device
+// answer, and injects scheduled faults. By default one client at a time, like the real device.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -21,20 +20,18 @@
 
 namespace bess {
 
-// A recorded device on the simulator's bus: requests as libmodbus received them -> what the device
-// did, at what time of the recording, after what latency.
+// Recorded device on the bus of the simulator: request -> recorded answer and latency.
 
 class ReplayedBus {
  public:
-  /// In simulated time a request has the recording's time; in real time the first request is made
-  /// the recording's first. `device` must outlive this object.
+  /// In simulated time a request has the time of the recording; in real time the first request
+  /// corresponds to its first exchange. `device` must outlive this object.
   ReplayedBus(RecordedDevice& device, const ScaledClock& clock) : device_(device), clock_(clock) {}
 
   [[nodiscard]] bool serves_unit(std::int32_t unit) const { return device_.has_unit(unit); }
-  /// What came of it. Prints one line where the recording has no answer.
+  /// Recorded result. Prints one line if the recording has none.
   BusExchange answer(const BusRequest& request);
-  /// How long that took, in wall time: a recording in real time that is replayed faster has shorter
-  /// latencies.
+  /// Wall time of the answer; a recording replayed faster has shorter latencies.
   [[nodiscard]] std::int32_t latency_ms(const BusExchange& answer) const;
 
   /// Unit and PDU of a good reply.
@@ -43,26 +40,26 @@ class ReplayedBus {
  private:
   RecordedDevice& device_;
   ScaledClock clock_;
-  std::int64_t shift_ns_ = 0;  ///< from now to the recording's time
+  std::int64_t shift_ns_ = 0;  ///< from now to the time of the recording
   bool has_begun_ = false;
 };
 
-// Requests of a serial line: whole frames, whichever unit they are for. libmodbus reads those of
-// one unit alone, and takes what follows a request to another for that one's reply.
+// Requests on a serial line: complete frames for any unit. libmodbus reads frames of one unit only,
+// and takes the frame after a request to another unit for its reply.
 
 enum class SerialRead : std::uint8_t {
   kRequest,
-  kNoise,  ///< not whole in time, or its CRC is wrong: what was on the line is thrown away
-  kGone,   ///< the line itself
+  kNoise,  ///< incomplete in time, or wrong CRC: input is discarded
+  kGone,   ///< the line has disappeared
 };
 
-/// Waits `byte_timeout_ms` for each next byte of a frame. Calls for function 3, 4, 6 and 16 are
-/// known by their length, others end with such a silence.
+/// Waits `byte_timeout_ms` for each next byte of a frame. Functions 3, 4, 6 and 16 have a known
+/// length; other frames end with this silence.
 SerialRead read_serial_request(int fd, int byte_timeout_ms, BusRequest& request);
 
 struct BatteryServerSettings {
   std::string host = "127.0.0.1";
-  std::int32_t port = 1502;  ///< 0 = any free one
+  std::int32_t port = 1502;  ///< 0: any free port
   std::int32_t clients_max = 1;
   std::string serial_device;  ///< not empty: RTU instead of TCP
   std::int32_t baud = 9'600;
@@ -78,7 +75,7 @@ struct BatteryServerSettings {
 class BatteryServer {
  public:
   /// Binds and listens, or opens the line. Throws UserError when the port is in use.
-  /// With a house the map's grid point shows it, and a meter's map makes this a meter.
+  /// With a house the grid point of the map includes it; a meter map makes this a meter.
   BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                 SimulatedBattery& battery, const ScaledClock& clock, MeteredHouse* house = nullptr);
   BatteryServer(const BatteryServer&) = delete;
@@ -86,7 +83,7 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
-  /// From now on every request is answered as recorded; the registers stay as they are.
+  /// Answers all further requests as recorded; the registers are unchanged.
   void replay(ReplayedBus& recorded) { recorded_ = &recorded; }
   /// Serves until `stop_fd` becomes readable. Throws UserError when the serial line disappears.
   void run(int stop_fd);

@@ -18,7 +18,7 @@ Bytes random_bytes(std::mt19937_64& random) {
   return bytes;
 }
 
-/// Faults of unit, function, echo or count, on the unit and what follows.
+/// Faults of unit, function, echo or count; `content` begins with the unit.
 void change_content(BatteryFault fault, Bytes& content) {
   switch (fault) {
     case BatteryFault::kWrongUnit:
@@ -46,7 +46,8 @@ void change_content(BatteryFault fault, Bytes& content) {
 
 BusReply::BusReply(_modbus* context, bool rtu)
     : context_(context), rtu_(rtu), header_(rtu ? 0 : kTcpHeaderBytes) {
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tap_) != 0) fail("no socket pair");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tap_) != 0)
+    fail("cannot create a socket pair");
 }
 
 BusReply::~BusReply() {
@@ -75,7 +76,7 @@ Bytes BusReply::spoil(const BusRequest& request, Bytes reply, BatteryFault fault
     case BatteryFault::kWrongAddress:
     case BatteryFault::kWrongValue:
     case BatteryFault::kFewerRegisters: {
-      if (is_exception) return reply;  // nothing in it to change
+      if (is_exception) return reply;  // no content to change
       Bytes content(reply.begin() + header_, reply.end() - (rtu_ ? kCrcBytes : 0));
       change_content(fault, content);
       return frame(request, content);
@@ -102,7 +103,7 @@ Bytes BusReply::spoil(const BusRequest& request, Bytes reply, BatteryFault fault
   }
 }
 
-/// libmodbus frames any function's bytes; over TCP it numbers them 0, the request's number follows.
+/// libmodbus frames any function; over TCP with transaction 0, replaced by that of the request.
 Bytes BusReply::frame(const BusRequest& request, const Bytes& unit_and_pdu) {
   modbus_set_socket(context_, tap_[0]);
   modbus_send_raw_request(context_, unit_and_pdu.data(), static_cast<int>(unit_and_pdu.size()));

@@ -1,6 +1,6 @@
-// The bytes of an answer: libmodbus makes every frame, so that the edge's own framing is checked
-// against an independent implementation; faults then change what it made. libmodbus writes into a
-// socket pair instead of the client's connection; what comes out at its other end is the frame.
+// Bytes of an answer. libmodbus makes every frame, as an independent check of the edge's framing;
+// faults then change it. libmodbus writes into a socket pair instead of the client's connection,
+// and the frame is read from its other end.
 #pragma once
 
 #include <cstdint>
@@ -40,12 +40,12 @@ class BusReply {
   BusReply& operator=(const BusReply&) = delete;
   ~BusReply();
 
-  /// The right answer; a write changes `registers`.
+  /// Correct answer; a write changes `registers`.
   Bytes answer(const BusRequest& request, _modbus_mapping_t& registers);
   Bytes exception(const BusRequest& request, int code);
-  /// Any answer: unit, function and what follows, framed.
+  /// Frame of any answer, from unit and PDU.
   Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu);
-  /// The right answer changed by a fault of its bytes; others leave it as it is.
+  /// Changes a correct answer by a fault of its bytes; other faults have no effect.
   Bytes spoil(const BusRequest& request, Bytes reply, BatteryFault fault, std::mt19937_64& random);
 
  private:

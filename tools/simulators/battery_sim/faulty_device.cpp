@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kAddressPage = 0x1000;
 
-/// Addresses are served up to the end of the last point's page: beyond is "illegal data address".
+/// Addresses up to the end of the last point's page; beyond: "illegal data address".
 int served_addresses(const RegisterMap& map) {
   const int end = RegisterImage::address_end(map);
   return std::min((end + kAddressPage - 1) / kAddressPage * kAddressPage, 0x1'0000);
@@ -70,7 +70,7 @@ void FaultyDevice::advance(std::int64_t utc_ns) {
   battery_.advance(utc_ns);
 }
 
-/// Holding and input registers of one address are two things on some devices.
+/// Some devices have different holding and input registers at one address.
 void FaultyDevice::make_registers() {
   registers_.resize(static_cast<std::size_t>(served_addresses(map_)));
   input_registers_.resize(registers_.size());
@@ -91,7 +91,7 @@ void FaultyDevice::refresh(std::int64_t utc_ns) {
   image_->refresh(utc_ns);
 }
 
-/// Of the ordered power that flows.
+/// Share of the ordered power that flows.
 double FaultyDevice::gain(std::int64_t utc_ns) const {
   constexpr std::pair<BatteryFault, double> kGains[] = {{BatteryFault::kPartPower, 0.3},
                                                         {BatteryFault::kExcessPower, 2.0},
@@ -114,8 +114,8 @@ void FaultyDevice::show_grid_as_of(std::int64_t utc_ns) {
                             .other_phase = lasts(BatteryFault::kGridOtherPhase)});
 }
 
-/// What another master did between two requests is done at its own time; other lasting faults come
-/// into force with the next request.
+/// Actions of another master between two requests happen at their own time; other lasting faults
+/// begin with the next request.
 void FaultyDevice::live_until(std::int64_t utc_ns) {
   show_grid_as_of(utc_ns);
   if (map_.is_meter) return;
@@ -166,13 +166,13 @@ void FaultyDevice::act_on_order(std::int64_t utc_ns) {
   }
 }
 
-/// What a healthy battery answers, and what a write does to it.
+/// Answer of a healthy battery, and the effect of a write.
 Bytes FaultyDevice::right_answer(const BusRequest& request, bool keep_registers) {
   std::vector<std::uint16_t> before;
   if (keep_registers) before = registers_;
   Bytes bytes = reply_->answer(request, mapping_);
   if (keep_registers) {
-    std::copy(before.begin(), before.end(), registers_.begin());  // image_ holds a view
+    std::copy(before.begin(), before.end(), registers_.begin());  // image_ has a view of them
   } else if (request.is_write() &&
              request.address() + request.write_count() <= mapping_.nb_registers) {
     const auto plant = hold_plant();

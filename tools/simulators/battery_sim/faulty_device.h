@@ -1,6 +1,5 @@
-// The simulated battery (or meter) behind its bus, without the bus: registers that answer, and the
-// faults that change what they hold or what is answered. Between battery_server, which has the
-// sockets, or whoever has another bus, and register_image. Time is given with every call.
+// Simulated battery or meter without its bus: registers, and the faults of their values and of the
+// answers. Layer between a bus (battery_server) and register_image. Every call has a time argument.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -22,27 +21,27 @@ namespace bess {
 class FaultyDevice {
  public:
   /// All but the schedule must outlive this object. `context` makes the frames; with a `house` the
-  /// map's grid point shows it, and a meter's map makes this a meter.
+  /// grid point of the map includes it, and a meter map makes this a meter.
   FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, modbus_t* context,
                const std::vector<FaultSchedule>& faults, bool rtu, std::int64_t start_utc_ns,
                MeteredHouse* house = nullptr);
 
   [[nodiscard]] bool serves_unit(int unit) const;
-  /// A new connection comes in.
+  /// Handles a new connection.
   BatteryFault on_connect(std::int64_t utc_ns);
-  /// A request comes in: lasting faults come into force, and the registers are brought up to date.
-  /// Returns how it is to be answered.
+  /// Handles a request: applies lasting faults and updates the registers. Returns the fault of its
+  /// answer.
   BatteryFault on_request(const BusRequest& request, std::int64_t utc_ns);
-  /// Which of the schedules the last fault was of.
+  /// Schedule of the last fault.
   [[nodiscard]] std::size_t struck() const { return plan_.struck(); }
-  /// The bytes of the answer, written registers acted on. A late one is given when it is due.
+  /// Bytes of the answer, after the effect of a write. Call for a late answer when it is due.
   Bytes answer(const BusRequest& request, BatteryFault fault, std::int64_t utc_ns);
   Bytes exception(const BusRequest& request, int code) { return reply_->exception(request, code); }
-  /// Any answer, framed; its bytes changed by `fault`.
+  /// Frame of any answer, changed by `fault`.
   Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu, BatteryFault fault) {
     return reply_->spoil(request, reply_->frame(request, unit_and_pdu), fault, plan_.random());
   }
-  /// Brings the battery to an instant.
+  /// Advances the battery to an instant.
   void advance(std::int64_t utc_ns);
 
  private:
@@ -62,7 +61,7 @@ class FaultyDevice {
 
   const RegisterMap& map_;
   SimulatedBattery& battery_;
-  MeteredHouse* house_;  ///< null: the battery is nobody else's
+  MeteredHouse* house_;  ///< null: no other thread uses the battery
   std::int64_t start_utc_ns_;
   std::vector<std::uint16_t> registers_;  ///< holding
   std::vector<std::uint16_t> input_registers_;
@@ -70,7 +69,7 @@ class FaultyDevice {
   std::unique_ptr<RegisterImage> image_;
   std::unique_ptr<BusReply> reply_;
   FaultPlan plan_;
-  std::int64_t next_action_ns_;  ///< UTC: of another master, or of the device, on the order
+  std::int64_t next_action_ns_;  ///< UTC of the next action on the order
 };
 
 }  // namespace bess

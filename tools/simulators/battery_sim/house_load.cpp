@@ -21,15 +21,15 @@ bool parse_watts(std::string_view text, double& power_w) {
   return error == std::errc{} && end == text.data() + text.size() && std::isfinite(power_w);
 }
 
-/// One day's load, drawn.
+/// Load of one day, drawn at random.
 class Day {
  public:
   Day(std::span<double> minutes, std::mt19937_64& random) : minutes_(minutes), random_(random) {}
 
   void draw() {
     for (int m = 0; m < kMinutesOfDay; ++m) minutes_[m] = 180 + (m % 45 < 15 ? 90 : 0);
-    run(390, 60, 250, 60);                                // lights and radio, in the morning
-    run(1'020, 60, 350, 300);                             // and in the evening
+    run(390, 60, 250, 60);                                // light and radio, morning
+    run(1'020, 60, 350, 300);                             // evening
     for (int i = 0; i < 4; ++i) run(400, 800, 2'000, 4);  // kettle, coffee
     if (chance(0.8)) cook();
     if (chance(0.4)) run(480, 600, 2'100, 25);    // washing machine, heating
@@ -43,14 +43,14 @@ class Day {
   }
   [[nodiscard]] int drawn(int count) { return std::uniform_int_distribution<>(0, count)(random_); }
 
-  /// Something that begins within `spread` minutes from `from` on.
+  /// Appliance that starts within `spread` minutes after `from`.
   void run(int from, int spread, double power_w, int minutes) {
     const int begin = from + drawn(spread);
     const int end = std::min(begin + minutes, kMinutesOfDay);
     for (int m = begin; m < end; ++m) minutes_[m] += power_w;
   }
 
-  /// Oven and hob, by thermostat.
+  /// Oven and hob, with thermostat.
   void cook() {
     const int begin = 1'050 + drawn(90);
     for (int m = begin; m < begin + 40; ++m) minutes_[m] += m % 3 == 0 ? 3'600 : 1'400;
@@ -79,7 +79,7 @@ HouseLoad HouseLoad::from_csv(std::string_view text, std::string_view name) {
   std::vector<double> minutes;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.utc_s(row, 0) != start_utc_s + 60 * std::ssize(minutes)) {
-      fail("{}:{}: must be one minute after the row before", name, table.line(row));
+      fail("{}:{}: must be one minute after the previous row", name, table.line(row));
     }
     minutes.push_back(table.number(row, 1));
   }

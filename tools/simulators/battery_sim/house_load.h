@@ -1,5 +1,5 @@
-// The load of the simulated house behind the same meter as the battery, minute by minute: constant,
-// from a CSV file, or drawn from a seed. Negative: more sun than load. It repeats from its end on.
+// Load of the simulated house behind the same meter as the battery, by minutes: constant, from a
+// CSV file, or drawn from a seed. Negative: PV surplus. Repeats after its end.
 //   grid power = house load + battery power
 #pragma once
 
@@ -15,12 +15,12 @@ namespace bess {
 class HouseLoad {
  public:
   static HouseLoad constant(double power_w);
-  /// A year of a household: refrigerator, evenings, kettle, oven, washing; 0.2 to 8 kW, hours of
+  /// One year of a household: refrigerator, evenings, kettle, oven, washing; 0.2 to 8 kW, hours
   /// UTC.
   static HouseLoad daily(std::uint64_t seed);
-  /// `minute_utc,house_w`, strictly one row a minute. Throws UserError naming the line.
+  /// `minute_utc,house_w`, exactly one row per minute. Throws UserError naming the line.
   static HouseLoad from_csv(std::string_view text, std::string_view name);
-  /// "daily", watts, or a CSV file. Throws UserError.
+  /// "daily", power in W, or a CSV file. Throws UserError.
   static HouseLoad from_option(const std::string& text, std::uint64_t seed);
 
   /// Constant within a minute.
@@ -34,7 +34,7 @@ class HouseLoad {
   std::vector<double> minutes_;  ///< W, never empty
 };
 
-/// What the battery's server and the meter's share: whoever touches the battery holds `plant`.
+/// Shared by the servers of battery and meter: access to the battery requires `plant`.
 struct MeteredHouse {
   explicit MeteredHouse(HouseLoad house) : load(std::move(house)) {}
   HouseLoad load;

@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-/// A cycle's requests lie within seconds of their ticks; two cycles lie two minutes apart.
+/// Requests are within seconds of their ticks; ticks are two minutes apart.
 constexpr std::int64_t kSlackNs = 20 * kNanosecondsPerSecond;
 constexpr std::int32_t kIllegalDataAddress = 2;
 
@@ -39,7 +39,7 @@ RecordedDevice::RecordedDevice(const std::string& path, CutRecording cut) {
     add(exchange);
   }
   if (next == BusRecordingReader::Next::kDamaged) throw UserError(error);
-  if (entries_.empty()) fail("{}: this recording holds no exchange", path);
+  if (entries_.empty()) fail("{}: the recording has no exchanges", path);
 }
 
 void RecordedDevice::add(const BusExchange& exchange) {
@@ -83,12 +83,12 @@ std::string RecordedDevice::answer(BusExchange& request) {
   return request_text(request) + ": was never recorded, answered with exception 2";
 }
 
-/// The next answer of this request, unless its time has not come: then the one before it again. The
-/// first is given at any time.
+/// Next answer of this request, or the previous one until its time. The first one is valid at any
+/// time.
 const RecordedDevice::Entry& RecordedDevice::now_in(Course& course, std::int64_t utc_ns) const {
   const auto entry = [&](std::size_t i) -> const Entry& { return entries_[course.entries[i]]; };
   const std::size_t count = course.entries.size();
-  // Long over, and there is a younger one whose time has come as well.
+  // Skip answers that a later one has replaced.
   while (course.next + 1 < count && entry(course.next + 1).utc_ns <= utc_ns - kSlackNs) {
     ++course.next;
   }
@@ -106,19 +106,19 @@ void RecordedDevice::give(const Entry& entry, BusExchange& request) const {
               request.registers.begin());
 }
 
-/// What a device would do that is told something else than it was is not known.
+/// The reaction of a device to other values than the recorded ones is unknown.
 std::string RecordedDevice::difference(const Entry& entry, const BusExchange& request) const {
   if (!request.is_write()) return "";
   const auto recorded = values_.begin() + static_cast<std::ptrdiff_t>(entry.first_value);
   const std::span<const std::uint16_t> written = request.values();
   if (std::equal(written.begin(), written.end(), recorded)) return "";
   return fmt::format(
-      "{}: [{}], at {} it was [{}]: the device goes on as recorded", request_text(request),
+      "{}: [{}], at {} it was [{}]: the device continues as recorded", request_text(request),
       fmt::join(written, " "), instant_text(entry.utc_ns),
       fmt::join(recorded, recorded + static_cast<std::ptrdiff_t>(entry.value_count), " "));
 }
 
-/// False when one of the registers was never read.
+/// False if one of the registers was never read.
 bool RecordedDevice::assemble(BusExchange& request) const {
   for (std::size_t i = 0; i < request.count; ++i) {
     const auto found = readings_.find(

@@ -1,11 +1,9 @@
-// A device as it was recorded (shared/host/bus_recording.h): answers a request as it answered the
-// same one at that time. Two rules, so that a replay takes the course of the recording and is not
-// thrown off by milliseconds:
-//   the same request was recorded   its answers are given in their order, each when its time has
-//                                   come, give or take `kSlackNs`; what nobody asked for in its
-//                                   time is passed over
-//   it was not, a read              each register by itself, as it was last read before this time
-// What was never recorded is answered with exception 2, and told.
+// Recorded device (shared/host/bus_recording.h): answers a request as at that time of the
+// recording. Two rules make a replay insensitive to milliseconds:
+//   recorded request    its answers in order, each at its time within `kSlackNs`; answers that were
+//                       not requested in time are skipped
+//   other read          each register as last read before this time
+// A request without any recorded value gets exception 2, with a message.
 #pragma once
 
 #include <cstdint>
@@ -30,9 +28,8 @@ class RecordedDevice {
   [[nodiscard]] std::int64_t last_utc_ns() const { return last_utc_ns_; }
   [[nodiscard]] bool has_unit(std::int32_t unit) const;
 
-  /// Fills outcome, exception, latency and the registers of a read into `request`, which holds all
-  /// that was asked and what was written, at its `utc_ns`. Returns what there is to tell of it, ""
-  /// when nothing.
+  /// Fills outcome, exception, latency and the read registers of `request`, for its `utc_ns`.
+  /// Returns a message, or "".
   std::string answer(BusExchange& request);
 
  private:

@@ -17,7 +17,7 @@ constexpr double kHotDeciC = 700;
 constexpr std::int64_t kForEverS = 100LL * 365 * kSecondsPerDay;
 constexpr int kCommonModelRegisters = 66;
 
-/// What a model's header says: registers after id and length.
+/// Length in the header of a model: registers after id and length.
 int model_registers(const RegisterMap& map, int model) {
   int registers = 0;
   for (const RegisterPoint& p : map.points) {
@@ -26,7 +26,7 @@ int model_registers(const RegisterMap& map, int model) {
   return registers;
 }
 
-/// Where the first of the map's models lies: behind "SunS" and the common model.
+/// Address of the first model of the map: after "SunS" and the common model.
 int first_model_address(const RegisterMap& map) {
   return map.model_bases[0] + 2 + 2 + kCommonModelRegisters;
 }
@@ -48,7 +48,7 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
   }
   lay_out_models();
   find_arguments();
-  // Scale factors first: what is encoded with them comes after.
+  // Scale factors first: other values are encoded with them.
   for (const RegisterPoint& p : map_.points) {
     if (p.scale_from >= 0) set(p.scale_from, map_.points[p.scale_from].value_min);
   }
@@ -56,8 +56,7 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
   for (const IdentityCheck& check : map_.identity) identify(check);
 }
 
-/// Shows what the check asks for. What is measured as well is measured afterwards: a capacity may
-/// be another than the device has.
+/// Shows the value that the check expects. Measurements then overwrite it: the capacity may differ.
 void RegisterImage::identify(const IdentityCheck& check) {
   const RegisterPoint& p = map_.points[check.point];
   if (p.type != RegisterType::kText) {
@@ -100,7 +99,7 @@ void RegisterImage::lay_out_models() {
   holding_[address + 1] = 0;
 }
 
-/// Which points an order's duration and limits are written to.
+/// Points for duration and limits of an order.
 void RegisterImage::find_arguments() {
   for (const CommandSequence& sequence : map_.command) {
     for (const BlockWrite& write : sequence.writes) {
@@ -118,7 +117,7 @@ void RegisterImage::find_arguments() {
   }
 }
 
-/// What is shown late is as old as the requests are apart, besides.
+/// The time between requests adds to the delay.
 double RegisterImage::shown_grid_w() {
   constexpr std::int64_t kKeptS = 300;
   const double house_w = house_->power_w(utc_s_);
@@ -182,10 +181,10 @@ void RegisterImage::show_soc() {
   set("soc", std::clamp(shown_frac + display_.soc_offset_frac, 0.0, 1.0) * 1e4);
 }
 
-/// One register with a sign (of several phases the first), one for each direction, or a size whose
-/// sign stands in a state.
+/// One signed register (of several phases the first), one for each direction, or a magnitude whose
+/// sign is in a state.
 void RegisterImage::show_power(const StaticVector<PowerCase, 4>& all, std::int64_t power_w) {
-  // Behind a case without a condition stand those of devices that do not have its points.
+  // Cases after an unconditional one are for devices without its points.
   const bool is_first_alone = !all.empty() && all[0].when.point < 0;
   const std::span cases(all.begin(), static_cast<std::size_t>(is_first_alone ? 1 : all.size()));
   for (const PowerCase& c : cases) {
@@ -215,7 +214,7 @@ void RegisterImage::show_expiry() {
 }
 
 void RegisterImage::apply_write(int address, int count) {
-  if (map_.is_meter) return;  // it keeps what was written, and does nothing by it
+  if (map_.is_meter) return;  // keeps the written values, without effect
   const LivePoints registers = snapshot();
   if (!active_.empty() && !live_all(map_, active_, registers)) {
     battery_.stop_dispatch();
@@ -315,7 +314,7 @@ void RegisterImage::set(int point, std::int64_t value) {
   const RegisterPoint& p = map_.points[point];
   Scaling scaling;
   RegisterBlock block;
-  // All of them are looked at only where one of them scales this one.
+  // A snapshot is needed only for points scaled by another point.
   const bool is_scaled = p.scale_from >= 0 || p.percent_of >= 0;
   if (is_scaled && !live_scaling(map_, snapshot(), point, scaling)) return;
   if (encode(p, value, Rounding::kNearest, block, scaling) != Status::kOk) return;

@@ -1,7 +1,7 @@
-// The registers of a battery as its master sees them, for any register map: measurements are
-// rendered from the physics at every request, and writes become orders by what the map itself says
-// about them (active, order_power, watchdog, [simulator]). Addresses, types and signs come from the
-// same file that the edge uses; SunSpec models are laid out as a chain at the first base.
+// Registers of a battery as its master sees them, for any register map. Measurements are computed
+// from the physics at every request; writes become orders as the map defines (active, order_power,
+// watchdog, [simulator]). Addresses, types and signs come from the same file that the edge uses;
+// SunSpec models are a chain at the first base.
 #pragma once
 
 #include <cstdint>
@@ -20,50 +20,49 @@ class RegisterImage {
  public:
   static constexpr int kRegisterCount = 0x1'0000;
 
-  /// One past the last address that this map uses, its SunSpec models laid out.
+  /// One past the last address of this map, including SunSpec models.
   static int address_end(const RegisterMap& map);
 
-  /// The registers that the bus serves, at least `address_end` of each kind; both may be the same
-  /// memory when the map gives the two kinds addresses of their own, which sungrow_sh does not.
+  /// Registers of the bus, at least `address_end` of each kind. Both may be the same memory if the
+  /// map has distinct addresses for the two kinds (not in sungrow_sh).
   RegisterImage(const RegisterMap& map, SimulatedBattery& battery, std::span<std::uint16_t> holding,
                 std::span<std::uint16_t> input);
 
-  /// Brings the battery to `utc_ns` and renders what it measures.
+  /// Advances the battery to `utc_ns` and updates the measurements.
   void refresh(std::int64_t utc_ns);
-  /// Acts on a write that has just changed holding registers; call `refresh` before the write.
+  /// Applies a write to holding registers; call `refresh` before the write.
   void apply_write(int address, int count);
 
-  // What another master does who knows this map: registers are written as by a command of it, and
-  // acted on.
+  // Commands of another master that uses this map: registers are written and applied.
   void order_from_outside(std::int32_t power_w);
   void release_from_outside();
-  /// Of what shows that an order is in force, the last: another value than its order's.
+  /// Changes the last condition of an order in force.
   void change_mode_from_outside();
 
-  /// Values that are shown otherwise than they are.
+  /// Differences between displayed and real values.
   struct Display {
     bool soc_stands_still = false;
-    bool soc_is_inverted = false;  ///< mirrored at where it was when this began
+    bool soc_is_inverted = false;  ///< mirrored at its value at the begin
     double soc_offset_frac = 0;
     double capacity_factor = 1;
-    bool order_as_power = false;  ///< what was ordered, not what flows
-    bool alarm = false;           ///< the map's first
+    bool order_as_power = false;  ///< shows the order instead of the flow
+    bool alarm = false;           ///< the first of the map
     bool off_grid = false;
     bool is_hot = false;
   };
   void set_display(const Display& display);
-  /// How the grid point shows the power at the connection.
+  /// Display of the power at the connection in the grid point.
   struct GridDisplay {
     double gain = 1;
     double offset_w = 0;
     std::int32_t late_s = 0;
-    bool other_phase = false;  ///< a third of the house, and not the battery
+    bool other_phase = false;  ///< a third of the house load, without the battery
   };
   void set_grid_display(const GridDisplay& display) { grid_display_ = display; }
-  /// From now on the map's grid point shows this house and the battery.
+  /// The grid point of the map then shows this house and the battery.
   void connect_house(const HouseLoad& house) { house_ = &house; }
 
-  /// Where a point lies in this image.
+  /// Address of a point in this image.
   [[nodiscard]] int address_of(int point) const;
 
  private:
@@ -77,7 +76,7 @@ class RegisterImage {
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
   void show_soc();
-  /// A state as long as it lasts; afterwards what stood there before.
+  /// Value of a state before a fault, for the time after it.
   struct StateBefore {
     bool is_kept = false;
     std::int64_t value = 0;
@@ -98,12 +97,12 @@ class RegisterImage {
   SimulatedBattery& battery_;
   const HouseLoad* house_ = nullptr;
   GridDisplay grid_display_;
-  std::deque<std::pair<std::int64_t, double>> grid_w_;  ///< of the last minutes, by second
+  std::deque<std::pair<std::int64_t, double>> grid_w_;  ///< last minutes, by second
   std::span<std::uint16_t> holding_, input_;
   const StaticVector<Condition, 4>& active_;
   const StaticVector<PowerCase, 4>& order_power_;
   int model_start_[decltype(RegisterMap::models)::capacity()] = {};
-  int timer_ = -1;  ///< point that an order's duration is written to; -1 = fixed by the device
+  int timer_ = -1;  ///< point of the duration of an order; -1: fixed by the device
   bool timer_counts_minutes_ = false;
   int soc_limit_ = -1, soc_min_ = -1, soc_max_ = -1;
   Display display_{};
@@ -111,7 +110,7 @@ class RegisterImage {
   double mirror_soc_frac_ = 0;
   bool is_running_ = false;  ///< an order, at the last refresh or write
   std::int64_t utc_s_ = 0;
-  std::int64_t end_utc_s_ = 0;  ///< of the order under way
+  std::int64_t end_utc_s_ = 0;  ///< of the order in force
 };
 
 }  // namespace bess

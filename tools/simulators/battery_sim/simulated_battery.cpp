@@ -18,7 +18,7 @@ constexpr double kForcedBelowFrac = 0.10;
 constexpr double kForcedUntilFrac = 0.11;
 constexpr double kFullFrac = 0.995;
 constexpr std::int64_t kLagStepNs = kNanosecondsPerSecond / 20;
-constexpr double kArrivedW = 0.5;  ///< an exponential never does
+constexpr double kArrivedW = 0.5;  ///< an exponential never arrives
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
     const double burnt_wh = burnt_w() * hours;
     const double wanted_w = wanted_power_w();
     const BatteryStep step = battery_step(limited(), soc_frac_, wanted_w, hours);
-    if (step.power_w != wanted_w) {  // it goes on from there, and a ramp that turns goes on turning
+    if (step.power_w != wanted_w) {  // limited: continue from there; keep the direction of a ramp
       lagged_w_ = step.power_w;
       ramped_w_ =
           wanted_w > 0 ? std::min(ramped_w_, step.power_w) : std::max(ramped_w_, step.power_w);
@@ -70,7 +70,7 @@ bool SimulatedBattery::changes_by_the_second() const {
          habits_.balancing_w > 0 || !has_constant_power(parameters_);
 }
 
-/// Of battery and habit the slower; 0: at once.
+/// The slower of battery and habit; 0: immediate.
 double SimulatedBattery::ramp_w_per_s() const {
   const double own = parameters_.response.ramp_w_per_s;
   if (own <= 0 || habits_.ramp_w_per_s <= 0) return std::max(own, habits_.ramp_w_per_s);
@@ -83,7 +83,7 @@ bool SimulatedBattery::is_lagging() const {
          (lagged_w_ != wanted_w || ramped_w_ != wanted_w);
 }
 
-/// What does not follow from the order alone, brought forward by a segment.
+/// Advances forced charging, ramp and lag by one segment.
 void SimulatedBattery::follow_habits(double seconds) {
   if (soc_frac_ < kForcedBelowFrac) is_charging_itself_ = true;
   if (soc_frac_ >= kForcedUntilFrac || habits_.forced_charge_w == 0) is_charging_itself_ = false;
@@ -121,7 +121,7 @@ double SimulatedBattery::wanted_power_w() const {
   return ramp_w_per_s() > 0 ? ramped_w_ : ordered_flow_w();
 }
 
-/// At the grid side, and into no cell.
+/// Power at the grid side that does not reach the cells.
 double SimulatedBattery::burnt_w() const {
   const bool is_full = soc_frac_ >= kFullFrac * parameters_.soc_max_frac;
   return parameters_.standby_w + (is_full && commanded_power_w() >= 0 ? habits_.balancing_w : 0);
@@ -136,13 +136,13 @@ double SimulatedBattery::ordered_flow_w() const {
   return std::clamp(flow_w, -most_w, most_w);
 }
 
-/// By its own clock: what its cold hours leave now.
+/// Share of the power available in cold hours, by local time.
 double SimulatedBattery::cold_share() const {
   if (!parameters_.cold.exist()) return 1;
   return parameters_.cold.share_at(local_minute_of(now_ns_ / kNanosecondsPerSecond).quarter_hour);
 }
 
-/// Of the minute: the same whenever it is asked.
+/// Constant within a minute.
 double SimulatedBattery::noise_factor() const {
   if (habits_.noise_frac == 0) return 1;
   std::minstd_rand random(static_cast<unsigned>(now_ns_ / kMinuteNs));

@@ -1,7 +1,7 @@
-// Physics and dispatch of the simulated battery, without any bus: event-driven and exact. Between
-// two events (new order, expiry, minute boundary) the power is constant, so one battery_step per
-// segment integrates without error, whatever the time scale. Where it is not, by ramp, lag, taper
-// or a habit, segments are a second or a twentieth of one.
+// Physics and dispatch of the simulated battery, without a bus: event-driven and exact. Between two
+// events (new order, expiry, minute boundary) the power is constant, so one battery_step per
+// segment integrates without error at any time scale. With a ramp, lag, taper or habit a segment is
+// 1 s or 0.05 s.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bess {
 
-/// What the record file holds for one minute.
+/// One minute of the battery trace.
 struct MinuteRecord {
   std::int64_t minute_utc_s;
   double energy_wh;          ///< grid side, charge positive
@@ -19,32 +19,31 @@ struct MinuteRecord {
   double commanded_power_w;  ///< at the end of the minute; 0 without a dispatch
 };
 
-/// One thing that happened to the order in force.
+/// Event of the order in force.
 struct DispatchEvent {
   enum class Kind : std::uint8_t {
-    kOrder,   ///< was written, or written again
-    kStop,    ///< was given back by whoever gave it
-    kExpiry,  ///< ran out: nobody fed it in time
+    kOrder,   ///< written, or written again
+    kStop,    ///< released by a master
+    kExpiry,  ///< not refreshed in time
   };
   std::int64_t utc_ns = 0;
   Kind kind = Kind::kOrder;
   double power_w = 0;           ///< grid side, charge positive; 0 unless an order
-  std::int64_t duration_s = 0;  ///< until it runs out; 0 unless an order
+  std::int64_t duration_s = 0;  ///< until its expiry; 0 unless an order
   double soc_frac = 0;
 };
 
-/// How a battery follows its orders. The defaults are a model's; real ones are slower, noisier, or
-/// broken.
+/// Deviations from an ideal battery. The defaults are ideal.
 struct BatteryHabits {
-  double gain = 1;                 ///< of the ordered power that flows
+  double gain = 1;                 ///< share of the ordered power that flows
   double idle_power_w = 0;         ///< flows, whatever the SoC, while 0 W is ordered
   double delay_s = 0;              ///< from a new order to its power
-  double noise_frac = 0;           ///< standard deviation of the power, another draw each minute
+  double noise_frac = 0;           ///< standard deviation of the power, drawn each minute
   bool slows_near_limits = false;  ///< a quarter of the power within 5 % of a limit
-  double ramp_w_per_s = 0;         ///< of its power while it follows orders; 0 = at once
-  double hidden_drain_w = 0;       ///< leaves its cells besides, through no meter
-  double forced_charge_w = 0;      ///< flows from below 10 % up to 11 %, whatever is ordered
-  double balancing_w = 0;          ///< burnt in its resistors while it is full
+  double ramp_w_per_s = 0;         ///< of its power while it follows orders; 0: immediate
+  double hidden_drain_w = 0;       ///< unmetered discharge of the cells
+  double forced_charge_w = 0;      ///< from below 10 % up to 11 %, whatever the order
+  double balancing_w = 0;          ///< dissipated while it is full
 };
 
 class SimulatedBattery {
@@ -54,18 +53,16 @@ class SimulatedBattery {
   /// Integrates up to `utc_ns`; an instant in the past changes nothing.
   void advance(std::int64_t utc_ns);
 
-  /// From now on `power_w` until the SoC limit (ceiling when charging, floor when discharging) or
-  /// until `duration_s` is over; then the battery's own mode, modelled as 0 W. Call `advance`
-  /// first.
+  /// `power_w` until the SoC limit (maximum when charging, minimum when discharging) or for
+  /// `duration_s`; then the battery's own mode, modelled as 0 W. Call `advance` first.
   void start_dispatch(double power_w, double soc_limit_frac, std::int64_t duration_s);
   void stop_dispatch();
 
-  /// From now on.
   void set_habits(const BatteryHabits& habits) { habits_ = habits; }
-  /// The share of its rated power that it can give, by heat or cold; it shows that. From now on.
+  /// Share of the rated power available, by temperature; the battery displays it.
   void set_derating(double power_frac) { derating_ = power_frac; }
   [[nodiscard]] double derating() const { return derating_ * cold_share(); }
-  /// Its power follows as a first-order lag, behind delay and ramp; 0 = at once. From now on.
+  /// First-order lag after delay and ramp; 0: immediate.
   void set_time_constant(double seconds) { parameters_.response.time_constant_s = seconds; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
@@ -75,9 +72,9 @@ class SimulatedBattery {
   [[nodiscard]] double commanded_power_w() const { return dispatch_active_ ? power_w_ : 0.0; }
   [[nodiscard]] const BatteryParameters& parameters() const { return parameters_; }
 
-  /// Completed minutes, and the one under way as the last.
+  /// Completed minutes, and the current one last.
   [[nodiscard]] std::vector<MinuteRecord> record() const;
-  /// Every order, stop and expiry since the start, in their order.
+  /// All orders, stops and expiries since the start, ascending.
   [[nodiscard]] const std::vector<DispatchEvent>& dispatch_events() const { return events_; }
 
  private:
@@ -104,9 +101,9 @@ class SimulatedBattery {
   double power_w_ = 0;
   double power_before_w_ = 0;  ///< flows until `change_ns_`
   std::int64_t change_ns_ = 0;
-  double ramped_w_ = 0;              ///< where the ramp has come to
-  double lagged_w_ = 0;              ///< and what flows of it by the time constant
-  bool is_charging_itself_ = false;  ///< forced
+  double ramped_w_ = 0;              ///< power after the ramp
+  double lagged_w_ = 0;              ///< power after ramp and lag
+  bool is_charging_itself_ = false;  ///< forced charge
   double soc_limit_frac_ = 1;
   std::int64_t dispatch_end_ns_ = 0;
   double minute_energy_wh_ = 0;

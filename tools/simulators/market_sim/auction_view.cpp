@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kHour_s = 3'600;
 
-/// When the wall clock shows this minute, on the local day that holds the instant.
+/// UTC of a local minute on the local day of the instant.
 std::int64_t local_at(std::int64_t utc_s, int minute) {
   const LocalMinute local = local_minute_of(utc_s);
   return utc_from_local({local.year, local.month, local.day, minute / 60, minute % 60, 0});
@@ -24,7 +24,7 @@ std::int64_t midnight_after(std::int64_t midnight_utc_s) {
   return local_at(midnight_utc_s + 30 * kHour_s, 0);
 }
 
-/// Noon of a date; nothing is taken from an empty text.
+/// Noon of a date; an empty text changes nothing.
 bool take_date(const std::string& text, std::int64_t& utc_s) {
   return text.empty() || (text.size() == 10 && parse_utc(text + "T12:00:00Z", utc_s));
 }
@@ -61,7 +61,7 @@ std::vector<AuctionRow> parse_auction_rows(std::string_view text, const std::str
     const bool is_next = rows.empty() || row.utc_s > rows.back().utc_s;
     const bool is_step = step_min == 15 || step_min == 30 || step_min == 60;
     if (!is_next || !is_step || row.utc_s % kSecondsPerQuarterHour != 0) {
-      fail("{}:{}: no quarter-hour after the row before, of 15, 30 or 60 minutes; sort by time",
+      fail("{}:{}: must be a later quarter-hour than the previous row, of 15, 30 or 60 minutes",
            name, table.line(r));
     }
     rows.push_back(row);
@@ -78,7 +78,7 @@ AuctionFault AuctionView::fault_of(std::int64_t published_utc_s, std::int64_t no
   const auto at_s = static_cast<double>(published_utc_s - settings_.start_utc_s);
   if (at_s < settings_.from_s || at_s >= settings_.to_s) return AuctionFault::kNone;
   const auto from_utc_s = settings_.start_utc_s + static_cast<std::int64_t>(settings_.from_s);
-  const std::int64_t days =  // rounded: one with a change of clocks is an hour longer or shorter
+  const std::int64_t days =  // rounded: a day with a clock change has 23 or 25 hours
       (local_at(published_utc_s, 0) - local_at(from_utc_s, 0) + kSecondsPerDay / 2) /
       kSecondsPerDay;
   if ((days + 1) % settings_.every != 0) return AuctionFault::kNone;
@@ -92,13 +92,13 @@ AuctionFault AuctionView::fault_of(std::int64_t published_utc_s, std::int64_t no
   return age_s < settings_.mend_s.value_or(usual_s) ? fault : AuctionFault::kNone;
 }
 
-/// Puts a quarter-hour's price behind the others as the fault has it.
+/// Appends the price of a quarter-hour, with its fault.
 void AuctionView::add(AuctionFault fault, AuctionRow row, bool is_noon,
                       std::vector<AuctionRow>& published) const {
   if (fault == AuctionFault::kHours) {
     row.eur_per_mwh = price_at(row.utc_s / kHour_s * kHour_s, row.eur_per_mwh);
   } else if (row.utc_s % row.step_s != 0) {
-    return;  // repeated in the file alone
+    return;  // repeated only in the file
   }
   if (fault == AuctionFault::kYesterday) {
     row.eur_per_mwh = price_at(row.utc_s - kSecondsPerDay, row.eur_per_mwh);

@@ -1,8 +1,7 @@
-// What has been published of the day-ahead prices at an instant, as the JSON of energy-charts
-// (`/price?bzn=BE&start=2025-03-29&end=2025-03-30`). A local day comes as a whole at a local time
-// of the day before, or when its file says; as hours while the auction sold hours. Faults strike
-// days, not requests: who publishes half a day answers everybody with that half, until it is
-// mended.
+// Published day-ahead prices at an instant, as energy-charts JSON
+// (`/price?bzn=BE&start=2025-03-29&end=2025-03-30`). A local day is published as a whole at a local
+// time of the previous day, or at the time in its file; in hours while the auction sold hours.
+// Faults apply to days, not requests: all answers have the same faulty day until its correction.
 #pragma once
 
 #include <cstdint>
@@ -26,30 +25,30 @@ inline constexpr const char* kAuctionFaultNames[] = {
     "yesterday", "hours", "out-of-range", "html", "slow",         "all"};
 
 struct AuctionSettings {
-  std::int32_t published_min = 12 * 60 + 57;  ///< local minute of the day before
+  std::int32_t published_min = 12 * 60 + 57;  ///< local minute of the previous day
   std::int64_t start_utc_s = 0;               ///< of the server
   AuctionFault fault = AuctionFault::kNone;
-  std::int32_t every = 1;  ///< every Nth day of those that come in the span
+  std::int32_t every = 1;  ///< every Nth day published in the span
   double from_s = 0;       ///< simulated seconds since the start
   double to_s = std::numeric_limits<double>::infinity();
-  std::optional<double> mend_s{};  ///< after publication: then the day is as it should be
+  std::optional<double> mend_s{};  ///< after publication: the day is corrected
 };
 
 struct AuctionAnswer {
   int status = 200;
   std::string body{};
-  AuctionFault fault = AuctionFault::kNone;  ///< of its newest day that one struck
+  AuctionFault fault = AuctionFault::kNone;  ///< of its newest faulty day
 };
 
 struct AuctionRow {
   std::int64_t utc_s;  ///< start of the quarter-hour
   double eur_per_mwh;
-  std::int64_t step_s;           ///< that was sold; its price is repeated in quarter-hours
+  std::int64_t step_s;           ///< of the product; its price repeats in quarter-hours
   std::int64_t published_utc_s;  ///< 0: at the usual time
 };
 
-/// Of a day-ahead file (bess-train prices fetch --day-ahead), ascending. Throws UserError naming
-/// the line.
+/// Rows of a day-ahead file (bess-train prices fetch --day-ahead), ascending. Throws UserError
+/// naming the line.
 std::vector<AuctionRow> parse_auction_rows(std::string_view text, const std::string& name);
 
 class AuctionView {
@@ -57,7 +56,7 @@ class AuctionView {
   /// Needs the market's time zone, and rows.
   AuctionView(std::vector<AuctionRow> rows, const AuctionSettings& settings)
       : rows_(std::move(rows)), settings_(settings) {}
-  /// Of local days from `start` to `end`, included; empty: today, and the start.
+  /// Local days from `start` to `end`, inclusive; empty: today, and the start.
   [[nodiscard]] AuctionAnswer answer(const std::string& start, const std::string& end,
                                      std::int64_t now_utc_s) const;
 

@@ -1,4 +1,4 @@
-// What the simulated price server can do wrong, and when.
+// Faults of the simulated price server and their schedule.
 #pragma once
 
 #include <atomic>
@@ -14,12 +14,12 @@ enum class MarketFault : std::uint8_t {
   kNone,
   kNull,      ///< the newest row's price is null
   kHttp500,   ///< internal server error
-  kStale,     ///< the answer is ten minutes old
+  kStale,     ///< the answer is 10 minutes old
   kGarbage,   ///< not JSON
   kTrailing,  ///< more than one document
   kTwice,     ///< each row has its price twice
-  kAll,       ///< each of them in turn
-  kFrozen,    ///< the price of the fault's begin, under new stamps
+  kAll,       ///< all in turn
+  kFrozen,    ///< the price at the begin of the fault, with new time stamps
 };
 
 inline constexpr const char* kMarketFaultNames[] = {
@@ -28,7 +28,7 @@ inline constexpr const char* kMarketFaultNames[] = {
 inline constexpr std::int64_t kStaleAnswerS = 600;
 inline constexpr const char* kGarbageAnswer = "{\"results\": [{\"dat";
 
-/// An answer as the faults leave it that change its text; any other stays as it is.
+/// Answer changed by a fault of its text; other faults have no effect.
 inline std::string spoilt(MarketFault fault, std::string answer) {
   if (fault == MarketFault::kGarbage) return kGarbageAnswer;
   if (fault == MarketFault::kTrailing) return answer + answer;
@@ -48,7 +48,7 @@ struct MarketFaultSchedule {
   double to_s = std::numeric_limits<double>::infinity();
 };
 
-/// Which request is answered how. Several threads may ask.
+/// Fault of each request. Thread-safe.
 class MarketFaultPlan {
  public:
   explicit MarketFaultPlan(const MarketFaultSchedule& schedule) : schedule_(schedule) {}
@@ -65,7 +65,7 @@ class MarketFaultPlan {
                                       MarketFault::kTrailing, MarketFault::kTwice};
     return kTurns[request / schedule_.every % std::ssize(kTurns)];
   }
-  [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< answers spoilt so far
+  [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< faulty answers so far
 
  private:
   MarketFaultSchedule schedule_;

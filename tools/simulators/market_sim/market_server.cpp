@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kJson = "application/json";
 
-/// The API's own limits: limit 1..100, offset + limit at most 10,000.
+/// Limits of the API: limit 1 to 100, offset + limit at most 10,000.
 bool parse_number(const httplib::Request& request, const char* name, int min, int max, int& value) {
   if (!request.has_param(name)) return true;
   const std::string text = request.get_param_value(name);
@@ -57,8 +57,7 @@ MarketServer::MarketServer(const MarketServerSettings& settings, const MarketVie
       start_utc_ns_(clock.start_utc_ns()),
       server_(make_server(settings)),
       faults_(settings.faults) {
-  // Without this override the library sets SO_REUSEPORT and two servers would share a port
-  // unnoticed.
+  // The library sets SO_REUSEPORT otherwise, and two servers could share a port.
   server_->set_socket_options([](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -132,7 +131,7 @@ void MarketServer::answer_day_ahead(const httplib::Request& request, httplib::Re
   response.status = answer.status;
   const char* type = answer.fault == AuctionFault::kHtml ? "text/html" : kJson;
   if (answer.fault != AuctionFault::kSlow) return response.set_content(answer.body, type);
-  // A byte at a time, each a tenth of a second of wall time after the other.
+  // One byte every 0.1 s of wall time.
   response.set_content_provider(
       answer.body.size(), type,
       [body = answer.body](std::size_t offset, std::size_t, httplib::DataSink& sink) {

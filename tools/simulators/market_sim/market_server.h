@@ -1,5 +1,5 @@
-// The HTTP side of the simulated market: Elia's paths, query parameters and error answers, those of
-// energy-charts for day-ahead prices, and faults.
+// HTTP server of the simulated market: paths, query parameters and errors of Elia, and of
+// energy-charts for day-ahead prices, with faults.
 #pragma once
 
 #include <atomic>
@@ -22,17 +22,17 @@ namespace bess {
 
 struct MarketServerSettings {
   std::string host = "127.0.0.1";
-  std::int32_t port = 8080;  ///< 0 = any free one
+  std::int32_t port = 8080;  ///< 0: any free port
   MarketFaultSchedule faults;
-  std::string tls_certificate;  ///< PEM files; empty = plain HTTP
+  std::string tls_certificate;  ///< PEM files; empty: plain HTTP
   std::string tls_key;
-  bool close_each = false;  ///< one request a connection: a handshake for every price
+  bool close_each = false;  ///< one request per connection: a handshake for every price
 };
 
 class MarketServer {
  public:
-  /// Binds. Throws UserError when the port is in use or the certificate is bad. Without an auction
-  /// there are no day-ahead prices.
+  /// Binds. Throws UserError if the port is in use or the certificate is invalid. Without an
+  /// auction there are no day-ahead prices.
   MarketServer(const MarketServerSettings& settings, const MarketView& view,
                const ScaledClock& clock, const AuctionView* auction = nullptr);
   ~MarketServer();
@@ -40,7 +40,7 @@ class MarketServer {
   [[nodiscard]] int port() const { return port_; }
   void run();   ///< serves until `stop`
   void stop();  ///< from another thread
-  /// Answers spoilt so far.
+  /// Faulty answers so far.
   [[nodiscard]] std::int64_t faults() const { return faults_.faults() + auction_faults_; }
 
  private:

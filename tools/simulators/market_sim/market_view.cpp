@@ -23,7 +23,7 @@ std::string offset_time(std::int64_t utc_s) {
 
 }  // namespace
 
-/// Index range of the minutes that ended up to now, at most 24 hours back; of past days, all.
+/// Index range of completed minutes of the last 24 hours; for past days, of all.
 std::pair<std::size_t, std::size_t> MarketView::window(Dataset dataset,
                                                        std::int64_t now_utc_ns) const {
   const std::int64_t published_s = (now_utc_ns - latency_ns_) / kNanosecondsPerSecond - 60;
@@ -50,7 +50,7 @@ std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,
   return rows;
 }
 
-/// Ascending rows, of which those from `frozen_utc_s` on have the last price before it.
+/// Sets rows from `frozen_utc_s` on to the last price before it. Rows are ascending.
 void MarketView::freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows) {
   double price = std::nan("");
   for (Row& row : rows) {

@@ -1,6 +1,6 @@
-// What the market has published at an instant, as the JSON of Elia's API v2.1 (`/records`).
-// Row m of the minute series is computed at the END of minute m and readable `latency_s` later; the
-// settled price of a quarter-hour is readable as long after its end.
+// Published market rows at an instant, as Elia API v2.1 JSON (`/records`). Row m of the minute
+// series is computed at the END of minute m and readable `latency_s` later, likewise the settled
+// price of a quarter-hour.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace bess {
 enum class Dataset : std::uint8_t {
   kMinutes,            ///< ods161: the last 24 hours
   kQuarterHours,       ///< ods162: the last 24 hours
-  kMinutesOfPastDays,  ///< ods133: all up to the last midnight, UTC
+  kMinutesOfPastDays,  ///< ods133: all until the last midnight UTC
 };
 
 struct RecordsQuery {
@@ -23,16 +23,16 @@ struct RecordsQuery {
   int limit = 10;
   int offset = 0;
   bool hide_newest_price = false;         ///< fault: the newest row's price is null
-  std::int64_t frozen_utc_s = INT64_MAX;  ///< fault: minutes from here on have the price before it
+  std::int64_t frozen_utc_s = INT64_MAX;  ///< fault: minutes from here have the price before it
 };
 
 class MarketView {
  public:
-  /// A minute without any price has no row; one with a settled price alone has a row without price.
+  /// A minute without any price has no row; with a settled price only, a row without price.
   MarketView(MinuteSeries prices, double latency_s)
       : prices_(std::move(prices)), latency_ns_(static_cast<std::int64_t>(latency_s * 1e9)) {}
 
-  /// The answer to `/records` at an instant: one page of the rows that the set holds by then.
+  /// Answer to `/records` at an instant: one page of the rows published by then.
   [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns) const;
   [[nodiscard]] std::int64_t first_utc_s() const { return prices_.start_utc_s; }
   [[nodiscard]] std::int64_t last_utc_s() const { return prices_.utc_s(prices_.size() - 1); }

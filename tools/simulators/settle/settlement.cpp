@@ -19,8 +19,7 @@ double settled_at(const MinuteSeries& prices, std::int64_t minute_utc_s) {
   const bool is_inside =
       minute_utc_s >= prices.start_utc_s && minute < static_cast<std::int64_t>(prices.size());
   const double price = is_inside ? prices.settled[static_cast<std::size_t>(minute)] : std::nan("");
-  if (std::isnan(price))
-    fail("the prices hold no settled price for {}", utc_text(minute_utc_s).view());
+  if (std::isnan(price)) fail("no settled price for {}", utc_text(minute_utc_s).view());
   return price;
 }
 
@@ -28,14 +27,14 @@ struct Period {
   std::int64_t begin_utc_s, end_utc_s;
 };
 
-/// Rows of real cycles: the last row of a clean stop only says that the battery was released.
+/// Rows of control cycles, without the last row of a clean stop (release only).
 std::vector<std::size_t> cycle_rows(const CsvTable& log) {
   const std::size_t mode = log.column("mode");
   std::vector<std::size_t> rows;
   for (std::size_t r = 0; r < log.row_count(); ++r) {
     if (log.text(r, mode) != "stopping") rows.push_back(r);
   }
-  if (rows.empty()) fail("the edge's log holds no cycle");
+  if (rows.empty()) fail("the edge's log has no control cycle");
   return rows;
 }
 
@@ -54,7 +53,7 @@ Account battery_account(const CsvTable& record, const Period& period, const Minu
   return account;
 }
 
-/// The energy that the order of one cycle should have moved, from the SoC that the edge read.
+/// Expected energy of each order, from the SoC that the edge read.
 Account edge_account(const CsvTable& log, const std::vector<std::size_t>& rows,
                      const MinuteSeries& prices, const BatteryParameters& battery) {
   const std::size_t utc = log.column("utc");
@@ -80,7 +79,7 @@ Latency latency_of(const CsvTable& log, const std::vector<std::size_t>& rows,
   std::vector<double> values;
   for (const std::size_t r : rows) {
     const double value = log.number(r, column);
-    if (value > 0) values.push_back(value);  // 0: nothing was written in that cycle
+    if (value > 0) values.push_back(value);  // 0: no write in that control cycle
   }
   if (values.empty()) return {};
   std::ranges::sort(values);

@@ -1,7 +1,6 @@
-// What a closed-loop run earned, counted twice: from the battery's own record of energy, minute by
-// minute, and from the edge's log of what it read and ordered. The two never share a number, so
-// their difference is the error of the whole loop: latency, rounding of SoC, and orders that were
-// not carried out.
+// Energy and money of a closed-loop run, from both ends of the loop: from the battery trace, and
+// from the SoC and orders in the decision log. The two are independent, so their difference is the
+// error of the loop: latency, rounding of SoC, and orders that were not followed.
 #pragma once
 
 #include <vector>
@@ -23,7 +22,7 @@ struct Account {
   void add(const BatteryParameters& battery, double energy_wh, double settled_eur_per_mwh);
 };
 
-/// Wall time of the edge's cycles, microseconds.
+/// Wall time in the edge's control cycles, microseconds.
 struct Latency {
   double median_us = 0;
   double p99_us = 0;
@@ -31,15 +30,15 @@ struct Latency {
 };
 
 struct RunSettlement {
-  Account battery;  ///< from the battery's record
-  Account edge;  ///< from the edge's log: each order through the battery model from the SoC it read
+  Account battery;  ///< from the battery trace
+  Account edge;     ///< from the decision log: battery model with each order and the SoC read
   std::size_t cycles = 0;
   std::size_t cycles_running = 0;
   Latency decision, write, total;
 };
 
-/// Only minutes from the edge's first to the end of its last cycle count. Throws UserError when a
-/// minute has no settled price.
+/// Period: first to last control cycle of the log. Throws UserError if a minute has no settled
+/// price.
 RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
                      const MinuteSeries& prices, const BatteryParameters& battery);
 
