@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-constexpr int kExitInterruptedTwice = 130;  // what a shell gives a program that Ctrl-C killed
+constexpr int kExitInterruptedTwice = 130;  // exit code of a shell for a program killed by Ctrl-C
 
 std::atomic<bool> is_requested = false;
 

@@ -1,22 +1,20 @@
-// Ctrl-C, SIGTERM and a hang-up while scenarios run: whoever waits looks at the flag, ends what it
-// started and throws Interrupted. A second one ends the program at once, with exit code 130.
+// Stop request: Ctrl-C, SIGTERM and hang-up while scenarios run. Waiting code checks the flag, ends
+// what it started and throws Interrupted. A second one ends the program immediately, exit code 130.
 #pragma once
 
 #include <termios.h>
 
 namespace bess {
 
-/// Before any thread is started: all of them leave these signals to one that waits for nothing
-/// else.
+/// Call before any thread starts: one thread receives these signals, all others block them.
 void watch_for_stop();
-/// As a signal does: for a key.
+/// Same as a signal, for a key.
 void request_stop();
 
 /// Throws Interrupted once a stop was requested.
 void throw_if_stopped();
 
-/// Q at the terminal, whatever the program's own streams are. Without a terminal there are the
-/// signals alone.
+/// Key Q at the terminal, independent of the program's streams. Without a terminal: signals only.
 class AbortKey {
  public:
   AbortKey();
@@ -26,7 +24,7 @@ class AbortKey {
   [[nodiscard]] bool is_pressed() const;
 
  private:
-  int terminal_;  ///< -1: there is none
+  int terminal_;  ///< -1: none
   termios before_{};
 };
 

@@ -1,5 +1,4 @@
-// Where the files of a run lie while it goes on: below the system's folder for temporary files,
-// removed at the end unless they are to be kept.
+// Work folder of a run, below the system's temporary folder; removed at the end unless kept.
 #pragma once
 
 #include <stdlib.h>
@@ -18,10 +17,10 @@ class WorkFolder {
   WorkFolder() {
     std::error_code error;
     const std::filesystem::path place = std::filesystem::temp_directory_path(error);
-    if (error) fail("no folder for temporary files: set TMPDIR to one");
+    if (error) fail("no temporary folder: set TMPDIR");
     std::string name = (place / "bess-hil-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
-      fail("{}: cannot make a folder here for the run: {}", place.string(), std::strerror(errno));
+      fail("{}: cannot create a work folder: {}", place.string(), std::strerror(errno));
     }
     path_ = name;
   }

@@ -1,5 +1,4 @@
-// What a run leaves behind to be judged: the battery's own record, and the records of the edge's
-// ring to hold against it. The same in virtual and in wall time.
+// Evidence of a run: battery trace and decision log. The same in virtual and in wall time.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +12,13 @@
 
 namespace bess {
 
-// What somebody who knows only the maker's table of registers reads off the wire, at one instant.
+// Values on the wire at one instant, decoded with the manufacturer's register table only.
 
 struct WireReading {
   std::int64_t utc_ns = 0;
-  std::optional<double> soc_frac;   ///< as the device shows it
+  std::optional<double> soc_frac;   ///< as displayed by the device
   std::optional<double> power_w;    ///< likewise, charge positive
-  std::optional<double> ordered_w;  ///< as written; nothing: no order stands in the registers
+  std::optional<double> ordered_w;  ///< as written; empty: no order in the registers
 
   [[nodiscard]] bool shows_the_same(const WireReading& other) const {
     return soc_frac == other.soc_frac && power_w == other.power_w && ordered_w == other.ordered_w;
@@ -27,23 +26,23 @@ struct WireReading {
 };
 
 struct Evidence {
-  std::vector<DispatchEvent> orders;  ///< that the battery was given, and how each ended
-  std::vector<MinuteRecord> minutes;  ///< that it exchanged
-  std::vector<CycleRecord> log;       ///< as the edge's ring keeps it, the oldest first
-  std::vector<WireReading> wire;      ///< as a witness reads it; empty: nobody was asked
-  std::uint64_t sent = 0;             ///< all frames of the edge and when, in one number; virtual
-  bool order_ends_by_itself = true;   ///< the device has a timer, by its map
+  std::vector<DispatchEvent> orders;  ///< received by the battery, with their ends
+  std::vector<MinuteRecord> minutes;  ///< energy exchanged
+  std::vector<CycleRecord> log;       ///< as in the edge's ring, the oldest first
+  std::vector<WireReading> wire;      ///< decoded by the witness; empty: no witness
+  std::uint64_t sent = 0;  ///< checksum of all frames of the edge and their times; virtual
+  bool order_ends_by_itself = true;   ///< the map has a timer
   std::int32_t order_duration_s = 0;  ///< of that timer
-  std::int32_t edge_exit_code = 0;    ///< of the last edge; 128 + signal where one ended it
-  std::string edge_last_line;         ///< what it said at the end
-  bool is_alive_at_end = false;       ///< of the simulators: they answered until they were stopped
-  double slack_s = 0;                 ///< simulated seconds that this machine may be late by
+  std::int32_t edge_exit_code = 0;    ///< of the last edge; 128 + signal if killed
+  std::string edge_last_line;         ///< last line of its output
+  bool is_alive_at_end = false;       ///< simulators answered until they were stopped
+  double slack_s = 0;                 ///< tolerated lateness of this machine, simulated s
 };
 
-// What the battery was commanded at any instant, by its own record.
+// Command in force at any instant, from the battery trace.
 
 struct CommandInForce {
-  bool is_driven = false;  ///< it follows an order; else its own mode
+  bool is_driven = false;  ///< follows an order; else its own mode
   double power_w = 0;
 };
 

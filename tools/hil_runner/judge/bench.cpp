@@ -11,7 +11,7 @@ namespace bess {
 namespace {
 
 PriceLevel level_at_start(const Trial& trial) {
-  // By what the market has published when the edge starts, a minute before the scenario does.
+  // From prices published at the start of the edge, one minute before that of the scenario.
   if (const int hours = trial.scenario.prices.history_hours; hours > 0) {
     return level_before(trial.prices, trial.scenario.start_utc_s - 60, hours);
   }
@@ -179,7 +179,7 @@ bool Bench::may_be_cut(double from_w, double to_w) const {
 bool Bench::was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const {
   if (!may_be_cut(ordered_w, commands.at(by_ns).power_w)) return false;
   const auto is_ordered = [&](double power_w) { return std::abs(power_w - ordered_w) <= 2; };
-  // What stands already is not written again: then it is the order that the tick found.
+  // An order already in force is not written again.
   const CommandInForce found = commands.at(tick_ns);
   if (found.is_driven && is_ordered(found.power_w)) return true;
   return std::ranges::any_of(evidence.orders, [&](const DispatchEvent& e) {

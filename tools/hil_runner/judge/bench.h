@@ -1,5 +1,5 @@
-// What a rule is judged by: what was asked and left behind, when something was wrong, and what the
-// edge could know. Each rule is a function judge_NAME in a file of its own.
+// Judge context: inputs and evidence of a run, its disturbances, and the data available to the
+// edge. Each rule is a function judge_NAME in its own file.
 #pragma once
 
 #include <fmt/core.h>
@@ -31,58 +31,56 @@ inline std::string watts(const CommandInForce& command) {
 
 class Bench {
  public:
-  /// Of the trial all must outlive this object.
+  /// All members of `trial` must outlive this object.
   explicit Bench(const Trial& trial);
 
-  /// Of each rule the first is kept.
+  /// Keeps the first finding of each rule.
   void find(std::int64_t utc_ns, std::string expected, std::string seen);
-  /// In the order of time.
+  /// Ascending in time.
   std::vector<Finding> findings();
 
-  // When.
+  // Times.
   [[nodiscard]] std::int64_t slack_ns() const {
     return static_cast<std::int64_t>(evidence.slack_s * 1e9);
   }
-  /// By then the order of a tick is settled.
+  /// Time by which the order of a tick must be in force.
   [[nodiscard]] std::int64_t settled_ns(std::int64_t tick_ns) const {
     return tick_ns + (config.control.price_wait_s + 5) * kSecondNs + slack_ns();
   }
-  /// The same where the bus or a process is disturbed: requests are repeated until the order's
-  /// deadline.
+  /// The same with a disturbed bus or process: requests are repeated until the order deadline.
   [[nodiscard]] std::int64_t settled_at_worst_ns(std::int64_t tick_ns) const {
     return is_disturbed_in_cycle(tick_ns)
                ? tick_ns + config.control.order_deadline_s * kSecondNs + slack_ns()
                : settled_ns(tick_ns);
   }
   [[nodiscard]] std::int64_t start_ns() const { return scenario.utc_ns_at(0); }
-  /// After the first orders, until the end.
+  /// All ticks after the first orders, until the end.
   template <typename Visit>
   void each_tick(const Visit& visit) const {
     const std::int64_t end_ns = scenario.end_utc_ns() - kStepNs;
     for (std::int64_t t = start_ns() + 2 * kStepNs; t <= end_ns; t += kStepNs) visit(t);
   }
-  /// Between a tick and the instant at which its order is looked for.
+  /// Disturbance at a tick or at the time of its check.
   [[nodiscard]] bool is_disturbed_in_cycle(std::int64_t tick_ns) const {
     return is_disturbed(tick_ns) || is_disturbed(settled_ns(tick_ns));
   }
   [[nodiscard]] bool is_disturbed(std::int64_t ns) const;
   [[nodiscard]] bool is_lost(std::int64_t tick_ns) const;
 
-  // What could be known.
-  /// The newest price of a tick, when it is fresh enough to be acted on.
+  // Data available to the edge.
+  /// Newest price at a tick, if it is fresh enough.
   [[nodiscard]] std::optional<Publication::Row> fresh_row(std::int64_t tick_ns) const;
-  /// Where there is no fresh one: what the newest has become may.
+  /// Without a fresh price: whether a stand-in price is allowed.
   [[nodiscard]] bool may_stand_in(std::int64_t tick_ns) const;
-  /// By then it may count as none: from one row on or from the next, as the edge met them.
+  /// Whether the edge may, or must, treat the price as frozen; they differ by the rows it fetched.
   [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const;
   [[nodiscard]] bool must_be_frozen(const Publication::Row& row) const;
   [[nodiscard]] double soc_at(std::int64_t utc_ns) const;
-  /// By which the SoC may pass a bound: the device's own resolution, or what flows in a cycle.
+  /// Tolerance of SoC limits: resolution of the device, or the energy of one control cycle.
   [[nodiscard]] double soc_margin_frac() const;
 
-  // What a site's limits may have done.
-  /// Between two ticks it only cuts, but what was taken in a quarter-hour is given back for its
-  /// peak.
+  // Effects of limits at the connection.
+  /// Limits only reduce power between two ticks, except discharging for the quarter-hour peak.
   [[nodiscard]] bool may_be_cut(double from_w, double to_w) const;
   [[nodiscard]] bool was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const;
 
@@ -93,8 +91,8 @@ class Bench {
   const CommandTimeline commands;
   const PriceLevel level;  ///< at the start
   std::optional<HouseLoad> house;
-  std::vector<Window> lost;  ///< nobody can feed or end an order
-  std::string rule;          ///< that is judged
+  std::vector<Window> lost;  ///< no process can refresh or end an order
+  std::string rule;          ///< rule being judged
 
  private:
   void find_disturbances();
@@ -111,7 +109,7 @@ class Bench {
 #define BESS_ROW(name, text) void judge_##name(Bench& bench);
 BESS_RULES(BESS_ROW)
 #undef BESS_ROW
-/// What the scenario expects of its own, and how it ended.
+/// Expectations of the scenario, and its end.
 void judge_expectations(Bench& bench);
 void judge_end(Bench& bench);
 

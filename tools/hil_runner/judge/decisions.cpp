@@ -16,7 +16,7 @@ namespace bess {
 
 namespace {
 
-/// An exponential towards the level, with a time constant of an hour.
+/// Exponential decay towards the price level, time constant one hour.
 void judge_stand_in(const CycleRecord& cycle, const PriceLevel& level, Bench& bench) {
   if (!cycle.price_stands_in) return;
   const double level_centi = level.centi_eur_per_mwh();
@@ -25,13 +25,15 @@ void judge_stand_in(const CycleRecord& cycle, const PriceLevel& level, Bench& be
   const double expected_centi = level_centi + distance_centi * std::exp(-age_s / 3'600);
   const double off_centi = std::abs(expected_centi - cycle.stand_in_centi_eur_per_mwh);
   if (off_centi <= 100 + 0.05 * std::abs(distance_centi)) return;
-  bench.find(cycle.utc_s * kSecondNs, fmt::format("{:.2f} EUR/MWh stands in", expected_centi / 100),
+  bench.find(cycle.utc_s * kSecondNs,
+             fmt::format("a stand-in price of {:.2f} EUR/MWh", expected_centi / 100),
              fmt::format("{:.2f}", cycle.stand_in_centi_eur_per_mwh / 100.0));
 }
 
 }  // namespace
 
-/// The student of this build, asked again with the logged price and SoC, the level counted anew.
+/// Recomputes each decision with the student of this build, the logged price and SoC, and the
+/// level.
 void judge_decision(Bench& bench) {
   PriceLevel level = bench.level;
   for (const CycleRecord& cycle : bench.evidence.log) {
@@ -61,7 +63,7 @@ void judge_decision(Bench& bench) {
 
 void judge_inputs(Bench& bench) {
   constexpr double kSocToleranceE4 =
-      100;  // a percent: resolution of registers, and what has flowed
+      100;  // 1 %: resolution of registers, and energy since the reading
   for (const CycleRecord& cycle : bench.evidence.log) {
     if (cycle.mode == Mode::kStopping) continue;
     const std::int64_t tick_ns = cycle.utc_s * kSecondNs;
@@ -97,8 +99,8 @@ void judge_fresh_price(Bench& bench) {
     const auto row = bench.publication.newest(tick_ns);
     bench.find(
         bench.settled_ns(tick_ns),
-        row ? fmt::format("0 W, the newest price being of {}", utc_text(row->minute_utc_s).view())
-            : "0 W, there being no price",
+        row ? fmt::format("0 W, the newest price is of {}", utc_text(row->minute_utc_s).view())
+            : "0 W, there is no price",
         watts(command));
   });
 }
@@ -134,13 +136,13 @@ void add_known(const std::vector<AuctionRow>& rows, std::int64_t from, std::int6
 
 }  // namespace
 
-/// The plan of each decision again, by the auction's true rows, of which so many ahead were known
-/// as the log says, without a hole: of tomorrow none before 13:00 local time.
+/// Recomputes the plan of each decision from the auction's true rows, as many as the log reports,
+/// without gaps; none of tomorrow before 13:00 local time.
 void judge_outlook(Bench& bench) {
   if (student_outlook() == nullptr) return;
   const std::vector<AuctionRow> rows = day_ahead_rows(bench.scenario);
   const auto made = std::make_unique<MadePlan>();
-  std::int64_t planned_day_utc_s = 0;  ///< midnight of the last day that was known
+  std::int64_t planned_day_utc_s = 0;  ///< midnight of the last known day
   for (const CycleRecord& cycle : bench.evidence.log) {
     const OutlookReport& seen = cycle.outlook;
     const bool is_planned = seen.source == OutlookSource::kPlanned;
@@ -151,7 +153,7 @@ void judge_outlook(Bench& bench) {
         is_planned ? cycle.utc_s - cycle.utc_s % kSecondsPerQuarterHour : days.tomorrow_utc_s;
     const std::int64_t until = first + kSecondsPerQuarterHour * seen.known_quarter_hours;
     if (until > days.tomorrow_utc_s && local_minute_of(cycle.utc_s).minute_of_day < 13 * 60)
-      bench.find(cycle.utc_s * kSecondNs, "nothing of tomorrow known before 13:00", "some of it");
+      bench.find(cycle.utc_s * kSecondNs, "no price of tomorrow before 13:00", "some");
     if (planned_day_utc_s == days.yesterday_utc_s)
       add_known(rows, days.yesterday_utc_s, days.today_utc_s, days);
     add_known(rows, is_planned ? days.today_utc_s : first, until, days);
@@ -164,11 +166,10 @@ void judge_outlook(Bench& bench) {
 
 namespace {
 
-/// What the operator or another program asks for stands above the thresholds: what of it is in
-/// force at a tick.
+/// Holds and limits in force at a tick; they take precedence over the thresholds.
 struct Said {
   bool is_held = false;
-  bool is_limited = false;  ///< or was: an unreadable limit leaves the one before in doubt
+  bool is_limited = false;  ///< or was: after an unreadable limit the previous one may apply
 };
 
 Said said_at(const Bench& bench, std::int64_t tick_ns) {
@@ -188,8 +189,8 @@ Said said_at(const Bench& bench, std::int64_t tick_ns) {
   return said;
 }
 
-/// By the battery's own record: what was moved on the local day of a tick reaches the budget, but
-/// for what its display rounds.
+/// Whether the energy of the local day, from the battery trace, reaches the budget of full cycles
+/// within the resolution of the display.
 bool may_be_spent(const Bench& bench, std::int64_t tick_ns) {
   const std::int32_t budget_e4 = bench.config.control.cycles_per_day_max_e4;
   if (budget_e4 == 0) return false;
@@ -207,7 +208,7 @@ bool may_be_spent(const Bench& bench, std::int64_t tick_ns) {
   return 1e4 * (moved_frac / 2 + bench.soc_margin_frac()) >= budget_e4;
 }
 
-/// As many orders of the last hour as the cap allows went the other way than the one before.
+/// Whether the reversals of the last hour have reached their limit.
 bool may_be_barred(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
   const std::int32_t most = bench.config.control.reversals_per_hour_max;
   if (most == 0) return false;
@@ -223,7 +224,7 @@ bool may_be_barred(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
   return reversals >= most && wanted_w * last_w < 0;
 }
 
-/// As far towards it as the ramp lets one order go.
+/// Power that one order may reach with the ramp limit.
 double ramped_w(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
   const double ramp_w = bench.config.control.guard.ramp_w_max;
   if (ramp_w == 0) return wanted_w;
@@ -231,7 +232,7 @@ double ramped_w(const Bench& bench, std::int64_t tick_ns, double wanted_w) {
   return std::clamp(wanted_w, from_w - ramp_w, from_w + ramp_w);
 }
 
-/// The state of charge forbids it: of the window, or of what is kept for a black-out.
+/// Whether the SoC window or the reserve forbids the direction.
 bool is_full_or_empty(const Bench& bench, std::int64_t tick_ns, bool charges) {
   const GuardSettings& guard = bench.config.control.guard;
   const double soc_e4 = 1e4 * bench.soc_at(tick_ns);
@@ -242,7 +243,7 @@ bool is_full_or_empty(const Bench& bench, std::int64_t tick_ns, bool charges) {
   return soc_e4 < std::max(guard.soc_min_e4, reserve_e4) + margin_e4;
 }
 
-/// What the house's connection allows, or a meter that is wrong about it, may cut an order.
+/// Whether limits at the connection, or a faulty meter, may reduce an order.
 bool has_connection(const Bench& bench) {
   const Scenario& scenario = bench.scenario;
   return bench.house.has_value() &&

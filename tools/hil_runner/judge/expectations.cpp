@@ -38,10 +38,10 @@ void judge_reasons(Bench& bench, const Expectation& expectation, const Window& s
     }
   }
   if (!was_seen)
-    bench.find(span.from_ns, "the reason " + expectation.reason + " by the end of its span", last);
+    bench.find(span.from_ns, "the reason " + expectation.reason + " within its span", last);
 }
 
-/// At least one plan, and each of them as expected.
+/// Requires at least one plan, and all plans as expected.
 void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
   bool is_any = false;
   for (const CycleRecord& cycle : bench.evidence.log) {
@@ -52,10 +52,10 @@ void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
     const int known = seen.known_quarter_hours;
     if (e.outlook == seen.source && known >= e.quarter_hours_min && known <= e.quarter_hours_max)
       continue;
-    bench.find(ns, "the outlook of its span",
+    bench.find(ns, "the expected outlook",
                fmt::format("{}, {} quarter-hours", outlook_source_name(seen.source), known));
   }
-  if (!is_any) bench.find(span.from_ns, "a decision by a plan", "none");
+  if (!is_any) bench.find(span.from_ns, "a planned decision", "none");
 }
 
 }  // namespace
@@ -94,15 +94,14 @@ void judge_end(Bench& bench) {
   if (bench.evidence.edge_exit_code != bench.scenario.exit_code) {
     bench.find(
         bench.scenario.end_utc_ns(),
-        fmt::format("exit code {} of the edge", bench.scenario.exit_code),
+        fmt::format("exit code {} of bess-edge", bench.scenario.exit_code),
         fmt::format("{} ({})", bench.evidence.edge_exit_code, bench.evidence.edge_last_line));
   }
   if (!bench.evidence.is_alive_at_end) {
-    bench.find(bench.scenario.end_utc_ns(), "simulators that serve until the end",
-               "one ended before");
+    bench.find(bench.scenario.end_utc_ns(), "simulators that run until the end",
+               "one ended earlier");
   }
-  if (bench.evidence.log.empty())
-    bench.find(bench.scenario.end_utc_ns(), "a log of the edge", "none");
+  if (bench.evidence.log.empty()) bench.find(bench.scenario.end_utc_ns(), "a decision log", "none");
 }
 
 }  // namespace bess

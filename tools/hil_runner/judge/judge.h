@@ -1,5 +1,5 @@
-// What must hold in every scenario, judged by the battery's own record: the edge's log is only held
-// against it. A scenario may leave some out, by name.
+// Judge: rules that hold in every scenario, checked on the battery trace and compared with the
+// decision log. A scenario can exclude rules by name.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace bess {
 
-/// What did not hold: expected, seen, and when.
+/// Violation of a rule.
 struct Finding {
   std::string rule;
   std::int64_t utc_s = 0;
@@ -28,7 +28,7 @@ struct Trial {
   const Evidence& evidence;
 };
 
-/// The first finding of each broken invariant and expectation, in the order of time.
+/// First finding of each violated rule and expectation, ascending in time.
 std::vector<Finding> judge(const Trial& trial);
 
 }  // namespace bess

@@ -33,7 +33,7 @@ void judge_flash(Bench& bench) {
   for (const CycleRecord& cycle : bench.evidence.log) {
     const std::int32_t writes = cycle.counters.flash_writes_today;
     if (writes > most) {
-      bench.find(cycle.utc_s * kSecondNs, fmt::format("{} writes of its flash a day at most", most),
+      bench.find(cycle.utc_s * kSecondNs, fmt::format("at most {} flash writes per day", most),
                  fmt::format("{}", writes));
     }
   }
@@ -43,7 +43,7 @@ namespace {
 
 void judge_peaks(Bench& bench, double peak_w_max) {
   constexpr double kHours = 0.25;
-  constexpr double kRoundTripWh = 10;  // of what it takes and gives back
+  constexpr double kRoundTripWh = 10;  // of energy charged and discharged
   double import_wh = 0, battery_wh = 0;
   for (const MinuteRecord& m : bench.evidence.minutes) {
     if (m.minute_utc_s % kQuarterHourS == 0) import_wh = battery_wh = 0;
@@ -54,18 +54,18 @@ void judge_peaks(Bench& bench, double peak_w_max) {
     if (!is_over || !is_above || battery_wh <= kRoundTripWh) continue;
     bench.find(
         m.minute_utc_s * kSecondNs,
-        fmt::format("at most {:.0f} W in the mean of a quarter-hour", peak_w_max),
-        fmt::format("{:.0f} W, {:.0f} Wh of it the battery's", import_wh / kHours, battery_wh));
+        fmt::format("at most {:.0f} W as quarter-hour mean", peak_w_max),
+        fmt::format("{:.0f} W, with {:.0f} Wh of the battery", import_wh / kHours, battery_wh));
   }
 }
 
 }  // namespace
 
-/// By the house's load and what the battery recorded of itself, and not by what any meter showed.
+/// From the house load and the battery trace, independent of any meter.
 void judge_connection(Bench& bench) {
   if (!bench.house) return;
   const ConnectionSettings& limits = bench.config.site.settings.connection;
-  // Of the one in which the house rose, the edge's next look cuts what is too much.
+  // In the minute of a load step, the edge reduces power at its next reading.
   const int minutes_max = 1 + static_cast<int>(std::ceil((bench.evidence.slack_s) / 60));
   int minutes_over = 0;
   for (const MinuteRecord& m : bench.evidence.minutes) {
@@ -76,9 +76,9 @@ void judge_connection(Bench& bench) {
     minutes_over = is_over ? minutes_over + 1 : 0;
     if (minutes_over <= minutes_max) continue;
     bench.find(m.minute_utc_s * kSecondNs,
-               battery_w > 0 ? fmt::format("at most {} W taken from the grid", limits.import_w_max)
-                             : fmt::format("at most {} W given to the grid", limits.export_w_max),
-               fmt::format("{:.0f} W, of which the battery {:.0f} W", grid_w, battery_w));
+               battery_w > 0 ? fmt::format("at most {} W import", limits.import_w_max)
+                             : fmt::format("at most {} W export", limits.export_w_max),
+               fmt::format("{:.0f} W, with {:.0f} W of the battery", grid_w, battery_w));
   }
   if (limits.peak_w_max != kAnyPowerW) judge_peaks(bench, limits.peak_w_max);
 }
@@ -89,11 +89,11 @@ void judge_energy(Bench& bench) {
   double moved_wh = 0;
   double unknown_wh = 0.5;
   double before_wh = 0;
-  const double lost_wh_max = p.full_power_loss_frac * p.power_w_max / 60;  // of a minute
+  const double lost_wh_max = p.full_power_loss_frac * p.power_w_max / 60;  // per minute
   for (const MinuteRecord& m : bench.evidence.minutes) {
     const double flow_wh = m.energy_wh - p.standby_w / 60;
-    // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery
-    // that is simulated turns 5 s after its order. Nor does it know the squares of what changed.
+    // The trace has only sums of a minute: unknown are losses of a minute with charging and
+    // discharging (slowest response: 5 s), and losses that grow with the square of power.
     if (flow_wh * before_wh < 0) {
       unknown_wh += p.power_w_max * (6 + bench.evidence.slack_s) / 3'600 *
                     (1 / p.discharge_efficiency - p.charge_efficiency);
@@ -108,8 +108,8 @@ void judge_energy(Bench& bench) {
   const double by_soc_wh = (last.soc_frac - bench.scenario.battery.soc_frac) * p.capacity_wh;
   if (std::abs(stored_wh - by_soc_wh) <= 0.001 * moved_wh + unknown_wh) return;
   bench.find((last.minute_utc_s + 60) * kSecondNs,
-             fmt::format("{:.1f} Wh stored, by the energy", stored_wh),
-             fmt::format("{:.1f} Wh by the SoC", by_soc_wh));
+             fmt::format("{:.1f} Wh stored, from the energy", stored_wh),
+             fmt::format("{:.1f} Wh from the SoC", by_soc_wh));
 }
 
 }  // namespace bess

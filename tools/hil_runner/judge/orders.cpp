@@ -37,8 +37,7 @@ void judge_in_time(Bench& bench) {
     const bool is_judged = e.utc_ns >= bench.start_ns() && e.utc_ns < bench.scenario.end_utc_ns();
     const std::int64_t most_ns =
         bench.config.control.order_deadline_s * kSecondNs + bench.slack_ns();
-    // The wait for a reply to the last write of an order counts, that order's bytes are on their
-    // way.
+    // Includes the wait for a reply to the last write of an order.
     if (!is_new || !is_judged || after_tick_ns <= most_ns) continue;
     bench.find(
         e.utc_ns,
@@ -61,13 +60,13 @@ void judge_fed(Bench& bench) {
   for (const DispatchEvent& e : bench.evidence.orders) {
     if (e.kind != DispatchEvent::Kind::kExpiry || bench.is_disturbed(e.utc_ns)) continue;
     if (e.utc_ns < bench.start_ns() || e.utc_ns >= bench.scenario.end_utc_ns()) continue;
-    return bench.find(e.utc_ns, "an order that is fed in time", "it ran out");
+    return bench.find(e.utc_ns, "an order that is refreshed in time", "it expired");
   }
 }
 
 namespace {
 
-/// An end that the scenario asks for gives the battery back at once.
+/// A stop requested by the scenario releases the battery immediately.
 bool is_way_out(const Bench& bench, std::int64_t utc_ns) {
   constexpr std::int64_t kPatienceNs = 75 * kSecondNs;
   const auto follows = [&](std::int64_t at_ns) {
@@ -83,7 +82,7 @@ bool is_way_out(const Bench& bench, std::int64_t utc_ns) {
 }  // namespace
 
 void judge_held(Bench& bench) {
-  std::int64_t since_ns = -1;  ///< of 0 W, held
+  std::int64_t since_ns = -1;  ///< start of 0 W
   bool was_driven = false;
   for (const DispatchEvent& e : bench.evidence.orders) {
     if (e.kind == DispatchEvent::Kind::kOrder) {
@@ -100,9 +99,9 @@ void judge_held(Bench& bench) {
         e.utc_ns < bench.start_ns())
       continue;
     if (held_ns >= bench.config.control.hold_s * kSecondNs - bench.slack_ns()) continue;
-    return bench.find(
-        e.utc_ns, fmt::format("0 W for {} s before it is given back", bench.config.control.hold_s),
-        fmt::format("{:.0f} s", static_cast<double>(held_ns) / 1e9));
+    return bench.find(e.utc_ns,
+                      fmt::format("0 W for {} s before the release", bench.config.control.hold_s),
+                      fmt::format("{:.0f} s", static_cast<double>(held_ns) / 1e9));
   }
 }
 
@@ -110,10 +109,10 @@ void judge_released(Bench& bench) {
   if (bench.evidence.orders.empty()) return;
   const bool was_killed = bench.evidence.edge_exit_code == 128 + SIGKILL;
   if (was_killed && !bench.evidence.order_ends_by_itself) return;
-  // What a killed edge leaves runs out by itself, if the scenario goes on for long enough.
+  // The order of a killed edge expires by itself if the scenario is long enough.
   const CommandInForce last = bench.commands.at(INT64_MAX);
   if (last.is_driven)
-    bench.find(bench.evidence.orders.back().utc_ns, "no order left at the end", watts(last));
+    bench.find(bench.evidence.orders.back().utc_ns, "no order in force at the end", watts(last));
 }
 
 void judge_safe_state(Bench& bench) {
@@ -126,7 +125,7 @@ void judge_safe_state(Bench& bench) {
       const CommandInForce command = bench.commands.at(t);
       if (command.power_w == 0) continue;
       return bench.find(t,
-                        fmt::format("no power {} s after the link or the process was lost",
+                        fmt::format("no power {} s after loss of link or process",
                                     bench.evidence.order_duration_s + kSecondsPerStep),
                         watts(command));
     }

@@ -6,8 +6,8 @@
 namespace bess {
 namespace {
 
-constexpr double kSocTolerance = 0.00006;  ///< a digit of the edge's own resolution
-constexpr double kWatts = 2;               ///< of rounding; three phases share an order
+constexpr double kSocTolerance = 0.00006;  ///< resolution of the edge
+constexpr double kWatts = 2;               ///< rounding of an order on three phases
 
 std::string text_of(const std::optional<double>& value) {
   return value ? fmt::format("{:g}", *value) : "nothing";
@@ -17,16 +17,17 @@ bool is_near(const std::optional<double>& value, double other, double tolerance)
   return value && std::abs(*value - other) <= tolerance;
 }
 
-/// What stood on the wire at an instant.
+/// Values on the wire at an instant.
 WireReading reading_at(const std::vector<WireReading>& wire, std::int64_t utc_ns) {
   const auto next = std::ranges::upper_bound(wire, utc_ns, {}, &WireReading::utc_ns);
   return next == wire.begin() ? WireReading{} : *(next - 1);
 }
 
-/// What the edge says that it read must have stood there in the cycle.
+/// The values in the log must have been on the wire in the control cycle.
 void judge_reading(Bench& bench, const CycleRecord& cycle, std::int64_t tick_ns) {
   const std::int64_t by_ns = bench.settled_ns(tick_ns);
-  constexpr std::int64_t kReadBeforeNs = 30 * kSecondNs;  // by the cycle before, or between two
+  constexpr std::int64_t kReadBeforeNs =
+      30 * kSecondNs;  // by the previous control cycle, or in between
   const std::int64_t from_ns = tick_ns - kReadBeforeNs;
   const WireReading before = reading_at(bench.evidence.wire, from_ns);
   bool has_soc = false;
@@ -50,9 +51,9 @@ void judge_reading(Bench& bench, const CycleRecord& cycle, std::int64_t tick_ns)
   }
 }
 
-/// What stands on the wire, and what the battery does by its own record.
+/// Compares values on the wire with the battery trace.
 void judge_truth(Bench& bench, std::int64_t utc_ns) {
-  constexpr double kWholePercent = 0.0101;  // some makers show no more
+  constexpr double kWholePercent = 0.0101;  // resolution of some devices
   const WireReading reading = reading_at(bench.evidence.wire, utc_ns);
   const double soc_frac = bench.soc_at(utc_ns);
   const double rated_w = bench.scenario.battery.physics.power_w_max;

@@ -19,7 +19,7 @@ namespace bess {
 
 namespace {
 
-/// What stops a process that is not ours, or leaves an order behind that nobody ends.
+/// Events that act on other processes, or leave an order that no process ends.
 bool is_for_simulators(ScenarioEvent::Does does) {
   using enum ScenarioEvent::Does;
   return does == kBatteryPause || does == kBatteryContinue || does == kEdgeKill ||
@@ -29,8 +29,7 @@ bool is_for_simulators(ScenarioEvent::Does does) {
 
 using Registers = std::vector<std::uint16_t>;
 
-/// What the device itself has said, or was told: an order may be in percent of a rating that it
-/// shows.
+/// Registers read or written so far: an order may be in percent of a displayed rating.
 class KnownRegisters {
  public:
   void learn(const BusExchange& exchange) {
@@ -97,7 +96,7 @@ Scenario on_real_battery(Scenario scenario, const RealBattery& battery) {
   scenario.battery.physics.capacity_wh = battery.capacity_wh;
   scenario.edge_guard =
       fmt::format("soc_min = {:.4f}\nsoc_max = {:.4f}", battery.soc_min_frac, battery.soc_max_frac);
-  // Its meter is its own: what flows is not known between two readings.
+  // The flow between two readings is unknown.
   std::erase(scenario.invariants, "energy");
   return scenario;
 }
@@ -123,7 +122,7 @@ std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& rec
   std::vector<BusExchange> exchanges;
   for (const std::string& recording : recordings) read_recording(recording, exchanges);
   if (exchanges.empty()) return {};
-  // Never full, never empty: only what it is told counts.
+  // Never full or empty: only commands matter.
   const BatteryParameters boundless{
       .power_w_max = 1e6, .capacity_wh = 1e9, .soc_min_frac = 0, .soc_max_frac = 1};
   SimulatedBattery battery(boundless, 0.5, exchanges.front().utc_ns);
@@ -157,19 +156,19 @@ std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log) 
 }
 
 std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery) {
-  constexpr double kSocSlackFrac = 0.01;  // a register may show whole percents
+  constexpr double kSocSlackFrac = 0.01;  // a register may have a resolution of 1 %
   const double most_w = 1.2 * battery.power_w + 200;
   const double soc_frac = cycle.measurement.soc_e4 / 1e4;
   if (std::abs(cycle.ordered_power_w) > battery.power_w) {
-    return fmt::format("{} W were ordered", cycle.ordered_power_w);
+    return fmt::format("an order of {} W", cycle.ordered_power_w);
   }
   if (!cycle.has_measurement) return "";
   if (std::abs(cycle.measurement.power_w) > most_w) {
-    return fmt::format("{} W flow", cycle.measurement.power_w);
+    return fmt::format("a power of {} W", cycle.measurement.power_w);
   }
   const bool is_outside = soc_frac < battery.soc_min_frac - kSocSlackFrac ||
                           soc_frac > battery.soc_max_frac + kSocSlackFrac;
-  return is_outside ? fmt::format("its SoC is {:.1f} %", 100 * soc_frac) : "";
+  return is_outside ? fmt::format("a SoC of {:.1f} %", 100 * soc_frac) : "";
 }
 
 namespace {
@@ -180,7 +179,7 @@ constexpr const char* kNoAddress =
 
 std::string complaint_of_address(const std::string& address) {
   if (address.starts_with('/')) {
-    return access(address.c_str(), R_OK | W_OK) == 0 ? "" : "no serial line that may be opened";
+    return access(address.c_str(), R_OK | W_OK) == 0 ? "" : "cannot be opened as a serial line";
   }
   const std::size_t colon = address.find(':');
   in_addr numeric{};
@@ -196,32 +195,34 @@ std::string complaint_of_address(const std::string& address) {
 
 void add_real_options(ProgramCommand& command, RealOptions& options) {
   command.flag("--yes-drive-real-battery", options.is_sure,
-               "Said besides --real: the battery there is charged and discharged");
-  command.option("--real-map", options.map,
-                 "Its register map: a name of edge/device/maps, or a path");
-  command.option("--real-capacity-wh", options.capacity_wh, "What it holds").positive();
-  command.option("--real-power-w", options.power_w, "No order is larger").range(10.0, 1e8);
-  command.option("--real-soc-min", options.soc_min_frac, "No discharge below").range(0.0, 1.0);
-  command.option("--real-soc-max", options.soc_max_frac, "No charge above").range(0.0, 1.0);
+               "Confirmation for --real: charges and discharges that battery");
+  command.option("--real-map", options.map, "Register map: a name in edge/device/maps, or a path");
+  command.option("--real-capacity-wh", options.capacity_wh, "Capacity, Wh").positive();
+  command.option("--real-power-w", options.power_w, "Maximum power of an order, W")
+      .range(10.0, 1e8);
+  command.option("--real-soc-min", options.soc_min_frac, "Minimum SoC, 0 to 1").range(0.0, 1.0);
+  command.option("--real-soc-max", options.soc_max_frac, "Maximum SoC, 0 to 1").range(0.0, 1.0);
   auto real = command.option(
       "--real", options.address,
-      "Drive the battery at this address, HOST[:PORT] or /dev/..., in real time, instead of "
-      "a simulated one: commissioned, judged by what went over its bus, released on every way out. "
-      "Q or Ctrl-C ends it at once");
+      "Real battery at this address, HOST[:PORT] or /dev/..., in real time instead of a simulated "
+      "one: commissioned, judged by its bus traffic, released at every end. Q or Ctrl-C stops "
+      "immediately");
   real.value_name("ADDRESS").check(complaint_of_address);
   for (const char* const other : {"--yes-drive-real-battery", "--real-map", "--real-capacity-wh",
                                   "--real-power-w", "--real-soc-min", "--real-soc-max"}) {
     real.needs(other);
   }
-  command.option("--real-variant", options.variant, "Of the map; default: its first")
+  command.option("--real-variant", options.variant, "Map variant (default: the first)")
       .needs("--real");
-  command.option("--real-unit", options.unit, "Default: the map's").range(0, 255).needs("--real");
-  command.option("--real-baud", options.baud, "Default: the map's")
+  command.option("--real-unit", options.unit, "Modbus unit (default: from the map)")
+      .range(0, 255)
+      .needs("--real");
+  command.option("--real-baud", options.baud, "Baud rate (default: from the map)")
       .range(1'200, 230'400)
       .needs("--real");
   command
       .option("--real-time-scale", options.time_scale,
-              "For a bess-sim battery that runs at this scale and stands for a real one")
+              "Time scale of a bess-sim battery used instead of a real one")
       .range(1, 900)
       .needs("--real");
 }
@@ -230,8 +231,7 @@ std::optional<RealBattery> real_battery(const RealOptions& options) {
   if (options.address.empty()) {
     const bool has_others = options.is_sure || !options.map.empty() || options.capacity_wh ||
                             options.power_w || options.soc_min_frac || options.soc_max_frac;
-    if (has_others)
-      fail("--real is missing: the address of the battery that these options speak of");
+    if (has_others) fail("--real ADDRESS is required by these options");
     return std::nullopt;
   }
   RealBattery battery{.address = options.address,
@@ -248,15 +248,13 @@ std::optional<RealBattery> real_battery(const RealOptions& options) {
     fail("--real-soc-max {} must be above --real-soc-min {}", battery.soc_max_frac,
          battery.soc_min_frac);
   }
-  if (battery.baud && !battery.is_serial()) fail("--real-baud is for a serial line");
+  if (battery.baud && !battery.is_serial()) fail("--real-baud requires a serial line");
   RegisterMap map;
   std::string error;
   if (!load_register_map(battery.map, battery.variant, map, error)) throw UserError(error);
   if (!map.models.empty()) {
-    fail(
-        "--real-map {}: where a SunSpec device has its models is not known beforehand, so that "
-        "what it was told could not be judged",
-        options.map);
+    fail("--real-map {}: SunSpec maps are not supported: their addresses are not known in advance",
+         options.map);
   }
   return battery;
 }

@@ -1,5 +1,4 @@
-// A real battery behind bess-hil: its options on the command line, none of them guessed, and what
-// is known of it.
+// Real battery of bess-hil: its options, none with a guessed default, and its data.
 #pragma once
 
 #include <cstdint>
@@ -15,45 +14,44 @@
 
 namespace bess {
 
-// A battery that is there already, and may be hurt: where it is, the limits that it is driven
-// within, and which scenarios may drive it. Of a real one only its bus is known: what it was told
-// is read off the recorded bytes, what it did is what it measured.
+// Real battery: address, limits, and suitable scenarios. Its commands are decoded from the recorded
+// bus traffic; its behaviour is known only from its measurements.
 
 struct RealBattery {
-  std::string address;    ///< as it was given
+  std::string address;    ///< as given
   std::string map;        ///< path
   std::string variant{};  ///< empty: the map's first
   std::optional<int> unit{};
   std::optional<int> baud{};
   double capacity_wh = 0;
-  double power_w = 0;  ///< no order is larger
+  double power_w = 0;  ///< maximum of an order
   double soc_min_frac = 0;
   double soc_max_frac = 0;
-  std::int32_t time_scale = 1;  ///< another where bess-sim stands for it at that scale
+  std::int32_t time_scale = 1;  ///< of a bess-sim battery used instead
 
   [[nodiscard]] bool is_serial() const { return address.starts_with('/'); }
 };
 
-/// Why a scenario must not or cannot drive a real battery, in words; empty: it may.
+/// Reason why a scenario cannot run on a real battery; empty: it can.
 std::string why_not_real(const Scenario& scenario);
-/// The same of this battery in particular.
+/// The same for this battery.
 std::string why_not_real(const Scenario& scenario, const RealBattery& battery);
 
-/// The scenario with this battery, its limits and its pace.
+/// The scenario with this battery, its limits and its time scale.
 Scenario on_real_battery(Scenario scenario, const RealBattery& battery);
 
-/// Lines of the edge's [battery] table that lead to it.
+/// Keys of the edge's [battery] table for its link.
 std::string link_keys(const RealBattery& battery);
 
-/// What a device that acts by its map was told, by recordings of its bus in the order of time, and
-/// what became of that until `end_utc_ns`. Throws UserError when one is damaged.
+/// Orders and their ends until `end_utc_ns`, decoded with the map from recordings in the order of
+/// time. Throws UserError for a damaged recording.
 std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
                                              const RegisterMap& map, std::int64_t end_utc_ns);
-/// What it measured, in the edge's log: each reading stands for the cycle that it ends. Commanded
-/// power is not known.
+/// Measurements in the decision log: each reading represents the control cycle that it ends.
+/// Commanded power is unknown.
 std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log);
 
-/// What breaks the limits, in words; empty: nothing does. It stands beside the edge's own guard.
+/// Violation of the limits; empty: none. Independent of the edge's guard.
 std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery);
 
 struct RealOptions {
@@ -67,7 +65,7 @@ struct RealOptions {
 /// `options` must outlive the command.
 void add_real_options(ProgramCommand& command, RealOptions& options);
 
-/// Nothing without --real. Throws UserError when the options contradict each other.
+/// Empty without --real. Throws UserError for contradicting options.
 std::optional<RealBattery> real_battery(const RealOptions& options);
 
 }  // namespace bess

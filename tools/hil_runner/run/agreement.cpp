@@ -14,7 +14,7 @@ namespace bess {
 
 namespace {
 
-/// One that cannot be run to its end differs, whatever was recorded until then.
+/// A run that cannot be completed counts as different.
 bool is_same_run(const Outcome& one, const Outcome& other) {
   return other.error.empty() && one.signature == other.signature;
 }
@@ -30,9 +30,9 @@ std::vector<Finding> judge_parts(const Outcome& outcome) {
     findings.push_back(
         {.rule = "part " + part,
          .utc_s = scenario.start_utc_s,
-         .expected = is_same ? "another run without it, or the reason in [same_without]"
+         .expected = is_same ? "a different run without it, or a reason in [same_without]"
                              : fmt::format("the same run without it, as \"{}\"", excuse->second),
-         .seen = is_same ? "the same to the bit" : "another"});
+         .seen = is_same ? "bit-identical" : "a different run"});
   };
   const std::vector<ScenarioPart> parts = parts_of(scenario);
   if (parts.empty()) judge(std::string(kNothing), true);
@@ -83,7 +83,7 @@ bool met_another_battery(const BatteryMeasurement& v, const BatteryMeasurement& 
          v.order_ended != w.order_ended;
 }
 
-/// What was decided before stays in force: trips, waits and counts of answers.
+/// State from earlier control cycles: trips, waits and counters.
 bool met_another_past(const CycleRecord& v, const CycleRecord& w) {
   return v.is_tripped != w.is_tripped || v.mode != w.mode ||
          v.unanswered_orders != w.unanswered_orders || v.weak_answers != w.weak_answers ||
@@ -105,7 +105,7 @@ void compare(const Outcome& simulated, const Outcome& real, Agreement& agreement
   for (const CycleRecord& cycle : simulated.evidence.log) {
     while (r != log.end() && r->utc_s < cycle.utc_s) ++r;
     if (r == log.end()) return;
-    // How a run ends is no order, and not at a tick.
+    // The end of a run is not an order at a tick.
     const bool is_both =
         r->utc_s == cycle.utc_s && cycle.mode != Mode::kStopping && r->mode != Mode::kStopping;
     if (!is_both) continue;
@@ -142,15 +142,15 @@ std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes) {
 }
 
 std::string agreement_table(const std::vector<Agreement>& agreements) {
-  std::string text = fmt::format("{:32} {:>6} {:>6}  other orders, and what was met otherwise\n",
-                                 "scenario", "cycles", "alike");
+  std::string text = fmt::format("{:32} {:>6} {:>6}  different orders and different inputs\n",
+                                 "scenario", "cycles", "equal");
   for (const Agreement& a : agreements) {
     const auto alike = a.cycles - std::ssize(a.otherwise);
     text += fmt::format("{:32} {:6} {:6}  {}\n", a.scenario, a.cycles, alike, a.not_compared);
     for (const OtherOrder& o : a.otherwise) {
       text += fmt::format("  minute {:3}: {}, in wall time {}: {}\n",
                           (o.in_virtual.utc_s - a.start_utc_s) / 60, order_text(o.in_virtual),
-                          order_text(o.in_wall), o.met.empty() ? "ON THE SAME" : o.met);
+                          order_text(o.in_wall), o.met.empty() ? "EQUAL INPUTS" : o.met);
     }
   }
   return text;
@@ -183,10 +183,10 @@ std::string agreement_line(const std::vector<Agreement>& agreements) {
     on_the_same += std::ranges::count_if(a.otherwise, [](const auto& o) { return o.met.empty(); });
   }
   const std::string line =
-      fmt::format("{} of {} cycles of {} scenarios ordered alike in both times", cycles - otherwise,
-                  cycles, agreements.size());
+      fmt::format("{} of {} control cycles of {} scenarios have equal orders in both times",
+                  cycles - otherwise, cycles, agreements.size());
   if (otherwise == 0) return line;
-  return fmt::format("{}, {} otherwise on something else, {} on the same", line,
+  return fmt::format("{}, {} differ with different inputs, {} with equal inputs", line,
                      otherwise - on_the_same, on_the_same);
 }
 

@@ -1,5 +1,5 @@
-// Comparisons of runs: the same scenario in virtual and in wall time, cycle by cycle, and the same
-// scenario without each of its parts.
+// Comparisons of runs: a scenario in virtual and in wall time, by control cycle, and a scenario
+// without each of its parts.
 #pragma once
 
 #include <cstdint>
@@ -11,43 +11,42 @@
 
 namespace bess {
 
-// Whether a scenario can fail: it is run without each of its parts, and each time must differ.
+// Sensitivity of a scenario: runs without each of its parts must differ.
 
-/// A finding for each part that changes nothing and is not excused, and for each excuse of one
-/// that does. `outcome` is of the whole scenario in virtual time. Throws Interrupted when a stop
-/// was requested.
+/// A finding for each part without effect and without excuse, and for each excuse of a part with an
+/// effect. `outcome` is that of the whole scenario in virtual time. Throws Interrupted on a stop
+/// request.
 std::vector<Finding> judge_parts(const Outcome& outcome);
 
-/// A cycle that both have logged, and ordered otherwise.
+/// A control cycle with different orders in the two times.
 struct OtherOrder {
   CycleRecord in_virtual;
   CycleRecord in_wall;
-  /// What it met otherwise: "link", "price", "words", "meter", "battery", "before"; empty: it
-  /// decided otherwise on the same, which no run may.
+  /// Different input: "link", "price", "words", "meter", "battery", "before"; empty: equal inputs,
+  /// which is an error.
   std::string met;
 };
 
 struct Agreement {
   std::string scenario;
   std::int64_t start_utc_s = 0;
-  int cycles = 0;  ///< that both of them logged
+  int cycles = 0;  ///< logged in both times
   std::vector<OtherOrder> otherwise{};
-  std::string not_compared{};  ///< why there is nothing to compare; empty: there is
+  std::string not_compared{};  ///< reason without a comparison; empty: compared
 
-  /// Every order is the same, or was made on something else; where this machine was too late,
-  /// nothing is said.
+  /// All orders are equal or have different inputs; also true if this machine was too late.
   [[nodiscard]] bool holds() const;
 };
 
-/// Of each scenario that was to run in both times, in the order of the outcomes. Power that differs
-/// by a few watts is the same order: a quarter-hour's energy is counted to the second.
+/// Scenarios run in both times, in the order of the outcomes. Orders within a few watts are equal:
+/// the energy of a quarter-hour depends on seconds.
 std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes);
 
-/// A row a scenario, then each order that differs, then the sum.
+/// One row per scenario, followed by its different orders.
 std::string agreement_table(const std::vector<Agreement>& agreements);
 Json agreement_json(const std::vector<Agreement>& agreements);
-/// "1560 of 1563 cycles of 60 scenarios ordered alike in both times, 3 otherwise on something else,
-/// 0 on the same"; empty where none ran in both.
+/// "1560 of 1563 control cycles of 60 scenarios have equal orders in both times, 3 differ with
+/// different inputs, 0 with equal inputs"; empty if none ran in both.
 std::string agreement_line(const std::vector<Agreement>& agreements);
 
 }  // namespace bess

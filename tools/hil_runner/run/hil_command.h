@@ -1,4 +1,4 @@
-// bess-hil's command line: which scenarios, in which time, told how.
+// Command line of bess-hil.
 #pragma once
 
 #include "shared/host/command_line.h"

@@ -1,4 +1,4 @@
-// What became of one scenario in one of the two times, for whoever tells of it.
+// Outcome of one scenario in one of the two times.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@ namespace bess {
 struct Outcome {
   Scenario scenario;
   bool is_virtual = true;
-  bool is_real = false;  ///< it drove a battery that was there already
-  std::string skipped;   ///< why it did not run; empty: it ran
-  std::string error;     ///< why it could not be run to its end, or not judged; empty: it was
-  bool is_late = false;  ///< not judged: the machine was too late for the scenario's pace
+  bool is_real = false;  ///< with a real battery
+  std::string skipped;   ///< reason not to run; empty: it ran
+  std::string error;     ///< reason of an incomplete run; empty: judged
+  bool is_late = false;  ///< not judged: the machine was too slow
   std::vector<Finding> findings;
-  double seconds = 0;           ///< of wall time
-  std::uint64_t signature = 0;  ///< of all that battery and edge recorded; virtual time alone
+  double seconds = 0;           ///< wall time
+  std::uint64_t signature = 0;  ///< of battery trace and decision log; virtual time only
   Evidence evidence;
   MinuteSeries prices;
-  std::string kept_folder;  ///< where the files of a failed run in wall time lie
+  std::string kept_folder;  ///< files of a failed run in wall time
 
   [[nodiscard]] bool passed() const { return skipped.empty() && error.empty() && findings.empty(); }
   [[nodiscard]] bool failed() const { return !error.empty() || !findings.empty(); }
-  /// "late" is a failure of the machine, not of what was tested.
+  /// "late" is a failure of the machine, not of the tested program.
   [[nodiscard]] const char* verdict() const {
     return !skipped.empty() ? "skipped" : passed() ? "passed" : is_late ? "late" : "failed";
   }

@@ -71,7 +71,7 @@ std::uint64_t pinned_number_of(const Evidence& evidence) {
 
 PinnedRuns::PinnedRuns(const std::string& path, bool renews) : path_(path), renews_(renews) {
   std::ifstream file(path);
-  if (!file && !renews) fail("{}: cannot be read; BESS_UPDATE_GOLDEN=1 writes it", path);
+  if (!file && !renews) fail("{}: cannot be read; create it with BESS_UPDATE_GOLDEN=1", path);
   for (std::string name, number; file >> name >> number;) numbers_[name] = number;
 }
 
@@ -82,9 +82,9 @@ std::vector<Finding> PinnedRuns::judge(const Outcome& outcome) {
   if (pinned == number) return {};
   return {{.rule = "pinned",
            .utc_s = outcome.scenario.start_utc_s,
-           .expected = pinned.empty() ? "a line in " + path_ : "the run " + pinned + ", as before",
-           .seen = fmt::format("the run {}; if this is meant: BESS_UPDATE_GOLDEN=1 renews {}",
-                               number, path_)}};
+           .expected = pinned.empty() ? "a line in " + path_ : "the run " + pinned,
+           .seen = fmt::format("the run {}; if intended, BESS_UPDATE_GOLDEN=1 updates {}", number,
+                               path_)}};
 }
 
 void PinnedRuns::write() const {

@@ -1,5 +1,5 @@
-// Signatures of runs, and the file that pins one for each scenario: every record of the edge, and
-// every byte that it sent with its time. They show a change that no expectation covers.
+// Signatures of runs, and a file with one for each scenario, of all records of the edge and all
+// bytes that it sent. They detect changes that no expectation covers.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,21 @@
 
 namespace bess {
 
-// One number for a run: of every bit of what the battery did, and of what the edge saw and decided.
+// Checksum of a run: battery trace, and inputs and decisions of the edge.
 
-/// Two runs that differ in it anywhere have two signatures.
+/// Differs for runs with any difference in the evidence.
 std::uint64_t signature_of(const Evidence& evidence);
 
-/// Of every field of the edge's records, and of every byte that it sent with its time. What the
-/// battery did follows from these.
+/// Checksum of all fields of the edge's records, and of all bytes that it sent with their times.
 std::uint64_t pinned_number_of(const Evidence& evidence);
 
 class PinnedRuns {
  public:
-  /// `path`: lines of a scenario's name and its number. Throws where it cannot be read. With
-  /// `renews` it is written anew by `write`, and nothing is found.
+  /// `path`: lines with name and number of a scenario. Throws if unreadable. With `renews`, `write`
+  /// updates the file and there are no findings.
   PinnedRuns(const std::string& path, bool renews);
 
-  /// Of a run in virtual time.
+  /// Finding for a run in virtual time.
   [[nodiscard]] std::vector<Finding> judge(const Outcome& outcome);
   void write() const;
 

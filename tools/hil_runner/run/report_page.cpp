@@ -56,7 +56,7 @@ std::string junit_text(const std::vector<Outcome>& outcomes) {
 
 namespace {
 
-constexpr std::size_t kDrawnPointsMax = 3'000;  ///< a picture is 900 pixels wide
+constexpr std::size_t kDrawnPointsMax = 3'000;  ///< a plot is 900 pixels wide
 
 std::string svg_of(const std::string& commands) {
   const WorkFolder folder;
@@ -80,7 +80,7 @@ std::string svg_of(const std::string& commands) {
          file.substr(attributes);
 }
 
-/// `$name << EOD` with one row a point, thinned to what can be seen.
+/// `$name << EOD` with one row per point, thinned to the visible resolution.
 template <typename Row>
 std::string block(const char* name, std::size_t count, const Row& row) {
   std::string text = fmt::format("${} << EOD\n", name);
@@ -89,7 +89,7 @@ std::string block(const char* name, std::size_t count, const Row& row) {
   return text + "EOD\n";
 }
 
-/// Of about four tics to a range: 1, 2 or 5 times a power of ten.
+/// Tic distance, about four per range: 1, 2 or 5 times a power of ten.
 double tic_step(double range) {
   const double rough = std::max(range, 1e-9) / 4;
   const double power = std::pow(10, std::floor(std::log10(rough)));
@@ -177,7 +177,7 @@ class RunPicture {
     text += shown("orders", e.orders, [&](const DispatchEvent& order) {
       const bool is_order = order.kind == DispatchEvent::Kind::kOrder;
       if (is_order) in_force_w = order.power_w;
-      // An order of 0 W is a line, a battery in its own mode is none.
+      // An order of 0 W is a line; the battery's own mode is a gap.
       return fmt::format("{} {}\n{}", order.utc_ns / kNanosecondsPerSecond, in_force_w,
                          is_order ? "" : "\n");
     });
@@ -202,7 +202,7 @@ class RunPicture {
     return block(name, inside.size(), [&](std::size_t i) { return text(*inside[i]); });
   }
 
-  /// What goes wrong, and when; an event of an instant has no end.
+  /// Fault or event and its span; an instant has no end.
   struct Trouble {
     MinuteSpan span;
     const char* colour;
@@ -241,7 +241,7 @@ class RunPicture {
     return all;
   }
 
-  /// Battery orange, prices grey, processes a line.
+  /// Bands: battery orange, prices grey; events of processes as lines.
   [[nodiscard]] std::string bands() const {
     std::string text;
     for (const Trouble& trouble : troubles()) {
@@ -261,7 +261,7 @@ class RunPicture {
     return text;
   }
 
-  /// Above the first panel, each where it begins, in turn on three lines.
+  /// Labels above the first panel, alternating on three lines.
   [[nodiscard]] std::string names() const {
     std::string text;
     int line = 0;
@@ -288,10 +288,10 @@ std::string run_picture(const Outcome& outcome, const MinuteSpan& span) {
 
 namespace {
 
-constexpr double kPictureMinutesMax = 2 * 1'440;  ///< of a longer run, its beginning
+constexpr double kPictureMinutesMax = 2 * 1'440;  ///< longer runs show the begin
 
-/// Ink and paper of bess-train's pages. gnuplot draws for white paper: on a dark screen its
-/// lightness is turned round and its hues stay.
+/// Colours of bess-train's pages. gnuplot draws for a white background; dark mode inverts the
+/// lightness and keeps the hue.
 constexpr const char* kStyle =
     ":root{color-scheme:light dark;--paper:#fff;--ink:#1f2933;--grid:#dde2e6;--bad:#a3271b;"
     "--good:#00704f;--focus:#0072b2}\n"
@@ -310,7 +310,7 @@ constexpr const char* kStyle =
     "pre{font-size:12px}.picture{overflow-x:auto}\n"
     "svg{display:block;min-width:720px;max-width:100%;height:auto}\n";
 
-/// What is wider than the screen scrolls by itself, by the keyboard too.
+/// Scrollable region for wide content, also by keyboard.
 std::string scrolling(const char* what, const Outcome& o, const std::string& inside) {
   return fmt::format(
       "<div class=\"picture\" role=\"region\" tabindex=\"0\" aria-label=\"{} of {}, {} time\">"
@@ -320,7 +320,7 @@ std::string scrolling(const char* what, const Outcome& o, const std::string& ins
 
 std::string anchor_of(const Outcome& o) { return fmt::format("{}-{}", o.time(), o.scenario.name); }
 
-/// How many passed, and a link to each: those that failed first.
+/// Counts by verdict, and links, failed runs first.
 std::string contents(const std::vector<Outcome>& outcomes) {
   std::string counts, links;
   for (const std::string_view verdict : {"failed", "late", "passed", "skipped"}) {
@@ -341,7 +341,7 @@ std::string contents(const std::vector<Outcome>& outcomes) {
 
 std::string findings_table(const Outcome& o) {
   std::string text =
-      "<table>\n<caption>What was not as it should be</caption>\n<thead><tr>"
+      "<table>\n<caption>Findings</caption>\n<thead><tr>"
       "<th scope=\"col\">rule</th><th scope=\"col\">when</th><th scope=\"col\">expected</th>"
       "<th scope=\"col\">seen</th></tr></thead>\n<tbody>\n";
   for (const Finding& f : o.findings) {
@@ -363,7 +363,7 @@ std::string section(const Outcome& o) {
   if (!o.findings.empty()) text += findings_table(o);
   if (!o.evidence.minutes.empty()) {
     text += scrolling("Picture", o, run_picture(o, {.to_min = kPictureMinutesMax}));
-    if (o.scenario.minutes > kPictureMinutesMax) text += "<p>The first two days of it.</p>\n";
+    if (o.scenario.minutes > kPictureMinutesMax) text += "<p>The first two days.</p>\n";
   }
   return text + "</section>\n";
 }
@@ -372,9 +372,11 @@ std::string section(const Outcome& o) {
 
 std::string report_page(const std::vector<Outcome>& outcomes) {
   std::string body =
-      "<p>Power is positive when it charges; SoC and measured power are by the battery's own "
-      "record, of a real one by what it shows. Bands: faults of the battery (orange) and of the "
-      "prices (grey); dashed: what happens to a process, its clock or its disk.</p>\n";
+      "<p>Power is positive when charging. SoC and measured power are from the battery trace, or "
+      "as "
+      "displayed by a real battery. Bands: faults of the battery (orange) and of the prices "
+      "(grey). "
+      "Dashed lines: events of a process, its clock or its disk.</p>\n";
   body += contents(outcomes);
   for (const Outcome& outcome : outcomes) body += section(outcome);
   return std::string(

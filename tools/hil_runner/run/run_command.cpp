@@ -1,4 +1,4 @@
-// bess-hil run: scenarios in one or both times, a line each.
+// bess-hil run: scenarios in one or both times.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -46,13 +46,13 @@ struct RunOptions {
   bool json = false;
   bool each_part = false;
   bool agree = false;
-  int draw = 0;  ///< so many scenarios; 0: all
+  int draw = 0;  ///< number of scenarios; 0: all
   std::uint64_t seed = 0;
   std::string junit, report, pinned, records, edge, simulators;
   RealOptions real;
 };
 
-/// Files as they are; of a folder, its scenarios by name.
+/// Files as given; scenarios of folders by name.
 std::vector<std::string> scenario_files(const std::vector<std::string>& places) {
   std::vector<std::string> files;
   for (const std::string& place : places) {
@@ -67,11 +67,11 @@ std::vector<std::string> scenario_files(const std::vector<std::string>& places) 
     std::ranges::sort(inside);
     files.insert(files.end(), inside.begin(), inside.end());
   }
-  if (files.empty()) fail("no scenario: give files, or a folder that holds some (*.toml)");
+  if (files.empty()) fail("no scenario: give files, or a folder with scenarios (*.toml)");
   return files;
 }
 
-/// Beside this program, unless said otherwise.
+/// Default: next to this program.
 std::string program(const std::string& given, const char* name) {
   if (!given.empty()) return given;
   return (fs::read_symlink("/proc/self/exe").parent_path() / name).string();
@@ -86,7 +86,7 @@ void print_line(const Outcome& outcome) {
   } else {
     fmt::print("FAIL  {:7} {:32} {:6.2f} s  {}{}\n", outcome.time(), outcome.scenario.name,
                outcome.seconds, complaint(outcome),
-               outcome.kept_folder.empty() ? "" : " (its files: " + outcome.kept_folder + ")");
+               outcome.kept_folder.empty() ? "" : " (files: " + outcome.kept_folder + ")");
   }
   std::fflush(stdout);
 }
@@ -109,7 +109,7 @@ Json json_of(const Outcome& outcome) {
   return json;
 }
 
-/// What `bess-sim settle` reads: NAME.TIME.battery.csv, NAME.TIME.edge.csv.
+/// Input of `bess-sim settle`: NAME.TIME.battery.csv, NAME.TIME.edge.csv.
 void write_records(const fs::path& folder, const Outcome& outcome) {
   const std::string place = (folder / (outcome.scenario.name + "." + outcome.time())).string();
   write_battery_record(place + ".battery.csv", outcome.evidence.minutes);
@@ -167,14 +167,14 @@ class Runner {
     scenarios_ = std::move(drawn);
   }
 
-  /// Of a folder, those that may not are passed over; one that was named is a mistake.
+  /// Unsuited scenarios of a folder are skipped; a named one is an error.
   void refuse_unsuited() const {
     for (const Scenario& scenario : scenarios_) {
       const bool was_named =
           std::ranges::find(options_.places, scenario.path) != options_.places.end();
       const std::string why = why_not_real(scenario, *site_.battery);
       if (was_named && !why.empty()) {
-        fail("{}: not for a real battery: {} (--list names those that are)", scenario.path, why);
+        fail("{}: not for a real battery: {} (--list shows suitable ones)", scenario.path, why);
       }
     }
   }
@@ -190,7 +190,7 @@ class Runner {
     return outcome;
   }
 
-  /// One after the other; what cannot be run to its end ends them all.
+  /// One after the other; an incomplete run ends all.
   void run_on_real_battery() {
     require_programs();
     for (const Scenario& scenario : scenarios_) {
@@ -202,14 +202,13 @@ class Runner {
   void require_programs() const {
     for (const std::string& path : {site_.edge, site_.simulators}) {
       if (access(path.c_str(), X_OK) != 0) {
-        fail("{}: {}; build it, or say where it is (see --help)", path,
-             fs::exists(path) ? "no program that this user may run" : "not there");
+        fail("{}: {}; build it, or give its path (see --help)", path,
+             fs::exists(path) ? "not executable by this user" : "not found");
       }
     }
   }
 
-  /// Most of it is waiting: several beside each other, the longest first, so that none is left at
-  /// the end.
+  /// Mostly waiting: several in parallel, the longest first.
   void run_in_wall_time() {
     require_programs();
     std::ranges::stable_sort(scenarios_, std::greater<>(), [](const Scenario& s) {
@@ -269,10 +268,10 @@ void list_scenarios(const std::vector<Scenario>& scenarios, bool as_json) {
   if (as_json) fmt::print("{}\n", Json::object({{"scenarios", std::move(list)}}).line());
 }
 
-/// Whether the two times agree, whatever is judged of each.
+/// Agreement of the two times, independent of the judge.
 void tell_agreement(const RunOptions& options, const std::vector<Outcome>& outcomes) {
   const std::vector<Agreement> agreements = agreements_of(outcomes);
-  if (agreements.empty()) fail("no scenario among these runs in both times here");
+  if (agreements.empty()) fail("no scenario among these runs in both times");
   if (options.json) {
     fmt::print("{}\n", agreement_json(agreements).line());
   } else {
@@ -280,7 +279,7 @@ void tell_agreement(const RunOptions& options, const std::vector<Outcome>& outco
   }
   const auto broken =
       std::ranges::count_if(agreements, [](const Agreement& a) { return !a.holds(); });
-  if (broken > 0) fail("{} of {} scenarios are ordered otherwise", broken, agreements.size());
+  if (broken > 0) fail("{} of {} scenarios have different orders", broken, agreements.size());
 }
 
 void run(const RunOptions& options) {
@@ -320,14 +319,15 @@ void run(const RunOptions& options) {
   if (!options.report.empty()) write_file(options.report, report_page(outcomes));
   if (failed > late) fail("{} of {} runs failed", failed - late, ran);
   if (late > 0) fail("{} of {} runs were not judged: this machine was late", late, ran);
-  if (ran == 0) fail("nothing ran: all scenarios were skipped");
+  if (ran == 0) fail("no run: all scenarios were skipped");
 }
 
 }  // namespace
 
 void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<RunOptions>();
-  ProgramCommand command = app.subcommand("run", "Run scenarios, judge them, a line each");
+  ProgramCommand command =
+      app.subcommand("run", "Run and judge scenarios; prints one line for each");
   command.footer(
       "Examples:\n"
       "  bess-hil run tests/scenarios/quiet_hour.toml\n"
@@ -339,43 +339,39 @@ void add_run_command(ProgramCommand& app) {
       "--yes-drive-real-battery\n"
       "      --real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3 "
       "--real-soc-max 0.7\n"
-      "Exit codes: 0 all passed, 1 one failed or a file is bad, 2 the command line is bad, 3 "
-      "interrupted.");
-  command.option("scenarios", options->places, "Scenario files, or folders of them")
+      "Exit codes: 0 all passed, 1 a run failed or bad file, 2 bad command line, 3 interrupted.");
+  command.option("scenarios", options->places, "Scenario files, or folders with scenarios")
       .value_name("SCENARIO...");
   command.choice<Times>(
       "--time", options->times,
       {{"virtual", Times::kVirtual}, {"wall", Times::kWall}, {"both", Times::kBoth}},
-      "virtual (default): the edge's own parts, as quick as the machine; wall: "
-      "the real programs, scaled");
-  command.option("--jobs", options->jobs, "Scenarios beside each other, in wall time")
+      "virtual (default): computed time, with the edge's code; wall: scaled time, with the real "
+      "programs");
+  command.option("--jobs", options->jobs, "Parallel scenarios in wall time")
       .range(1, 64)
       .with_default();
-  command.flag("--list", options->list,
-               "Only name the scenarios, their times, and which may drive a real battery");
-  command.flag("--invariants", options->list_invariants, "Only name what is judged");
+  command.flag("--list", options->list, "List scenarios with times; mark those for a real battery");
+  command.flag("--invariants", options->list_invariants, "List the judged rules");
   command.flag(
       "--each-part", options->each_part,
-      "In virtual time, run each that passes also without each of its parts: all must differ");
+      "Also run each passed virtual scenario without each of its parts; every run must differ");
   command
-      .option("--pinned", options->pinned,
-              "In virtual time, each must do what this file says that it did before")
+      .option("--pinned", options->pinned, "Compare virtual runs with the signatures in this file")
       .value_name("FILE");
   command.flag("--agree", options->agree,
-               "Run those that are for both times in both, and compare what was ordered, cycle by "
-               "cycle");
-  command.option("--draw", options->draw, "Only so many of them, drawn").range(1, 1'000);
-  command.option("--seed", options->seed, "Of --draw").needs("--draw");
-  command.flag("--json", options->json, "One JSON object instead of lines");
-  command.option("--junit", options->junit, "Write JUnit XML here");
-  command.option("--report", options->report, "Write a page with pictures here (HTML)");
+               "Run scenarios in both times and compare set points by control cycle");
+  command.option("--draw", options->draw, "Number of scenarios to draw at random").range(1, 1'000);
+  command.option("--seed", options->seed, "Random seed for --draw").needs("--draw");
+  command.flag("--json", options->json, "Output as one JSON object");
+  command.option("--junit", options->junit, "Output file in JUnit XML");
+  command.option("--report", options->report, "Output file of the HTML report");
   command
       .option("--records", options->records,
-              "Write what battery and edge recorded into this folder, for bess-sim settle (CSV)")
+              "Output folder for battery traces and decision logs (CSV), for bess-sim settle")
       .value_name("FOLDER");
-  command.option("--edge", options->edge, "bess-edge; default: the one beside this program");
+  command.option("--edge", options->edge, "Path of bess-edge (default: next to this program)");
   command.option("--simulators", options->simulators,
-                 "bess-sim; default: the one beside this program");
+                 "Path of bess-sim (default: next to this program)");
   add_real_options(command, options->real);
   command.runs([options] { run(*options); });
 }

@@ -19,7 +19,8 @@ void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outc
                    WorkFolder& folder) {
   if (scenario.day_ahead && student_outlook() == nullptr) {
     fail(
-        "{}: [day_ahead] is for a student by outlook, and this program's is another: run it with "
+        "{}: [day_ahead] needs a student with context outlook, which this program does not have: "
+        "use "
         "bess-hil-outlook",
         scenario.path);
   }

@@ -1,4 +1,4 @@
-// One scenario, run and judged.
+// Run and judgement of one scenario.
 #pragma once
 
 #include "tools/hil_runner/run/outcome.h"
@@ -6,8 +6,7 @@
 
 namespace bess {
 
-/// Never throws for what the scenario does, that is an outcome; throws Interrupted when a stop was
-/// requested.
+/// Errors of the scenario are in the outcome. Throws Interrupted on a stop request.
 Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallSite& site);
 
 }  // namespace bess

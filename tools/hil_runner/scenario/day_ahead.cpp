@@ -39,7 +39,7 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
                 "yesterday", "hours", "out-of-range", "html", "slow", "all"});
   auction.fault = static_cast<AuctionFault>(fault);
   for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
-    if (fault == 0 && table.has(key)) table.fail(key, "is of a fault: name one");
+    if (fault == 0 && table.has(key)) table.fail(key, "requires a fault");
   }
   MinuteSpan span;
   read_span(table, scenario.minutes, span);

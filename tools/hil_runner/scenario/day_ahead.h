@@ -1,5 +1,5 @@
-// [day_ahead] of a scenario: the day-ahead prices that its market publishes, and what goes wrong
-// with them, for an edge whose student is by outlook.
+// [day_ahead] of a scenario: published day-ahead prices and their faults, for a student with
+// context outlook.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,12 @@
 
 namespace bess {
 
-/// A relative `file` is beside the scenario, in `folder`.
+/// A relative `file` is in `folder`, that of the scenario.
 void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
 
-/// The scenario's file; without one made up, from the local day before the start to two after the
-/// end: by hour a morning, a noon and an evening, by date another height, no two quarter-hours of
-/// an hour alike.
+/// File of the scenario; else synthetic prices from the local day before the start to two days
+/// after the end, with a morning, noon and evening pattern, a level by date, and distinct
+/// quarter-hours.
 std::string day_ahead_csv(const Scenario& scenario);
 std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario);
 

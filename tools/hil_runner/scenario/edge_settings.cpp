@@ -10,14 +10,14 @@
 namespace bess {
 namespace {
 
-/// Of a wall-clock run: what is a second on the device passes in a fraction of one.
+/// For runs in scaled wall time.
 constexpr std::int32_t kWallTimeoutMs = 200;
 
 std::string market_of(const EdgePlaces& places) {
   return fmt::format("http://127.0.0.1:{}", places.market_port);
 }
 
-/// Where the scenario's own lines for the table give none.
+/// Unless the scenario sets a timeout.
 std::string wall_timeout(const std::string& lines, const EdgePlaces& places) {
   const bool is_wall = places.clock.has_value();
   const bool has_timeout = lines.find("response_timeout_ms") != std::string::npos;
@@ -54,7 +54,7 @@ std::string meter_table(const Scenario& scenario, const EdgePlaces& places) {
   return text + scenario.edge_meter + "\n";
 }
 
-/// The level that earlier days have led to, or how much of them the edge asks for.
+/// Price level of earlier days, or the hours of history to request.
 std::string history_keys(const Scenario& scenario, const MinuteSeries& prices,
                          const EdgePlaces& places) {
   if (scenario.prices.history_hours > 0) {
@@ -104,9 +104,9 @@ EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
   EdgeConfig config;
   std::string error;
   if (load_edge_config(path, config, error)) return config;
-  // The file is not the user's, nor are its lines.
+  // File and lines are not the user's.
   if (error.starts_with(path)) error = error.substr(std::min(error.size(), error.find(": ") + 2));
-  fail("{}: [edge], read as bess-edge's settings: {}", scenario.path, error);
+  fail("{}: [edge], read as settings of bess-edge: {}", scenario.path, error);
 }
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-// The edge's configuration of a scenario: a file for the real reader, in both times.
+// Configuration of the edge for a scenario: a file for the real reader, in both times.
 #pragma once
 
 #include <fmt/core.h>
@@ -18,16 +18,14 @@
 
 namespace bess {
 
-// The line by which a scenario's other program limits the battery
-// (edge/core/site/connection_guard.h).
+// Line of the limit file (edge/core/site/connection_guard.h).
 
-/// As a scenario says it and as the line and the command line have it: watts, or any.
+/// Power in W, or any.
 inline std::string limit_power_text(std::int32_t power_w) {
   return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w);
 }
 
-/// Of an event that limits; one that tears leaves what a program writes that is interrupted: half
-/// of it.
+/// Line for a limit event; for a torn limit half of it, as by an interrupted program.
 inline std::string limit_line(const ScenarioEvent& event, std::int64_t now_utc_s) {
   const std::string line =
       fmt::format("{} {} {}\n", limit_power_text(event.charge_w),
@@ -35,25 +33,24 @@ inline std::string limit_line(const ScenarioEvent& event, std::int64_t now_utc_s
   return event.does == ScenarioEvent::Does::kLimitTorn ? line.substr(0, line.size() / 2) : line;
 }
 
-/// Where battery and market are, and the clock; as it stands: virtual time.
+/// Addresses of battery and market, and the clock; the defaults are for virtual time.
 struct EdgePlaces {
   int battery_port = 1;
   std::string serial_device;
-  std::string battery_link;  ///< TOML that leads to a real one; empty: a simulated one, here
+  std::string battery_link;  ///< TOML for a real battery; empty: simulated
   int market_port = 1;
   int meter_port = 2;
   std::optional<SiteClock> clock{};  ///< empty: virtual time
 };
 
-/// The price level that the hours before the start have led to; by default as many as the edge asks
-/// for.
+/// Price level of the hours before the start; by default as many as the edge requests.
 PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s, int hours = 72);
 
 std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places);
 
-/// Writes the text to `path` and reads it as bess-edge does. Throws UserError that names the
-/// scenario: its [edge] is what can be wrong.
+/// Writes the text to `path` and reads it as bess-edge does. Throws UserError naming the scenario
+/// and [edge].
 EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
                               const std::string& text);
 

@@ -31,7 +31,7 @@ MinuteSeries made_up_series(const Scenario& scenario) {
   series.start_utc_s = scenario.start_utc_s - 60 * kMinutesBefore;
   const int end = static_cast<int>(std::ceil(scenario.minutes)) + 60;
   for (int minute = -kMinutesBefore; minute < end; ++minute) {
-    // To the cent: what the edge works with is what is judged by.
+    // Rounded to the resolution of the edge.
     const double price = std::round(100 * made_up_price(scenario.prices, minute)) / 100;
     series.indicative.push_back(price);
     series.settled.push_back(price);
@@ -47,7 +47,7 @@ MinuteSeries scenario_prices(const Scenario& scenario) {
   const std::int64_t last_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond - 60;
   if (scenario.start_utc_s < series.start_utc_s ||
       last_utc_s >= series.start_utc_s + 60 * static_cast<std::int64_t>(series.size())) {
-    fail("{}: {} does not hold the minutes from {} to {}", scenario.path, scenario.prices.file,
+    fail("{}: {} does not contain the minutes from {} to {}", scenario.path, scenario.prices.file,
          utc_text(scenario.start_utc_s).view(), utc_text(last_utc_s).view());
   }
   const auto first = (scenario.start_utc_s - series.start_utc_s) / 60;
@@ -94,14 +94,14 @@ std::optional<Publication::Row> Publication::newest(std::int64_t utc_ns) const {
       (fault.span.to_min == kNeverMin || utc_ns < scenario_.utc_ns_at(fault.span.to_min));
   if (is_struck && fault.fault == MarketFault::kNull) return newest_published(utc_ns, 1);
   if (is_struck && fault.fault == MarketFault::kStale) {
-    // Older answers change nothing: what was known before stays the newest.
+    // Older answers do not replace newer rows.
     const std::int64_t from_ns = scenario_.utc_ns_at(fault.span.from_min);
     return newest_published(std::max(from_ns, utc_ns - kStaleAnswerS * kNanosecondsPerSecond), 0);
   }
   return newest_published(utc_ns, 0);
 }
 
-/// `skip`: the row of the newest minute counts as without price.
+/// `skip`: number of newest minutes without a price.
 std::optional<Publication::Row> Publication::newest_published(std::int64_t utc_ns, int skip) const {
   const auto latency_ns = std::llround(scenario_.prices.latency_s * 1e9);
   const std::int64_t last_utc_s = (utc_ns - latency_ns) / kNanosecondsPerSecond / 60 * 60 - 60;

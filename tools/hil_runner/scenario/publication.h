@@ -1,5 +1,5 @@
-// The prices of a scenario: the minute file that the market serves, and the truth about what the
-// edge can know of it at an instant, by which its orders are judged.
+// Prices of a scenario: the minute series of the market, and the rows available to the edge at an
+// instant, for the judge.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace bess {
 
-/// Minutes from four days before the start to the end, rows that are never published without a
-/// price. Throws UserError when the scenario's own file does not hold its time.
+/// Minutes from four days before the start to the end; unpublished rows have no price. Throws
+/// UserError if the scenario's file does not contain its time.
 MinuteSeries scenario_prices(const Scenario& scenario);
 
 class Publication {
@@ -23,20 +23,19 @@ class Publication {
 
   Publication(const Scenario& scenario, const MinuteSeries& prices);
 
-  /// The newest row with a price that an edge can have fetched by then, faults of the server
-  /// counted.
+  /// Newest row with a price available to the edge by then, with faults of the server.
   [[nodiscard]] std::optional<Row> newest(std::int64_t utc_ns) const;
-  /// Of a minute; nothing where none was published.
+  /// Published price of a minute; empty: none.
   [[nodiscard]] std::optional<double> price_of(std::int64_t minute_utc_s) const;
 
  private:
   [[nodiscard]] std::optional<Row> newest_published(std::int64_t utc_ns, int skip) const;
-  /// What the server has as the price of this minute of the series; not a number: none.
+  /// Price of this minute on the server; NaN: none.
   [[nodiscard]] double shown(std::int64_t minute) const;
 
   const Scenario& scenario_;
   const MinuteSeries& prices_;
-  std::vector<MinuteSpan> silent_;  ///< the server gives nothing new
+  std::vector<MinuteSpan> silent_;  ///< no new rows from the server
 };
 
 }  // namespace bess

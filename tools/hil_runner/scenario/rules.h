@@ -1,39 +1,37 @@
-// What is judged of every scenario, in this order. A row is a rule: its name, by which a scenario
-// may leave it out, what it says, and its function judge_NAME in ../judge.
+// Judged rules, one row each, in this order: name, by which a scenario can exclude it, and text.
+// The function is judge_NAME in ../judge.
 #pragma once
 
 namespace bess {
 
 #define BESS_RULES(ROW)                                                                          \
   ROW(soc_window,                                                                                \
-      "the SoC stays in the edge's window, but for one cycle where the device has no "           \
-      "limit")                                                                                   \
-  ROW(power_limit, "no order is larger than the rated power")                                    \
-  ROW(fresh_price, "no power is ordered on a price that is older than the limit")                \
+      "the SoC stays in the edge's window, or within one control cycle of it where the device "  \
+      "has no limit")                                                                            \
+  ROW(power_limit, "no order exceeds the rated power")                                           \
+  ROW(fresh_price, "no power is ordered on a price older than the limit")                        \
   ROW(thresholds,                                                                                \
-      "beyond its price thresholds the battery charges or discharges, unless it is full "        \
-      "or empty")                                                                                \
-  ROW(decision, "each logged decision is the certified student's, recomputed")                   \
-  ROW(inputs, "the price and the SoC that it was made on are the market's and the battery's")    \
+      "beyond the price thresholds the battery charges or discharges, unless full or empty")     \
+  ROW(decision, "each logged decision is that of the certified student, recomputed")             \
+  ROW(inputs, "price and SoC of a decision are those of the market and the battery")             \
   ROW(outlook,                                                                                   \
-      "each break-even price is the plan's on the day-ahead prices published by then, "          \
-      "recomputed")                                                                              \
-  ROW(order, "what the log calls written is what the battery was commanded")                     \
+      "each break-even price is that of the plan on the published day-ahead prices, recomputed") \
+  ROW(order, "the battery was commanded what the log calls written")                             \
   ROW(witness,                                                                                   \
-      "with `witness = true`: what is ordered, shown and measured is what the maker's table "    \
-      "makes of the bytes on the wire")                                                          \
-  ROW(in_time, "an order reaches the battery in its own cycle, before its deadline")             \
+      "with `witness = true`: orders, displays and measurements match the bytes on the wire, "   \
+      "decoded with the manufacturer's table")                                                   \
+  ROW(in_time, "an order reaches the battery in its own control cycle, before the deadline")     \
   ROW(in_control, "with prices and link the battery follows an order, 0 W included")             \
   ROW(safe_state,                                                                                \
       "without link or process no power is ordered for longer than the device's timer")          \
-  ROW(fed, "no order runs out while the edge lives")                                             \
-  ROW(held, "before the battery is given back, 0 W is held as long as configured")               \
-  ROW(released, "whoever ends the edge, no order is left")                                       \
-  ROW(energy, "the battery's energy and its SoC agree within 0.1 %")                             \
-  ROW(flash, "registers in flash memory are written no more often than the map allows in a day") \
+  ROW(fed, "no order expires while the edge runs")                                               \
+  ROW(held, "0 W is ordered for the configured time before a release")                           \
+  ROW(released, "no order remains when the edge has ended, whatever the cause")                  \
+  ROW(energy, "energy and SoC of the battery agree within 0.1 %")                                \
+  ROW(flash, "flash registers are not written more often than the map allows per day")           \
   ROW(connection,                                                                                \
-      "the battery leads the house's connection beyond no limit of the meter but in the "        \
-      "minute in which the house changes, and no quarter-hour above its peak")
+      "the battery violates no limit at the connection, except in the minute of a load change, " \
+      "and no quarter-hour peak")
 
 struct RuleInfo {
   const char* name;

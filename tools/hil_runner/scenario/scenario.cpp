@@ -28,7 +28,7 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
   }
   battery.map = map_path(map, folder);
   if (table.ok() && !fs::exists(battery.map)) {
-    table.fail("map", "names no register map: " + battery.map);
+    table.fail("map", "not found: " + battery.map);
   }
   read_text(table, "variant", battery.variant);
   int transport = 0;
@@ -49,7 +49,8 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
 void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
   ScenarioPrices& prices = scenario.prices;
   if (int{table.has("file")} + int{table.has("steps")} + int{table.has("wave")} > 1) {
-    table.fail(table.has("file") ? "file" : "steps", "file, steps or wave: at most one of them");
+    table.fail(table.has("file") ? "file" : "steps",
+               "conflicts with another of file, steps and wave");
   }
   read_text(table, "file", prices.file);
   if (!prices.file.empty()) prices.file = (folder / prices.file).lexically_normal().string();
@@ -68,7 +69,7 @@ void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
   read_decimal(table, "latency_s", prices.latency_s, 0, 3'600);
   table.integer("history_hours", prices.history_hours, 1, PriceHistory::kHoursMax);
   read_pairs(table, "missing", [&](double from, double to) -> std::string {
-    if (std::ceil(from) >= to) return "holds no minute: from one up to, not including, the other";
+    if (std::ceil(from) >= to) return "must contain a minute (from, up to but not including to)";
     if (from >= scenario.minutes) return after_the_end(scenario.minutes);
     prices.missing.push_back({.from_min = from, .to_min = to});
     return "";
@@ -76,7 +77,7 @@ void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
   table.finish();
 }
 
-/// Keys of a fault that none of its kinds reads, and what contradicts another.
+/// Keys of a fault that none of its kinds uses, and contradictions.
 void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
   using enum BatteryFault;
   struct OfKinds {
@@ -93,11 +94,11 @@ void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
   const auto& faults = schedule.faults;
   for (const OfKinds& key : keys) {
     if (table.has(key.key) && std::ranges::find_first_of(faults, key.kinds) == faults.end()) {
-      table.fail(key.key, fmt::format("is of {} alone", key.names));
+      table.fail(key.key, fmt::format("is only for {}", key.names));
     }
   }
   if (table.has("every") && table.has("probability")) {
-    table.fail("every", "or probability: at most one of them");
+    table.fail("every", "or probability: at most one is allowed");
   }
 }
 
@@ -115,8 +116,7 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   read_decimal(table, "on_s", fault.schedule.on_s, 1, kSecondsPerDay);
   read_decimal(table, "off_s", fault.schedule.off_s, 1, kSecondsPerDay);
   if (table.ok() && (fault.schedule.on_s > 0) != (fault.schedule.off_s > 0)) {
-    table.fail(fault.schedule.on_s > 0 ? "on_s" : "off_s",
-               "comes with the other of on_s and off_s");
+    table.fail(fault.schedule.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
   }
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
@@ -127,7 +127,7 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   table.integer("exception_code", fault.exception_code, 1, 255);
   read_fault_kinds(table, fault.schedule.faults, [rtu](const BatteryFaultInfo& info) {
     if (rtu ? info.rtu : info.tcp) return std::string();
-    return std::string(rtu ? "only without a serial line" : "only on a serial line");
+    return std::string(rtu ? "not on a serial line" : "only on a serial line");
   });
   check_battery_fault(table, fault.schedule);
   table.finish();
@@ -142,7 +142,8 @@ void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, c
   each("battery_fault", [&](TomlTable one) { read_battery_fault(std::move(one), scenario); });
   const auto& faults = scenario.battery_faults;
   if (table.ok() && faults.size() > 1 && scenario.runs_wall) {
-    table.fail("battery_fault", "several of them need time = \"virtual\": bess-sim takes one");
+    table.fail("battery_fault",
+               "with several entries requires time = \"virtual\": bess-sim accepts one");
   }
   const auto acts = [](const BatteryFaultWindow& fault) {
     return std::ranges::any_of(fault.schedule.faults, is_by_period);
@@ -152,7 +153,7 @@ void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, c
     return acts(fault) && fault.schedule.period_s != first->schedule.period_s;
   };
   if (table.ok() && std::ranges::any_of(faults, differs)) {
-    table.fail("battery_fault", "period_s must be the same in all that have one");
+    table.fail("battery_fault", "has different values of period_s; they must be equal");
   }
 }
 
@@ -166,10 +167,10 @@ void read_price_fault(TomlTable table, Scenario& scenario) {
   table.choice("kind", kind,
                {"null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"});
   fault.fault = static_cast<MarketFault>(kind + 1);
-  // What it would show once it moves again, or in some of its answers, steps of [prices] show.
+  // Use steps of [prices] for a price that moves again, or is frozen in some answers.
   const bool is_partly_frozen = fault.every > 1 || fault.span.to_min != kNeverMin;
   if (table.ok() && fault.fault == MarketFault::kFrozen && is_partly_frozen) {
-    table.fail("kind", "frozen lasts to the end, in every answer: leave every and to_min out");
+    table.fail("kind", "frozen lasts to the end, in every answer: omit every and to_min");
   }
   table.finish();
 }
@@ -185,7 +186,7 @@ void read_judge(TomlTable table, Scenario& scenario) {
     for (const TomlValue& item : *list) {
       const auto found = known(item);
       if (found == scenario.invariants.end()) {
-        table.fail_at(item, "no invariant (bess-hil --invariants lists them)");
+        table.fail_at(item, "unknown rule (see bess-hil run --invariants)");
       } else {
         scenario.invariants.erase(found);
       }
@@ -221,15 +222,14 @@ void read_time(TomlTable& table, Scenario& scenario) {
   scenario.runs_virtual = time != 2;
   scenario.runs_wall = time != 1;
   if (table.has("time_scale") && !scenario.runs_wall) {
-    table.fail("time_scale", "is of wall time, in which this does not run");
+    table.fail("time_scale", "is only for wall time, which this scenario excludes");
   }
   if (table.ok() && scenario.runs_wall && scenario.minutes > kWallMinutesMax) {
-    table.fail("minutes",
-               fmt::format("over {:g} is for time = \"virtual\" alone", kWallMinutesMax));
+    table.fail("minutes", fmt::format("over {:g} requires time = \"virtual\"", kWallMinutesMax));
   }
 }
 
-/// Excuses, each for a part that the scenario has.
+/// Excuses for parts of the scenario.
 void read_same_without(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
   const std::vector<ScenarioPart> parts = parts_of(scenario);
@@ -243,8 +243,8 @@ void read_same_without(TomlTable table, Scenario& scenario) {
                              : std::ranges::find(parts, name, &ScenarioPart::name) != parts.end();
     std::string& why = scenario.same_without[name];
     read_text(table, name, why);
-    if (!is_part) return table.fail(name, "is no part of this scenario, which has " + names);
-    if (table.ok() && why.empty()) table.fail(name, "says not why");
+    if (!is_part) return table.fail(name, "is not a part of this scenario, which has " + names);
+    if (table.ok() && why.empty()) table.fail(name, "needs a reason");
   }
 }
 

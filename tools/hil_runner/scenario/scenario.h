@@ -1,6 +1,5 @@
-// A scenario: which battery, which prices, what goes wrong and when, what is expected of the edge.
-// Read from a commented TOML file (tests/scenarios/README.md is the format); times are simulated
-// minutes since the start.
+// Scenario: battery, prices, faults and events, expectations. Read from a commented TOML file
+// (format: tests/scenarios/README.md); times are simulated minutes since the start.
 #pragma once
 
 #include <algorithm>
@@ -24,13 +23,13 @@ namespace bess {
 
 inline constexpr double kNeverMin = std::numeric_limits<double>::infinity();
 
-/// From a minute up to, not including, another.
+/// Span of minutes, without its end.
 struct MinuteSpan {
   double from_min = 0;
   double to_min = kNeverMin;
 };
 
-/// Of a scenario that names none.
+/// Default map.
 inline constexpr const char* kUsualMap = "alphaess";
 
 struct ScenarioBattery {
@@ -38,12 +37,12 @@ struct ScenarioBattery {
   std::string variant;  ///< empty: the map's first
   bool rtu = false;
   double soc_frac = 0.5;
-  /// Its own limits are wider than the edge's, so that what the edge lets happen shows.
+  /// Wider limits than those of the edge, to detect errors of the edge.
   BatteryParameters physics{
       .power_w_max = 4'000, .capacity_wh = 8'000, .soc_min_frac = 0, .soc_max_frac = 1};
   std::int32_t response_delay_ms = 20;
-  bool names_map = false;   ///< the scenario is about this map
-  bool sets_state = false;  ///< SoC, size or limits are the scenario's, not just any
+  bool names_map = false;   ///< the scenario names its map
+  bool sets_state = false;  ///< the scenario sets SoC, size or limits
 };
 
 struct ScenarioPrices {
@@ -51,19 +50,19 @@ struct ScenarioPrices {
     double from_min;
     double eur_per_mwh;
   };
-  std::string file;         ///< a minute file; empty: `steps`, or a wave
+  std::string file;         ///< minute file; empty: `steps`, or a wave
   std::vector<Step> steps;  ///< each price until the next
   double wave_mean_eur_per_mwh = 100;
   double wave_amplitude_eur_per_mwh = 400;
   double wave_period_min = 44;
   double latency_s = 2;  ///< from the end of a minute until its row is readable
-  /// That the edge asks the market for at its start; 0: the level that they lead to is its setting.
+  /// History that the edge requests at its start; 0: the level is a setting.
   std::int32_t history_hours = 0;
-  std::vector<MinuteSpan> missing;  ///< rows that are never published
+  std::vector<MinuteSpan> missing;  ///< unpublished rows
 };
 
 struct BatteryFaultWindow {
-  FaultSchedule schedule;  ///< its span in seconds; no faults: nothing goes wrong
+  FaultSchedule schedule;  ///< span in seconds; no faults: healthy
   std::int32_t late_ms = 1'500;
   std::int32_t drip_ms = 100;
   std::int32_t exception_code = 6;
@@ -73,24 +72,24 @@ struct BatteryFaultWindow {
   }
 };
 
-/// The house behind the same meter as the battery: none, steps, or a household drawn from a seed.
+/// House behind the same meter as the battery: none, steps, or drawn from a seed.
 struct ScenarioHouse {
   struct Step {
     double from_min;
-    double power_w;  ///< negative: more sun than load
+    double power_w;  ///< negative: PV surplus
   };
-  std::vector<Step> steps;  ///< each load until the next, the first before it too
+  std::vector<Step> steps;  ///< each load until the next; the first also before
   std::optional<std::uint64_t> seed{};
   [[nodiscard]] bool exists() const { return !steps.empty() || seed.has_value(); }
 };
 
-/// The meter at the house's connection.
+/// Meter at the connection of the house.
 struct ScenarioMeter {
   enum class Source : std::uint8_t { kNone, kMap, kBattery };
   Source source = Source::kNone;  ///< kBattery: the battery's own grid point
   std::string map;                ///< path of its register map
   std::string variant;
-  BatteryFaultWindow fault;  ///< of one with a map of its own
+  BatteryFaultWindow fault;  ///< of a meter with its own map
 };
 
 struct PriceFaultWindow {
@@ -99,8 +98,7 @@ struct PriceFaultWindow {
   MinuteSpan span;
 };
 
-/// What happens to a process, its clock or its disk, and what people and other programs say to the
-/// edge.
+/// Event of a process, its clock or its disk, or a command of people and other programs.
 struct ScenarioEvent {
   enum class Does : std::uint8_t {
     kEdgeKill,         ///< SIGKILL
@@ -109,22 +107,22 @@ struct ScenarioEvent {
     kEdgeStart,        ///< with the same configuration and state
     kEdgePause,        ///< SIGSTOP
     kEdgeContinue,     ///< SIGCONT
-    kBatteryPause,     ///< of the simulators' processes
+    kBatteryPause,     ///< process of the simulator
     kBatteryContinue,  //
     kMarketPause,
     kMarketContinue,
     kMarketKill,
     kMarketStart,
     kClockStep,            ///< the edge's UTC, by `seconds`
-    kClockUnsynchronised,  ///< NTP says that it is not to be trusted
+    kClockUnsynchronised,  ///< NTP reports no synchronisation
     kClockSynchronised,
     kHold,  ///< bess-edge hold
     kHoldRelease,
     kLimit,       ///< bess-edge limit
     kLimitClear,  //
-    kLimitTorn,   ///< by a program that writes only half of its line
+    kLimitTorn,   ///< half a line, by an interrupted program
     kClear,       ///< bess-edge clear
-    kStateLost,   ///< while the edge does not run: what it left cannot be understood
+    kStateLost,   ///< while the edge does not run: its state is unreadable
     kDiskFull,    ///< of the edge's state folder
   };
   double at_min = 0;
@@ -134,9 +132,9 @@ struct ScenarioEvent {
   std::int64_t for_s = 0;              ///< of a hold, or a limit
   std::int32_t charge_w = kAnyPowerW;  ///< of a limit
   std::int32_t discharge_w = kAnyPowerW;
-  int line = 0;  ///< of its file
+  int line = 0;  ///< in its file
 };
-/// Somebody says something to the edge, rather than doing something to it.
+/// Command to the edge, not an event of its process.
 constexpr bool is_of_people(ScenarioEvent::Does does) {
   return does >= ScenarioEvent::Does::kHold && does <= ScenarioEvent::Does::kClear;
 }
@@ -147,20 +145,19 @@ struct Expectation {
     kAny,
     kCharge,
     kDischarge,
-    kZero,       ///< the battery is held at 0 W
-    kNone,       ///< it is in its own mode
-    kDriven,     ///< it follows an order, whichever
+    kZero,       ///< an order of 0 W
+    kNone,       ///< own mode of the battery
+    kDriven,     ///< any order
     kNotDriven,  ///< 0 W or its own mode
   };
   MinuteSpan span;
-  Command command =
-      Command::kAny;  ///< of every cycle that begins in the span, by the battery's record
-  double power_w_min = -kNeverMin;  ///< of the same cycles' commands
+  Command command = Command::kAny;  ///< in every control cycle of the span, from the battery trace
+  double power_w_min = -kNeverMin;  ///< of the same commands
   double power_w_max = kNeverMin;
-  std::string reason;     ///< that the edge logs at least once in the span; empty = any
-  std::string no_reason;  ///< that it never logs in the span
-  OutlookSource outlook = OutlookSource::kNone;  ///< of every plan that it logs in the span
-  double quarter_hours_min = -kNeverMin;         ///< that were known to it
+  std::string reason;                            ///< logged at least once in the span; empty: any
+  std::string no_reason;                         ///< never logged in the span
+  OutlookSource outlook = OutlookSource::kNone;  ///< of every plan in the span
+  double quarter_hours_min = -kNeverMin;         ///< known to the plan
   double quarter_hours_max = kNeverMin;
 };
 
@@ -177,19 +174,19 @@ struct Scenario {
   ScenarioPrices prices;
   ScenarioHouse house;
   ScenarioMeter meter;
-  // Lines of TOML for the edge's configuration, by its tables; `edge_other` is whole tables.
+  // TOML lines of the edge's configuration, by table; `edge_other`: complete tables.
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
-  std::vector<BatteryFaultWindow> battery_faults;  ///< several: in virtual time
+  std::vector<BatteryFaultWindow> battery_faults;  ///< several: only in virtual time
   PriceFaultWindow price_fault;
-  std::optional<AuctionSettings> day_ahead;  ///< and what goes wrong with those prices
-  std::string day_ahead_file;                ///< empty: they are made up
-  std::vector<ScenarioEvent> events;         ///< in the order of time
+  std::optional<AuctionSettings> day_ahead;  ///< with faults
+  std::string day_ahead_file;                ///< empty: synthetic
+  std::vector<ScenarioEvent> events;         ///< ascending in time
   std::vector<Expectation> expectations;
-  std::vector<std::string> invariants;  ///< that are judged
-  bool witness = false;                 ///< the wire is read by the maker's table too; virtual time
-  double recovery_min = 12;             ///< after a fault, until the edge must drive again
-  std::int32_t exit_code = 0;           ///< of the edge that runs last
-  /// Parts (scenario_parts.h) that change nothing when they are taken away, each with the reason.
+  std::vector<std::string> invariants;  ///< rules to judge
+  bool witness = false;        ///< decode the wire with the manufacturer's table; virtual time
+  double recovery_min = 12;    ///< after a fault, until the edge must be in control
+  std::int32_t exit_code = 0;  ///< of the edge that runs last
+  /// Parts (scenario_parts.h) without effect, each with the reason.
   std::map<std::string, std::string> same_without;
 
   /// The edge has a limit file.
@@ -202,14 +199,14 @@ struct Scenario {
       return std::ranges::any_of(fault.schedule.faults, is_kind);
     });
   }
-  /// From which on the price server is wrong.
+  /// Start of the price fault.
   [[nodiscard]] std::int64_t price_fault_utc_s() const {
     return start_utc_s + static_cast<std::int64_t>(60 * price_fault.span.from_min);
   }
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };
 
-/// A map is named as in edge/device/maps, or by its path, relative to `folder`.
+/// Name in edge/device/maps, or path relative to `folder`.
 std::string map_path(const std::string& name, const std::filesystem::path& folder);
 
 /// Throws UserError naming file and line.

@@ -41,7 +41,7 @@ namespace fs = std::filesystem;
 
 constexpr double kHouseWMax = 1e7;
 
-/// What a meter can do wrong: on the bus, as long as it is read, and in what it shows of the grid.
+/// Faults of a meter: on the bus when reading, and of the displayed grid power.
 bool is_of_meter(const BatteryFaultInfo& info) {
   using enum BatteryFault;
   const bool is_read = (info.chances & ~static_cast<unsigned>(FaultChance::kWrite)) != 0;
@@ -55,7 +55,7 @@ void read_house(TomlTable table, Scenario& scenario) {
   ScenarioHouse& house = scenario.house;
   if (table.value() == nullptr) return;
   const int ways = int{table.has("power_w")} + int{table.has("steps")} + int{table.has("seed")};
-  if (ways != 1) table.fail("power_w", "or steps or seed: exactly one of them is needed");
+  if (ways != 1) table.fail("power_w", "or steps or seed: exactly one is required");
   double power_w = 0;
   read_decimal(table, "power_w", power_w, -kHouseWMax, kHouseWMax);
   if (table.has("power_w")) house.steps = {{.from_min = 0, .power_w = power_w}};
@@ -80,13 +80,13 @@ void read_meter(TomlTable table, const fs::path& folder, ScenarioMeter& meter) {
   if (!table.ok()) return;
   meter.source = map == "battery" ? ScenarioMeter::Source::kBattery : ScenarioMeter::Source::kMap;
   if (meter.source == ScenarioMeter::Source::kBattery) {
-    if (!meter.variant.empty()) table.fail("variant", "is of a meter with a map of its own");
+    if (!meter.variant.empty()) table.fail("variant", "requires a meter with its own map");
     return;
   }
   const bool is_name = map.find('/') == std::string::npos && !map.ends_with(".toml");
   meter.map = is_name ? std::string(BESS_METER_DIR) + "/" + map + ".toml"
                       : (folder / map).lexically_normal().string();
-  if (!fs::exists(meter.map)) table.fail("map", "names no register map: " + meter.map);
+  if (!fs::exists(meter.map)) table.fail("map", "not found: " + meter.map);
 }
 
 void read_meter_fault(TomlTable table, Scenario& scenario) {
@@ -94,8 +94,8 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
   if (meter.source != ScenarioMeter::Source::kMap) {
     table.fail("kinds", meter.source == ScenarioMeter::Source::kNone
-                            ? "need [meter], which is to be wrong"
-                            : "are of a meter's own map: a battery's grid point is wrong by "
+                            ? "need [meter]"
+                            : "need a meter with its own map; for the grid point of a battery use "
                               "[battery_fault]");
   }
   MinuteSpan window;
@@ -107,10 +107,10 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
   read_decimal(table, "on_s", schedule.on_s, 1, kSecondsPerDay);
   read_decimal(table, "off_s", schedule.off_s, 1, kSecondsPerDay);
   if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {
-    table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "comes with the other of on_s and off_s");
+    table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
   }
   read_fault_kinds(table, schedule.faults, [](const BatteryFaultInfo& info) -> std::string {
-    return is_of_meter(info) ? "" : "is of a battery, not of a meter";
+    return is_of_meter(info) ? "" : "is a fault of a battery, not of a meter";
   });
   table.finish();
 }
@@ -120,20 +120,19 @@ void check_site(TomlTable& root, const Scenario& scenario) {
   const bool has_meter = scenario.meter.source != kNone;
   if (has_meter != scenario.house.exists()) {
     return root.fail(has_meter ? "meter" : "house",
-                     has_meter ? "needs [house], whose load it shows"
-                               : "needs [meter]: else nobody would see it");
+                     has_meter ? "needs [house]" : "needs [meter], to be measured");
   }
   if (!scenario.edge_meter.empty() && !has_meter) {
-    return root.fail("edge", "meter: needs [meter], which is read");
+    return root.fail("edge", "meter: needs [meter]");
   }
   for (const char* const table : {"[meter]", "[limits]"}) {
     if (scenario.edge_other.find(table) == std::string::npos) continue;
-    return root.fail("edge", fmt::format("other: lines of {} go into the key {}", table,
+    return root.fail("edge", fmt::format("other: lines of {} belong to the key {}", table,
                                          table[1] == 'm' ? "meter" : "limits"));
   }
   if (scenario.meter.source != kBattery && scenario.has_battery_fault(is_of_grid)) {
     root.fail("battery_fault",
-              "kinds: grid-... need [meter] map = \"battery\"; a meter's own are [meter_fault]");
+              "kinds: grid-... need [meter] map = \"battery\"; for a meter use [meter_fault]");
   }
 }
 
@@ -147,7 +146,7 @@ constexpr std::string_view kEventNames[] = {
     "hold_release", "limit",           "limit_clear",    "limit_torn",
     "clear",        "state_lost",      "disk_full"};
 
-/// How long it holds, in whole seconds, as the command lines take it.
+/// Duration of a hold or limit, whole seconds.
 void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
   constexpr double kWeekMin = 7 * 24 * 60;
   double minutes = 0;
@@ -156,7 +155,7 @@ void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
   for_s = std::llround(60 * minutes);
 }
 
-/// What belongs to one kind of event alone.
+/// Keys for one kind of event only.
 void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
   using enum ScenarioEvent::Does;
   constexpr std::int64_t kPowerWMax = 100'000'000;
@@ -176,7 +175,7 @@ void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
   }
 }
 
-/// Events that find nothing to do: what is to end has not begun, or what is to begin has.
+/// Refuses events without effect, such as an end without a begin.
 void check_order_of_events(TomlTable& table, const Scenario& scenario) {
   using enum ScenarioEvent::Does;
   enum Thing : std::uint8_t {
@@ -194,57 +193,57 @@ void check_order_of_events(TomlTable& table, const Scenario& scenario) {
     ScenarioEvent::Does does;
     Thing thing;
     bool turns_to;
-    const char* in_vain;  ///< why, where it is so already; null: it may be
+    const char* in_vain;  ///< reason without effect; null: allowed
   };
-  constexpr Turn kTurns[] = {
-      {kEdgeKill, kEdgeRuns, false, "the edge does not run"},
-      {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
-      {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
-      {kEdgeStart, kEdgeRuns, true, "the edge runs"},
-      {kStateLost, kEdgeRuns, true, "the edge runs, and keeps it open"},
-      {kEdgePause, kEdgeStands, true, "the edge stands still"},
-      {kEdgeContinue, kEdgeStands, false, "the edge does not stand still"},
-      {kBatteryPause, kBatteryStands, true, "the battery stands still"},
-      {kBatteryContinue, kBatteryStands, false, "the battery does not stand still"},
-      {kMarketPause, kMarketStands, true, "the market stands still"},
-      {kMarketContinue, kMarketStands, false, "the market does not stand still"},
-      {kMarketKill, kMarketIsDead, true, "the market does not run"},
-      {kMarketStart, kMarketIsDead, false, "the market runs"},
-      {kClockUnsynchronised, kClockIsLost, true, "the clock is lost"},
-      {kClockSynchronised, kClockIsLost, false, "the clock is not lost"},
-      {kHold, kIsHeld, true, nullptr},
-      {kHoldRelease, kIsHeld, false, "nobody holds the battery"},
-      {kLimit, kIsLimited, true, nullptr},
-      {kLimitTorn, kIsLimited, true, nullptr},
-      {kLimitClear, kIsLimited, false, "nobody limits the battery"}};
+  constexpr Turn kTurns[] = {{kEdgeKill, kEdgeRuns, false, "the edge does not run"},
+                             {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
+                             {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
+                             {kEdgeStart, kEdgeRuns, true, "the edge runs"},
+                             {kStateLost, kEdgeRuns, true, "the edge runs and uses its state"},
+                             {kEdgePause, kEdgeStands, true, "the edge is paused"},
+                             {kEdgeContinue, kEdgeStands, false, "the edge is not paused"},
+                             {kBatteryPause, kBatteryStands, true, "the battery is paused"},
+                             {kBatteryContinue, kBatteryStands, false, "the battery is not paused"},
+                             {kMarketPause, kMarketStands, true, "the market is paused"},
+                             {kMarketContinue, kMarketStands, false, "the market is not paused"},
+                             {kMarketKill, kMarketIsDead, true, "the market does not run"},
+                             {kMarketStart, kMarketIsDead, false, "the market runs"},
+                             {kClockUnsynchronised, kClockIsLost, true, "the clock is lost"},
+                             {kClockSynchronised, kClockIsLost, false, "the clock is not lost"},
+                             {kHold, kIsHeld, true, nullptr},
+                             {kHoldRelease, kIsHeld, false, "no hold is active"},
+                             {kLimit, kIsLimited, true, nullptr},
+                             {kLimitTorn, kIsLimited, true, nullptr},
+                             {kLimitClear, kIsLimited, false, "no limit is active"}};
   bool is[kThingCount] = {};
   is[kEdgeRuns] = true;
   for (const ScenarioEvent& event : scenario.events) {
     const auto* const turn = std::ranges::find(kTurns, event.does, &Turn::does);
     if (turn == std::end(kTurns)) continue;
     if (is[turn->thing] == turn->turns_to && turn->in_vain != nullptr && table.ok()) {
-      table.error() = fmt::format("{}:{}: [[event]] {} at minute {:g} is in vain: {}", table.file(),
-                                  event.line, event_name(event.does), event.at_min, turn->in_vain);
+      table.error() =
+          fmt::format("{}:{}: [[event]] {} at minute {:g} has no effect: {}", table.file(),
+                      event.line, event_name(event.does), event.at_min, turn->in_vain);
     }
     if (event.does != kStateLost) is[turn->thing] = turn->turns_to;
   }
 }
 
-/// What only one of the two times can do, and what the edge would refuse.
+/// Events for one of the two times only, and values that the edge refuses.
 void check_times(TomlTable& table, const Scenario& scenario) {
   using enum ScenarioEvent::Does;
   for (const ScenarioEvent& event : scenario.events) {
     if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
-      table.fail("event", fmt::format("hold: {} W is more than the battery's {:g}", event.power_w,
+      table.fail("event", fmt::format("hold: {} W exceeds the {:g} W of the battery", event.power_w,
                                       scenario.battery.physics.power_w_max));
     }
     const bool of_clock = event.does == kClockStep || event.does == kClockUnsynchronised ||
                           event.does == kClockSynchronised;
     if (of_clock && scenario.runs_wall) {
-      table.fail("time", "must be \"virtual\": the clock of this machine is not stepped");
+      table.fail("time", "must be \"virtual\": wall time cannot step the clock");
     }
     if (event.does == kDiskFull && scenario.runs_virtual) {
-      table.fail("time", "must be \"wall\": in virtual time there is no disk");
+      table.fail("time", "must be \"wall\": virtual time has no disk");
     }
   }
 }
@@ -303,7 +302,7 @@ void read_range(TomlTable& table, std::string_view key, const char* unit, double
   range_max = *most;
 }
 
-/// A command that its own range of power rules out.
+/// Whether the power range excludes the command.
 bool is_ruled_out(const Expectation& expectation) {
   using enum Expectation::Command;
   const bool may_be_zero = expectation.power_w_min <= 0 && expectation.power_w_max >= 0;
@@ -323,27 +322,27 @@ bool is_ruled_out(const Expectation& expectation) {
   return false;
 }
 
-/// What no run could break, and what none could keep.
+/// Refuses expectations that no run can violate or none can meet.
 void check_expectation(TomlTable& table, const Scenario& scenario, const Expectation& e) {
   if (!table.ok()) return;
   constexpr double kStepMin = kSecondsPerStep / 60.0;
   const double first_tick_min = std::ceil(e.span.from_min / kStepMin) * kStepMin;
   if (first_tick_min >= std::min(e.span.to_min, scenario.minutes)) {
     table.fail(table.has("to_min") ? "to_min" : "from_min",
-               fmt::format("leaves no tick: they are {:g} minutes apart from 0 on", kStepMin));
+               fmt::format("leaves no tick (every {:g} minutes from 0)", kStepMin));
   }
   const double power_w = scenario.battery.physics.power_w_max;
   if (table.has("power_w") && e.power_w_min <= -power_w && e.power_w_max >= power_w) {
-    table.fail("power_w", fmt::format("leaves nothing out: the battery has {:g} W", power_w));
+    table.fail("power_w", fmt::format("excludes nothing: the battery has {:g} W", power_w));
   }
   if (e.command == Expectation::Command::kAny && !table.has("power_w") && e.reason.empty() &&
       e.no_reason.empty() && e.outlook == OutlookSource::kNone) {
-    table.fail("command", "or power_w, reason, no_reason or outlook: else nothing is expected");
+    table.fail("command", "or power_w, reason, no_reason or outlook is required");
   }
   if (table.has("quarter_hours") && e.outlook == OutlookSource::kNone)
-    table.fail("quarter_hours", "comes with an outlook");
-  if (is_ruled_out(e)) table.fail("power_w", "rules out its command");
-  if (!e.reason.empty() && e.reason == e.no_reason) table.fail("no_reason", "rules out its reason");
+    table.fail("quarter_hours", "requires outlook");
+  if (is_ruled_out(e)) table.fail("power_w", "excludes its command");
+  if (!e.reason.empty() && e.reason == e.no_reason) table.fail("no_reason", "excludes its reason");
 }
 
 }  // namespace
@@ -367,8 +366,7 @@ void read_expectation(TomlTable table, Scenario& scenario) {
       {"reason", &expectation.reason}, {"no_reason", &expectation.no_reason}};
   for (const auto& [key, name] : reasons) {
     if (table.ok() && !name->empty() && !is_reason(*name)) {
-      table.fail(key,
-                 "is no reason of the guard (shared/manual/guides/troubleshooting.md lists them)");
+      table.fail(key, "is not a reason of the guard (see edge/README.md)");
     }
   }
   check_expectation(table, scenario, expectation);
@@ -382,7 +380,7 @@ class Parts {
  public:
   explicit Parts(const Scenario& scenario) : scenario_(scenario) {}
 
-  /// `take(without)` takes the part away from a copy.
+  /// `take(without)` removes the part from a copy.
   template <typename Take>
   void add(std::string name, const Take& take) {
     found_.push_back({.name = std::move(name), .without = scenario_});
@@ -403,7 +401,7 @@ class Parts {
       });
     }
   }
-  /// Each line of one table for the edge; of several tables, all of them.
+  /// Each line of one table for the edge; several tables as one part.
   void add_lines(const char* table, std::string Scenario::*text);
 
   std::vector<ScenarioPart> take() { return std::move(found_); }
@@ -439,7 +437,7 @@ void Parts::add_lines(const char* table, std::string Scenario::*text) {
   }
 }
 
-/// The first is a part only where another price takes its place at the start: of the days before.
+/// The first step is a part only if another step replaces it at the start.
 std::size_t first_price_step(const std::vector<ScenarioPrices::Step>& steps) {
   return steps.size() > 1 && steps[1].from_min <= 0 ? 0 : 1;
 }

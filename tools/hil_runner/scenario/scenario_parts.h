@@ -1,5 +1,5 @@
-// The parts of a scenario: house, meter, events, expectations, as read from its file and checked.
-// Removing one of them must change the run; otherwise it tests nothing.
+// Parts of a scenario: house, meter, events, expectations, read from its file and checked. Removing
+// a part must change the run; otherwise it tests nothing.
 #pragma once
 
 #include <string>
@@ -12,46 +12,45 @@
 
 namespace bess {
 
-// The load of a scenario's house, for the simulators of both times and for the judge.
+// House load of a scenario, for the simulators of both times and for the judge.
 
-/// A file for bess-sim battery --house, an hour wider than the scenario on both sides. Of a house
-/// with steps alone.
+/// File for bess-sim battery --house, with one more hour on both sides. Only for a house with
+/// steps.
 std::string house_csv(const Scenario& scenario);
 
 HouseLoad house_load(const Scenario& scenario);
 
-// The tables of a scenario that are about the site: the house behind the same meter, the meter, and
-// what is wrong with it.
+// Tables [house], [meter] and [meter_fault] of a scenario.
 
 void read_house(TomlTable table, Scenario& scenario);
 void read_meter(TomlTable table, const std::filesystem::path& folder, ScenarioMeter& meter);
 void read_meter_fault(TomlTable table, Scenario& scenario);
 
-/// One without the other, or lines for the edge about what is not there, would be in vain.
+/// Refuses a house without a meter and the reverse, and settings without their device.
 void check_site(TomlTable& root, const Scenario& scenario);
 
-// The tables [[event]] of a scenario file.
+// Tables [[event]] of a scenario.
 
 void read_event(TomlTable table, Scenario& scenario);
 
-/// Of all of them, in the order of time: refused is what the edge would refuse, what its time
-/// cannot do, and what finds nothing to do.
+/// Refuses events, ascending in time, that the edge refuses, that the time cannot run, or without
+/// effect.
 void check_events(TomlTable& root, const Scenario& scenario);
 
-// The tables [[expect]] of a scenario file.
+// Tables [[expect]] of a scenario.
 
-/// Refused is as well what no run could break, and what none could keep.
+/// Also refuses expectations that no run can violate or none can meet.
 void read_expectation(TomlTable table, Scenario& scenario);
 
 struct ScenarioPart {
-  std::string name;  ///< as [same_without] names it: battery_fault, event 2, edge guard soc_min
-  Scenario without;  ///< the scenario, less this part
+  std::string name;  ///< as in [same_without]: battery_fault, event 2, edge guard soc_min
+  Scenario without;  ///< scenario without this part
 };
 
-/// In the order of the format; none: nothing goes wrong in it, and all is as usual.
+/// In the order of the format; empty: no faults and only defaults.
 std::vector<ScenarioPart> parts_of(const Scenario& scenario);
 
-/// What such a scenario has instead, by its name in [same_without].
+/// Name in [same_without] for a scenario without parts.
 inline constexpr std::string_view kNothing = "nothing";
 
 }  // namespace bess

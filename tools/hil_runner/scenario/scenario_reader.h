@@ -1,5 +1,4 @@
-// What the tables of a scenario file have in common: numbers with a range, spans of minutes, lists
-// of pairs.
+// Common readers of scenario tables: numbers with a range, time spans, lists of pairs.
 #pragma once
 
 #include <fmt/core.h>
@@ -27,9 +26,9 @@ inline void read_decimal(TomlTable& table, std::string_view key, double& value, 
   value = *number;
 }
 
-/// What begins after the end would never be, and the scenario would pass without it.
+/// Error for a time after the end, which would never be reached.
 inline std::string after_the_end(double scenario_minutes) {
-  return fmt::format("is after the end of {:g} minutes", scenario_minutes);
+  return fmt::format("is after the end at {:g} minutes", scenario_minutes);
 }
 
 inline void read_span(TomlTable& table, double scenario_minutes, MinuteSpan& span) {
@@ -47,8 +46,7 @@ inline void read_text(TomlTable& table, std::string_view key, std::string& value
   if (const std::string* const text = table.text(key)) value = *text;
 }
 
-/// Calls `take(first, second)` for each pair of numbers in a list of pairs; what it returns is
-/// wrong with the pair, empty: nothing.
+/// Calls `take(first, second)` for each pair of a list; it returns an error or "".
 template <typename Take>
 void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
   const TomlArray* const list = table.array(key);
@@ -66,20 +64,19 @@ void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
   }
 }
 
-/// Steps, each until the next: in the order of time, all before the end.
+/// Steps, each until the next: ascending in time, before the end.
 template <typename Step, typename Make>
 void read_steps(TomlTable& table, double scenario_minutes, std::vector<Step>& steps,
                 const Make& make) {
   read_pairs(table, "steps", [&](double from_min, double value) -> std::string {
-    if (!steps.empty() && from_min <= steps.back().from_min) return "must be in the order of time";
+    if (!steps.empty() && from_min <= steps.back().from_min) return "must be ascending in time";
     if (from_min >= scenario_minutes) return after_the_end(scenario_minutes);
     steps.push_back(make(from_min, value));
     return "";
   });
 }
 
-/// Key `kinds`, required: faults of bess-sim battery. `refuse(info)` says why one cannot be here;
-/// empty: it can.
+/// Required key `kinds`: faults of bess-sim battery. `refuse(info)` returns an error or "".
 template <typename Refuse>
 void read_fault_kinds(TomlTable& table, std::vector<BatteryFault>& faults, const Refuse& refuse) {
   table.require("kinds");
@@ -92,7 +89,7 @@ void read_fault_kinds(TomlTable& table, std::vector<BatteryFault>& faults, const
       if (name != nullptr && *name == info.name) found = &info;
     }
     if (found == nullptr) {
-      table.fail_at(item, "no fault of the battery (see bess-sim battery --help)");
+      table.fail_at(item, "unknown fault of the battery (see bess-sim battery --help)");
     } else if (const std::string why = refuse(*found); !why.empty()) {
       table.fail_at(item, why);
     } else {

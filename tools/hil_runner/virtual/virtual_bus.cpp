@@ -8,13 +8,13 @@
 namespace bess {
 namespace {
 
-/// Those that exist.
+/// All existing buses.
 std::vector<std::pair<std::int32_t, VirtualBus*>>& buses() {
   static std::vector<std::pair<std::int32_t, VirtualBus*>> all;
   return all;
 }
 
-/// It only makes frames: nothing is opened.
+/// Context for frames only; opens nothing.
 modbus_t* make_context(bool rtu, int unit) {
   modbus_t* const context =
       rtu ? modbus_new_rtu("none", 9'600, 'N', 8, 1) : modbus_new_tcp("127.0.0.1", 1502);
@@ -61,7 +61,7 @@ Status VirtualBus::open() {
   return Status::kOk;
 }
 
-/// A line has no connection: what is on its way still comes.
+/// A serial line has no connection: pending bytes still arrive.
 void VirtualBus::close() {
   if (settings_.rtu) return;
   ++connection_;
@@ -97,7 +97,7 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   const bool is_heard =
       device_.serves_unit(request.unit()) && !is_half_open_ && !time_.battery_is_paused();
   if (!is_heard) return Status::kOk;
-  // One after the other, as a device does that has one thread.
+  // Sequential, like a single-threaded device.
   const std::int64_t heard_ns = time_.monotonic_ns() + line_ns(frame.size);
   const std::int64_t begun_ns =
       pending_.empty() ? heard_ns : std::max(heard_ns, pending_.back().due_ns);
@@ -139,7 +139,7 @@ void VirtualBus::answer_due() {
 }
 
 const BatteryFaultWindow& VirtualBus::window_of(const Pending& pending) const {
-  return settings_.faults.at(pending.window);  // what has struck is of one of them
+  return settings_.faults.at(pending.window);  // the fault belongs to one of them
 }
 
 void VirtualBus::answer(const Pending& pending) {
@@ -187,11 +187,11 @@ void VirtualBus::put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap
     input_.push_back({.arrives_ns = arrives_ns, .byte = byte});
     arrives_ns += gap_ns;
   }
-  // Behind what dripped: a later answer may overtake it.
+  // A later answer may overtake dripping bytes.
   if (last_ns > first_ns) std::ranges::stable_sort(input_, {}, &ByteOnTheWay::arrives_ns);
 }
 
-/// Time that so many bytes take on a serial line: 10 bits each.
+/// Transmission time on a serial line, 10 bits per byte.
 std::int64_t VirtualBus::line_ns(int bytes) const {
   return settings_.rtu ? bytes * 10 * kNanosecondsPerSecond / baud_ : 0;
 }

@@ -1,7 +1,6 @@
-// A device of a virtual run and the bus to it: what the edge's ModbusWire sends to its port arrives
-// here, and the answer comes when the device has it, byte by byte if a fault says so.
-// virtual_wire.cpp is the edge's end. Over TCP one connection, over RTU a line that keeps what was
-// sent too late.
+// Device of a virtual run and its bus: receives the frames of the edge's ModbusWire
+// (virtual_wire.cpp) and delivers answers when they are due, byte by byte for some faults. TCP: one
+// connection; RTU: a line that keeps late bytes.
 #pragma once
 
 #include <cstdint>
@@ -22,25 +21,25 @@
 
 namespace bess {
 
-/// Where a device is, and what goes wrong with it.
+/// Port and faults of a device.
 struct VirtualBusSettings {
   std::int32_t port = 1;
   bool rtu = false;
   std::int32_t response_delay_ms = 20;
   std::vector<BatteryFaultWindow> faults{};
-  std::int64_t start_utc_ns = 0;  ///< from which the faults count
+  std::int64_t start_utc_ns = 0;  ///< start of the fault times
 };
 
 class VirtualBus {
  public:
-  /// All but the settings must outlive this object. One of a port at a time in a process. With a
-  /// house the map's grid point shows it, and a meter's map makes this a meter.
+  /// All but the settings must outlive this object. One bus per port in a process. With a house the
+  /// grid point of the map includes it; a meter map makes this a meter.
   VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map, SimulatedBattery& battery,
              VirtualTime& time, MeteredHouse* house = nullptr);
   VirtualBus(const VirtualBus&) = delete;
   VirtualBus& operator=(const VirtualBus&) = delete;
   ~VirtualBus();
-  /// Null: nobody is there.
+  /// Null: no bus at this port.
   static VirtualBus* at(std::int32_t port);
 
   Status open();
@@ -52,10 +51,10 @@ class VirtualBus {
 
   [[nodiscard]] FaultyDevice& device() { return device_; }
 
-  /// Every frame that was sent so far, heard or not, and when.
+  /// Checksum of all sent frames and their times.
   [[nodiscard]] std::uint64_t sent() const { return sent_.value(); }
 
-  /// Called with each request and its unspoilt answer, both from the unit's byte on.
+  /// Called with each request and its correct answer, both from the unit byte on.
   using Witness = std::function<void(std::span<const std::uint8_t> request,
                                      std::span<const std::uint8_t> answer, std::int64_t utc_ns)>;
   void show_to(Witness witness) { witness_ = std::move(witness); }
@@ -64,13 +63,13 @@ class VirtualBus {
   struct FreeContext {
     void operator()(modbus_t* context) const { modbus_free(context); }
   };
-  /// A request on the device's desk.
+  /// Request in processing.
   struct Pending {
     std::int64_t due_ns;
     BusRequest request;
     BatteryFault fault;
-    std::size_t window;       ///< of the faults it is of
-    std::int64_t connection;  ///< on which it came: a closed one gets no answer
+    std::size_t window;       ///< index of the fault window
+    std::int64_t connection;  ///< of the request; a closed one gets no answer
   };
   struct ByteOnTheWay {
     std::int64_t arrives_ns;

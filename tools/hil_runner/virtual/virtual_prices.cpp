@@ -37,7 +37,7 @@ void VirtualOutlook::fetch(std::int64_t now_utc_s) {
   if (inquiry.take(ask(now_utc_s), settings_, now_utc_s)) kept_ = inquiry.book;
 }
 
-/// The server answers by the true time, and is asked for the days of the edge's.
+/// The server uses the true time; the requested days depend on the edge's clock.
 DayAheadAsked VirtualOutlook::ask(std::int64_t now_utc_s) const {
   if (time_.market() == VirtualTime::Market::kPaused) return {.status = Status::kTimeout};
   if (time_.market() == VirtualTime::Market::kDead) return {.status = Status::kNotConnected};
@@ -63,10 +63,10 @@ std::int64_t VirtualOutlook::edge_utc_s() const {
 
 namespace {
 
-constexpr std::int64_t kFetchNs = 30 * kMillisecondNs;  ///< of one answer
-constexpr int kRowsAsked = 20;  ///< as the edge's example configuration does
+constexpr std::int64_t kFetchNs = 30 * kMillisecondNs;  ///< duration of one answer
+constexpr int kRowsAsked = 20;  ///< as in the example configuration of the edge
 
-/// Of a URL's query: "limit=" of "...?limit=100&offset=0" is 100.
+/// Number in the query of a URL: "limit=" in "...?limit=100&offset=0" is 100.
 int number_of(std::string_view url, std::string_view key) {
   const std::size_t at = url.rfind(key);
   if (at == url.npos) return 0;
@@ -113,7 +113,7 @@ bool VirtualPrices::wait(std::int64_t until_monotonic_ns) {
   return true;
 }
 
-/// Spread over the wait as by bess-prices; false when the cycle's requests are used up.
+/// Spreads requests over the wait like bess-prices; false when all requests are used.
 bool VirtualPrices::begin_next() {
   const std::int64_t spacing_ns = kPriceWait_s * kNanosecondsPerSecond / kPriceRequests;
   const std::int64_t begin_ns = start_ns_ + requests_ * spacing_ns;

@@ -1,5 +1,5 @@
-// The control loop's price source in virtual time: the answers of the simulated market, read by the
-// edge's own parser into its own newest row. Asks as often as bess-prices would.
+// Price source in virtual time: answers of the simulated market, read by the edge's parser into its
+// newest row. Requests as often as bess-prices.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +19,25 @@
 
 namespace bess {
 
-// Day-ahead prices and their plans in virtual time, for a student by outlook: the simulated
-// auction's answers, read by the edge's own parser into its own book, planned on by its own
-// planner. Looks up once in a cycle, where bess-prices has two threads; plans are never
-// late.
+// Day-ahead prices and plans in virtual time, for a student with context outlook: answers of the
+// simulated auction, read by the edge's parser and planned by its planner. Once per control cycle,
+// where bess-prices has two threads; plans are never late.
 
 class VirtualOutlook {
  public:
-  /// All must outlive this object, which goes on over restarts of the edge.
+  /// All must outlive this object, which continues over restarts of the edge.
   VirtualOutlook(const Scenario& scenario, const OutlookSettings& settings,
                  const OutlookModel& model, VirtualTime& time);
 
-  /// An edge starts: with what the one before kept, and one question.
+  /// Start of an edge: stored prices, and one request.
   OutlookBoard* start(std::int32_t level_centi);
-  /// After a cycle: asks where it is time to, and plans for the tick after it.
+  /// After a control cycle: requests if due, and plans for the next tick.
   void cycle_done(const CycleRecord& record);
-  /// The state folder is lost.
+  /// Loses the stored prices.
   void lose() { kept_ = {}; }
 
  private:
-  /// What ends with a process.
+  /// State that ends with a process.
   struct Process {
     explicit Process(const OutlookModel& model) : planner(model, board) {}
     OutlookBoard board;
@@ -54,13 +53,13 @@ class VirtualOutlook {
   const OutlookModel& model_;
   VirtualTime& time_;
   AuctionView auction_;
-  DayAheadBook kept_;  ///< the edge's file
+  DayAheadBook kept_;  ///< file of the edge
   std::unique_ptr<Process> process_;
 };
 
 class VirtualPrices {
  public:
-  /// All but the settings must outlive this object; the plan goes on over restarts of the edge.
+  /// All but the settings must outlive this object; the fault plan continues over restarts.
   VirtualPrices(const PriceFeedSettings& settings, const MarketView& market,
                 MarketFaultPlan& faults, const Scenario& scenario, VirtualTime& time);
 
@@ -69,12 +68,12 @@ class VirtualPrices {
   bool wait(std::int64_t until_monotonic_ns);
   [[nodiscard]] PriceReport latest() const { return newest_.report(); }
 
-  // One request, which takes its time, as bess-prices has them for the start.
+  // One request with its duration, as bess-prices makes at the start.
   Status fetch_once(PriceRow& row);
   PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms);
 
  private:
-  /// What the server answers to a request of now, and how long that takes.
+  /// Answer to a request now, and its duration.
   struct Reply {
     Status status = Status::kOk;
     std::string text{};
@@ -100,7 +99,7 @@ class VirtualPrices {
   std::int64_t minute_utc_s_ = 0;
   std::int64_t start_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
-  std::int32_t requests_ = 0;  ///< begun in this cycle
+  std::int32_t requests_ = 0;  ///< in this control cycle
   bool is_asking_ = false;
   bool is_served_ = true;
   Answer answer_;

@@ -23,9 +23,9 @@ VirtualTime::VirtualTime(const Scenario& scenario)
       now_ns_(0),
       base_ns_(0),
       events_(scenario.events) {
-  // The edge needs its reading before the first tick: it starts a minute earlier.
+  // The edge starts one minute earlier, to read before the first tick.
   constexpr std::int64_t kLeadNs = 60 * kNanosecondsPerSecond;
-  now_ns_ = base_ns_ = kLeadNs;  // not 0: "never" in many places
+  now_ns_ = base_ns_ = kLeadNs;  // not 0, which often means "never"
   start_utc_ns_ -= 2 * kLeadNs;
   const ScenarioEvent end{.at_min = scenario.minutes, .does = ScenarioEvent::Does::kEdgeStop};
   events_.push_back(end);
@@ -53,10 +53,10 @@ void VirtualTime::advance_to(std::int64_t monotonic_ns) {
     now_ns_ = std::max(now_ns_, next_event_ns_);
     next_event_ns_ = ++next_event_ < events_.size() ? time_of(events_[next_event_]) : INT64_MAX;
     apply(event);
-    // A paused process finds its signals when it goes on.
+    // A paused process receives its signals when it continues.
     if (signal_ != 0 && !edge_is_paused_) return;
   }
-  if (next_event_ns_ == INT64_MAX) edge_is_paused_ = false;  // nobody is left to let it go on
+  if (next_event_ns_ == INT64_MAX) edge_is_paused_ = false;  // no event is left to continue it
   now_ns_ = std::max(now_ns_, monotonic_ns);
 }
 
@@ -110,7 +110,7 @@ void VirtualTime::apply(const ScenarioEvent& event) {
       on_people_(event);
       break;
     case kDiskFull:
-      break;  // refused by the reader: in virtual time there is no disk
+      break;  // refused by the reader: no disk in virtual time
   }
 }
 
@@ -127,7 +127,7 @@ bool VirtualTime::advance_to_next_start() {
 
 }  // namespace bess
 
-// What the linker calls instead of the C library's functions, in this program's own objects alone.
+// Replacements of C library functions, by the linker, in objects of this program only.
 extern "C" {
 
 int __real_clock_gettime(clockid_t id, timespec* time);

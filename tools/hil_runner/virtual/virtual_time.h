@@ -1,7 +1,7 @@
-// Time that this process makes itself. While a VirtualTime lives, the edge's calls of
-// clock_gettime, clock_nanosleep, sigtimedwait and adjtimex reach it instead of the kernel (the
-// linker's --wrap, see virtual_time.cpp): EdgeClock, the Modbus link and the driver run as they
-// are, an hour passes as soon as nobody has anything to do in it, and a run repeats to the byte.
+// Virtual time of this process. While a VirtualTime exists, the edge's calls of clock_gettime,
+// clock_nanosleep, sigtimedwait and adjtimex reach it instead of the kernel (linker option --wrap,
+// see virtual_time.cpp). EdgeClock, Modbus link and driver run unchanged, idle time takes no time,
+// and runs are byte-identical.
 #pragma once
 
 #include <cstdint>
@@ -15,39 +15,39 @@ namespace bess {
 
 inline constexpr std::int64_t kMillisecondNs = 1'000'000;
 
-/// Ends the edge where it stands, as SIGKILL does: thrown out of whatever it waits for.
+/// Thrown in a wait of the edge, to end it like SIGKILL.
 struct EdgeKilled {};
 
 class VirtualTime {
  public:
-  /// Time stands at the scenario's start. One at a time in a process.
+  /// Begins at the start of the scenario. One at a time in a process.
   explicit VirtualTime(const Scenario& scenario);
   VirtualTime(const VirtualTime&) = delete;
   VirtualTime& operator=(const VirtualTime&) = delete;
   ~VirtualTime();
-  /// Null: this process lives in real time.
+  /// Null: real time.
   static VirtualTime* current();
 
   [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns_; }
-  /// The true one, in which battery and market live.
+  /// True time, for battery and market.
   [[nodiscard]] std::int64_t utc_ns() const { return start_utc_ns_ + now_ns_; }
-  /// What the edge's clock shows: it may be stepped.
+  /// Time of the edge's clock, which may be stepped.
   [[nodiscard]] std::int64_t edge_utc_ns() const { return utc_ns() + step_ns_; }
   [[nodiscard]] bool is_synchronised() const { return synchronised_; }
   [[nodiscard]] bool battery_is_paused() const { return battery_is_paused_; }
-  /// Who is told when people, or another program, say something to the edge.
+  /// Listener for commands of people or other programs.
   void on_people(std::function<void(const ScenarioEvent&)> listener) {
     on_people_ = std::move(listener);
   }
   enum class Market : std::uint8_t { kServes, kPaused, kDead };
   [[nodiscard]] Market market() const { return market_; }
 
-  /// Lets time pass to an instant, or to the first event that the edge has to see before it, and
-  /// further while the edge is paused. Throws EdgeKilled.
+  /// Advances to an instant, or to an earlier event for the edge, and further while the edge is
+  /// paused. Throws EdgeKilled.
   void advance_to(std::int64_t monotonic_ns);
-  /// A signal that waits for the edge, taken; 0 = none.
+  /// Takes a pending signal of the edge; 0: none.
   int take_signal();
-  /// Lets time pass until somebody starts the edge again; false when the scenario ends before.
+  /// Advances to the next start of the edge; false if the scenario ends before.
   bool advance_to_next_start();
 
  private:
@@ -60,9 +60,9 @@ class VirtualTime {
   std::int64_t now_ns_;
   std::int64_t base_ns_;  ///< of now_ns_ at the start
   std::int64_t step_ns_ = 0;
-  std::vector<ScenarioEvent> events_;  ///< of the scenario, and the stop at its end
+  std::vector<ScenarioEvent> events_;  ///< of the scenario, plus the final stop
   std::size_t next_event_ = 0;
-  std::int64_t next_event_ns_ = 0;  ///< INT64_MAX: there is none
+  std::int64_t next_event_ns_ = 0;  ///< INT64_MAX: none
   int signal_ = 0;
   bool edge_runs_ = true;
   bool edge_is_paused_ = false;

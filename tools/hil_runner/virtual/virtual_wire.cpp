@@ -1,5 +1,5 @@
-// The edge's ModbusWire, by the same header, with the virtual bus of its port at the other end:
-// linked instead of edge/device/battery/modbus_wire.cpp.
+// ModbusWire of the edge on the virtual bus of its port; linked instead of
+// edge/device/battery/modbus_wire.cpp.
 #include "edge/device/battery/modbus_wire.h"
 
 #include "tools/hil_runner/virtual/virtual_bus.h"
@@ -7,7 +7,7 @@
 namespace bess {
 namespace {
 
-/// Where the real one keeps libmodbus' context; null: nobody is at that port.
+/// Stored in place of libmodbus' context; null: no bus at that port.
 _modbus* kept(VirtualBus* bus) { return reinterpret_cast<_modbus*>(bus); }
 VirtualBus& bus_of(_modbus* context) { return *reinterpret_cast<VirtualBus*>(context); }
 

@@ -53,7 +53,7 @@ Status VirtualOperator::read(OutsideLimit& limit, bool& is_set) const {
 
 namespace {
 
-/// EdgeClock blocks the signals that end a program; this one may still be interrupted.
+/// Restores the signal mask, because EdgeClock blocks signals that end a program.
 class KeptSignalMask {
  public:
   KeptSignalMask() { pthread_sigmask(SIG_SETMASK, nullptr, &mask_); }
@@ -65,13 +65,13 @@ class KeptSignalMask {
   sigset_t mask_{};
 };
 
-/// Who reads the wire by the maker's table alone.
+/// Decoder of the wire with the manufacturer's table only.
 class Witness {
  public:
   Witness(const RegisterMap& map, std::vector<WireReading>& readings)
       : table_(maker_table(map.name.view(), map.variant.view())), readings_(readings) {
     if (table_ == nullptr) {
-      fail("witness: nobody has written down the maker's table of the map \"{}\"", map.name.view());
+      fail("witness: no manufacturer table for the map \"{}\"", map.name.view());
     }
   }
 
@@ -91,7 +91,7 @@ class Witness {
   std::vector<WireReading>& readings_;
 };
 
-/// From its start to its end; the exit code.
+/// Runs an edge from start to end; returns its exit code.
 int run_edge(const EdgeConfig& config, VirtualWorld& world) {
   Controller<VirtualWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;
@@ -176,7 +176,7 @@ void EdgeState::add(const CycleRecord& record) {
   encode_record(record, records_.size() + 1, bytes);
   std::uint64_t number = 0;
   if (!decode_record(bytes, records_.emplace_back(), number))
-    fail("a record of the edge's ring cannot be read");
+    fail("a record of the edge's ring is unreadable");
 }
 
 bool EdgeState::read_back(std::int64_t records, CycleRecord& record) const {
@@ -206,7 +206,7 @@ Recall VirtualWorld::recall() const {
   const std::optional<Trip> trip = around_.state.trip();
   if (trip && !around_.people.is_cleared(trip->utc_s)) recalled.trip = trip;
   if (!around_.state.is_lost()) return recalled;
-  recalled.unknown = "the scenario's disk has lost it";
+  recalled.unknown = "the scenario has deleted it";
   recalled.trip = trip_without_state(recalled, around_.time.edge_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }

@@ -1,6 +1,5 @@
-// Virtual time and memory as the world of a controller (edge/app/program/controller.h): the edge's
-// own clock, driver, link and meter on virtual buses, the simulated market's answers, and of what
-// outlives a run what EdgeState keeps.
+// Virtual world of a controller (edge/app/program/controller.h): the edge's clock, driver, link and
+// meter on virtual buses, answers of the simulated market, and persistent state in EdgeState.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,8 @@
 
 namespace bess {
 
-// Whoever speaks to the controller in a virtual run: an operator's hold, the limits of another
-// program, and that a trip was cleared. What they say outlives the edge, as their files do; it is
-// formed and read by the edge's own code.
+// Inputs from operators and other programs in a virtual run: hold, limits, and cleared trips. They
+// persist over restarts, as files do; the edge's own code formats and reads them.
 
 class VirtualOperator {
  public:
@@ -34,35 +32,35 @@ class VirtualOperator {
 
   [[nodiscard]] const HoldMailbox& holds() const { return holds_; }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const { return cleared_.has(trip_utc_s); }
-  /// As the edge's limit file has it.
+  /// Limit in the limit file.
   Status read(OutsideLimit& limit, bool& is_set) const;
 
  private:
   HoldMailbox holds_;
   ClearedTrips cleared_;
-  std::string limit_;  ///< the file's text; empty: there is no file
+  std::string limit_;  ///< text of the file; empty: no file
 };
 
-// A scenario in virtual time: the edge's own loop, driver, link and guard against the simulated
-// battery and market, as quick as the machine, the same to the byte every time.
+// Scenario in virtual time: the edge's own loop, driver, link and guard with simulated battery and
+// market, at the speed of the machine; byte-identical for every run.
 
-/// The share of its power that the battery can give at an instant, by the weather; null: all of it.
+/// Share of the battery's power available at an instant, by temperature; null: all.
 using Weather = double (*)(std::int64_t utc_s);
 
 Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
                      Weather weather = nullptr);
 
-/// What bess-edge keeps on its disk between two runs: its ring.
+/// Persistent state of bess-edge: its ring.
 class EdgeState {
  public:
-  /// As the ring has it on its disk: what no field of it keeps is lost.
+  /// Stores the encoded record: data without a field is lost.
   void add(const CycleRecord& record);
   [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
-  /// By the newest record.
+  /// Trip of the newest record.
   [[nodiscard]] std::optional<Trip> trip() const;
-  /// The disk has lost all of it: what was recorded stays as evidence, and nobody can read it back.
+  /// Loses the state: records remain as evidence, but cannot be read back.
   void lose() { readable_from_ = std::ssize(records_); }
-  /// The edge is told that there was something, and that it cannot be understood.
+  /// State exists but is unreadable.
   [[nodiscard]] bool is_lost() const {
     return readable_from_ > 0 && readable_from_ == std::ssize(records_);
   }
@@ -80,12 +78,12 @@ class VirtualWorld {
   using Prices = VirtualPrices;
   using Meter = ModbusMeter;
   using Limits = VirtualOperator;
-  /// Here the records go into memory, cycle by cycle.
+  /// No seal: records are stored in memory.
   struct Seal {
     Seal() {}
   };
 
-  /// What goes on while the edge does not run. All of it must outlive this object.
+  /// Parts that continue without the edge. All must outlive this object.
   struct Surroundings {
     VirtualTime& time;
     SimulatedBattery& physics;

@@ -1,5 +1,5 @@
-// bess-edge and bess-prices as processes of a run in wall time, started on one configuration, asked
-// by their commands, read by their log; and a small file system that fills up.
+// Processes bess-edge and bess-prices of a run in wall time, with commands and log; and a small
+// file system that can be filled.
 #pragma once
 
 #include <fmt/core.h>
@@ -21,15 +21,15 @@
 
 namespace bess {
 
-// A small file system of its own for the edge's state, where this user may mount one.
+// Small file system for the edge's state; needs the right to mount.
 
 class SmallDisk {
  public:
   explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
-    constexpr int kBytes = 32 * 1'024 * 1'024;  // more than a log of 35 days
+    constexpr int kBytes = 32 * 1'024 * 1'024;  // larger than a log of 35 days
     mkdir(folder_.c_str(), 0755);
     if (mount("tmpfs", folder_.c_str(), "tmpfs", 0, fmt::format("size={}", kBytes).c_str()) != 0) {
-      fail("{}: no small disk can be mounted here: that needs root", folder_);
+      fail("{}: cannot mount a small disk: needs root", folder_);
     }
   }
   SmallDisk(const SmallDisk&) = delete;
@@ -47,36 +47,35 @@ class SmallDisk {
 
 class EdgeProcess {
  public:
-  /// Its configuration is edge.toml of the folder. Both must outlive this object.
+  /// Configuration: edge.toml in the folder. Both must outlive this object.
   EdgeProcess(const std::string& program, const WorkFolder& folder)
       : program_(program), folder_(folder) {}
 
-  /// Writes and reads the configuration, as bess-edge will.
+  /// Writes the configuration, and reads it as bess-edge does.
   void set_up(const Scenario& scenario, const std::string& settings);
   [[nodiscard]] const EdgeConfig& config() const { return config_; }
   [[nodiscard]] std::int64_t now_utc_s() const;
 
-  /// The controller. `recording`: of its bus; empty: none.
+  /// Starts the controller. `recording`: file of its bus traffic; empty: none.
   void start(const std::string& recording);
-  /// A command that may last, in its place.
+  /// Starts a longer command instead of the controller.
   void start_command(std::vector<std::string> words);
   void signal(int number) const;
-  /// By this signal; nothing where it has ended, or was never started.
+  /// Ends the process with this signal, if it runs.
   void end(int number);
-  /// Waits for a command's end; its exit code.
+  /// Waits for the end of a command; returns its exit code.
   int wait();
   [[nodiscard]] bool runs() const { return process_ != nullptr && !process_->has_ended(); }
   [[nodiscard]] bool is_started() const { return process_ != nullptr; }
 
-  /// What a person says to it, by a command of bess-edge beside it. Throws UserError when it is
-  /// refused.
+  /// Runs a command of bess-edge in parallel. Throws UserError if it fails.
   void say(std::vector<std::string> words) const;
 
-  /// Of the controller that was ended last.
+  /// Exit code of the controller that ended last.
   [[nodiscard]] int exit_code() const { return exit_code_; }
-  [[nodiscard]] std::string last_line() const;  ///< by the newest
+  [[nodiscard]] std::string last_line() const;  ///< of the newest log
 
-  /// The records of its ring, as `bess-edge log` reads them, while it is written or afterwards.
+  /// Records of its ring, as `bess-edge log` reads them, also while it is written.
   [[nodiscard]] std::vector<CycleRecord> records() const;
   [[nodiscard]] bool newest(CycleRecord& record) const;
 
@@ -84,7 +83,7 @@ class EdgeProcess {
   const std::string& program_;
   const WorkFolder& folder_;
   EdgeConfig config_;
-  std::unique_ptr<ChildProcess> prices_;  ///< bess-prices; goes on while the edge is down
+  std::unique_ptr<ChildProcess> prices_;  ///< bess-prices; continues without the edge
   std::unique_ptr<ChildProcess> process_;
   std::string log_;
   int started_ = 0;

@@ -20,19 +20,19 @@ namespace bess {
 
 namespace {
 
-/// A command line that grows.
+/// Builder of a command line.
 class Options {
  public:
   template <typename Value>
   void add(const std::string& name, const Value& value) {
     words_.insert(words_.end(), {name, fmt::format("{}", value)});
   }
-  /// Until the end: nothing.
+  /// Without --to-s: until the end.
   void add_span(const std::string& prefix, double from_s, double to_s) {
     add(prefix + "-from-s", from_s);
     if (to_s != kNeverMin) add(prefix + "-to-s", to_s);
   }
-  /// What strikes, from when to when, and whether it comes and goes.
+  /// Faults, their span, and on-off times.
   void add_faults(const std::string& prefix, const FaultSchedule& schedule) {
     for (const BatteryFault kind : schedule.faults) {
       add(prefix, battery_faults()[static_cast<std::size_t>(kind) - 1].name);
@@ -117,7 +117,7 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
     options.add("--baud", 115'200);
   }
   for (const BatteryFaultWindow& fault : scenario.battery_faults) {
-    add_battery_faults(options, fault);  // one: the reader has refused more
+    add_battery_faults(options, fault);  // only one: the reader refuses more
   }
   add_house(options, scenario, folder);
   add_meter(options, scenario.meter);
@@ -162,13 +162,13 @@ void RealVisit::look() {
   if (!edge_.newest(cycle)) return;
   show(cycle);
   const std::string broken = beyond_limits(cycle, battery_);
-  if (!broken.empty()) fail("stopped: {}, beyond the limits of --real", broken);
+  if (!broken.empty()) fail("stopped: {} exceeds the limits of --real", broken);
 }
 
 void RealVisit::show(const CycleRecord& cycle) const {
   if (isatty(STDERR_FILENO) == 0) return;
   fmt::print(stderr,
-             "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q ends it  ",
+             "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q stops  ",
              scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
              cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
 }
@@ -187,7 +187,7 @@ void RealVisit::give_back() {
   edge_.start_command({"release", "--yes"});
   const int code = edge_.wait();
   fmt::print(stderr, "{}: {}\n", scenario_.name, edge_.last_line());
-  if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, look after the battery\n", scenario_.name);
+  if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, check the battery\n", scenario_.name);
 }
 
 void RealVisit::tell(Evidence& evidence) const {
@@ -198,7 +198,7 @@ void RealVisit::tell(Evidence& evidence) const {
 
 namespace {
 
-constexpr double kStartUpS = 1.2;  ///< wall, for all processes to be up
+constexpr double kStartUpS = 1.2;  ///< wall time until all processes run
 
 bool fills_a_disk(const Scenario& scenario) {
   return std::ranges::any_of(scenario.events, [](const ScenarioEvent& event) {
@@ -208,16 +208,16 @@ bool fills_a_disk(const Scenario& scenario) {
 
 std::string seconds_text(const ScenarioEvent& event) { return std::to_string(event.for_s) + "s"; }
 
-/// Simulated seconds by which an order may be late for what this machine oversleeps. Throws
-/// MachineTooLate where it would be judged by the next cycle's price.
+/// Tolerance for the wake-up latency of this machine, simulated s. Throws MachineTooLate if orders
+/// could overlap with the next control cycle.
 double slack_s(const Lateness& lateness, std::int32_t time_scale) {
-  constexpr double kLateS = 0.15;  // wall, that an order may need
+  constexpr double kLateS = 0.15;  // wall time of an order
   constexpr double kLateFactor = 2;
   constexpr double kSlackMaxS = 60;
   const double slack_s = 2 + (kLateS + kLateFactor * lateness.worst_s()) * time_scale;
   if (slack_s <= kSlackMaxS) return slack_s;
   throw MachineTooLate(
-      fmt::format("{} by {:.2f} s, at time scale {} too late for a cycle of 120 s; fewer --jobs, "
+      fmt::format("{} by {:.2f} s, which is too much at time scale {}; use fewer --jobs "
                   "or a smaller time_scale",
                   kTooLate, lateness.worst_s(), time_scale));
 }
@@ -284,7 +284,7 @@ class WallRun {
                           .clock = programs_.clock});
   }
 
-  /// The sign of a simulated battery is known.
+  /// The sign of a simulated battery needs no test.
   void pretend_commissioned() const {
     std::string error;
     const CommissionResult passed{.verdict = CommissionVerdict::kPassed};
@@ -293,7 +293,7 @@ class WallRun {
     }
   }
 
-  /// One that comes back is given the port that it had.
+  /// A restarted market gets its previous port.
   void start_market() {
     std::vector<std::string> options =
         market_options(scenario_, folder_.file("minutes.csv"), folder_);
@@ -351,11 +351,11 @@ class WallRun {
       case kClockStep:
       case kClockUnsynchronised:
       case kClockSynchronised:
-        return;  // refused by the reader: the clock of this machine is not touched
+        return;  // refused by the reader: wall time cannot step the clock
     }
   }
 
-  /// What a disk leaves that has died: files of the right size, of nothing.
+  /// Effect of a failed disk: files of the right size with invalid content.
   void lose_state() const {
     for (const char* const name : {"decisions.ring", "decisions.ring.old"}) {
       const std::string path = state_file(edge_.config(), name).c_str();
@@ -415,7 +415,7 @@ class WallRun {
     return evidence;
   }
 
-  /// True when they were there until now, and ended as they should.
+  /// True if they ran until now and ended normally.
   bool end_simulators() {
     const bool has_battery = visit_ || SitePrograms::stop(*programs_.battery) == 0;
     return (market_is_dead_ || SitePrograms::stop(*programs_.market) == 0) && has_battery;
@@ -431,7 +431,7 @@ class WallRun {
   bool market_is_dead_ = false;
   EdgeProcess edge_;
   std::optional<RealVisit> visit_;
-  std::string battery_link_;  ///< lines of TOML that lead to a real one
+  std::string battery_link_;  ///< TOML for the link of a real one
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
-// A scenario in wall time, scaled: the real bess-edge between the real bess-sim battery and
-// bess-sim market, over Modbus TCP or a pair of pseudo terminals, and over HTTP. Processes are
-// killed, stopped and continued as the scenario says. Or the real bess-edge and a battery that is
-// there already.
+// Scenario in scaled wall time: the real bess-edge with bess-sim battery and bess-sim market, over
+// Modbus TCP or a pair of pseudo terminals, and over HTTP. Events kill, stop and continue
+// processes. Alternatively the real bess-edge with a real battery.
 #pragma once
 
 #include <algorithm>
@@ -25,19 +24,18 @@
 
 namespace bess {
 
-// What a scenario asks of battery, house, meter and market, in the words of bess-sim's command
-// line.
+// Options of bess-sim for the battery, house, meter and market of a scenario.
 
-/// `serial_device`: the battery's end of a line; empty: over TCP. Of a house with steps a file is
-/// written.
+/// `serial_device`: end of the line for the battery; empty: TCP. Writes a file for a house with
+/// steps.
 std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
                                          const WorkFolder& folder);
 
-/// On the minute file `prices`. Of day-ahead prices a file is written.
+/// `prices`: minute file. Writes a file for day-ahead prices.
 std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
                                         const WorkFolder& folder);
 
-// How late this machine wakes whoever sleeps, at worst, while this object lives.
+// Worst wake-up latency of this machine during the life of this object.
 
 class Lateness {
  public:
@@ -65,8 +63,7 @@ class Lateness {
   std::thread thread_;
 };
 
-// A real battery in a run: its sign is checked first, it is looked at every second, and however the
-// run ends it is given back.
+// Real battery in a run: commissioned first, checked every second, and released at every end.
 
 class RealVisit {
  public:
@@ -75,16 +72,16 @@ class RealVisit {
             EdgeProcess& edge)
       : scenario_(scenario), battery_(battery), folder_(folder), edge_(edge) {}
 
-  /// The edge's own check of the sign: half a minute of a small order.
+  /// Commissioning by the edge: half a minute of a small order.
   void commission();
-  /// Throws Interrupted when somebody asked for the end, UserError beyond the limits.
+  /// Throws Interrupted on a stop request, UserError beyond the limits.
   void look();
-  /// Of its bus, of the edge that is started next.
+  /// File for the bus traffic of the next edge.
   [[nodiscard]] std::string next_recording();
   [[nodiscard]] bool has_begun() const { return edge_.is_started() || !recordings_.empty(); }
-  /// Stops the edge, which releases the battery; where it did not, says so and tries it once more.
+  /// Stops the edge, which releases the battery; if not, releases it by a command and reports.
   void give_back();
-  /// What went over its bus, and what it measured.
+  /// Adds orders from its bus traffic, and its measurements.
   void tell(Evidence& evidence) const;
 
  private:
@@ -100,29 +97,28 @@ class RealVisit {
   std::int64_t next_look_ns_ = 0;
 };
 
-/// How the error of a run begins for which this machine was too late.
+/// Begin of the error message of a run on a late machine.
 inline constexpr std::string_view kTooLate = "not judged: this machine was late";
 
-/// What a run stands on: the programs that are started, and the battery if there is one already.
+/// Paths of the programs, and the real battery if any.
 struct WallSite {
   std::string edge;
   std::string simulators;
-  std::optional<RealBattery> battery{};  ///< nothing: a simulated one is started
+  std::optional<RealBattery> battery{};  ///< empty: simulated
 };
 
-/// What was run cannot be judged: the machine woke whoever slept too late for the scenario's pace.
+/// The run cannot be judged: the wake-up latency is too large for its time scale.
 class MachineTooLate : public UserError {
  public:
   using UserError::UserError;
 };
 
-/// Throws MachineTooLate; UserError when a program cannot be started or says why it does not run,
-/// or a real battery's limits are broken; Interrupted when a stop was requested. A real battery is
-/// released, however it ends.
+/// Throws MachineTooLate; UserError if a program fails or a real battery exceeds its limits;
+/// Interrupted on a stop request. A real battery is released in all cases.
 Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
                   const WorkFolder& folder);
 
-/// What only another machine can do, in words; empty: it can run here.
+/// Reason why this machine cannot run it; empty: it can.
 std::string why_not_wall(const Scenario& scenario);
 
 }  // namespace bess

@@ -113,7 +113,7 @@ struct AlphaEss : MakerTable {
   }
 };
 
-/// bess-sim's own: 10 SoC in 0.01 %, 11 power, 100 on, 101 ordered power, charge positive.
+/// bess-sim: 10 SoC in 0.01 %, 11 power, 100 on, 101 ordered power, charge positive.
 struct Simulator : MakerTable {
   Value soc_frac(const WireMemory& wire) const override {
     return times(of(wire.word(1, 10)), 0.0001);
@@ -126,9 +126,9 @@ struct Simulator : MakerTable {
 
 /// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2:
 /// of discharging, 3: both), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A
-/// negative limit of one is the other.
+/// negative limit of one direction orders the other.
 struct StorageModel : MakerTable {
-  static constexpr double kWhole = 10'000;  // with the scale of -2 that both devices have
+  static constexpr double kWhole = 10'000;  // scale -2 in both devices
   virtual std::optional<int> model(const WireMemory& wire) const = 0;
 
   Value ordered_w(const WireMemory& wire) const override {
@@ -156,8 +156,7 @@ struct FroniusGen24 : StorageModel {
   }
 };
 
-/// Where a chain of models has this one, by what was read of it: "SunS" at 40000, then id and
-/// length of each.
+/// Address of a model in the chain that was read: "SunS" at 40000, then id and length of each.
 std::optional<int> find_model(const WireMemory& wire, int id) {
   if (wire.word(1, 40'000) != 0x5375 || wire.word(1, 40'001) != 0x6E53) return std::nullopt;
   for (int at = 40'002;;) {
@@ -169,7 +168,7 @@ std::optional<int> find_model(const WireMemory& wire, int id) {
   }
 }
 
-/// A value whose decimal exponent stands in another register.
+/// Value with a decimal exponent in another register.
 Value scaled(const Value& value, const Value& exponent) {
   return value && exponent ? Value(*value * std::pow(10, *exponent)) : std::nullopt;
 }
@@ -211,8 +210,8 @@ struct SunSpec704 : MakerTable {
 };
 
 /// Victron GX, CCGX register list: unit 100, 842 power, 843 SoC in %, 2902 ESS mode, 3 while ours;
-/// unit 228, 37, 40 and 41 what the AC input of each phase is to take, charge positive; 23 to 25
-/// what its AC output gives to loads, in 10 W.
+/// unit 228, 37, 40 and 41 set point of the AC input of each phase, charge positive; 23 to 25
+/// AC output to loads, in 10 W.
 struct VictronEss3 : MakerTable {
   explicit VictronEss3(int of_phases) : phases(of_phases) {}
   Value soc_frac(const WireMemory& wire) const override {

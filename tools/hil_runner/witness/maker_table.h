@@ -1,7 +1,6 @@
-// What the registers of a battery mean by its maker's documents, written down a second time and by
-// hand: the sources are those that edge/device/maps/*.toml name, read again; the maps themselves
-// are not. A sign, a word order or a scale that map or interpreter get wrong is wrong for the edge
-// and for bess-sim alike, which have them in common; not here.
+// Manufacturer register tables, written by hand and independently of the maps, from the documents
+// that edge/device/maps/*.toml name. They detect errors of sign, word order or scale in maps and
+// interpreter, which edge and bess-sim have in common.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +12,17 @@
 
 namespace bess {
 
-// Every register that was read or written on a bus, as it was last seen there. It takes the frames
-// apart by itself: no code and no table is shared with what drives the battery, or with what acts
-// it.
+// Last value of each register read or written on a bus. The decoder shares no code and no table
+// with the edge or the simulator.
 
-/// The protocol's two kinds, by the function that reads them.
+/// Register kinds, by read function.
 enum class Table : std::uint8_t { kHolding = 3, kInput = 4 };
 
 class WireMemory {
  public:
   using Frame = std::span<const std::uint8_t>;
-  /// A request and its answer, both from the unit's byte on. False: an exception, or no reading and
-  /// no writing.
+  /// Request and answer, both from the unit byte on. False: an exception, or neither read nor
+  /// write.
   bool exchanged(Frame request, Frame answer);
 
   [[nodiscard]] std::optional<std::uint16_t> word(int unit, int address,
@@ -50,11 +48,11 @@ class MakerTable {
   virtual ~MakerTable() = default;
   [[nodiscard]] virtual Value soc_frac(const WireMemory& wire) const = 0;
   [[nodiscard]] virtual Value power_w(const WireMemory& wire) const = 0;
-  /// Nothing while no order stands in the registers. 0 W is an order.
+  /// Empty without an order in the registers. 0 W is an order.
   [[nodiscard]] virtual Value ordered_w(const WireMemory& wire) const = 0;
 };
 
-/// Of a map by its name; null: nobody has written one down.
+/// Table of a map by its name; null: none.
 const MakerTable* maker_table(std::string_view map, std::string_view variant);
 
 }  // namespace bess
