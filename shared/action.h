@@ -1,5 +1,5 @@
-// The three actions of the paper, a in {-P, 0, +P}, and the one argmax that breaks their ties.
-// [SPEC 3, 5]: ties go to the lowest action (discharge < idle < charge), here and nowhere else.
+// Actions of the paper, a in {-P, 0, +P}, and the argmax with its tie rule [SPEC 3, 5]: ties go to
+// the lowest action (discharge < idle < charge), only here.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ template <typename T>
 constexpr Action argmax_action(const T* value) {
   int best = 0;
   for (int i = 1; i < kActionCount; ++i) {
-    if (value[i] > value[best]) best = i;  // strictly greater: the lowest action keeps a tie
+    if (value[i] > value[best]) best = i;  // strictly greater: ties go to the lowest action
   }
   return static_cast<Action>(best);
 }

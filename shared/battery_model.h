@@ -1,7 +1,7 @@
-// One step of the battery, a pure function [Paper, Eq. 2, 4, 5; SPEC 3].
+// Battery model: one step as a pure function [Paper, Eq. 2, 4, 5; SPEC 3].
 //   SoC' = SoC + (max(p,0) * eta_charge + min(p,0) / eta_discharge - r * p^2 / P) * dt / C
-// p is the average power REALLY exchanged over the step: at a bound only what still fits flows, and
-// only that is paid. The paper's battery has none of what a real one adds to that: r is 0.
+// p is the average power really exchanged over the step, limited by the SoC bounds. In the paper
+// r = 0.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,12 @@
 
 namespace bess {
 
-// What buying and selling a MWh costs beside its price: grid fees, taxes, the supplier's margin.
-// The two directions differ, so a price alone no longer says what an exchange is worth:
+// Costs of buying and selling a MWh in addition to its price: grid fees, taxes, the supplier's
+// margin.
 //   import price = price + adder + percent of |price|
 //   export price = price - fee   - percent of |price|
-// A percentage is of the price's size, never of its sign: it always costs. At -100 EUR/MWh and 5 %
-// one is paid 95 for taking a MWh and pays 105 for giving one. (Taken of the signed price it would
-// add to what one is paid for taking: a fee that turns into a gift is no supplier's contract.)
+// The percentage applies to the absolute price, so it is always a cost: at -100 EUR/MWh and 5 %
+// import earns 95 EUR/MWh and export costs 105 EUR/MWh.
 
 struct TradingCosts {
   double import_adder_eur_per_mwh = 0;
@@ -24,12 +23,12 @@ struct TradingCosts {
   double export_fee_eur_per_mwh = 0;
   double export_percent = 0;  ///< of |price|
 
-  /// What a MWh taken from the grid costs at this price.
+  /// Cost of a MWh imported at this price.
   [[nodiscard]] constexpr double import_eur_per_mwh(double price_eur_per_mwh) const {
     return price_eur_per_mwh +
            (import_adder_eur_per_mwh + import_percent / 100 * size_of(price_eur_per_mwh));
   }
-  /// What a MWh given to the grid earns.
+  /// Revenue of a MWh exported at this price.
   [[nodiscard]] constexpr double export_eur_per_mwh(double price_eur_per_mwh) const {
     return price_eur_per_mwh -
            (export_fee_eur_per_mwh + export_percent / 100 * size_of(price_eur_per_mwh));
@@ -39,27 +38,27 @@ struct TradingCosts {
   static constexpr double size_of(double price) { return price < 0 ? -price : price; }
 };
 
-/// Less power towards a bound of the SoC window, as cells ask for: all of it down to `width_frac`
-/// of SoC before the bound, `share` at the bound, a straight line between. A width of 0: none.
+/// Power reduction near a bound of the SoC window: linear from full power at `width_frac` before
+/// the bound to `share` at the bound. A width of 0: none.
 struct PowerTaper {
   double width_frac = 0;
   double share = 1;
 
-  /// Of the power, this far from the bound.
+  /// Share of the power at this distance from the bound.
   [[nodiscard]] constexpr double at(double room_frac) const {
     if (room_frac >= width_frac) return 1;
     return room_frac <= 0 ? share : share + (1 - share) * room_frac / width_frac;
   }
 };
 
-/// Less power in cold hours of the local day, which may go over midnight.
+/// Reduced power in cold hours of the local day, which may include midnight.
 struct ColdHours {
-  double power_share = 1;  ///< of the power, left both ways; 1: none are cold
+  double power_share = 1;  ///< share of the power, both directions; 1: no cold hours
   double from_hour = 0;
   double to_hour = 0;
 
   [[nodiscard]] constexpr bool exist() const { return power_share < 1; }
-  /// A local quarter-hour of the day, 0 to 95, by when it begins.
+  /// `quarter_hour`: local, 0 to 95.
   [[nodiscard]] constexpr bool hold(int quarter_hour) const {
     const double hour = quarter_hour / 4.0;
     const bool is_after = hour >= from_hour, is_before = hour < to_hour;
@@ -77,30 +76,28 @@ struct BatteryParameters {
   double discharge_efficiency = 0.9486832980505138;
   double soc_min_frac = 0.10;
   double soc_max_frac = 1.00;
-  // What a real one adds to that.
+  // Not in the paper's model.
   PowerTaper charge_taper{};        ///< towards soc_max
   PowerTaper discharge_taper{};     ///< towards soc_min
-  double full_power_loss_frac = 0;  ///< r: lost besides, of the power, at full power; by its square
-  double standby_w = 0;             ///< own consumption, from the grid at any time
+  double full_power_loss_frac = 0;  ///< r: additional loss at full power, quadratic in power
+  double standby_w = 0;             ///< own consumption from the grid
   PowerResponse response{};         ///< from an order to its power
-  ColdHours cold{};                 ///< what calls battery_step knows the hour
-  // What using it costs, and how much it may be used: battery_step knows nothing of these,
-  // accounting and planning do (exchange_cost.h).
+  ColdHours cold{};                 ///< applied by callers of battery_step
+  // Costs and limits of use, for accounting and planning (exchange_cost.h), not for battery_step.
   double wear_eur_per_mwh = 0;    ///< of throughput: charged and discharged energy, grid side
-  TradingCosts costs{};           ///< beside the price
-  double cycles_per_day_max = 0;  ///< equivalent full cycles a local day; 0 = no limit
-  // Known to the environment alone: plans and learning are of a battery without them.
-  double fade_percent_per_1000_cycles = 0;  ///< of the capacity that is left
-  double minimum_run_min = 0;               ///< that a direction is kept once it was ordered
+  TradingCosts costs{};           ///< in addition to the price
+  double cycles_per_day_max = 0;  ///< full cycles per local day; 0: no limit
+  // Used by the environment only, not by planning and learning.
+  double fade_percent_per_1000_cycles = 0;  ///< of the remaining capacity
+  double minimum_run_min = 0;               ///< minimum time of an ordered direction
 
-  /// All that can be ordered in a local quarter-hour of the day.
+  /// Maximum power in a local quarter-hour of the day.
   [[nodiscard]] constexpr double power_w_at(int quarter_hour) const {
     return power_w_max * cold.share_at(quarter_hour);
   }
 };
 
-/// Whether each step of full power of the same hour moves the same, wherever it does not meet a
-/// bound.
+/// Whether full power moves the same energy in each step of an hour away from the bounds.
 constexpr bool has_constant_power(const BatteryParameters& battery) {
   return battery.charge_taper.width_frac == 0 && battery.discharge_taper.width_frac == 0 &&
          battery.full_power_loss_frac == 0;
@@ -111,14 +108,14 @@ struct BatteryStep {
   double soc_frac;  ///< at the end of the step
 };
 
-/// What reaches the cells of a power, or leaves them: W, positive is charging.
+/// Power at the cells, W, charge positive.
 inline double stored_power_w(const BatteryParameters& battery, double power_w) {
   const double lossless_w =
       power_w > 0 ? power_w * battery.charge_efficiency : power_w / battery.discharge_efficiency;
   return lossless_w - battery.full_power_loss_frac * power_w * power_w / battery.power_w_max;
 }
 
-/// The same with r above 0: what reaches the cells, or leaves them, is a parabola of the power.
+/// Step with r > 0: the power at the cells is quadratic in the grid power.
 inline BatteryStep lossy_step(const BatteryParameters& battery, double soc_frac, double power_w,
                               double hours) {
   const bool charges = power_w > 0;
@@ -136,9 +133,8 @@ inline BatteryStep lossy_step(const BatteryParameters& battery, double soc_frac,
   return {(slope - root) / (2 * square), bound_frac};
 }
 
-/// Exchanges up to `wanted_power_w` for `hours`. Never leaves [soc_min, soc_max]; a battery that
-/// starts outside moves towards the window or rests, never further away. The taper is that of the
-/// SoC before the step.
+/// Exchanges up to `wanted_power_w` for `hours`. Stays within [soc_min, soc_max]; a battery that
+/// starts outside only moves towards the window or idles. The taper uses the SoC before the step.
 inline BatteryStep battery_step(const BatteryParameters& battery, double soc_frac,
                                 double wanted_power_w, double hours) {
   const double charge_w_max =
@@ -165,8 +161,8 @@ inline BatteryStep battery_step(const BatteryParameters& battery, double soc_fra
   return {0.0, soc_frac};
 }
 
-/// The same with where its power stood before the step, and stands at its end: by its response,
-/// within what its taper leaves. Where it meets a bound its power has gone by then.
+/// Step with power response: includes the power state before and after the step. At a bound the
+/// power ends at 0.
 struct FollowedStep {
   BatteryStep step;
   PowerState power;

@@ -1,5 +1,5 @@
-// From an order to its power: nothing for a while, then a ramp, then a first-order lag. Mean and
-// end of a stretch follow in closed form, however long it is.
+// Battery response to an order: dead time, ramp, first-order lag. Mean and final power of any time
+// span have a closed form.
 #pragma once
 
 #include <cmath>
@@ -7,16 +7,16 @@
 namespace bess {
 
 struct PowerResponse {
-  double delay_s = 0;          ///< until anything happens
-  double ramp_w_per_s = 0;     ///< 0: at once
-  double time_constant_s = 0;  ///< of a first-order lag behind the ramp; 0: none
+  double delay_s = 0;          ///< dead time
+  double ramp_w_per_s = 0;     ///< 0: immediate
+  double time_constant_s = 0;  ///< of the first-order lag after the ramp; 0: none
 
   [[nodiscard]] constexpr bool exists() const {
     return delay_s > 0 || ramp_w_per_s > 0 || time_constant_s > 0;
   }
 };
 
-/// Where the ramp is, and what flows: the lag behind it.
+/// Output of the ramp, and of the lag after it.
 struct PowerState {
   double ramped_w = 0;
   double flowing_w = 0;
@@ -27,8 +27,7 @@ struct FollowedPower {
   PowerState end;
 };
 
-/// What an order of `wanted_w` brings within `seconds` (above 0). Until it begins, what flows flows
-/// on.
+/// Power within `seconds` (above 0) after an order of `wanted_w`; unchanged during the dead time.
 inline FollowedPower followed_power(const PowerResponse& response, PowerState from, double wanted_w,
                                     double seconds) {
   const double left_s = seconds - response.delay_s;
@@ -42,8 +41,8 @@ inline FollowedPower followed_power(const PowerResponse& response, PowerState fr
   double area_ws = ramped_s * (from.ramped_w + end_w) / 2 + (left_s - ramped_s) * wanted_w;
   double flowing_w = end_w;
   if (const double tau_s = response.time_constant_s; tau_s > 0) {
-    // y' = (u - y) / tau: what it is behind nears slope * tau on the ramp, and 0 after it; and the
-    // integral of u - y is tau times what y has risen.
+    // y' = (u - y) / tau: u - y approaches slope * tau on the ramp and 0 after it; the integral of
+    // u - y is tau times the rise of y.
     const double behind_w = (ramps ? from.ramped_w : wanted_w) - from.flowing_w;
     const double on_ramp_w = slope_w_per_s * tau_s;
     const double at_top_w = on_ramp_w + (behind_w - on_ramp_w) * std::exp(-ramped_s / tau_s);

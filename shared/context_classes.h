@@ -1,8 +1,7 @@
-// The student's third input [SPEC 4]: one of twelve context classes. By `month` it is the paper's
-// local month, which learns the level of the training year's prices by heart; by `level` it is the
-// class of the trailing price level (price_level.h), which holds in another year; by `outlook` it
-// is the class of the break-even price that a plan on day-ahead prices has for this moment and SoC
-// (outlook/outlook_plan.h). The proof covers all twelve in each case.
+// Context classes: the student's third input, one of twelve [SPEC 4]. `month`: local month as in
+// the paper, which memorises the price level of the training year. `level`: class of the trailing
+// price level (price_level.h), valid in other years. `outlook`: class of the break-even price of a
+// plan on day-ahead prices (outlook/outlook_plan.h). The proof covers all twelve.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +29,13 @@ constexpr std::string_view context_name(ContextKind kind) {
 
 struct ContextClasses {
   ContextKind kind = ContextKind::kMonth;
-  /// By level or outlook: class c + 1 begins at edge c - 1, EUR/MWh, ascending strictly. By month:
-  /// all 0.
+  /// Level and outlook: class c + 1 begins at edge c - 1, EUR/MWh, strictly ascending. Month: all
+  /// 0.
   std::int16_t level_edge_eur_per_mwh[kContextClassCount - 1] = {};
 
   [[nodiscard]] constexpr bool is_outlook() const { return kind == ContextKind::kOutlook; }
 
-  /// 1..12, of the month, or of the trailing level or the break-even price, in hundredths of
-  /// EUR/MWh, whichever is the context.
+  /// 1..12, from the month, or from the level or break-even price in hundredths of EUR/MWh.
   [[nodiscard]] constexpr std::int16_t class_of(int month, std::int32_t price_centi) const {
     if (kind == ContextKind::kMonth) return static_cast<std::int16_t>(month);
     std::int16_t found = 1;

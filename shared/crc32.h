@@ -25,7 +25,7 @@ class Crc32 {
   constexpr void add_byte(std::uint8_t byte) {
     state_ = detail::kCrc32Table[(state_ ^ byte) & 0xFFu] ^ (state_ >> 8);
   }
-  /// Adds an integer as its little-endian bytes, whatever the machine's own order.
+  /// Adds an integer as little-endian bytes, independent of the byte order of the machine.
   template <typename T>
   constexpr void add_integer(T value) {
     const auto bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(value));

@@ -1,7 +1,6 @@
-// A rule of an operator in integers: a box of states, and what may be decided in it. Proof and
-// guard look it up with the same rounding, so that a rule that a student is proved for never makes
-// the guard step in. A rule holds on whole EUR/MWh, not clamped to the lattice: what lies outside
-// it is the guard's alone.
+// Operator rule in integers: a box of states and the allowed decisions. Proof and guard use the
+// same rounding, so that the guard never changes a decision for a rule that the student is proved
+// for. Rules use whole EUR/MWh, not clamped to the lattice: outside it only the guard applies them.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +24,7 @@ constexpr ActionSet action_bit(Action action) {
 }
 constexpr bool allows(ActionSet set, Action action) { return (set & action_bit(action)) != 0; }
 
-/// Itself where that is allowed, else the nearest, the lower of two. Idle when nothing is.
+/// The action if allowed, else the nearest allowed one, the lower of two. Idle if none is allowed.
 constexpr Action nearest_allowed(ActionSet set, Action action) {
   const int wanted = static_cast<int>(action);
   for (int distance = 0; distance < kActionCount; ++distance) {
@@ -37,25 +36,25 @@ constexpr Action nearest_allowed(ActionSet set, Action action) {
   return Action::kIdle;
 }
 
-inline constexpr std::uint16_t kAllTwelve = (1U << 12) - 1;  ///< of months, or of context classes
+inline constexpr std::uint16_t kAllTwelve = (1U << 12) - 1;  ///< months or context classes
 
-/// Where a rule is looked up.
+/// Point at which rules are evaluated.
 struct RulePoint {
-  std::int32_t price_eur_per_mwh;  ///< nearest whole one, as whole_price_of() has it
-  std::int16_t soc_index;          ///< of the lattice
+  std::int32_t price_eur_per_mwh;  ///< nearest whole price, from whole_price_of()
+  std::int16_t soc_index;          ///< in the lattice
   std::int16_t quarter_hour;       ///< local, 0..95
   std::int16_t month;              ///< local, 1..12
   std::int16_t context_class;      ///< 1..12
 };
 
-/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps; a price beyond all
-/// ends that a rule may have is at that end, so that a rule without an end there holds for it.
+/// Nearest whole EUR/MWh, halves up, as lattice_price_of() without clamping to the lattice; clamped
+/// to the largest bounds of a rule, so that unbounded rules include all prices.
 constexpr std::int32_t whole_price_of(std::int32_t price_centi_eur_per_mwh) {
   return clamp_to(rounding_divide(price_centi_eur_per_mwh, kCentiPerEur), -kThresholdMaxEurPerMwh,
                   kThresholdMaxEurPerMwh);
 }
 
-/// Of a decision at `state`, which has the price clamped.
+/// Point of a decision; `state` has a clamped price.
 constexpr RulePoint rule_point(const LocalMinute& now, const LatticeState& state,
                                std::int32_t price_centi_eur_per_mwh) {
   return {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
@@ -65,14 +64,14 @@ constexpr RulePoint rule_point(const LocalMinute& now, const LatticeState& state
           .context_class = state.context_class};
 }
 
-/// All ends belong to the box.
+/// Box with inclusive bounds.
 struct RuleBox {
-  std::int32_t price_min_eur_per_mwh = -kThresholdMaxEurPerMwh;  ///< no end: what is below counts
+  std::int32_t price_min_eur_per_mwh = -kThresholdMaxEurPerMwh;  ///< includes lower prices
   std::int32_t price_max_eur_per_mwh = kThresholdMaxEurPerMwh;
   std::int32_t soc_index_min = 0;
   std::int32_t soc_index_max = kSocCount - 1;
   std::int32_t quarter_hour_first = 0;
-  std::int32_t quarter_hour_count = kQuarterHourCount;  ///< from the first on, past midnight
+  std::int32_t quarter_hour_count = kQuarterHourCount;  ///< from the first, also past midnight
   std::int32_t months = kAllTwelve;                     ///< bit m - 1
   std::int32_t context_classes = kAllTwelve;            ///< bit c - 1
 
@@ -92,21 +91,21 @@ struct RuleBox {
 
 inline constexpr std::int32_t kFullPowerPermille = 1'000;
 
-/// What is left to decide at one point.
+/// Allowed decisions at one point.
 struct RuleLimits {
   ActionSet actions = kAllActions;
   std::int32_t power_permille_max = kFullPowerPermille;  ///< of the rated power, both directions
   friend constexpr bool operator==(const RuleLimits&, const RuleLimits&) = default;
 };
 
-/// A rule as the guard enforces it.
+/// Rule enforced by the guard.
 struct GuardRule {
   RuleBox box;
   RuleLimits limits;
   friend constexpr bool operator==(const GuardRule&, const GuardRule&) = default;
 };
 
-/// Each field in the order of a row of the exported header, which is written, read and hashed so.
+/// Visits the fields in the order of a row of the exported header and of the hash.
 template <typename Rule, typename Visit>
 constexpr void for_each_field(Rule& rule, Visit visit) {
   visit(rule.box.price_min_eur_per_mwh);
@@ -137,7 +136,7 @@ constexpr GuardRule guard_rule_of(const std::int32_t (&row)[kGuardRuleFields]) {
   return rule;
 }
 
-/// All rules at one point; `Rules` is a range of GuardRule.
+/// Limits of all rules at one point; `Rules` is a range of GuardRule.
 template <typename Rules>
 constexpr RuleLimits rule_limits_at(const Rules& rules, const RulePoint& point) {
   RuleLimits limits;
@@ -151,7 +150,7 @@ constexpr RuleLimits rule_limits_at(const Rules& rules, const RulePoint& point) 
   return limits;
 }
 
-/// The power of the nearest action that they leave, and of it what they leave.
+/// Power of the nearest allowed action, within the power limit.
 constexpr std::int32_t ruled_power_w(const RuleLimits& limits, std::int32_t power_w,
                                      std::int32_t rated_w) {
   const int sign = power_w > 0 ? 1 : power_w < 0 ? -1 : 0;
@@ -161,7 +160,7 @@ constexpr std::int32_t ruled_power_w(const RuleLimits& limits, std::int32_t powe
   return clamp_to(allowed == sign ? power_w : allowed * rated_w, -most_w, most_w);
 }
 
-/// Of the net's hash and every field, in order; without rules it is the net's own.
+/// Hash of the net's hash and all fields in order; without rules that of the net.
 template <typename Rules>
 constexpr std::uint32_t ruled_hash(std::uint32_t weights_hash, const Rules& rules) {
   Crc32 crc;

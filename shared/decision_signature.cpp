@@ -14,8 +14,7 @@
 namespace bess {
 namespace {
 
-/// The paper's house battery in whole watt-seconds, with 90 % of the energy left after a round
-/// trip.
+/// House battery of the paper in whole watt-seconds; round-trip efficiency 90 %.
 class IntegerBattery {
  public:
   [[nodiscard]] std::int32_t soc_e4() const {
@@ -33,7 +32,7 @@ class IntegerBattery {
   std::int64_t stored_ws_ = kCapacityWs / 2;
 };
 
-/// Two days from here on hold the change of the clock in March and in October.
+/// The two days from here include the clock changes of March and October.
 std::int64_t first_midnight_utc_s(int month) {
   const int day = month == 3 ? 25 : month == 10 ? 28 : 15;
   return utc_from_civil(
@@ -41,7 +40,7 @@ std::int64_t first_midnight_utc_s(int month) {
          3'600;
 }
 
-/// Level, or what a day's plan says; one a day, at the level of its first decision.
+/// Level, or break-even price of one plan per day, made at the level of the first decision.
 class RecordedContext {
  public:
   explicit RecordedContext(const OutlookModel* model) : model_(model) {}

@@ -1,5 +1,5 @@
-// What one exchange costs: the single place where energy becomes money, for accounting, planning,
-// learning and for settling what the edge did.
+// Exchange cost: the only place where energy becomes money, for accounting, planning, learning and
+// settlement.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace bess {
 
-/// What exchanging `energy_mwh` (grid side, charge positive) costs at this price, trading costs and
-/// wear included. Negative: it earns.
+/// Cost of exchanging `energy_mwh` (grid side, charge positive) at this price, with trading costs
+/// and wear. Negative: revenue.
 inline double exchange_cost_eur(const BatteryParameters& battery, double energy_mwh,
                                 double price_eur_per_mwh) {
   const double paid_eur_per_mwh = energy_mwh > 0
@@ -19,7 +19,7 @@ inline double exchange_cost_eur(const BatteryParameters& battery, double energy_
   return energy_mwh * paid_eur_per_mwh + std::fabs(energy_mwh) * battery.wear_eur_per_mwh;
 }
 
-/// What a step of `hours` earns, with its own consumption bought beside the exchange.
+/// Profit of a step of `hours`, including own consumption.
 inline double step_profit_eur(const BatteryParameters& battery, double energy_mwh, double hours,
                               double price_eur_per_mwh) {
   const double standby_mwh = battery.standby_w / kWattsPerMegawatt * hours;

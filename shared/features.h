@@ -1,9 +1,9 @@
-// From raw measurements to the finite lattice that the student sees [SPEC 6].
-// The same code runs in training, in the proof, in the simulator and on the edge. Pure integers.
+// Feature computation: raw measurements to a lattice point [SPEC 6]. The same integer code runs in
+// training, proof, simulator and edge.
 //
 //   minute of the quarter-hour  T_qh 0..14     quarter-hour of the local day  qh 0..95
 //   context class               mo   1..12     state of charge                0..200  (0.5 %)
-//   indicative price            -500..1500     (1 EUR/MWh, clamped: beyond is the guard's)
+//   indicative price            -500..1500     (1 EUR/MWh, clamped; beyond: guard)
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace bess {
 
-/// One point of the lattice. Invariant: every field inside the range given above.
+/// One point of the lattice. Invariant: every field is in the range above.
 struct LatticeState {
   std::int16_t minute_of_quarter_hour;
   std::int16_t quarter_hour;

@@ -1,4 +1,4 @@
-// A file descriptor that is closed at its end.
+// File descriptor with RAII.
 #pragma once
 
 #include <unistd.h>
@@ -7,7 +7,7 @@ namespace bess {
 
 class FileDescriptor {
  public:
-  /// Takes `fd` over; negative is none.
+  /// Takes ownership of `fd`; negative: none.
   explicit FileDescriptor(int fd) : fd_(fd) {}
   FileDescriptor(const FileDescriptor&) = delete;
   FileDescriptor& operator=(const FileDescriptor&) = delete;

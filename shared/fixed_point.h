@@ -1,6 +1,6 @@
 // Integer arithmetic of the student: the only place that shifts, rounds and saturates.
-// A number x in format Q<f> stands for x / 2^f. Rounding is to nearest, halves towards +infinity;
-// with C++20's arithmetic right shift it is the same on x86-64, aarch64 and armhf.
+// A number x in format Q<f> is x / 2^f. Rounding is to nearest, halves towards +infinity; with the
+// arithmetic right shift of C++20 it is equal on x86-64, aarch64 and armhf.
 #pragma once
 
 #include <cstdint>

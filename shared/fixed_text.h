@@ -1,5 +1,5 @@
-// Text with inline storage for names, hosts and paths of long-lived objects: no heap, always ends
-// in 0.
+// Text with inline storage for names, hosts and paths of long-lived objects: no heap,
+// null-terminated.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A local day as one number, 20231126: it orders, and is looked up by.
+// Local day as one number, 20231126, for ordering and lookup.
 #pragma once
 
 #include "shared/local_time.h"

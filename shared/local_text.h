@@ -1,4 +1,4 @@
-// Instants as a person at the battery reads them: wall clock of the market's zone.
+// Instants as local time of the market's zone, for people.
 #pragma once
 
 #include <cstdint>

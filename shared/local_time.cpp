@@ -46,7 +46,7 @@ std::int64_t utc_from_local(const CivilTime& wall) {
                            .second = 0}) -
            utc_s / 60 * 60;
   };
-  // The offset of the day before holds up to a change of clocks, that of the day after from it on.
+  // The offset of the previous day applies before a clock change, that of the next day after it.
   const std::int64_t before = wall_s - shown_ahead_s(wall_s - kSecondsPerDay);
   if (before + shown_ahead_s(before) == wall_s) return before;
   const std::int64_t after = wall_s - shown_ahead_s(wall_s + kSecondsPerDay);

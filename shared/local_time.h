@@ -1,7 +1,7 @@
-// UTC instants and their local wall-clock minute [SPEC 2]. Everything is stored in UTC seconds;
-// qh, mo and T_qh come from local time, so a day has 92, 96 or 100 quarter-hours.
-// localtime_r of the C library does the work. The zone is set once at start-up as a POSIX rule,
-// which needs no tzdata on the target; afterwards neither function allocates.
+// Conversion of UTC instants to local wall-clock minutes [SPEC 2]. All times are stored in UTC
+// seconds; qh, mo and T_qh are local, so a day has 92, 96 or 100 quarter-hours. Uses localtime_r
+// with a POSIX zone rule, set once at start-up: needs no tzdata on the target, and no allocation
+// afterwards.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct CivilTime {
   int year, month, day, hour, minute, second;
 };
 
-/// The instant at which the wall clock shows this; of an hour that comes twice the first, of one
-/// that is left out what would have been that long after the hour before.
+/// UTC of a local time; of a repeated hour the first, of a skipped hour as continued from the
+/// previous hour.
 std::int64_t utc_from_local(const CivilTime& wall);
 
 /// Seconds since 1970 of a UTC calendar time (proleptic Gregorian); fields must be in range.

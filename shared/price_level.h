@@ -1,9 +1,7 @@
-// The trailing price level [SPEC 8]: an exponentially weighted mean of the prices that decisions
-// were made on, time constant one day. In integers, so that the workstation, the simulator and the
-// edge have the same level to the bit after the same rows, whatever machine they run on.
+// Trailing price level [SPEC 8]: exponentially weighted mean of the prices used for decisions, time
+// constant one day. In integers, so that it is bit-identical on workstation, simulator and edge.
 //
-// Each row counts once, at the first decision that sees it. A gap lets the level rest: an hour
-// without prices, or a year without the program, leaves it where it was.
+// Each row counts once, at the first decision that uses it. Gaps do not change the level.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +12,30 @@
 namespace bess {
 
 struct PriceLevel {
-  /// One decision's weight is one in this many: a day of decisions.
+  /// Weight of a decision is 1 / kDecisions: one day of decisions.
   static constexpr std::int64_t kDecisions = kStepsPerDay;
   static constexpr int kFractionBits = 16;
   static constexpr std::int64_t kQ16PerEur = std::int64_t{kCentiPerEur} << kFractionBits;
   static constexpr std::int32_t kMinCenti = kLatticePriceMinEurPerMwh * kCentiPerEur;
   static constexpr std::int32_t kMaxCenti = kLatticePriceMaxEurPerMwh * kCentiPerEur;
 
-  std::int64_t centi_q16 = 0;  ///< hundredths of EUR/MWh, times 2^16
-  std::int64_t row_minute_utc_s =
-      0;  ///< of the newest row that counted; 0: none, the level is not known
+  std::int64_t centi_q16 = 0;         ///< hundredths of EUR/MWh, times 2^16
+  std::int64_t row_minute_utc_s = 0;  ///< of the newest row used; 0: none, the level is unknown
 
-  /// As if every price so far had been this one; whatever row comes next counts.
+  /// Level as if all earlier prices had this value.
   static constexpr PriceLevel starting_at(std::int32_t centi_eur_per_mwh) {
     return {.centi_q16 = to_q16(centi_eur_per_mwh), .row_minute_utc_s = 1};
   }
 
   [[nodiscard]] constexpr bool is_known() const { return row_minute_utc_s != 0; }
-  /// False of what no prices lead to: read from a damaged or foreign place.
+  /// False for values that no prices lead to, from damaged storage.
   [[nodiscard]] constexpr bool is_sound() const {
     return centi_q16 >= to_q16(kMinCenti) && centi_q16 <= to_q16(kMaxCenti) &&
            row_minute_utc_s >= 0;
   }
 
-  /// The newest row that a decision saw. The first one sets the level. Prices count as the student
-  /// sees them, clamped to the lattice: one spike must not move a day.
+  /// Adds the newest row of a decision. The first one sets the level. Prices are clamped to the
+  /// lattice, so that one spike does not dominate a day.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t price_centi_eur_per_mwh) {
     if (minute_utc_s <= row_minute_utc_s) return;
     const std::int64_t price_q16 = to_q16(price_centi_eur_per_mwh);

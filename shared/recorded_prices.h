@@ -1,7 +1,7 @@
-// Prices of two recorded days, for the signature of the decisions: the dearest and the cheapest of
-// the yardstick in May 2023. Every second minute, what the controller sees at a tick: the
-// indicative price of the minute before it. From tests/data/benchmark_minutes_2023.csv.gz (Elia,
-// opendata.elia.be, CC BY 4.0; minutes rebuilt on settled quarter-hours, see tests/data/README.md).
+// Prices of two recorded days, for the decision signature: the most expensive and the cheapest day
+// of the benchmark in May 2023. Values at ticks, every second minute: indicative price of the
+// previous minute. From tests/data/benchmark_minutes_2023.csv.gz (Elia, opendata.elia.be, CC BY
+// 4.0; minutes rebuilt on settled quarter-hours, see tests/data/README.md).
 #pragma once
 
 #include <cstdint>

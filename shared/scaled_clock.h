@@ -1,6 +1,6 @@
-// UTC that may run faster than the wall: the same clock for edge, battery and market simulators, so
-// that a day passes in two minutes. All processes of one machine agree because they share
-// CLOCK_MONOTONIC. scale = 1 and a zero anchor mean: real time, straight from CLOCK_REALTIME.
+// Scaled UTC clock, common to edge, battery and market simulators, so that a day takes two minutes.
+// All processes of one machine agree because they share CLOCK_MONOTONIC. scale = 1 and a zero
+// anchor: real time from CLOCK_REALTIME.
 #pragma once
 
 #include <time.h>
@@ -30,7 +30,7 @@ struct ScaledClock {
     return anchor_utc_s * kNanosecondsPerSecond +
            (clock_ns(CLOCK_MONOTONIC) - anchor_monotonic_ns) * scale;
   }
-  /// Of whoever starts now: not before the anchor, at which simulated time begins.
+  /// Start time of a process: not before the anchor, the begin of simulated time.
   [[nodiscard]] std::int64_t start_utc_ns() const {
     const std::int64_t anchor_utc_ns = anchor_utc_s * kNanosecondsPerSecond;
     const std::int64_t now_ns = now_utc_ns();
@@ -41,15 +41,14 @@ struct ScaledClock {
     if (is_real_time()) return clock_ns(CLOCK_MONOTONIC) + utc_ns - clock_ns(CLOCK_REALTIME);
     return anchor_monotonic_ns + (utc_ns - anchor_utc_s * kNanosecondsPerSecond) / scale;
   }
-  /// Wall nanoseconds that a simulated duration takes.
+  /// Wall time of a simulated duration, ns.
   [[nodiscard]] std::int64_t wall_ns(std::int64_t simulated_ns) const {
     return simulated_ns / scale;
   }
 };
 
-/// Sleeps until a CLOCK_MONOTONIC instant; returns at once when it has passed. Survives signals
-/// only as far as `clock_nanosleep` does: true when the instant was reached, false when
-/// interrupted.
+/// Sleeps until a CLOCK_MONOTONIC instant; returns immediately if it has passed. True when the
+/// instant was reached, false when interrupted by a signal.
 inline bool sleep_until_monotonic(std::int64_t monotonic_ns) {
   timespec t{.tv_sec = static_cast<time_t>(monotonic_ns / kNanosecondsPerSecond),
              .tv_nsec = static_cast<long>(monotonic_ns % kNanosecondsPerSecond)};

@@ -1,5 +1,4 @@
-// One number that stands for a series of integers: FNV-1a, 64 bits. Equal series have equal
-// signatures on every machine; two that differ by accident practically never do.
+// Signature of a series of integers: FNV-1a, 64 bits, equal on every machine.
 #pragma once
 
 #include <cstdint>

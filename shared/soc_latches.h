@@ -1,5 +1,4 @@
-// The SoC's bounds as the guard keeps them: a direction that one of them has closed opens again
-// only some way back inside, or orders would flicker there.
+// SoC bounds of the guard with hysteresis, which prevents alternating orders at a bound.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Physical constants and limits of the whole chain in one place, with asserts on how they relate.
-// Nothing here depends on a battery or a market: those are configuration (battery_model.h).
+// Physical constants and limits of the whole chain, with asserts on their relations. Battery and
+// market are configuration (battery_model.h).
 // Sign convention everywhere: power and energy are positive when the battery CHARGES, grid side.
 #pragma once
 
@@ -18,7 +18,7 @@ inline constexpr int kStepsPerDay = kMinutesPerDay / kMinutesPerStep;
 inline constexpr double kHoursPerStep = kMinutesPerStep / 60.0;
 static_assert(kStepsPerDay == 720);
 
-// --- The lattice of everything the student can see [SPEC 6] ------------------------------------
+// --- Lattice of all inputs of the student [SPEC 6] ---------------------------------------------
 inline constexpr int kMinuteOfQuarterHourCount = kMinutesPerQuarterHour;           ///< T_qh 0..14
 inline constexpr int kQuarterHourCount = kMinutesPerDay / kMinutesPerQuarterHour;  ///< qh 0..95
 inline constexpr int kContextClassCount = 12;                                      ///< mo 1..12
@@ -34,17 +34,17 @@ static_assert(kPriceCount == 2001 && kLatticeStateCount == 6'950'033'280);
 
 inline constexpr double kWattsPerMegawatt = 1e6;  ///< prices are per MWh, powers are in W
 
-// --- Prices as the edge counts them: integer hundredths of EUR/MWh [SPEC 7] --------------------
+// --- Prices on the edge: integer hundredths of EUR/MWh [SPEC 7] --------------------------------
 inline constexpr std::int32_t kCentiPerEur = 100;
 /// Prices outside +-100,000 EUR/MWh are refused as implausible: no bid of a European balancing
 /// market may pass +-99,999, and one of them settled at 25,907.54 in January 2026.
 inline constexpr std::int32_t kPlausiblePriceMaxEurPerMwh = 100'000;
 inline constexpr std::int32_t kPlausiblePriceMaxCentiEurPerMwh =
     kPlausiblePriceMaxEurPerMwh * kCentiPerEur;
-/// Beyond +-15,000 a price is told.
+/// Prices outside +-15,000 EUR/MWh are reported.
 inline constexpr std::int32_t kUnusualPriceMaxEurPerMwh = 15'000;
 
-// --- SoC as the edge counts it: integer hundredths of a percent --------------------------------
+// --- SoC on the edge: integer hundredths of a percent ------------------------------------------
 inline constexpr std::int32_t kSocFullE4 = 10'000;  ///< 100 %
 inline constexpr std::int32_t kSocE4PerLatticeStep = kSocFullE4 / (kSocCount - 1);
 static_assert(kSocE4PerLatticeStep * (kSocCount - 1) == kSocFullE4);

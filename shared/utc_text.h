@@ -1,4 +1,4 @@
-// ISO 8601 instants as text, both ways, without heap or locale.
+// ISO 8601 instants: formatting and parsing, without heap or locale.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ constexpr int days_in_month(int year, int month) {
   return month == 2 && leap ? 29 : kDays[month - 1];
 }
 
-/// "2026-11-23", a day that there is.
+/// "2026-11-23", a valid date.
 constexpr bool take_date(std::string_view& text, CivilTime& t) {
   t.year = take_digits(text, 4);
   if (!take(text, '-')) return false;
@@ -84,11 +84,11 @@ constexpr bool take_offset(std::string_view& text, int& offset_s) {
 
 }  // namespace detail
 
-/// What stands between day and time: T in what is written here, also a blank in what others write.
+/// Separator of date and time: T, or a blank in input of other programs.
 inline constexpr std::string_view kAlsoBlank = "T ";
 
-/// Reads YYYY-MM-DDTHH:MM[:SS[.digits]] followed by Z or an offset; false when anything is amiss.
-/// A time without an offset is refused: it would be ambiguous twice a year.
+/// Reads YYYY-MM-DDTHH:MM[:SS[.digits]] followed by Z or an offset; false if invalid. A time
+/// without an offset is refused as ambiguous.
 inline bool parse_utc(std::string_view text, std::int64_t& utc_s,
                       std::string_view separators = "T") {
   using namespace detail;

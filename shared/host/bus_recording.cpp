@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLineBytesMax = 4'096;
 
-/// A whole number in its range; false when the member is something else, or not there.
+/// Whole number in a range; false if the member is missing or something else.
 bool take_whole(JsonValue object, const char* key, std::int64_t min, std::int64_t max,
                 std::int64_t& value) {
   const double number = object[key].number().value_or(0.5);
@@ -23,7 +23,7 @@ bool take_whole(JsonValue object, const char* key, std::int64_t min, std::int64_
   return true;
 }
 
-/// "2026-11-22T06:00:01.204511Z"; the digits behind the point may be fewer.
+/// "2026-11-22T06:00:01.204511Z"; with up to nine decimals.
 bool parse_utc_ns(std::string_view text, std::int64_t& utc_ns) {
   std::int64_t utc_s = 0;
   if (!parse_utc(text, utc_s)) return false;
@@ -37,7 +37,7 @@ bool parse_utc_ns(std::string_view text, std::int64_t& utc_ns) {
   return true;
 }
 
-/// What a line says of its outcome; false when it says nothing that is known.
+/// Outcome of a line; false if unknown.
 bool take_outcome(JsonValue object, BusExchange& exchange) {
   std::int64_t code = 0;
   exchange.exception = 0;
@@ -58,7 +58,7 @@ bool take_outcome(JsonValue object, BusExchange& exchange) {
   return false;
 }
 
-/// As many numbers of 16 bits as `count` says.
+/// `count` numbers of 16 bits.
 bool take_values(JsonValue list, BusExchange& exchange) {
   if (exchange.values().empty()) return !list.exists();
   if (!list.is_list() || list.size() != exchange.count) return false;
@@ -71,14 +71,14 @@ bool take_values(JsonValue list, BusExchange& exchange) {
   return true;
 }
 
-/// What is wrong with a line, "" when nothing is.
+/// Error of a line; "": none.
 std::string_view parse_exchange(JsonValue object, BusExchange& exchange) {
   std::int64_t unit = 0;
   std::int64_t function = 0;
   std::int64_t address = 0;
   std::int64_t count = 0;
-  if (!object.is_object()) return "this is no line of a recording";
-  if (!parse_utc_ns(object["utc"].text_or(""), exchange.utc_ns)) return "\"utc\" is no instant";
+  if (!object.is_object()) return "not a line of a recording";
+  if (!parse_utc_ns(object["utc"].text_or(""), exchange.utc_ns)) return "\"utc\" is not a UTC time";
   if (!take_whole(object, "unit", 0, 255, unit)) return "\"unit\" must be 0 to 255";
   if (!take_whole(object, "function", 3, 16, function) ||
       (function != 3 && function != 4 && function != 6 && function != 16)) {
@@ -95,9 +95,9 @@ std::string_view parse_exchange(JsonValue object, BusExchange& exchange) {
   exchange.function = static_cast<std::uint8_t>(function);
   exchange.address = static_cast<std::uint16_t>(address);
   exchange.count = static_cast<std::uint16_t>(count);
-  if (!take_outcome(object, exchange)) return "\"exception\" or \"error\" is none that is known";
+  if (!take_outcome(object, exchange)) return "unknown \"exception\" or \"error\"";
   if (!take_values(object["values"], exchange)) {
-    return "\"values\" are not as many numbers from 0 to 65535 as \"count\" says";
+    return "\"values\" must be \"count\" numbers from 0 to 65535";
   }
   return "";
 }
@@ -157,8 +157,8 @@ bool BusRecordingReader::open(const std::string& path, CutRecording cut, std::st
   std::string line;
   const bool is_whole = take_line(line) && !is_torn_;
   if (is_whole && parse_head(Json::parse(line).value(), head_)) return true;
-  error = path + ":1: this is no recording of bess-edge (version " +
-          std::to_string(kRecordingVersion) + "): make one with bess-edge record";
+  error = path + ":1: not a recording of bess-edge (version " + std::to_string(kRecordingVersion) +
+          "): make one with bess-edge record";
   return false;
 }
 
@@ -174,7 +174,7 @@ BusRecordingReader::Next BusRecordingReader::next(BusExchange& exchange, std::st
   return Next::kExchange;
 }
 
-/// False at the end of the file, which a line that is too long is as good as.
+/// False at the end of the file. A line that is too long ends there.
 bool BusRecordingReader::take_line(std::string& line) {
   char c = '\0';
   ++line_number_;
@@ -182,7 +182,7 @@ bool BusRecordingReader::take_line(std::string& line) {
   while (file_.get(c)) {
     if (c == '\n') return true;
     line.push_back(c);
-    if (line.size() > kLineBytesMax) return true;  // then it is no JSON either
+    if (line.size() > kLineBytesMax) return true;  // not JSON then
   }
   is_torn_ = !line.empty();
   return is_torn_;
@@ -191,7 +191,7 @@ bool BusRecordingReader::take_line(std::string& line) {
 BusRecordingReader::Next BusRecordingReader::refuse(const std::string& what,
                                                     std::string& error) const {
   error = path_ + ":" + std::to_string(line_number_) + ": " + what +
-          ": the recording is damaged; take it again, or copy it again";
+          ": the recording is damaged; record or copy it again";
   return Next::kDamaged;
 }
 
@@ -201,8 +201,8 @@ BusRecordingReader::Next BusRecordingReader::end_of_file(std::string& error) {
     return Next::kEnd;
   }
   error = path_ + ":" + std::to_string(line_number_) +
-          ": the recording was cut here, its last line is missing; --accept-cut takes the " +
-          std::to_string(exchanges_) + " exchanges before it";
+          ": the recording ends here, without its last line; --accept-cut accepts the " +
+          std::to_string(exchanges_) + " exchanges before this line";
   return Next::kDamaged;
 }
 
@@ -211,15 +211,15 @@ BusRecordingReader::Next BusRecordingReader::end_line(const JsonValue& object, s
   constexpr std::int64_t kMost = std::int64_t{1} << 50;
   if (!take_whole(object, "exchanges", 0, kMost, counted) ||
       !take_whole(object, "dropped", 0, kMost, dropped_)) {
-    return refuse("the last line does not count the exchanges", error);
+    return refuse("the last line has no number of exchanges", error);
   }
   if (counted != exchanges_) {
-    return refuse("the last line counts " + std::to_string(counted) + " exchanges, before it are " +
+    return refuse("the last line states " + std::to_string(counted) + " exchanges, found " +
                       std::to_string(exchanges_),
                   error);
   }
   std::string rest;
-  if (take_line(rest)) return refuse("something follows the last line", error);
+  if (take_line(rest)) return refuse("data after the last line", error);
   return Next::kEnd;
 }
 

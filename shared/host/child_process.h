@@ -1,5 +1,4 @@
-// A program that is run by another one: started with arguments, its output read line by line,
-// stopped by signal.
+// Child process: started with arguments, output read by lines, stopped by signal.
 #pragma once
 
 #include <fcntl.h>
@@ -16,7 +15,7 @@ namespace bess {
 
 class ChildProcess {
  public:
-  /// Standard output and error arrive together.
+  /// Standard output and error are merged.
   explicit ChildProcess(std::vector<std::string> arguments) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return;
@@ -40,7 +39,7 @@ class ChildProcess {
     if (output_ != nullptr) fclose(output_);
   }
 
-  /// Next line of output without its end; empty at the end of the output.
+  /// Next line of output without line end; empty at the end.
   std::string read_line() {
     std::string line;
     for (int c = fgetc(output_); c != EOF && c != '\n'; c = fgetc(output_)) {
@@ -54,7 +53,7 @@ class ChildProcess {
     return text;
   }
   [[nodiscard]] pid_t pid() const { return pid_; }
-  /// Waits until it has a handler for this signal; false when a minute passes before.
+  /// Waits until it has a handler for this signal; false after one minute.
   [[nodiscard]] bool catches(int number) const {
     for (int ms = 0; ms < 60'000; ++ms) {
       std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
@@ -66,9 +65,9 @@ class ChildProcess {
     }
     return false;
   }
-  /// False when there is nobody to take it any more: pid -1 would be every process of this user.
+  /// False if the process has ended: pid -1 would mean all processes of this user.
   bool signal(int number) const { return pid_ > 0 && kill(pid_, number) == 0; }
-  /// Without waiting.
+  /// Does not wait.
   [[nodiscard]] bool has_ended() const {
     siginfo_t info{};
     return pid_ <= 0 ||

@@ -20,8 +20,7 @@ namespace bess {
 namespace {
 
 void complain_of_output(const char* program, int error) {
-  std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program,
-               std::strerror(error));
+  std::fprintf(stderr, "%s: cannot write to standard output: %s\n", program, std::strerror(error));
 }
 
 std::vector<std::string> subcommand_names(const CLI::App& app) {
@@ -40,38 +39,38 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// The words that lead to a command: "bess-train prices fetch".
+/// Full name of a command: "bess-train prices fetch".
 std::string words_of(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   return (parent == nullptr ? "" : words_of(*parent) + " ") + command.get_name();
 }
 
-/// The command that was asked for: root, or as deep as subcommands were given.
+/// Selected command: the root, or the innermost subcommand given.
 const CLI::App& asked_command(const CLI::App& root) {
   const CLI::App* command = &root;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   return *command;
 }
 
-/// What CLI11 says of values, as the rest of the program would.
+/// Error messages of CLI11 about values, in the style of this program.
 std::string in_our_words(const std::string& what) {
   constexpr std::string_view kNoNumber = "Could not convert: ";
   constexpr std::string_view kTwice = ": At Most 1 required but received ";
   if (what.starts_with(kNoNumber)) {  // "Could not convert: --seed = 1.5"
     const std::string rest = what.substr(kNoNumber.size());
     const std::size_t equals = rest.find(" = ");
-    if (equals == rest.npos) return rest + " is no number of the kind that is meant";
+    if (equals == rest.npos) return rest + " is not a valid number";
     return rest.substr(0, equals) + ": " + rest.substr(equals + 3) +
-           " is no number of the kind that is meant, e.g. not a whole one";
+           " is not a valid number of this kind (e.g. not a whole number)";
   }
   const std::size_t twice = what.find(kTwice);
   if (twice == what.npos) return what;
   return what.substr(0, twice) + ": given " + what.substr(twice + kTwice.size()) +
-         " times; give it once (a list with commas, where it takes one)";
+         " times; give it once (lists with commas)";
 }
 
-/// What is wrong with the command line. A word that no command takes comes first: it may be the
-/// typing error for which CLI11 calls another option or a subcommand missing.
+/// Error of a command line. Unknown words come first: they may be the typing error for which CLI11
+/// reports a missing option or subcommand.
 std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
   const CLI::App& command = asked_command(root);
   const std::vector<std::string> left = root.remaining(true);
@@ -88,19 +87,19 @@ std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
     const std::string name = option->substr(0, option->find('='));
     return "unknown option " + *option + did_you_mean(name, option_names(command));
   }
-  if (!left.empty()) return "\"" + left.front() + "\" is one word too many";
+  if (!left.empty()) return "\"" + left.front() + "\" is an unexpected argument";
   return in_our_words(error.what());
 }
 
-/// Whoever gives a command nothing wants to know what it takes.
+/// A command without arguments prints its help.
 bool is_bare(const CLI::App& command, int argc) {
   int words = 0;
   for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) ++words;
   return argc == words;
 }
 
-/// A rule for numbers in words; what is no number at all is CLI11's to refuse. (Its own
-/// PositiveNumber prints the largest double with all its 309 digits.)
+/// Rule for numbers; CLI11 refuses other text. (Its PositiveNumber prints the largest double with
+/// 309 digits.)
 std::function<std::string(std::string&)> number_rule(std::function<bool(double)> holds,
                                                      const std::string& rule) {
   return [holds = std::move(holds), rule](const std::string& given) {
@@ -110,7 +109,7 @@ std::function<std::string(std::string&)> number_rule(std::function<bool(double)>
   };
 }
 
-/// Without the digits that std::to_string() would add.
+/// Shorter than std::to_string().
 std::string short_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
@@ -183,30 +182,29 @@ void ProgramCommand::requires_subcommand() { app_->require_subcommand(1); }
 
 namespace {
 
-/// An empty value is what "$UNSET" leaves behind; CLI11 takes it for 0, or for an option not given.
+/// An empty value comes from "$UNSET"; CLI11 reads it as 0, or as a missing option.
 std::string refuse_empty(const std::string& given) {
-  return given.empty() ? "needs a value, not an empty text" : "";
+  return given.empty() ? "needs a value, not empty text" : "";
 }
 
-/// In lines that fit a terminal beside the names; CLI11 indents them.
+/// Lines that fit a terminal next to the names; CLI11 indents them.
 std::string wrapped(std::string help) {
   constexpr std::size_t kWidth = 70;
   for (std::size_t line = 0; line + kWidth < help.size();) {
     const std::size_t end = help.find_last_of(" \n", line + kWidth);
-    if (end == help.npos || end < line) break;  // a word as long as that
+    if (end == help.npos || end < line) break;  // a longer word
     help[end] = '\n';
     line = end + 1;
   }
   return help;
 }
 
-/// CLI11 takes what is too large for the largest number that there is.
+/// CLI11 reads too large numbers as the largest one.
 template <typename Number>
 std::string refuse_overflow(const std::string& given) {
   Number number = 0;
   const auto read = std::from_chars(given.data(), given.data() + given.size(), number);
-  return read.ec == std::errc::result_out_of_range ? one_line(given, 30) + " is too large a number"
-                                                   : "";
+  return read.ec == std::errc::result_out_of_range ? one_line(given, 30) + " is too large" : "";
 }
 
 template <typename T>
@@ -281,13 +279,13 @@ void ProgramCommand::footer(const std::string& text) { app_->footer(text); }
 
 namespace {
 
-/// Options of the root that are none of the subcommand's would be ignored.
+/// Refuses options of the root that the subcommand would ignore.
 void refuse_options_of_root(const CLI::App& root, const CLI::App& subcommand) {
   const std::vector<std::string> known = option_names(subcommand);
   for (const CLI::Option* option : root.get_options()) {
     const std::string name = option->get_name();
     if (option->count() == 0 || std::ranges::find(known, name) != known.end()) continue;
-    throw CLI::ParseError(name + " does not go with " + subcommand.get_name(), 2);
+    throw CLI::ParseError(name + " cannot be used with " + subcommand.get_name(), 2);
   }
 }
 
@@ -327,7 +325,7 @@ CommandLine::~CommandLine() = default;
 
 namespace {
 
-/// Of ASCII, or of the second such range of Unicode, as UTF-8.
+/// Control characters of ASCII and C1 (as UTF-8).
 bool holds_control(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -346,13 +344,13 @@ int CommandLine::run(int argc, const char* const* argv) {
                  words_of(command).c_str());
     return 2;
   };
-  // In a message about it a file's name would be two lines, or colours and worse on a terminal.
+  // Control characters in a file name would corrupt messages on a terminal.
   for (int i = 1; i < argc; ++i) {
     if (!holds_control(argv[i])) continue;
     return refuse(
         *app_,
         std::string("\"") + argv[i] +
-            "\" holds a line end or another control character: leave it out, or rename the file");
+            "\" contains a line end or another control character: remove it, or rename the file");
   }
   try {
     app_->parse(argc, argv);
@@ -360,7 +358,7 @@ int CommandLine::run(int argc, const char* const* argv) {
       complain_of_output(program, errno);
       return 1;
     }
-  } catch (const CLI::RuntimeError& error) {  // of an action, which has said why
+  } catch (const CLI::RuntimeError& error) {  // of an action, which printed the reason
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
@@ -370,11 +368,11 @@ int CommandLine::run(int argc, const char* const* argv) {
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted\n", program);
     return 3;
-  } catch (const std::filesystem::filesystem_error& error) {  // a loop of links, a name too long
+  } catch (const std::filesystem::filesystem_error& error) {  // link loop, name too long
     std::fprintf(stderr, "%s: %s: %s\n", program, one_line(error.path1().string(), 300).c_str(),
                  errno_text(error.code().value()).c_str());
     return 1;
-  } catch (const std::system_error& error) {  // {fmt}, when a long output meets a full disk
+  } catch (const std::system_error& error) {  // {fmt} on a full disk
     if (std::ferror(stdout) == 0) {
       std::fprintf(stderr, "%s: %s\n", program, error.what());
     } else {

@@ -1,7 +1,6 @@
-// The command line of a program, with or without subcommands: options into variables, help, errors,
-// exit codes. CLI11 does the work; only command_line.cpp includes it, because its header takes a
-// compiler longer than all else in a command. Declare in this order: program, subcommands, their
-// options; then run().
+// Command line of a program, with or without subcommands: options into variables, help, errors,
+// exit codes, with CLI11. Only command_line.cpp includes CLI11, because it is slow to compile.
+// Declare in this order: program, subcommands, their options; then run().
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
 #pragma once
 
@@ -18,16 +17,16 @@ class Option;
 
 namespace bess {
 
-/// Thrown when Ctrl-C stopped a command after it saved what it had.
+/// Thrown after Ctrl-C, when the command has saved its state.
 struct Interrupted {};
 
-/// One option or positional argument while it is declared. Rules add up; a value that breaks one
-/// ends the program with one line and exit code 2.
+/// Option or positional argument during declaration. Rules accumulate; a violation ends the program
+/// with one line and exit code 2.
 class ProgramOption {
  public:
   explicit ProgramOption(CLI::Option* option) : option_(option) {}
   ProgramOption& required();
-  /// Shows the variable's present value in the help.
+  /// Shows the present value of the variable in the help.
   ProgramOption& with_default();
   ProgramOption& range(int low, int high);
   ProgramOption& range(double low, double high);
@@ -35,11 +34,11 @@ class ProgramOption {
   ProgramOption& non_negative();
   ProgramOption& one_of(const std::vector<std::string>& names);
   ProgramOption& ipv4();
-  /// `complaint` returns what is wrong with a value, or nothing.
+  /// `complaint` returns an error or "".
   ProgramOption& check(const std::function<std::string(const std::string&)>& complaint);
-  /// What stands for the value in the help.
+  /// Placeholder of the value in the help.
   ProgramOption& value_name(const std::string& name);
-  /// `other` names an option that is declared already.
+  /// `other`: an option declared before.
   ProgramOption& excludes(const std::string& other);
   ProgramOption& needs(const std::string& other);
 
@@ -47,26 +46,24 @@ class ProgramOption {
   CLI::Option* option_;
 };
 
-/// A command or subcommand while it is declared.
+/// Command or subcommand during declaration.
 class ProgramCommand {
  public:
   explicit ProgramCommand(CLI::App* app) : app_(app) {}
   /// Heading in the help for subcommands declared before.
   void group(const std::string& heading, const std::vector<std::string>& names);
   ProgramCommand subcommand(const std::string& name, const std::string& description);
-  /// One of the subcommands must be given.
+  /// Requires one of the subcommands.
   void requires_subcommand();
-  /// A name without dashes is a positional argument. Text, whole and decimal numbers, each also
-  /// std::optional (stays empty unless given), and lists of text. An empty value, and a number too
-  /// large to hold, are refused.
+  /// A name without dashes is a positional argument. Types: text, whole and decimal numbers, each
+  /// also std::optional, and lists of text. Refuses empty values and numbers that are too large.
   template <typename T>
   ProgramOption option(const std::string& name, T& value, const std::string& help);
   ProgramOption flag(const std::string& name, bool& value, const std::string& help);
-  /// A value with a syntax of its own: `take` stores it and returns what is wrong with it, or
-  /// nothing.
+  /// Value with its own syntax: `take` stores it and returns an error or "".
   ProgramOption parsed(const std::string& name, std::function<std::string(const std::string&)> take,
                        const std::string& help);
-  /// A name for each value; upper and lower case are one.
+  /// Value by name, case-insensitive.
   template <typename T>
   ProgramOption choice(const std::string& name, T& value,
                        const std::vector<std::pair<std::string, T>>& choices,
@@ -76,13 +73,12 @@ class ProgramCommand {
     return named_choice(name, names, help,
                         [choices, &value](std::size_t i) { value = choices[i].second; });
   }
-  /// Text behind the options: examples.
+  /// Text after the options: examples.
   void footer(const std::string& text);
-  /// What the command does, once everything is parsed. `complaint` returns what is wrong with
-  /// options that are right each by itself, or nothing; the command is then not run. A program
-  /// whose root runs needs no subcommand.
+  /// Action of the command, after parsing. `complaint` returns a contradiction between options or
+  /// ""; with one the action is not run. A program whose root runs needs no subcommand.
   void runs(std::function<void()> action, std::function<std::string()> complaint = nullptr);
-  /// The same, of an action that returns the program's exit code.
+  /// The same for an action that returns the exit code.
   void exits_with(std::function<int()> action);
 
  private:
@@ -100,11 +96,10 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   [[nodiscard]] ProgramCommand root() { return ProgramCommand(app_.get()); }
-  /// Parses, runs the command's action, and turns every error into one line on stderr, which names
-  /// the nearest known word and the help of the command that was asked for; a command that is given
-  /// nothing shows that help as well. Returns the exit code.
+  /// Parses and runs the action. Each error becomes one line on stderr with the nearest known word
+  /// and the help command; a command without arguments also prints its help. Returns the exit code.
   int run(int argc, const char* const* argv);
-  /// Parses one line and runs its action; errors are thrown. For tests.
+  /// Parses one line and runs its action; throws errors. For tests.
   void parse(const std::string& line);
 
  private:

@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-/// Where the quote that opens `field` is closed; npos when it is not.
+/// Closing quote of `field`; npos: none.
 std::size_t closing_quote(std::string_view field) {
   std::size_t at = field.find('"', 1);
   while (at != field.npos && field.substr(at + 1).starts_with('"')) at = field.find('"', at + 2);
@@ -85,7 +85,7 @@ CsvTable::CsvTable(std::string_view text, std::string name, std::string_view hea
       rows_.push_back({line_number, std::move(fields)});
     }
   }
-  if (rows_.empty()) fail("{}: holds no rows", name_);
+  if (rows_.empty()) fail("{}: has no rows", name_);
 }
 
 CsvTable CsvTable::read(const std::string& path) { return {read_file(path), path}; }

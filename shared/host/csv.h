@@ -1,4 +1,4 @@
-// Comma-separated values: a field out and in, and a small table with named columns.
+// Comma-separated values: fields, and a small table with named columns.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,18 @@
 
 namespace bess {
 
-/// A field as it is written: quoted where it must be.
+/// Field for output, quoted if necessary.
 std::string csv_field(std::string_view text);
 
-/// The line that names the columns: the first that is neither empty nor a comment. A view into
-/// `text`.
+/// Header line: the first that is neither empty nor a comment. A view into `text`.
 std::string_view csv_header(std::string_view text);
 
-/// The fields of one line, without copying them. Quotes keep a separator inside.
+/// Fields of one line, without copies. Separators in quotes are part of the field.
 class CsvFields {
  public:
   explicit CsvFields(std::string_view line, char separator = ',')
       : rest_(line), separator_(separator) {}
-  /// The next field, its quotes taken off; doubled ones inside stay doubled. False at the end.
+  /// Next field without its quotes; doubled quotes inside remain. False at the end.
   bool take(std::string_view& field);
 
  private:
@@ -29,21 +28,21 @@ class CsvFields {
   bool more_ = true;
 };
 
-/// A text with one header line, read whole. Empty lines and # comments are passed over.
+/// Text with one header line. Skips empty lines and # comments.
 class CsvTable {
  public:
-  /// Throws UserError naming file and line when the header is another than `header`, if that is
-  /// given, when a row has another number of fields than it, or when there is no row.
+  /// Throws UserError naming file and line if the header differs from a given `header`, a row has
+  /// another number of fields, or there are no rows.
   CsvTable(std::string_view text, std::string name, std::string_view header = {});
   static CsvTable read(const std::string& path);
 
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
-  /// Index of a column; throws UserError when the file has none of that name.
+  /// Index of a column; throws UserError if missing.
   [[nodiscard]] std::size_t column(std::string_view name) const;
   [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const {
     return rows_[row].fields[column];
   }
-  /// Of a row in the text, counted from 1: for a message about it.
+  /// Line number of a row, from 1, for messages.
   [[nodiscard]] std::size_t line(std::size_t row) const { return rows_[row].line; }
   /// Field as a number, or as a UTC instant in seconds; throws UserError naming file and line.
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;

@@ -7,9 +7,9 @@ namespace bess {
 namespace {
 
 constexpr double kSecondsPerHour = 3'600;
-/// An order is written within this; a later one is of a price that came late.
+/// Time limit for a normal write of an order; later with a late price.
 constexpr double kWrittenWithinS = 60;
-/// So long a gap, the same power at both of its ends and an order of that power: it flowed.
+/// Gaps up to this time with equal power at both ends and an order of that power: constant power.
 constexpr std::int64_t kShortGapS = 600;
 
 bool is_close(double power_w, double other_w) {
@@ -19,7 +19,7 @@ bool is_close(double power_w, double other_w) {
 
 using Visit = std::function<void(const Exchange&)>;
 
-/// Power between two samples, one stretch behind the other.
+/// Consecutive stretches of constant power between two samples.
 class Stretches {
  public:
   Stretches(const ExchangeSample& from, const ExchangeSample& until, const Visit& visit)
@@ -31,9 +31,9 @@ class Stretches {
 
   [[nodiscard]] double energy_wh() const { return energy_wh_; }
 
-  /// For all that is left.
+  /// For the remaining time.
   void flow(double power_w) { flow(power_w, left_s()); }
-  /// For `seconds` of what is left, at most.
+  /// For `seconds`, at most the remaining time.
   void flow(double power_w, double seconds, bool is_seen = true) {
     const double until_s = std::min(at_s_ + seconds, end_s_);
     energy_wh_ += power_w * std::max(until_s - at_s_, 0.0) / kSecondsPerHour;
@@ -56,7 +56,7 @@ class Stretches {
   const Visit& visit_;
 };
 
-/// From sample to sample, with a count of the charge that is finer than what the battery shows.
+/// Walk over samples, with a finer charge count than the display of the battery.
 class Walk {
  public:
   Walk(const ChargeScale& scale, const ExchangeSample& first, const Visit& visit)
@@ -95,18 +95,18 @@ class Walk {
     const bool follows = is_close(until.power_w, ordered_w(from));
     if (is_gap(from, until))
       return follows && from.is_ordered && until.utc_s - from.utc_s <= kShortGapS;
-    // A battery that gives less than ordered all along.
+    // A battery with constantly less power than ordered.
     const bool stands =
         from.is_ordered && from.order_w == order_before_w_ && is_close(until.power_w, from.power_w);
     return follows || stands;
   }
 
-  /// Since the older sample, less what has been told; empty or full it is known to the last Wh.
+  /// Energy since the older sample from the SoC, minus energy already counted.
   [[nodiscard]] double by_soc_wh(const ExchangeSample& until, const Stretches& told) const {
     return scale_.energy_wh(until.soc_e4 - soc_e4_, until.capacity_wh) - told.energy_wh();
   }
 
-  /// The ordered power first, and then that which was found; when it changed says the SoC.
+  /// Ordered power first, then measured power; the SoC gives the time of the change.
   void tell_change(const ExchangeSample& from, const ExchangeSample& until,
                    Stretches& stretches) const {
     const double left_h = stretches.left_s() / kSecondsPerHour;
@@ -124,7 +124,7 @@ class Walk {
     stretches.flow(until.power_w);
   }
 
-  /// The order in force goes on until its battery ends it; where there was none, evenly.
+  /// The order in force continues until the energy is reached; without an order constant power.
   void tell_gap(const ExchangeSample& from, const ExchangeSample& until,
                 Stretches& stretches) const {
     constexpr bool kIsSeen = false;
@@ -142,7 +142,7 @@ class Walk {
 
   void anchor(const ExchangeSample& sample) { soc_e4_ = sample.soc_e4; }
 
-  /// Within what the battery shows.
+  /// Limited to the resolution of the display.
   void count(double energy_wh, const ExchangeSample& until) {
     if (until.capacity_wh <= 0) return;
     soc_e4_ =
@@ -156,12 +156,12 @@ class Walk {
   double order_before_w_;
 };
 
-/// Energy by power, and charge that it moved, over stretches of one order.
+/// Energy from power, and change of charge, over stretches of one order.
 struct Seen {
   double energy_wh = 0;
   double charge_wh = 0;
 
-  /// Charge by energy; false until more than half of the battery has been seen to move.
+  /// False until the change of charge exceeds half of the capacity.
   [[nodiscard]] bool tells(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
 };
 
@@ -173,8 +173,8 @@ void walk_along(std::span<const ExchangeSample> samples, const ChargeScale& scal
   for (std::size_t i = 1; i < samples.size(); ++i) walk.go(samples[i - 1], samples[i]);
 }
 
-/// The one efficiency e of both directions by which all that flowed explains the charge at both
-/// ends: in * e - out / e = stored.
+/// Common efficiency e of both directions that matches the charge at both ends:
+/// in * e - out / e = stored.
 ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples) {
   double in_wh = 0, out_wh = 0;
   walk_along(samples, scale, [&](const Exchange& e) {

@@ -21,7 +21,7 @@ QuarterPrices::QuarterPrices(std::span<const SettledQuarter> settled) {
 }
 
 void QuarterPrices::note(std::int64_t tick_utc_s, std::int64_t minute_utc_s, double eur_per_mwh) {
-  // The tick's own quarter-hour as well: where none of its minutes comes, an older one must do.
+  // Also for the quarter-hour of the tick, in case none of its minutes arrives.
   for (const std::int64_t start_utc_s : {start_of(minute_utc_s), start_of(tick_utc_s)}) {
     const auto [at, is_new] = prices_.try_emplace(start_utc_s);
     Price& price = at->second;
@@ -38,7 +38,7 @@ std::optional<SettledQuarter> QuarterPrices::find(std::int64_t utc_s) const {
 
 namespace {
 
-/// What flowed in one quarter-hour.
+/// Energy of one quarter-hour.
 struct Flow {
   double charged_wh = 0;
   double discharged_wh = 0;
@@ -56,7 +56,7 @@ QuarterHourMoney money_of(const Flow& flow, const std::optional<SettledQuarter>&
   money.published = price->state != PriceState::kIndicative ? 1 : 0;
   money.validated = price->state == PriceState::kValidated ? 1 : 0;
   money.prices_eur_per_mwh = price->eur_per_mwh;
-  // Subtracted: a day without exchange has earned nothing, and not minus nothing.
+  // Subtraction prevents -0 on a day without exchange.
   money.earned_eur = 0.0 - (charged_mwh - discharged_mwh) * price->eur_per_mwh;
   if (money.published == 0) money.estimated_eur = money.earned_eur;
   money.contract_eur = exchange_cost_eur(terms, charged_mwh, price->eur_per_mwh) +

@@ -1,6 +1,5 @@
-// Settled prices by quarter-hour, and the energy and money of what flowed (exchange.h) by local
-// days at these prices. Energy charged and discharged has its own cost beside the price, by the
-// terms of a contract (exchange_cost.h).
+// Settled prices by quarter-hour, and energy (exchange.h) and money by local days at these prices,
+// with the costs of a contract (exchange_cost.h).
 #pragma once
 
 #include <cstdint>
@@ -13,9 +12,8 @@
 
 namespace bess {
 
-// What quarter-hours are paid at: the settled price where it is published, else, as an estimate,
-// the newest of the minutes that the log saw of it. The same for the battery and for every policy
-// that it is compared with.
+// Prices of quarter-hours: the settled price if published, else the newest minute in the log as an
+// estimate. The same for the battery and all policies in a comparison.
 
 enum class PriceState : std::uint8_t { kIndicative, kPublished, kValidated };
 
@@ -30,11 +28,11 @@ class QuarterPrices {
  public:
   explicit QuarterPrices(std::span<const SettledQuarter> settled);
 
-  /// The price that the cycle at `tick_utc_s` knew. In any order; the minutes of a quarter-hour's
-  /// end are seen by the first cycle behind it.
+  /// Price known to the control cycle at `tick_utc_s`, in any order; the first control cycle after
+  /// a quarter-hour knows its last minutes.
   void note(std::int64_t tick_utc_s, std::int64_t minute_utc_s, double eur_per_mwh);
 
-  /// Of the quarter-hour that holds the instant. None: neither published, nor seen.
+  /// Price of the quarter-hour at an instant. Empty: neither published nor in the log.
   [[nodiscard]] std::optional<SettledQuarter> find(std::int64_t utc_s) const;
 
  private:
@@ -47,31 +45,31 @@ class QuarterPrices {
 
 struct QuarterHourMoney {
   double earned_eur = 0;          ///< before the contract
-  double estimated_eur = 0;       ///< of it, where nothing is published yet
-  double contract_eur = 0;        ///< what the contract takes of it, wear included
-  double prices_eur_per_mwh = 0;  ///< the sum of those that have one
-  int quarter_hours = 0;          ///< of which the log knows something
-  int published = 0;              ///< of those, the validated among them
+  double estimated_eur = 0;       ///< part of it without published prices
+  double contract_eur = 0;        ///< costs of the contract, with wear
+  double prices_eur_per_mwh = 0;  ///< sum over quarter-hours with a price
+  int quarter_hours = 0;          ///< in the log
+  int published = 0;              ///< with published prices, including validated ones
   int validated = 0;
-  int unpriced = 0;  ///< without any price: their energy is not in the money
+  int unpriced = 0;  ///< without a price: not in the money
 
   [[nodiscard]] double net_eur() const { return earned_eur - contract_eur; }
-  /// 0 where none has a price.
+  /// 0 without prices.
   [[nodiscard]] double mean_price_eur_per_mwh() const;
   void add(const QuarterHourMoney& other);
 };
 
-/// Of one local day; energies grid side, not negative.
+/// One local day; energies grid side, not negative.
 struct ExchangedDay {
   double charged_wh = 0;
   double discharged_wh = 0;
-  double unseen_wh = 0;  ///< of both together, by the state of charge alone
+  double unseen_wh = 0;  ///< of both, from the state of charge only
   QuarterHourMoney money{};
 
   void add(const ExchangedDay& other);
 };
 
-/// By local day, as 20231126; `samples` oldest first. Of `terms` costs and wear count.
+/// By local day, as 20231126; `samples` oldest first. Uses costs and wear of `terms`.
 std::map<std::int32_t, ExchangedDay> exchanged_days(std::span<const ExchangeSample> samples,
                                                     const QuarterPrices& prices,
                                                     const BatteryParameters& terms);

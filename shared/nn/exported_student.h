@@ -1,7 +1,6 @@
-// The student that this build carries: assembled at compile time from the exported plain C arrays
-// of <student_weights.h>, so that weights of another architecture, damaged ones or unproved ones do
-// not compile.
-// Include this in few files: the tables are constant-initialised in each.
+// Exported student of this build, assembled at compile time from the C arrays of
+// <student_weights.h>: weights of another architecture, damaged or unproved weights do not compile.
+// Include in few files: each has its own tables.
 #pragma once
 
 #include <student_weights.h>
@@ -49,13 +48,13 @@ constexpr StudentNet assemble_exported_student() {
 inline constexpr StudentNet kExportedStudent = detail::assemble_exported_student();
 
 static_assert(BESS_STUDENT_VERSION == 3,
-              "student_weights.h is of another format version: export it again");
+              "student_weights.h has another format version: export it again");
 static_assert(BESS_STUDENT_ARCHITECTURE_HASH == student_architecture_hash(),
               "student_weights.h was exported for another architecture: export it again");
 static_assert(BESS_STUDENT_WEIGHTS_HASH == student_weights_hash(kExportedStudent),
               "student_weights.h is damaged or was edited by hand: export it again");
 
-/// What the net was proved for. The guard's thresholds are the operator's and may be others.
+/// Thresholds of the proof. The thresholds of the guard may differ.
 inline constexpr PriceThresholds kExportedThresholds{BESS_STUDENT_LOW_PRICE_EUR_PER_MWH,
                                                      BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH};
 static_assert(kExportedThresholds.are_ordered());
@@ -66,7 +65,7 @@ inline constexpr std::int64_t kExportedViolations = BESS_STUDENT_VIOLATIONS_PROP
 static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount && kExportedViolations == 0,
               "student_weights.h is not proved over the whole lattice: export it again");
 
-#ifndef BESS_STUDENT_TRAINED_UNTIL  // a header of before
+#ifndef BESS_STUDENT_TRAINED_UNTIL  // header of an earlier version
 #define BESS_STUDENT_TRAINED_FROM ""
 #define BESS_STUDENT_TRAINED_UNTIL ""
 #endif
@@ -78,7 +77,7 @@ inline constexpr TrainingPeriod kExportedTraining{BESS_STUDENT_TRAINED_FROM,
 static_assert(kExportedTraining.is_sound(),
               "the training days of student_weights.h were edited by hand: export it again");
 
-/// What the guard enforces of the operator's rules; a header without them has no table.
+/// Operator rules of the guard; a header without rules has no table.
 #ifdef BESS_STUDENT_GUARD_RULE_COUNT
 inline constexpr int kExportedGuardRuleCount = BESS_STUDENT_GUARD_RULE_COUNT;
 inline constexpr int kExportedRuleCheckCount = BESS_STUDENT_RULE_CHECK_COUNT;
@@ -100,7 +99,7 @@ constexpr const char* exported_guard_rule_name(int index) {
   return bess_student_guard_rule_name[index];
 }
 
-/// Number of golden points at which this machine finds other limits than the exporter: must be 0.
+/// Number of golden points with other limits than at the exporter: must be 0.
 constexpr int count_exported_rule_check_failures() {
   int failures = 0;
   for (int i = 0; i < kExportedRuleCheckCount; ++i) {
@@ -121,12 +120,12 @@ constexpr const char* exported_guard_rule_name(int) { return ""; }
 constexpr int count_exported_rule_check_failures() { return 0; }
 #endif
 
-/// Of the net and of the rules that stand above it.
+/// Hash of net and rules.
 inline constexpr std::uint32_t kExportedHash =
     ruled_hash(BESS_STUDENT_WEIGHTS_HASH, kExportedGuardRules);
 
 inline constexpr int kExportedSelfCheckCount = BESS_STUDENT_SELF_CHECK_COUNT;
-static_assert(kExportedSelfCheckCount > 0, "student_weights.h carries no self-check vectors");
+static_assert(kExportedSelfCheckCount > 0, "student_weights.h has no self-check vectors");
 
 /// Golden vector `index` of the header: a state and the logits that the exporter computed for it.
 constexpr StudentSelfCheck exported_self_check(int index) {
@@ -140,8 +139,8 @@ constexpr StudentSelfCheck exported_self_check(int index) {
           .logits = {z[0], z[1], z[2]}};
 }
 
-/// Number of self-check vectors, those of the rules included, that this machine answers differently
-/// from the exporter: must be 0.
+/// Number of self-check vectors, including rules, with other results than at the exporter: must be
+/// 0.
 inline int count_exported_self_check_failures() {
   int failures = count_exported_rule_check_failures();
   for (int i = 0; i < kExportedSelfCheckCount; ++i) {

@@ -1,13 +1,12 @@
-// The prices that a student learnt to decide on, told by its price map: half their distribution,
-// half a straight line over the lattice (workstation/policy/rl/price_map.h). Every exported header
-// has it.
+// Distribution of the training prices, from the student's price map: half distribution, half
+// straight line over the lattice (workstation/policy/rl/price_map.h). Every exported header has it.
 #pragma once
 
 #include "shared/nn/student_net.h"
 
 namespace bess {
 
-/// The first, second or third quartile, in whole EUR/MWh.
+/// First, second or third quartile, whole EUR/MWh.
 constexpr std::int32_t learnt_price_quartile(const StudentNet& net, int quartile) {
   constexpr std::int32_t kSteps = kPriceCount - 1;
   for (std::int32_t step = 0; step < kSteps; ++step) {

@@ -1,12 +1,11 @@
-// The student: 5 -> 64 -> 32 -> 3, ReLU, entirely in integers [SPEC 5, 6].
+// Student net: 5 -> 64 -> 32 -> 3, ReLU, in integers only [SPEC 5, 6].
 //
 //   lattice state --input map--> x int16[5] --Affine,ReLU--> int16[64] --Affine,ReLU--> int16[32]
 //                 --Affine--> logits int32[3] (discharge, idle, charge) --argmax--> action
 //
-// The input map is part of the net: evenly scaled time and SoC, and a table for the price, which
-// holds the monotone price map that was fitted on the training days. Only differences of logits
-// matter, so the last layer is not rescaled. The struct is a trivial type with inline storage: no
-// heap, no pointers.
+// The input map is part of the net: linear for time and SoC, and a monotone table for the price,
+// fitted on the training days. Only differences of logits matter, so the last layer is not
+// rescaled. Trivial type with inline storage: no heap, no pointers.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +41,7 @@ struct Affine {
 /// y = clamp(round(x / 2^shift), 0, 32767). Monotone, which the proof's interval bounds rely on.
 template <int kCount>
 struct ClippedRelu {
-  std::int32_t shift;  ///< 0..30; differs by net, because each net uses the full range of int16
+  std::int32_t shift;  ///< 0..30; each net uses the full range of int16
 
   constexpr std::int16_t rescale(std::int32_t x) const {
     return static_cast<std::int16_t>(
@@ -66,7 +65,7 @@ inline constexpr int kSocScale = kInputOne / (kSocCount - 1);
 static_assert(kSocScale * (kSocCount - 1) <= INT16_MAX && kSocScale > 0);
 
 struct StudentNet {
-  ContextClasses context;  ///< what the third input means
+  ContextClasses context;  ///< meaning of the third input
   std::int16_t
       price_map[kPriceCount];  ///< Q14, strictly increasing, from lattice price -500 upwards
   Affine<kStudentInputs, kStudentHidden1> layer1;
@@ -129,7 +128,7 @@ constexpr std::uint32_t student_architecture_hash() {
 }
 
 /// Hash of every number of the net, in declaration order, independent of the machine's byte order.
-/// By month the context adds nothing: nets of before have the hash that they had.
+/// The context month adds nothing, which keeps the hashes of existing nets unchanged.
 constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   Crc32 crc;
   if (net.context.is_outlook()) crc.add_integer(static_cast<int>(net.context.kind));
@@ -145,7 +144,7 @@ constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   return crc.value();
 }
 
-/// One golden state and what the net must answer: shipped in the weight header, run at every start.
+/// Golden state and its logits, in the weight header; checked at every start.
 struct StudentSelfCheck {
   LatticeState state;
   std::int32_t logits[kActionCount];

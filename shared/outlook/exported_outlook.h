@@ -1,6 +1,5 @@
-// The model of the plan that came with the exported student, where its context is the outlook: from
-// the integers of <student_weights.h>, whose hash is held against them while this compiles.
-// Include this in few files, as exported_student.h.
+// Exported outlook model of a student with context outlook, from <student_weights.h>; its hash is
+// checked at compile time. Include in few files, as exported_student.h.
 #pragma once
 
 #include <student_weights.h>
@@ -36,13 +35,12 @@ static_assert(sizeof bess_student_outlook == sizeof(OutlookModel),
 inline constexpr bool kHasExportedOutlook = true;
 inline constexpr std::uint32_t kExportedOutlookHash = BESS_STUDENT_OUTLOOK_HASH;
 
-/// Null where the student's context is another.
+/// Null for another context of the student.
 inline const OutlookModel* exported_outlook() {
   static const OutlookModel model = detail::assemble_exported_outlook();
   return &model;
 }
-/// 1 where this machine plans otherwise than the exporter, or the model is one that no fit leads
-/// to.
+/// 1 if plans differ from those of the exporter, or the model is invalid.
 inline int count_exported_outlook_failures() {
   static OutlookPlan plan;
   const OutlookModel& model = *exported_outlook();

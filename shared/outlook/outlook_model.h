@@ -1,5 +1,5 @@
-// What the plan on day-ahead prices knows of the market and of the battery, in integers: fitted on
-// the workstation (planners/outlook_integers.h), part of a student whose context is the outlook.
+// Outlook model in integers: market and battery parameters of the plan on day-ahead prices. Fitted
+// on the workstation (planners/outlook_integers.h), part of a student with context outlook.
 //
 //   usual(t, L) = constant + day_ahead D(t) + hour(quarter-hour of t) + level L
 //
@@ -14,7 +14,7 @@
 namespace bess {
 
 struct OutlookModel {
-  static constexpr int kBins = 24;    ///< of the deviation from what is usual
+  static constexpr int kBins = 24;    ///< of the deviation from the usual price
   static constexpr int kPhases = 15;  ///< steps of a half-hour
   static constexpr int kSocPoints = 61;
   static constexpr int kCoefficientBits = 12;
@@ -25,24 +25,25 @@ struct OutlookModel {
   std::int32_t constant_centi = 0;
   std::int32_t day_ahead_q12 = 0;
   std::int32_t level_q12 = 0;
-  std::int32_t lasting_q12 = 0;  ///< share of a day's height over the mean that the next day has
+  std::int32_t lasting_q12 =
+      0;  ///< share of a day's deviation from the mean that persists to the next day
   std::int32_t row_age_min = 1;  ///< of the newest price at a decision
   std::int32_t hour_centi[kQuarterHourCount] = {};
   std::int32_t day_ahead_mean_centi[kQuarterHourCount] = {};
-  std::int32_t bin_centi[kBins] = {};            ///< mean deviation of each bin, rising
-  std::int32_t paid_centi[kPhases][kBins] = {};  ///< mean deviation of what is paid
+  std::int32_t bin_centi[kBins] = {};            ///< mean deviation of each bin, ascending
+  std::int32_t paid_centi[kPhases][kBins] = {};  ///< mean deviation of the settled price
   /// [phase][bin][next bin], Q15; each row sums to one.
   std::int32_t transition_q15[kPhases][kBins][kBins] = {};
   std::int32_t discount_q15 = 0;  ///< of a step
   std::int32_t soc_min_e4 = 0, soc_max_e4 = 0;
-  /// A step at full power: grid energy a MWh of capacity, Q24, and points of the SoC grid, Q15.
+  /// Step at full power: grid energy per MWh of capacity, Q24, and points of the SoC grid, Q15.
   std::int32_t charge_q24 = 0, discharge_q24 = 0;
   std::int32_t charge_points_q15 = 0, discharge_points_q15 = 0;
-  /// Beside the price, wear included: a fixed part and a share of the price's size, Q12.
+  /// Costs in addition to the price, with wear: fixed part, and share of the absolute price, Q12.
   std::int32_t import_centi = 0, export_centi = 0;
   std::int32_t import_share_q12 = 0, export_share_q12 = 0;
 
-  /// Every number, by name: for files, headers and hashes.
+  /// Visits all numbers by name, for files, headers and hashes.
   template <typename Model, typename Visit>
   static constexpr void visit(Model& m, Visit visit) {
     visit("constant_centi", &m.constant_centi, 1);
@@ -68,13 +69,13 @@ struct OutlookModel {
     visit("export_share_q12", &m.export_share_q12, 1);
   }
 
-  /// False of numbers that no fit leads to, and with which the plan could leave its integers.
+  /// False for numbers that no fit produces, which could overflow in the plan.
   [[nodiscard]] bool is_sound() const;
-  /// Of every number, in the order of visit(), whatever the machine's byte order.
+  /// Hash of all numbers in the order of visit(), independent of the byte order.
   [[nodiscard]] std::uint32_t hash() const;
 };
 
-/// Of a student by outlook: `student_hash` and the model's; without a model, 0, its own.
+/// Hash of student and model; without a model (0) that of the student.
 constexpr std::uint32_t hash_by_outlook(std::uint32_t student_hash, std::uint32_t model_hash) {
   if (model_hash == 0) return student_hash;
   Crc32 crc;

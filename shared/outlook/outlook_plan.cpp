@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kPoints = OutlookModel::kSocPoints;
 constexpr int kBins = OutlookModel::kBins;
-constexpr std::int32_t kUsualMaxCenti = 400'000;  ///< 4,000 EUR/MWh, where auctions end
+constexpr std::int32_t kUsualMaxCenti = 400'000;  ///< 4,000 EUR/MWh, limit of the auction
 constexpr std::int64_t kValuesPerCenti = 100;
 constexpr std::int32_t kCentiPerTenth = 10;
 constexpr std::int32_t kBreakEvenMaxTenths = 30'000;
-/// A full step fits from these points of the grid on, both ways, at any usual power.
+/// Number of points at each end without break-even price of their own, where a step may not fit.
 constexpr int kEndPoints = 2;
 
 constexpr std::int64_t shifted(std::int64_t value, int bits) {
@@ -37,19 +37,19 @@ std::int32_t with_share(std::int32_t price_centi, std::int32_t share_q12) {
   return static_cast<std::int32_t>(shifted(size * share_q12, OutlookModel::kCoefficientBits));
 }
 
-/// What a full step costs at this price of energy, in the unit of values.
+/// Cost of a full step at this price, in the unit of values.
 std::int64_t exchange_value(std::int32_t energy_q24, std::int64_t price_centi) {
   return shifted(energy_q24 * price_centi * kValuesPerCenti, OutlookModel::kEnergyBits);
 }
 
-constexpr std::int64_t kValueMax = std::int64_t{1} << 29;  ///< 50,000 EUR a MWh of capacity
+constexpr std::int64_t kValueMax = std::int64_t{1} << 29;  ///< 50,000 EUR per MWh of capacity
 
 constexpr std::int32_t bounded(std::int64_t value) {
   return static_cast<std::int32_t>(clamp_to(value, -kValueMax, kValueMax));
 }
 
-/// sum over n of share[n] values[n][i], with 32-bit products alone, which every processor has four
-/// at a time: shares sum to 2^15 and values stay within 2^29, so neither half leaves its integer.
+/// sum over n of share[n] values[n][i], with vectorisable 32-bit products: shares sum to 2^15 and
+/// values are within 2^29, so neither half overflows.
 struct ValueHalves {
   std::int32_t high[kBins][kPoints];
   std::int32_t low[kBins][kPoints];
@@ -88,8 +88,8 @@ OutlookDays outlook_days_around(std::int64_t utc_s) {
   return days;
 }
 
-/// Where tomorrow is not known, it is the mean by hour, moved by what the last day that is known
-/// lies above that mean, times how much of it lasts.
+/// Unknown prices of tomorrow: hourly mean plus the persistent share of the deviation of the last
+/// known day.
 void OutlookPlan::find_usual(const OutlookModel& model, const OutlookDays& days) {
   const auto quarter_hour_of = [](std::int64_t utc_s) {
     return local_minute_of(utc_s).quarter_hour;
@@ -150,7 +150,7 @@ std::int32_t OutlookPlan::usual_centi(std::int64_t utc_s) const {
   return usual_[at < last ? at : last - 1];
 }
 
-/// `value_` of the step after becomes that of this step; `lead_` is written.
+/// Updates `value_` from the next step to this one, and `lead_`.
 void OutlookPlan::step_back(const OutlookModel& model, std::int64_t utc_s) {
   const int phase = phase_of(utc_s);
   const std::int32_t usual_paid = (usual_centi(utc_s) + usual_centi(utc_s + 60)) / 2;
@@ -183,7 +183,7 @@ void OutlookPlan::step_back(const OutlookModel& model, std::int64_t utc_s) {
       lead_[b][i] = bounded(charged - discharged);
     }
   }
-  // Only differences count: held near zero they stay inside their integers.
+  // Only differences matter: keep values near zero to prevent overflow.
   const std::int64_t middle = next[kBins / 2][kPoints / 2];
   for (int b = 0; b < kBins; ++b) {
     for (int i = 0; i < kPoints; ++i) value_[b][i] = bounded(next[b][i] - middle);
@@ -194,7 +194,7 @@ void OutlookPlan::find_break_even(const OutlookModel& model, std::int64_t utc_s)
   std::int16_t(&row)[kPoints] = break_even_[(utc_s - today_utc_s_) / kSecondsPerStep].tenths;
   const std::int32_t usual_seen = usual_centi(utc_s - 60 * std::int64_t{model.row_age_min});
   for (int i = kEndPoints; i < kPoints - kEndPoints; ++i) {
-    std::int64_t lost = 0;  // by a cut: what leads below it, and what does not above it
+    std::int64_t lost = 0;  // loss of a cut: lead of charging above it, and of discharging below it
     for (int b = 0; b < kBins; ++b) lost += lead_[b][i] > 0 ? lead_[b][i] : 0;
     std::int64_t least = lost;
     int cut = 0;
@@ -232,7 +232,7 @@ void OutlookPlan::make(const OutlookModel& model, const OutlookDays& days,
   level_centi_ = level_centi;
   find_usual(model, days);
   find_moves(model);
-  // At the end what is stored is worth tomorrow's mean.
+  // Final value of stored energy: mean price of tomorrow.
   std::int64_t sum = 0;
   const auto all = static_cast<int>((end_utc_s_ - today_utc_s_) / kSecondsPerQuarterHour);
   const auto first = static_cast<int>((tomorrow_utc_s_ - today_utc_s_) / kSecondsPerQuarterHour);

@@ -1,16 +1,14 @@
-// The plan of a day on its day-ahead prices, in integers: the workstation and the edge find the
-// same from the same prices, to the bit. What a student is given of it is one number, the
-// break-even price: the newest price at which the plan would as soon charge as discharge, at this
-// moment and this SoC.
+// Plan of a day on its day-ahead prices, in integers: bit-identical on workstation and edge. Its
+// result is the break-even price: the newest price at which the plan values charging and
+// discharging equally at an instant and SoC.
 //
 //   ahead[b][i] = discount * sum over b' of P(b' | b, phase) value[b'][i]
 //   value[b][i] = max over actions of  ahead[b](SoC after it from point i) - cost of the exchange
 //
-// by backward induction from the end of tomorrow, where stored energy is worth what is usual there,
-// to the midnight that today began with. Of the bins of a step and SoC those up to a cut charge
-// rather than discharge; the cut is the one that gives away least, and the break-even price lies
-// between the bins beside it. It is held from rising with SoC, so that a policy which never charges
-// less at a higher break-even price never charges more at a higher SoC either.
+// by backward induction from the end of tomorrow, with stored energy at the usual price, to the
+// start of today. For a step and SoC, bins up to a cut charge rather than discharge; the cut
+// minimises the loss, and the break-even price is between the adjacent bins. It never rises with
+// SoC, so that a policy that is monotone in the break-even price is also monotone in SoC.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +21,7 @@ inline constexpr int kLongestDayQuarterHours = 100;
 inline constexpr int kLongestDaySteps =
     kLongestDayQuarterHours * kMinutesPerQuarterHour / kMinutesPerStep;
 inline constexpr std::int32_t kDayAheadUnknown = INT32_MIN;
-/// Plans are made for these levels apart; what is between is one slope away.
+/// Distance of the levels of plans; linear in between.
 inline constexpr std::int32_t kPlannedLevelCenti = 1600;
 
 constexpr std::int32_t planned_level_centi(std::int32_t level_centi) {
@@ -33,7 +31,7 @@ constexpr std::int32_t planned_level_centi(std::int32_t level_centi) {
   return (whole - (shifted % kPlannedLevelCenti < 0 ? 1 : 0)) * kPlannedLevelCenti;
 }
 
-/// The three local days around now, and what is known of their day-ahead prices.
+/// Three local days around now, with known day-ahead prices.
 struct OutlookDays {
   std::int64_t yesterday_utc_s = 0;  ///< local midnights
   std::int64_t today_utc_s = 0;
@@ -48,22 +46,21 @@ struct OutlookDays {
   friend bool operator==(const OutlookDays&, const OutlookDays&) = default;
 };
 
-/// The midnights around an instant, no price known. Needs the market's time zone.
+/// Midnights around an instant, without prices. Needs the market's time zone.
 OutlookDays outlook_days_around(std::int64_t utc_s);
 
-/// What a plan says of one step: break-even prices over its grid of SoC, tenths of EUR/MWh, never
-/// rising.
+/// Break-even prices of one step over the SoC grid, tenths of EUR/MWh, not ascending.
 struct BreakEvenRow {
   std::int16_t tenths[OutlookModel::kSocPoints] = {};
 
-  /// Hundredths of EUR/MWh, of a plan that was made for `planned_level_centi`.
+  /// Hundredths of EUR/MWh, for a plan made at `planned_level_centi`.
   [[nodiscard]] std::int32_t at(const OutlookModel& model, std::int32_t soc_e4,
                                 std::int32_t level_centi, std::int32_t planned_level_centi) const;
 };
 
 class OutlookPlan {
  public:
-  /// For a level that planned_level_centi() gives. Bounded: at most 1,500 steps, nothing allocated.
+  /// For a level of planned_level_centi(). Bounded: at most 1,500 steps, no allocation.
   void make(const OutlookModel& model, const OutlookDays& days, std::int32_t level_centi);
 
   [[nodiscard]] bool serves(std::int64_t utc_s) const {
@@ -84,7 +81,7 @@ class OutlookPlan {
   static constexpr int kPoints = OutlookModel::kSocPoints;
   static constexpr int kQuarterHoursMax = 2 * kLongestDayQuarterHours;
 
-  /// Where a full step leads from a point of the grid; near the ends, what still fits.
+  /// Result of a full step from a grid point; limited near the ends.
   struct Move {
     std::int32_t to;          ///< lower neighbour
     std::int32_t weight_q15;  ///< of the upper one
@@ -99,18 +96,17 @@ class OutlookPlan {
   std::int64_t today_utc_s_ = 0, tomorrow_utc_s_ = 0, end_utc_s_ = 0;
   std::int32_t level_centi_ = 0;
   BreakEvenRow break_even_[kLongestDaySteps] = {};
-  // What is needed while a plan is made.
+  // Work space of make().
   std::int32_t usual_[kQuarterHoursMax] = {};
   Move charge_[kPoints] = {}, discharge_[kPoints] = {};
-  std::int32_t value_[kBins][kPoints] = {};  ///< hundredths of a cent a MWh of capacity
-  std::int32_t lead_[kBins][kPoints] = {};   ///< of charging over discharging
+  std::int32_t value_[kBins][kPoints] = {};  ///< hundredths of a cent per MWh of capacity
+  std::int32_t lead_[kBins][kPoints] = {};   ///< value of charging minus discharging
 };
 
-// One number that says how a machine plans: the exporter writes it into the header, and every start
-// on the edge finds it again.
+// Checksum of plans: written to the header by the exporter, checked at every start of the edge.
 
-/// Day-ahead prices of made-up days: a dear morning and evening, a cheap noon, a hole, and what is
-/// never known, tomorrow evening.
+/// Synthetic day-ahead prices: high in the morning and evening, low at noon, with a gap and an
+/// unknown evening of tomorrow.
 OutlookDays made_up_outlook_days(std::int64_t utc_s);
 
 /// Checksum of the break-even prices of the day on which summer time began in 2025, at five SoCs.
