@@ -16,10 +16,10 @@ namespace bess {
 
 namespace {
 
-constexpr double kFirstMilliseconds = 1e11;  // as seconds this is the year 5138
+constexpr double kFirstMilliseconds = 1e11;  // in seconds: year 5138
 constexpr double kLastMilliseconds = 1e14;
 
-/// NaN and Infinity as null, outside of texts.
+/// Replaces NaN and Infinity by null, outside of text.
 std::string without_nan(std::string_view json) {
   std::string text;
   bool is_inside = false;
@@ -44,7 +44,7 @@ std::string without_nan(std::string_view json) {
   return text;
 }
 
-/// cJSON keeps members of one name and gives the first.
+/// cJSON keeps duplicate members and returns the first.
 JsonValue only_member(JsonValue object, std::string_view name) {
   JsonValue found;
   if (!object.is_object()) return found;
@@ -88,7 +88,7 @@ namespace {
 
 constexpr std::int64_t kQuarterS = 900;
 constexpr std::int64_t kHourS = 3'600;
-constexpr std::int64_t kAssumedMaxS = 6 * kHourS;  ///< a longer hole is a hole
+constexpr std::int64_t kAssumedMaxS = 6 * kHourS;  ///< longer gaps are missing data
 constexpr double kNoPrice = std::numeric_limits<double>::quiet_NaN();
 
 bool has_price(const DayAheadRow& row) { return !std::isnan(row.eur_per_mwh); }
@@ -117,7 +117,7 @@ std::int64_t local_midnight_after(std::int64_t midnight_utc_s) {
   return local_midnight_before(midnight_utc_s + 36 * kHourS);
 }
 
-/// The rows of one local day, and the length of each.
+/// Rows of one local day with their lengths.
 class DayRows {
  public:
   DayRows(std::vector<DayAheadRow> rows, std::int64_t midnight_utc_s)
@@ -130,7 +130,7 @@ class DayRows {
     if (rows_.size() == 1) step_s_ = kQuarterS;
   }
 
-  /// The day before says what holds at midnight where no row of this day does.
+  /// Uses the last price of the previous day at midnight if this day has no row there.
   void begin_with_last_of(const DayRows& before) {
     const DayAheadRow& last = before.rows_.back();
     const std::int64_t first_utc_s = rows_.front().utc_s;
@@ -148,7 +148,7 @@ class DayRows {
     return false;
   }
 
-  /// `goes_on`: the last row may hold until midnight.
+  /// `goes_on`: the last row may be valid until midnight.
   [[nodiscard]] DayAheadDay laid_out(bool goes_on) const {
     DayAheadDay day{.midnight_utc_s = midnight_utc_s_};
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -177,7 +177,7 @@ class DayRows {
   [[nodiscard]] std::int64_t next_of(std::size_t i) const {
     return i + 1 < rows_.size() ? rows_[i + 1].utc_s : end_utc_s_;
   }
-  /// Whoever says how long a price holds has no merged rows.
+  /// Sources with a resolution have no merged rows.
   [[nodiscard]] bool may_go_on(std::size_t i) const {
     return rows_[i].resolution_min == 0 && has_price(rows_[i]);
   }
@@ -194,8 +194,7 @@ class DayRows {
   [[nodiscard]] int resolution_of(std::size_t i) const {
     return std::max(rows_[i].resolution_min, static_cast<int>(length_of(i) / 60));
   }
-  /// Rows of quarter-hours that somebody made from hours: there are many, and each hour has one
-  /// price.
+  /// Quarter-hours made from hours: many hours, each with one price.
   [[nodiscard]] static bool has_one_price_an_hour(const DayAheadDay& day) {
     constexpr int kHoursMin = 20;
     int whole = 0, quarters = 0;
@@ -216,7 +215,7 @@ class DayRows {
   std::int64_t step_s_ = kHourS;  ///< 15, 30 or 60 minutes
 };
 
-/// In order of time, each time once; a row with a price before one without.
+/// Ascending distinct times; rows with a price take precedence.
 std::vector<DayAheadRow> distinct(std::vector<DayAheadRow> rows, DayAheadLayout& layout) {
   std::ranges::stable_sort(rows, {}, &DayAheadRow::utc_s);
   std::vector<DayAheadRow> kept;
@@ -251,7 +250,7 @@ DayAheadAnswer parse_day_ahead_json(std::string_view text, const DayAheadFields&
   const JsonValue root = json.value();
   const JsonValue unit = root.is_object() ? root["unit"] : JsonValue();
   if (const char* const name = unit.text(); name != nullptr && without_blanks(name) != "EUR/MWh") {
-    answer.trouble = "prices in \"" + one_line(name, 20) + "\" where EUR / MWh is needed";
+    answer.trouble = "prices in \"" + one_line(name, 20) + "\", EUR / MWh is required";
     return answer;
   }
   const JsonValue rows = root.is_list() ? root : value_at(root, fields.rows);
@@ -266,7 +265,7 @@ DayAheadAnswer parse_day_ahead_json(std::string_view text, const DayAheadFields&
   if (!fields.rows.empty() || !times.is_list() || !prices.is_list() ||
       times.size() != prices.size()) {
     answer.trouble = fields.rows.empty()
-                         ? "not two lists of one length, " + std::string(fields.time) + " and " +
+                         ? "not two lists of equal length, " + std::string(fields.time) + " and " +
                                std::string(fields.price)
                          : "no list " + std::string(fields.rows);
     return answer;

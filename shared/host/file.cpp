@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a name leads to, whether there is a file or not.
+/// Path of a name, whether the file exists or not.
 fs::path place_of(const fs::path& path) {
   std::error_code error;
   const fs::path place = fs::weakly_canonical(fs::absolute(path), error);
@@ -46,12 +46,12 @@ void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<G
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
     for (const GivenPath& input : inputs) {
       if (!is_same_file(output->path, input.path)) continue;
-      fail("{} {}: would replace the input {} {}; write to another name", output->option,
+      fail("{} {}: would replace the input {} {}; use another name", output->option,
            output->path.string(), input.option, input.path.string());
     }
     for (auto other = outputs.begin(); other != output; ++other) {
       if (!is_same_file(output->path, other->path)) continue;
-      fail("{} {}: would replace what {} writes; give each a name of its own", output->option,
+      fail("{} {}: would replace the output of {}; use different names", output->option,
            output->path.string(), other->option);
     }
   }
@@ -71,7 +71,7 @@ struct Slot {
   std::atomic<bool> is_named{false};
   char path[PATH_MAX];
 };
-std::array<Slot, 16> slots;  // more threads than this hardly ever write at once
+std::array<Slot, 16> slots;  // more than the usual number of writing threads
 std::atomic<bool> is_ending{false};
 
 }  // namespace
@@ -111,8 +111,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Opened for reading. A pipe is waited for until somebody writes: without end, a forgotten writer
-/// would hang us.
+/// Opens for reading. Waits for the writer of a pipe, but not forever.
 int open_to_read(const fs::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   struct stat info {};
@@ -121,8 +120,8 @@ int open_to_read(const fs::path& path) {
   pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
   if (poll(&waiting, 1, kWriterWait_ms) == 0) {
     close(fd);
-    fail("{}: is a pipe, and nobody has written into it for {} s; start its writer, or name a file",
-         path.string(), kWriterWait_ms / 1000);
+    fail("{}: pipe without data for {} s; start its writer, or use a file", path.string(),
+         kWriterWait_ms / 1000);
   }
   fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;
@@ -148,8 +147,7 @@ std::string gzip(std::string_view contents) {
   return out;
 }
 
-/// Removes what a killed process left beside `target`: `target.part.PID` of a PID that runs no
-/// more.
+/// Removes files `target.part.PID` of processes that no longer run.
 void remove_stale_parts(const fs::path& target) {
   const std::string prefix = target.filename().string() + ".part.";
   std::error_code error;
@@ -165,7 +163,7 @@ void remove_stale_parts(const fs::path& target) {
   }
 }
 
-/// What a symbolic link leads to: the link itself stays.
+/// Target of a symbolic link; the link itself remains.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
@@ -174,9 +172,8 @@ fs::path resolved(const fs::path& path) {
   return target;
 }
 
-/// What will be found under a name once it is committed: a temporary file beside it, which takes
-/// the permissions of the file that it replaces and disappears unless it is committed; or the
-/// device or pipe of that name itself, which is written to at once.
+/// Temporary file in the same folder with the permissions of the file that it replaces, removed
+/// unless committed. A device or pipe is written directly.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& name) : target_(resolved(name)) {
@@ -185,7 +182,7 @@ class TemporaryFile {
     } else {
       remove_stale_parts(target_);
       beside_ = target_.string() + ".part." + std::to_string(getpid());
-      unlink(beside_.c_str());  // whatever was put there, a link as well: never followed
+      unlink(beside_.c_str());  // also a link, which is never followed
       unfinished_.emplace(beside_);
       fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
       unfinished_->made();
@@ -227,18 +224,18 @@ class TemporaryFile {
   }
 
   fs::path target_;
-  std::string beside_;  ///< the temporary file; empty for a device, and once committed
+  std::string beside_;  ///< temporary file; empty for a device, and after commit
   std::optional<UnfinishedFile> unfinished_;
   int fd_ = -1;
 };
 
-/// What many programs take for their output would become a file of that name.
+/// Refuses "-", which would become a file of that name.
 void require_a_name(const fs::path& path) {
-  if (path.empty()) fail("the name of the file to write is empty; give one");
+  if (path.empty()) fail("the name of the output file is empty; give a name");
   if (*path.begin() != "-") return;
   fail(
-      "{}: means the standard output elsewhere; what is written here is renamed once complete, so "
-      "give a file's name (./- for one called -)",
+      "{}: standard output is not supported, because complete files are renamed; give a file name "
+      "(./- for a file named -)",
       path.string());
 }
 
@@ -250,8 +247,8 @@ void create_parent(const fs::path& path) {
   if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
 }
 
-/// A file's bytes as they are read, unpacked where they are gzip: one member or more, nothing
-/// behind them. Bounded while it is read: some thousand bytes of gzip may stand for gigabytes.
+/// Content of a plain or gzip file (one or more members) during reading, bounded: a small gzip file
+/// can unpack to gigabytes.
 class WholeFile {
  public:
   WholeFile(std::string name, std::size_t bytes_max)
@@ -271,9 +268,9 @@ class WholeFile {
     }
     unpack(bytes);
   }
-  /// The contents, once all bytes are added.
+  /// Content after all bytes were added.
   std::string finish() {
-    if (kind_ == Kind::kUnknown) return head_;  // shorter than the mark of gzip
+    if (kind_ == Kind::kUnknown) return head_;  // shorter than the gzip header
     if (kind_ == Kind::kGzip && !is_member_over_) damaged("unexpected end");
     return std::move(contents_);
   }
@@ -308,18 +305,18 @@ class WholeFile {
     }
   }
 
-  /// gzip files may be joined; what is no further member was never packed.
+  /// gzip files may be concatenated; other bytes are an error.
   void begin_member() {
     if (*stream_.next_in != static_cast<Bytef>(kMark[0])) {
-      fail("{}: bytes behind the end of its gzip data; fetch or copy it again", name_);
+      fail("{}: extra bytes after the gzip data; download or copy it again", name_);
     }
-    if (inflateReset(&stream_) != Z_OK) fail("zlib cannot go on unpacking");
+    if (inflateReset(&stream_) != Z_OK) fail("zlib cannot continue unpacking");
     is_member_over_ = false;
   }
 
   void append(std::string_view bytes) {
     if (contents_.size() + bytes.size() > bytes_max_) {
-      fail("{}: holds more than {}{}: not a file that is meant here", name_, size_text(bytes_max_),
+      fail("{}: larger than {}{}: unexpected file type", name_, size_text(bytes_max_),
            is_plain() ? "" : " once unpacked");
     }
     contents_ += bytes;
@@ -330,13 +327,13 @@ class WholeFile {
                          : std::to_string(bytes / 1024) + " KiB";
   }
   [[noreturn]] void damaged(const char* reason) const {
-    fail("{}: truncated or damaged gzip file ({}); fetch or copy it again", name_, reason);
+    fail("{}: truncated or damaged gzip file ({}); download or copy it again", name_, reason);
   }
 
   std::string name_;
   std::size_t bytes_max_;
   Kind kind_ = Kind::kUnknown;
-  std::string head_;  ///< until it shows the kind
+  std::string head_;  ///< until the kind is known
   std::string contents_;
   std::string unpacked_ = std::string(1 << 16, '\0');
   z_stream stream_{};
@@ -369,17 +366,17 @@ std::string read_file(const fs::path& path, std::size_t bytes_max) {
   }
   std::string contents = whole.finish();
   if (whole.is_plain() && is_gzip_name(path) && contents.find('\0') != contents.npos) {
-    fail("{}: its name says gzip, its content is not; fetch or copy it again", path.string());
+    fail("{}: gzip by name but not by content; download or copy it again", path.string());
   }
   return contents;
 }
 
 void require_writable(const fs::path& path) {
   create_parent(path);
-  std::error_code ignored;  // what is amiss shows when the file is made
+  std::error_code ignored;  // errors show when the file is created
   if (fs::is_directory(path, ignored)) fail("{}: is a folder, not a file", path.string());
-  if (is_special_file(path)) return;  // opening a pipe would wait for its reader
-  const TemporaryFile probe(path);    // made and removed again
+  if (is_special_file(path)) return;  // opening a pipe waits for its reader
+  const TemporaryFile probe(path);    // created and removed
 }
 
 void write_file(const fs::path& path, std::string_view contents) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 bool command_succeeds(const char* command) { return std::system(command) == 0; }
 
-/// What gnuplot writes to its standard output for this script; nothing unless it ended well.
+/// Standard output of gnuplot for this script; empty on failure.
 std::string drawn(const std::string& script, const fs::path& path) {
   const FileDescriptor file(memfd_create("gnuplot", 0));  // the shell and gnuplot inherit it
   std::FILE* gnuplot = nullptr;

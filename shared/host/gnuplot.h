@@ -1,4 +1,4 @@
-// The one way this program draws: gnuplot, fed commands with inline data through a pipe.
+// Plots with gnuplot: commands with inline data through a pipe.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,8 @@ namespace bess {
 /// Text in gnuplot's single quotes.
 std::string gnuplot_quoted(std::string_view text);
 
-/// Draws `path`. `script` returns the commands for the output file that it is given, which is
-/// gnuplot's standard output: a failure, or the end of this program, leaves nothing behind. Throws
-/// UserError when gnuplot is missing or fails.
+/// Draws `path`. `script` returns the commands for a given output file, which is gnuplot's standard
+/// output, so that a failure leaves no file. Throws UserError if gnuplot is missing or fails.
 void draw_with_gnuplot(const std::filesystem::path& path,
                        const std::function<std::string(const std::filesystem::path&)>& script);
 

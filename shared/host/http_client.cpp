@@ -24,9 +24,9 @@ namespace {
 
 using Kind = HttpOutcome::Kind;
 
-constexpr std::size_t kDetailMax = 200;  // of a library's own words in a message
+constexpr std::size_t kDetailMax = 200;  // of a library message
 
-/// OpenSSL's verdicts on a certificate (x509_vfy.h), as libcurl hands them on.
+/// OpenSSL verification results (x509_vfy.h), from libcurl.
 enum Verdict : long {
   kNoIssuer = 2,
   kNotYetValid = 9,
@@ -45,51 +45,53 @@ std::string certificate_trouble(CURL* curl, const std::string& authorities) {
   curl_easy_getinfo(curl, CURLINFO_SSL_VERIFYRESULT, &verdict);
   switch (verdict) {
     case kNotYetValid:
-      return "the server's certificate is not valid yet: is this computer's clock right "
-             "(timedatectl)?";
+      return "the server's certificate is not yet valid: check the clock of this computer "
+             "(timedatectl)";
     case kExpired:
-      return "the server's certificate has expired: renew it there; or is this computer's clock "
-             "wrong (timedatectl)?";
+      return "the server's certificate has expired: renew it on the server, or check the clock of "
+             "this "
+             "computer (timedatectl)";
     case kNoIssuer:
     case kSelfSigned:
     case kSelfSignedInChain:
     case kNoLocalIssuer:
     case kLeafNotVerified:
     case kUntrusted:
-      return "the server's certificate is of no authority that is known here: " + authorities;
+      return "the server's certificate is from an unknown authority: " + authorities;
     case 0:
-    case 1:  // the chain was not even asked for: the name comes first
-      return "the server's certificate is of another name: is it the host that is configured?";
+    case 1:  // the name is checked before the chain
+      return "the server's certificate has another name: check the configured host";
     default:
-      return "the server's certificate is refused, OpenSSL's verdict " + std::to_string(verdict) +
-             " (openssl verify knows it)";
+      return "the server's certificate is refused with OpenSSL error " + std::to_string(verdict) +
+             " (see openssl verify)";
   }
 }
 
 std::string connect_trouble(CURL* curl) {
   long cause = 0;
   curl_easy_getinfo(curl, CURLINFO_OS_ERRNO, &cause);
-  if (cause == ECONNREFUSED) return "connection refused: does the server run, is the port right?";
-  if (cause == 0) return "no connection: is the network up, do host and port answer?";
+  if (cause == ECONNREFUSED) return "connection refused: check that the server runs, and the port";
+  if (cause == 0) return "no connection: check network, host and port";
   return std::string("no connection: ") + std::strerror(static_cast<int>(cause));
 }
 
 TransferTrouble handshake_trouble(const std::string& detail, const std::string& authorities) {
   if (has(detail, "wrong version number") || has(detail, "packet length too long")) {
-    return {Kind::kRefused, "no TLS there: is the port right, does the server speak TLS?"};
+    return {Kind::kRefused,
+            "TLS handshake failed: check the port, and that the server supports TLS"};
   }
   if (has(detail, "alert")) {
-    return {Kind::kRefused,
-            "the server refused the TLS handshake: it knows no common version or cipher"};
+    return {Kind::kRefused, "the server refused the TLS handshake: no common version or cipher"};
   }
   if (has(detail, " routines::")) {
-    return {Kind::kRefused,
-            "the TLS handshake failed (" + one_line(detail, kDetailMax) +
-                "): is the authority the one that signed the server's certificate? " + authorities};
+    return {Kind::kRefused, "the TLS handshake failed (" + one_line(detail, kDetailMax) +
+                                "): check that the authority signed the server's certificate; " +
+                                authorities};
   }
-  return {Kind::kUnreachable,
-          "the server closed the connection in the TLS handshake: is there no TLS there, is the "
-          "port right?"};
+  return {
+      Kind::kUnreachable,
+      "the server closed the connection in the TLS handshake: check that it supports TLS, and the "
+      "port"};
 }
 
 }  // namespace
@@ -101,8 +103,7 @@ TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail
   switch (code) {
     case CURLE_COULDNT_RESOLVE_HOST:
     case CURLE_COULDNT_RESOLVE_PROXY:
-      return {Kind::kUnreachable,
-              "the host's name is not known: is it right, does the resolver answer?"};
+      return {Kind::kUnreachable, "unknown host name: check the name and the resolver"};
     case CURLE_COULDNT_CONNECT:
       return {Kind::kUnreachable, connect_trouble(curl)};
     case CURLE_SSL_CONNECT_ERROR:
@@ -111,13 +112,12 @@ TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail
       return {Kind::kRefused, certificate_trouble(curl, authorities)};
     case CURLE_SSL_CACERT_BADFILE:
       return {Kind::kRefused, "the certificates of authorities cannot be read: " + authorities};
-    case CURLE_GOT_NOTHING:  // as servers of TLS do that are asked without
-      return {
-          Kind::kTransient,
-          "the server closed the connection without an answer: are port and http:// or https:// "
-          "right?"};
+    case CURLE_GOT_NOTHING:  // typical for TLS servers without TLS in the request
+      return {Kind::kTransient,
+              "the server closed the connection without an answer: check the port, and http:// or "
+              "https://"};
     case CURLE_OPERATION_TIMEDOUT:
-      return {Kind::kTransient, "no answer in time: is the host up, does a firewall swallow it?"};
+      return {Kind::kTransient, "no answer in time: check the host and firewalls"};
     case CURLE_PARTIAL_FILE:
     case CURLE_RECV_ERROR:
     case CURLE_SEND_ERROR:
@@ -129,7 +129,7 @@ TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail
       return {Kind::kInterrupted, words};
     case CURLE_UNSUPPORTED_PROTOCOL:
       if (has(detail, "HTTP/0.9")) {
-        return {Kind::kRefused, "the answer is no HTTP: is it https:// instead of http://?"};
+        return {Kind::kRefused, "the answer is not HTTP: use https:// instead of http://?"};
       }
       return {Kind::kRefused, words};
     default:
@@ -142,9 +142,9 @@ namespace {
 using Kind = HttpOutcome::Kind;
 
 constexpr double kConnectTimeout_s = 20;
-constexpr std::size_t kReasonMax = 200;  // of a server's own words in a message
+constexpr std::size_t kReasonMax = 200;  // of a server message
 constexpr std::size_t kHeaderBytesMax = 100'000;
-constexpr int kAddressesMax = 4;  // of a host, that are tried
+constexpr int kAddressesMax = 4;  // tried per host
 
 template <auto kFree>
 struct FreeWith {
@@ -179,14 +179,14 @@ std::size_t take_header(char*, std::size_t size, std::size_t count, void* user) 
   return received.header_bytes > kHeaderBytesMax ? 0 : size * count;
 }
 
-/// Of the answer itself, not of a proxy; empty when it has none of that name.
+/// Header of the answer itself, not of a proxy; empty: none.
 std::string_view header(CURL* curl, const char* name) {
   curl_header* found = nullptr;
   const bool is_there = curl_easy_header(curl, name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK;
   return is_there ? found->value : "";
 }
 
-/// libcurl calls it at least once a second, also while it waits.
+/// Called by libcurl at least once per second, also during waits.
 int stop_when_requested(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return (*static_cast<const StopRequested*>(user))() ? 1 : 0;
 }
@@ -215,8 +215,8 @@ Place place_of(const std::string& url) {
   return {part(CURLUPART_SCHEME), part(CURLUPART_HOST), part(CURLUPART_PORT)};
 }
 
-/// Which address of a host answered last: a dual-stack host whose one side is dead costs one
-/// time-out, not one a request.
+/// Last working address of a host: a dual-stack host with one dead address costs one timeout, not
+/// one per request.
 class GoodAddresses {
  public:
   std::string find(const Place& place) {
@@ -255,38 +255,36 @@ std::vector<std::string> addresses_of(const Place& place) {
   return addresses;
 }
 
-/// Of a transfer that did not come to its end.
+/// Outcome of an incomplete transfer.
 HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& received,
                                const HttpRequest& request, const char* error_text) {
   const HttpLimits& limits = request.limits;
   double took_s = 0;
   curl_easy_getinfo(curl, CURLINFO_TOTAL_TIME, &took_s);
-  // libcurl itself ends a single header of 100 kB, by saying that memory is short.
+  // libcurl reports a single header of 100 kB as out of memory.
   if (received.header_bytes > kHeaderBytesMax || code == CURLE_OUT_OF_MEMORY) {
     return {Kind::kRefused,
             {},
-            formatted("the answer's headers have no end: more than %zu bytes of them are none",
-                      kHeaderBytesMax)};
+            formatted("the headers of the answer are larger than %zu bytes", kHeaderBytesMax)};
   }
   if (received.is_too_large) {
     return {Kind::kRefused,
             {},
-            formatted("the answer is larger than %zu bytes, more than is meant here",
-                      limits.bytes_max)};
+            formatted("the answer exceeds the limit of %zu bytes", limits.bytes_max)};
   }
   const bool has_begun = !received.body.empty();
   if (code == CURLE_OPERATION_TIMEDOUT && took_s >= 0.95 * limits.deadline_s) {
     const std::string waited = formatted("%g s", limits.deadline_s);
     return {Kind::kSlow,
             {},
-            has_begun ? "the answer was not whole after " + waited + " (" +
+            has_begun ? "the answer was incomplete after " + waited + " (" +
                             counted(received.body.size(), "byte") + ")"
-                      : "no answer in time, " + waited + ": is the host up, a firewall silent?"};
+                      : "no answer in time, " + waited + ": check the host and firewalls"};
   }
   if (code == CURLE_OPERATION_TIMEDOUT && has_begun) {
     return {Kind::kSlow,
             {},
-            formatted("the answer came too slowly, less than %ld bytes a second for %ld s",
+            formatted("the answer was too slow, less than %ld bytes/s for %ld s",
                       limits.bytes_per_s_min, limits.slow_s)};
   }
   const bool is_silent = code == CURLE_RECV_ERROR && received.header_bytes == 0;
@@ -295,9 +293,8 @@ HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& receiv
   return {trouble.kind, {}, std::move(trouble.reason)};
 }
 
-/// libcurl reports a body that ends before its frames, chunks or length do. It cannot where an
-/// HTTP/1 connection's end is the body's, and says nothing of a packed text that breaks off: then
-/// the text must end as a whole one does.
+/// libcurl detects truncated frames, chunks or lengths, but not truncation of an HTTP/1 body that
+/// ends with its connection, or of a compressed text: then the end of the text is checked.
 bool is_whole(CURL* curl, std::string_view body) {
   long version = 0;
   curl_off_t length = -1;
@@ -307,7 +304,7 @@ bool is_whole(CURL* curl, std::string_view body) {
                          header(curl, "Transfer-Encoding") == "chunked";
   const bool is_safe = is_framed && header(curl, "Content-Encoding").empty();
   if (!looks_like_json(body)) return body.ends_with('\n') || is_safe;
-  // Not all that servers write, such as NaN, is JSON; half of an answer ends otherwise.
+  // Servers may write NaN, which is not JSON; a truncated answer ends without a bracket.
   const bool is_closed = body.find_last_of("]}") != body.npos &&
                          body.find_last_of("]}") == body.find_last_not_of(" \t\r\n");
   return Json::parse(body).value().exists() || (is_safe && is_closed);
@@ -317,7 +314,7 @@ HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received re
   if (is_post && status / 100 == 2) return {Kind::kDone, std::move(received.body)};
   if (status == 200) {
     if (!is_whole(curl, received.body)) {
-      return {Kind::kTransient, {}, "the answer was cut short"};
+      return {Kind::kTransient, {}, "the answer is truncated"};
     }
     return {Kind::kDone, std::move(received.body)};
   }
@@ -329,7 +326,7 @@ HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received re
   if (status == 429 || status == 503) {
     return {Kind::kBusy, {}, reason, wait_seconds(told, now_s())};
   }
-  // 501 and 505: the server cannot do what is asked, now or later.
+  // 501 and 505 are permanent.
   const bool may_pass = status == 408 || (status >= 500 && status != 501 && status != 505);
   return {may_pass ? Kind::kTransient : Kind::kRefused, {}, reason};
 }
@@ -348,19 +345,19 @@ List header_list(const HttpRequest& request, const Place& origin, const std::str
   return list;
 }
 
-/// One transfer of one URL, to an address, or as libcurl finds one.
+/// One transfer of one URL, to an address, or one chosen by libcurl.
 struct Transfer {
   const HttpRequest& request;
   const StopRequested& stop_requested;
   Clock::time_point deadline;
   Handle curl;
-  const char* encoding = "";  ///< what may be sent and unpacked; "" = all that libcurl can
+  const char* encoding = "";  ///< accepted encodings; "": all of libcurl
 
   [[nodiscard]] double left_s() const {
     return std::chrono::duration<double>(deadline - Clock::now()).count();
   }
 
-  /// The time to connect is a share of what is left, so that another address has its turn.
+  /// The connect timeout is a share of the remaining time, to leave time for other addresses.
   HttpOutcome perform(const std::string& url, const List& headers, const std::string& address,
                       double connect_share) {
     Received received;
@@ -378,7 +375,7 @@ struct Transfer {
     curl_easy_setopt(c, CURLOPT_RESOLVE, resolve.get());
     curl_easy_setopt(c, CURLOPT_HTTPHEADER, headers.get());
     if (request.post) curl_easy_setopt(c, CURLOPT_POSTFIELDS, request.post->c_str());
-    // As the curl command does: a proxy that opens TLS has an authority of its own.
+    // Like the curl command: a TLS-intercepting proxy has its own authority.
     const char* const authorities =
         request.ca_file.empty() ? std::getenv("SSL_CERT_FILE") : request.ca_file.c_str();
     if (authorities != nullptr) {
@@ -422,8 +419,8 @@ struct Transfer {
     curl_easy_getinfo(curl.get(), CURLINFO_PRIMARY_IP, &text);
     return text == nullptr ? "" : text;
   }
-  /// Failures that another address of the host may not have: connection, TLS, reset, time-out, a
-  /// gateway with nothing behind it.
+  /// Failures that may be limited to one address of the host: connection, TLS, reset, timeout,
+  /// gateway errors.
   [[nodiscard]] bool may_be_the_address(const HttpOutcome& outcome) const {
     if (outcome.status == 502 || outcome.status == 504) return !stop_requested();
     switch (outcome.transfer_code) {
@@ -443,23 +440,23 @@ struct Transfer {
     }
   }
 
-  /// At every address in turn, the one that answered last first.
+  /// Tries all addresses, the last working one first.
   HttpOutcome perform_at_addresses(const std::string& url, const List& headers) {
     constexpr double kFirstShare = 0.5;
     const Place place = place_of(url);
     const std::string known = good_addresses().find(place);
     HttpOutcome outcome = perform(url, headers, known, kFirstShare);
-    // libcurl itself tries the next address where nobody takes a connection.
+    // libcurl itself tries the next address after a refused connection.
     const bool has_tried_all = known.empty() && outcome.transfer_code == CURLE_COULDNT_CONNECT;
     if (has_tried_all || !may_be_the_address(outcome)) return outcome;
     const std::string failed = address_used();
     std::vector<std::string> others = addresses_of(place);
     const auto end = std::remove(others.begin(), others.end(), failed.empty() ? known : failed);
-    // Of a proxy, or of a host with one address, there is no other.
+    // A proxy, or a host with one address, has no other.
     if (end == others.end() && !failed.empty()) return outcome;
     others.erase(end, others.end());
     for (std::size_t i = 0; i < others.size() && may_be_the_address(outcome); ++i) {
-      // The next request begins with another address, also where no time is left for it in this.
+      // The next request begins with this address, even if no time is left now.
       good_addresses().set(place, others[i]);
       if (left_s() < 0.05) break;
       outcome = perform(url, headers, others[i], 1.0 / static_cast<double>(others.size() - i));
@@ -467,7 +464,7 @@ struct Transfer {
     return outcome;
   }
 
-  /// Where the answer leads; empty: nowhere, or not from https to http.
+  /// Target of a redirect; empty: none, or from https to http.
   [[nodiscard]] std::string redirect_target(const std::string& from) const {
     char* target = nullptr;
     curl_easy_getinfo(curl.get(), CURLINFO_REDIRECT_URL, &target);
@@ -506,7 +503,8 @@ HttpOutcome http_request(const HttpRequest& request, const StopRequested& stop_r
   Transfer transfer{request, stop_requested, Clock::now() + budget, new_handle()};
   if (transfer.curl == nullptr) return {Kind::kRefused, {}, "libcurl cannot be started"};
   HttpOutcome outcome = transfer.follow();
-  // A packed text without a last line end is asked for once more, plain: then its length tells.
+  // Repeats a request for a compressed text without final line end uncompressed, to check its
+  // length.
   if (outcome.status == 200 && outcome.kind == Kind::kTransient &&
       !header(transfer.curl.get(), "Content-Encoding").empty()) {
     transfer.encoding = "identity";
@@ -532,7 +530,7 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
   const auto [stop, error] = std::from_chars(header_value.data(), end, number);
   if (error == std::errc::result_out_of_range && stop == end) return kWaitMax_s;
   if (error == std::errc{} && stop == end && !std::isnan(number)) {
-    constexpr double kSmallestTimestamp = 1e9;  // September 2001; nobody is told to wait so long
+    constexpr double kSmallestTimestamp = 1e9;  // September 2001, too large for a duration
     return std::clamp(number < kSmallestTimestamp ? number : number - now_utc_s, 0.0, kWaitMax_s);
   }
   std::int64_t utc_s = 0;

@@ -12,13 +12,13 @@
 namespace bess {
 namespace {
 
-/// cJSON answers "no memory" with null.
+/// cJSON returns null when out of memory.
 cJSON* made(cJSON* item) {
   if (item == nullptr) throw std::bad_alloc();
   return item;
 }
 
-/// cJSON itself would write a number in 15 or 17 digits, and a whole one as the nearest double.
+/// cJSON writes numbers with 15 or 17 digits, and whole numbers as doubles.
 cJSON* number_item(double number, int decimals_max) {
   if (!std::isfinite(number)) return made(cJSON_CreateNull());
   constexpr int kDigitsMax = std::numeric_limits<double>::max_exponent10 + 64;
@@ -113,7 +113,7 @@ Json Json::object(std::initializer_list<JsonMember> members) {
 
 void Json::set(const char* key, Json value) {
   if (!cJSON_AddItemToObject(item_.get(), key, value.item_.get())) throw std::bad_alloc();
-  static_cast<void>(value.item_.release());  // it belongs to the object now
+  static_cast<void>(value.item_.release());  // owned by the object now
 }
 
 void Json::add(Json value) {

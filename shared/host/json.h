@@ -1,7 +1,6 @@
-// JSON, read and written through cJSON, which json.cpp alone includes. Numbers are written in the
-// shortest form that reads back to them, whole numbers exactly; JSON has no NaN: what is not finite
-// becomes null. A text is read with json_reader.h where it must hold something, with JsonValue
-// where it may.
+// JSON reading and writing with cJSON, which only json.cpp includes. Numbers are written in the
+// shortest exact form; values that are not finite become null. Use json_reader.h for required
+// members and JsonValue for optional ones.
 #pragma once
 
 #include <concepts>
@@ -19,13 +18,13 @@ struct cJSON;
 
 namespace bess {
 
-/// A number that is written with so many decimals.
+/// Number written with `count` decimals.
 struct Decimals {
   double value;
   int count;
 };
 
-/// A look at one value of a Json, which must outlive it. What is not there may be asked too.
+/// View of one value of a Json, which must outlive it. The value may be missing.
 class JsonValue {
  public:
   explicit JsonValue(const cJSON* item = nullptr) : item_(item) {}
@@ -34,19 +33,19 @@ class JsonValue {
   [[nodiscard]] bool is_null() const;
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] bool is_list() const;
-  /// What is held, when it is of that kind; a text ends in 0, and is null when it is none.
+  /// Value if it has that type; text is null-terminated, null if it is not text.
   [[nodiscard]] std::optional<bool> boolean() const;
   [[nodiscard]] std::optional<double> number() const;
   [[nodiscard]] const char* text() const;
   [[nodiscard]] const char* text_or(const char* otherwise) const {
     return text() == nullptr ? otherwise : text();
   }
-  /// Of a member: its key.
+  /// Key of a member.
   [[nodiscard]] std::string_view key() const;
-  /// Of an object, by its key.
+  /// Member of an object by its key.
   [[nodiscard]] JsonValue operator[](const char* key) const;
 
-  /// for (const JsonValue item : list_or_object); anything else holds nothing.
+  /// for (const JsonValue item : list_or_object); other values are empty.
   class Iterator {
    public:
     explicit Iterator(const cJSON* item) : item_(item) {}
@@ -67,13 +66,13 @@ class JsonValue {
 
 struct JsonMember;
 
-/// A JSON value: read from a text, or made of values, lists and members.
+/// JSON value: parsed, or built from values, lists and members.
 class Json {
  public:
-  /// Does not exist when `text` is anything else than one JSON value.
+  /// Does not exist unless `text` is one JSON value.
   static Json parse(std::string_view text);
 
-  // Whatever can be a value is one: Json::object({{"policy", name}, {"days", 90}, {"profit_eur",
+  // Implicit conversions: Json::object({{"policy", name}, {"days", 90}, {"profit_eur",
   // Decimals{x, 4}}}).
   Json(std::string_view text);                                      // NOLINT: implicit on purpose
   Json(const std::string& text) : Json(std::string_view(text)) {}   // NOLINT
@@ -96,7 +95,7 @@ class Json {
     (json.add(Json(std::forward<Values>(values))), ...);
     return json;
   }
-  /// What `make` makes of each item; items that are values themselves need none.
+  /// List of `make(item)`; items that are values need no `make`.
   template <typename Items, typename Make = std::identity>
   static Json list_from(const Items& items, Make make = {}) {
     Json json = list();
@@ -105,13 +104,13 @@ class Json {
   }
   static Json object(std::initializer_list<JsonMember> members = {});
 
-  void set(const char* key, Json value);  ///< of an object; a new member is the last
-  void add(Json value);                   ///< to the end of a list
+  void set(const char* key, Json value);  ///< appends a member to an object
+  void add(Json value);                   ///< appends to a list
 
   [[nodiscard]] JsonValue value() const { return JsonValue(item_.get()); }
-  /// In one line, without its end.
+  /// One line, without line end.
   [[nodiscard]] std::string line() const;
-  /// For people: each member in a line of its own, lists of numbers in one.
+  /// For people: one line per member, lists of numbers on one line.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -125,12 +124,12 @@ class Json {
   std::unique_ptr<cJSON, Delete> item_;
 };
 
-/// By its first character: an object or a list, whole or not.
+/// By its first character: object or list, complete or not.
 bool looks_like_json(std::string_view text);
 
 struct JsonMember {
   const char* key;
-  mutable Json value;  ///< is moved from: an initializer list only gives it as const
+  mutable Json value;  ///< mutable, to move from an initializer list
 };
 
 }  // namespace bess

@@ -11,7 +11,7 @@ JsonReader::JsonReader(JsonValue object, std::string file, std::string kind)
   std::set<std::string_view> keys;
   for (const JsonValue each : object) {
     if (!each.key().empty() && !keys.insert(each.key()).second) {
-      fail("{}: not {}: \"{}\" stands twice", file_, kind_, each.key());
+      fail("{}: not {}: duplicate \"{}\"", file_, kind_, each.key());
     }
   }
 }

@@ -1,5 +1,5 @@
-// Strict reading of a JSON object: what is missing or of the wrong kind is an error that names file
-// and member.
+// Strict reading of a JSON object: missing members and wrong types are errors that name file and
+// member.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace bess {
 
 class JsonReader {
  public:
-  /// `kind` says what the file should be, e.g. "a student file". The object outlives the reader.
-  /// Throws UserError when a member stands twice: nobody knows which was meant.
+  /// `kind`: expected kind of file, e.g. "a student file". The object outlives the reader. Throws
+  /// UserError for duplicate members.
   JsonReader(JsonValue object, std::string file, std::string kind);
 
-  // Each throws UserError when the member is not there, or is something else.
+  // All throw UserError if the member is missing or has another type.
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] double number(const char* key) const;
   [[nodiscard]] std::int64_t whole(const char* key, std::int64_t min, std::int64_t max) const;
   [[nodiscard]] JsonReader object(const char* key) const;
-  /// Exactly as many whole numbers as `out` has room for.
+  /// Exactly `out.size()` whole numbers.
   template <std::integral T, std::size_t kExtent>
   void wholes(const char* key, std::span<T, kExtent> out) const {
     const JsonValue list = member(key);
@@ -35,7 +35,7 @@ class JsonReader {
       const double number = item.number().value_or(0.5);
       if (!(number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max()) ||
           static_cast<double>(static_cast<T>(number)) != number) {
-        fail("{}: \"{}\" holds something else than integers of {} bits", file_, key, 8 * sizeof(T));
+        fail("{}: \"{}\" must contain only integers of {} bits", file_, key, 8 * sizeof(T));
       }
       *value++ = static_cast<T>(number);
     }

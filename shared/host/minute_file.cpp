@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kHeader = "minute_utc,indicative_eur_mwh,settled_eur_mwh";
-/// Gaps are stored as missing minutes, so a stray date must not ask for centuries of memory.
+/// Gaps are stored as missing minutes, so a wrong date must not allocate centuries.
 constexpr std::int64_t kMinutesMax = 40LL * 366 * 24 * 60;
 
-/// A price field: empty = missing; anything else must be one finite number.
+/// Price field: empty means missing, else one finite number.
 bool parse_price(std::string_view field, double& value) {
   if (field.empty()) {
     value = kMissing;
@@ -62,13 +62,13 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
   const auto size = static_cast<std::int64_t>(series.size());
   if (index < size) {
     fail(
-        "{}:{}: row out of order: {} does not come after {}; sort the file by time and drop "
+        "{}:{}: row out of order: {} is not after {}; sort the file by time and remove "
         "duplicates",
         name, line_number, utc_text(row.utc_s).view(),
         utc_text(series.utc_s(series.size() - 1)).view());
   }
   if (index >= kMinutesMax) {
-    fail("{}:{}: {} is more than 40 years after the first row; mend the date", name, line_number,
+    fail("{}:{}: {} is more than 40 years after the first row; correct the date", name, line_number,
          utc_text(row.utc_s).view());
   }
   series.indicative.resize(static_cast<std::size_t>(index), kMissing);
@@ -109,8 +109,8 @@ MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
     append_row(series, row, name, line_number);
     has_price = has_price || !std::isnan(row.indicative) || !std::isnan(row.settled);
   }
-  if (series.settled.empty()) fail("{}: holds no minutes", name);
-  if (!has_price) fail("{}: holds minutes but no price in any of them", name);
+  if (series.settled.empty()) fail("{}: has no minutes", name);
+  if (!has_price) fail("{}: has minutes but no prices", name);
   return series;
 }
 

@@ -27,7 +27,7 @@ bool is_web_page(std::string_view text) {
 std::string_view plain_text(std::string_view text, std::string_view name) {
   using namespace std::string_view_literals;
   if (text.starts_with("\x1F\x8B")) {
-    fail("{}: gzip data inside (packed twice, or sent without saying so): unpack it with gunzip",
+    fail("{}: contains gzip data (compressed twice, or sent without Content-Encoding): use gunzip",
          name);
   }
   if (text.starts_with("PK\x03\x04")) fail("{}: a ZIP archive: unzip it first", name);
@@ -35,10 +35,10 @@ std::string_view plain_text(std::string_view text, std::string_view name) {
     fail("{}: UTF-16 text: save it as UTF-8", name);
   }
   if (text.find('\0') != std::string_view::npos) {
-    fail("{}: holds NUL bytes: UTF-16 text? save it as UTF-8", name);
+    fail("{}: contains NUL bytes, possibly UTF-16: save it as UTF-8", name);
   }
   if (text.find('\r') != std::string_view::npos && text.find('\n') == std::string_view::npos) {
-    fail("{}: its lines end in CR alone: save it with LF or CR LF", name);
+    fail("{}: lines end with CR only: save it with LF or CR LF", name);
   }
   text = without_byte_order_mark(text);
   if (is_web_page(text)) {

@@ -1,4 +1,4 @@
-// Text that comes from outside: refused when it is not text at all.
+// Check that external input is text.
 #pragma once
 
 #include <string_view>
@@ -8,7 +8,7 @@
 namespace bess {
 
 /// `text` without its byte order mark. Throws UserError for a ZIP archive, UTF-16 or a web page,
-/// which no reader here can use; `name` is used in the message.
+/// which are not supported; `name` is used in the message.
 std::string_view plain_text(std::string_view text, std::string_view name);
 
 }  // namespace bess

@@ -1,6 +1,5 @@
-// Two pseudo terminals with everything that is written to one arriving at the other: the two ends
-// of a serial line, each with a device name. Destroying it hangs both ends up, as a pulled adapter
-// does.
+// Pair of connected pseudo terminals: the two ends of a serial line, each with a device name.
+// Destruction hangs up both ends, like a removed adapter.
 #pragma once
 
 #include <fcntl.h>
@@ -39,7 +38,7 @@ class PtyBridge {
  private:
   struct End {
     int master = -1;
-    int terminal = -1;  ///< kept open, so that a program that closes its end causes no hang-up
+    int terminal = -1;  ///< kept open, to prevent a hang-up when a program closes its end
     std::string name;
   };
   static End open_end() {
@@ -71,7 +70,7 @@ class PtyBridge {
     const ssize_t got = read(from, bytes, sizeof bytes);
     if (got <= 0) return;
     const ssize_t put = write(to, bytes, static_cast<std::size_t>(got));
-    static_cast<void>(put);  // a full line loses bytes, as a real one does
+    static_cast<void>(put);  // a full line loses bytes, like a real one
   }
 
   std::array<End, 2> ends_;

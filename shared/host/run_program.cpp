@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kOutputBytesMax = 1 << 20;
 
-/// Both ends of a pipe; neither reaches another program by accident.
+/// Pipe, not inherited by other programs.
 struct Pipe {
   explicit Pipe(bool is_wanted = true) {
     if (!is_wanted || pipe2(ends, O_CLOEXEC) != 0) ends[0] = ends[1] = -1;
@@ -37,8 +37,8 @@ struct Pipe {
   int ends[2];
 };
 
-/// Signals are ours to wait for, not the other program's to inherit blocked or ignored. A group of
-/// its own: what it started must end with it.
+/// The program does not inherit blocked or ignored signals, and has its own process group, so that
+/// its children end with it.
 pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pipe& out,
             const Pipe& errors) {
   std::vector<char*> argv;
@@ -72,7 +72,7 @@ pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pip
   return errno == 0 ? pid : -1;
 }
 
-/// Until when a program may run.
+/// Deadline and stop request of a program.
 struct Patience {
   std::int64_t deadline_ns;
   const std::stop_token& stop;
@@ -83,7 +83,7 @@ struct Patience {
   }
 };
 
-/// What one pipe gives, into `text`; the pipe is closed at its end.
+/// Reads one pipe into `text`; closes it at its end.
 void take_output(Pipe& pipe, std::string& text) {
   char buffer[4'096];
   const ssize_t size = read(pipe.ends[0], buffer, sizeof buffer);
@@ -97,8 +97,8 @@ void give_input(Pipe& in, std::string_view& input) {
   if ((written < 0 && errno != EAGAIN) || input.empty()) in.close_end(1);
 }
 
-/// Feeds and reads until the program closes all that it says; false when the time is over or it
-/// says too much.
+/// Writes and reads until the program closes its outputs; false after the deadline or with too much
+/// output.
 bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const Patience& patience,
               ProgramResult& result) {
   constexpr int kLookMs = 100;
@@ -122,7 +122,7 @@ bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const P
   return true;
 }
 
-/// Its output may be closed before it ends. False when the time is over.
+/// Waits for the end, which may be later than that of the output. False after the deadline.
 bool reap(pid_t pid, const Patience& patience, int& status) {
   constexpr std::int64_t kSliceNs = 2'000'000;
   while (waitpid(pid, &status, WNOHANG) == 0) {
@@ -171,7 +171,7 @@ std::string ProgramResult::complaint() const {
     const std::string line = one_line(take_line(rest), 300);
     if (!line.empty()) last = line;
   }
-  return last.empty() ? "it says nothing" : last;
+  return last.empty() ? "no error output" : last;
 }
 
 ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,

@@ -1,5 +1,5 @@
-// Another program, run to its end or to its time: given a text, its output taken; and words quoted
-// for a shell. Needs poll and posix_spawn alone.
+// Execution of another program with input, output and time limit; and quoting for a shell. Needs
+// only poll and posix_spawn.
 #pragma once
 
 #include <cstdint>
@@ -23,25 +23,24 @@ inline std::string shell_word(const std::string& word) {
 }
 
 struct ProgramResult {
-  /// Empty when it ran to its end; else why not, for a message.
+  /// Error message; empty if it ran to its end.
   std::string trouble;
-  int exit_code = -1;  ///< 128 + signal; -1: it did not run to its end
+  int exit_code = -1;  ///< 128 + signal; -1: did not run to its end
   std::string output;  ///< standard output
-  std::string errors;  ///< standard error, where that is heard
+  std::string errors;  ///< standard error, if captured
 
   [[nodiscard]] bool is_well() const { return trouble.empty() && exit_code == 0; }
-  /// Why it is not well, in one line: the last that it complained of.
+  /// Error in one line: the last line of its error output.
   [[nodiscard]] std::string complaint() const;
 };
 
-/// `arguments[0]` is looked for in PATH unless it is a path. Killed, with all that it started, when
-/// it takes longer than `time_ms_max`, says more than a megabyte, or within a tenth of a second
-/// after it is not wanted any more. Its errors go where ours go. SIGPIPE must be ignored where
-/// `input` is not empty: a program need not read what it is given.
+/// `arguments[0]` is searched in PATH unless it is a path. The program and its children are killed
+/// after `time_ms_max`, after 1 MiB of output, or within 0.1 s after a stop request. Standard error
+/// is inherited. With `input` the caller must ignore SIGPIPE, because a program need not read it.
 ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
                           int time_ms_max, const std::stop_token& stop = {});
 
-/// The same without an input, its errors taken too.
+/// The same without input, capturing standard error.
 ProgramResult run_and_hear(const std::vector<std::string>& arguments, std::int64_t timeout_s);
 
 }  // namespace bess

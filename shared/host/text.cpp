@@ -9,10 +9,9 @@ namespace bess {
 
 namespace {
 
-constexpr std::size_t kLettersMax = 40;  // longer words are no slips of the finger
+constexpr std::size_t kLettersMax = 40;  // no suggestions for longer words
 
-/// Letters to insert, remove, replace or swap with their neighbour (the restricted distance of
-/// Damerau).
+/// Restricted Damerau-Levenshtein distance.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);
@@ -90,14 +89,14 @@ std::string with_true_minus(std::string_view text) {
 
 namespace {
 
-/// The C0 characters and DEL, and in UTF-8 the C1 ones: a terminal takes U+009B for ESC [.
+/// The C0 characters and DEL, and in UTF-8 the C1 ones: a terminal reads U+009B as ESC [.
 bool is_control(std::string_view text, std::size_t at) {
   const auto c = static_cast<unsigned char>(text[at]);
   const auto next = static_cast<unsigned char>(at + 1 < text.size() ? text[at + 1] : 0);
   return c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0);
 }
 
-/// Never inside a character of several bytes.
+/// Never cuts a multi-byte character.
 std::string_view cut(std::string_view text, std::size_t size_max) {
   if (text.size() <= size_max) return text;
   const auto continues = [&text](std::size_t at) {

@@ -2,10 +2,10 @@
 
 #define TOML_EXCEPTIONS 0
 #define TOML_HEADER_ONLY 1
-// toml++ and its tables recurse: with toml_traps.h this keeps them off the end of the stack.
+// toml++ recurses: with toml_traps.h this prevents a stack overflow.
 #define TOML_MAX_NESTED_VALUES 64
-// What toml++ asserts is not true of every text: of "[=]" and "a = [1,}" the branches behind it
-// report the error well. In release builds it would assume it instead: hence without NDEBUG.
+// Some assertions of toml++ fail for invalid text such as "[=]" and "a = [1,}", whose errors it
+// reports correctly. With NDEBUG it would assume them: hence without NDEBUG.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_cast<void>(0)
 #include <toml++/toml.h>
@@ -56,14 +56,14 @@ std::string complaint(const std::string& name, int line, std::string_view what) 
          (is_bare_word ? "; write true or false, a number, or text in \"quotes\"" : "");
 }
 
-/// The UTF-8 characters at these offsets as escapes, "\U000000E9": the same within a string.
+/// Replaces UTF-8 characters at these offsets by escapes, "\U000000E9", equivalent in a string.
 std::string with_escapes(std::string_view text, const std::vector<std::size_t>& offsets) {
   std::string escaped;
   std::size_t done = 0;
   for (const std::size_t offset : offsets) {
     const auto lead = static_cast<unsigned char>(text[offset]);
     const std::size_t bytes = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    if (lead < 0xC0 || offset + bytes > text.size()) continue;  // no UTF-8: the parser says so
+    if (lead < 0xC0 || offset + bytes > text.size()) continue;  // not UTF-8: reported by the parser
     std::uint32_t code_point = lead & (0x7FU >> bytes);
     for (std::size_t i = 1; i < bytes; ++i) {
       code_point = code_point << 6 | (static_cast<unsigned char>(text[offset + i]) & 0x3FU);
@@ -76,7 +76,7 @@ std::string with_escapes(std::string_view text, const std::vector<std::size_t>& 
   return escaped.append(text, done);
 }
 
-/// As far as it could be parsed: one byte more than that shows that there is more.
+/// Reads at most one byte more than the limit, which shows that the file is too large.
 bool read_whole_file(const std::string& path, std::string& text, std::string& error) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
@@ -90,7 +90,7 @@ bool read_whole_file(const std::string& path, std::string& text, std::string& er
   }
   const bool read_failed = std::ferror(file) != 0;
   std::fclose(file);
-  if (read_failed) error = path + ": cannot read (is it a folder?)";
+  if (read_failed) error = path + ": cannot read (a folder?)";
   return !read_failed;
 }
 
@@ -112,7 +112,7 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 bool parse_toml_text(std::string_view text, const std::string& name, TomlValue& document,
                      std::string& error) {
   if (text.size() > kTomlBytesMax) {
-    error = complaint(name, 1, "longer than 256 KiB, which no configuration and no map is");
+    error = complaint(name, 1, "exceeds the limit of 256 KiB");
     static_assert(kTomlBytesMax == 256 * 1024);
     return false;
   }

@@ -28,8 +28,7 @@ const TomlValue* TomlTable::node(std::string_view key) {
 
 void TomlTable::fail_at(const TomlValue& value, std::string_view message) {
   if (!error_.empty()) return;
-  const std::string& file =
-      value.file != nullptr ? *value.file : file_;  // it may be an included one
+  const std::string& file = value.file != nullptr ? *value.file : file_;  // may be an included one
   error_ = one_line(file) + ":" + std::to_string(value.line) + ": " + one_line(message);
 }
 

@@ -1,6 +1,6 @@
-// Strict reading of a TOML table: unknown key, wrong type or out-of-range value becomes one line
-// with file, line and the mend. Start-up only: after loading, everything lives in fixed-size
-// structs. Nothing is thrown; the first error wins and later reads are harmless.
+// Strict reading of a TOML table: an unknown key, wrong type or out-of-range value gives one line
+// with file, line and remedy. Start-up only: loaded values are in fixed-size structs. Throws
+// nothing; the first error is kept and later reads are harmless.
 #pragma once
 
 #include <set>
@@ -13,11 +13,11 @@
 
 namespace bess {
 
-/// One table of a file. Every key that the file may hold must be asked for before `finish`.
+/// One table of a file. Read every allowed key before `finish`.
 class TomlTable {
  public:
-  /// `table` may be null or no table: absent, all values keep their defaults. `where` is its name
-  /// in messages, e.g. "[battery]". Table and `error` outlive this object.
+  /// `table` may be null or not a table: absent, all values keep their defaults. `where`: name in
+  /// messages, e.g. "[battery]". Table and `error` outlive this object.
   TomlTable(const TomlValue* table, std::string file, std::string where, std::string& error)
       : table_(table != nullptr && table->as<TomlMembers>() != nullptr ? table : nullptr),
         file_(std::move(file)),
@@ -31,7 +31,7 @@ class TomlTable {
   [[nodiscard]] std::string& error() { return error_; }
   [[nodiscard]] bool ok() const { return error_.empty(); }
 
-  // Each reader leaves `value` as it is when the key is absent; `require` makes absence an error.
+  // Readers do not change `value` if the key is absent; with `require` this is an error.
   void require(std::string_view key);
   void boolean(std::string_view key, bool& value);
   void integer(std::string_view key, std::int64_t& value, std::int64_t min, std::int64_t max);
@@ -45,12 +45,12 @@ class TomlTable {
     if (found == nullptr || value.assign(*found)) return;
     fail(key, "is too long (at most " + std::to_string(kCapacity) + " characters)");
   }
-  /// Index of the key's text in `choices`.
+  /// Index of the text in `choices`.
   void choice(std::string_view key, int& index, std::span<const std::string_view> choices);
   void choice(std::string_view key, int& index, std::initializer_list<std::string_view> choices) {
     choice(key, index, std::span(choices.begin(), choices.size()));
   }
-  /// What the key holds; null when it is absent, or is something else, which is an error.
+  /// Value of the key; null if absent, or of another type, which is an error.
   const std::string* text(std::string_view key);
   /// Text without control characters.
   void line(std::string_view key, std::string& value);
@@ -58,12 +58,12 @@ class TomlTable {
   const TomlArray* array(std::string_view key);
   const TomlValue* node(std::string_view key);
 
-  /// Paths are relative to the file's folder; an absolute one stays as it is.
+  /// Path relative to the folder of the file; absolute paths are unchanged.
   [[nodiscard]] std::string resolved(std::string_view path) const;
 
-  /// A key of earlier versions: let through, and never proposed. True when the table has it.
+  /// Accepts a key of earlier versions, without suggesting it. True if the table has it.
   bool take_retired(std::string_view key);
-  /// Complains about every key that was not asked for.
+  /// Reports a key that was not read.
   void finish();
   /// Records "file:line: where key message", once.
   void fail(std::string_view key, std::string_view message);

@@ -1,8 +1,8 @@
-// Input that toml++ (3.3 and 3.4) must not see, found before it parses:
-// - a character other than ASCII outside quotes and comments, behind a backslash, or behind a line
-//   continued in a string: undefined behaviour in its test for white space;
-// - a key of many parts: each is a table in a table, and ten thousand of them overflow the stack;
-// - very many values: each takes some 200 bytes, and the edge has 8 MiB for everything.
+// Detection of input that toml++ (3.3 and 3.4) cannot parse safely:
+// - a non-ASCII character outside quotes and comments, after a backslash, or after a line
+//   continuation in a string: undefined behaviour in its test for white space;
+// - a key of many parts: nested tables, of which ten thousand overflow the stack;
+// - too many values: each takes about 200 bytes, and the edge has 8 MiB in total.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace bess {
 
-/// Where a text is not TOML, or would crash the parser.
+/// Invalid place of a text, which may crash the parser.
 struct TomlTrap {
-  int line = 0;  ///< counted from 1; 0 when there is none
+  int line = 0;  ///< counted from 1; 0: none
   std::string_view message{};
 };
 
@@ -26,10 +26,10 @@ class TomlTrapFinder {
     while (!rest_.empty()) {
       const char c = rest_.front();
       if (!is_ascii(c)) {
-        return {line_, "a character other than ASCII outside quotes and comments"};
+        return {line_, "a non-ASCII character outside quotes and comments"};
       }
       if (c == '\r' && !rest_.substr(1).starts_with('\n')) {
-        return {line_, "a line that ends in CR alone: save it with LF or CR LF"};
+        return {line_, "a line that ends with CR only: save it with LF or CR LF"};
       }
       if (c == '#') {
         skip(std::min(rest_.find('\n'), rest_.size()));
@@ -39,14 +39,14 @@ class TomlTrapFinder {
         pass(c);
         skip(1);
       }
-      if (escapes_letter_) return {line_, "a backslash before a character other than ASCII"};
-      if (dots_ >= kKeyPartsMax) return {line_, "a key of more parts than any here"};
-      if (pieces_ > kPiecesMax) return {line_, "more lines and values than any file here has"};
+      if (escapes_letter_) return {line_, "a backslash before a non-ASCII character"};
+      if (dots_ >= kKeyPartsMax) return {line_, "a key with too many parts"};
+      if (pieces_ > kPiecesMax) return {line_, "too many lines and values"};
     }
     return {};
   }
 
-  /// Offsets of the characters other than ASCII that a continued line of a string begins with.
+  /// Offsets of non-ASCII characters at the start of continued lines of strings.
   [[nodiscard]] const std::vector<std::size_t>& continued_letters() const {
     return continued_letters_;
   }
@@ -63,7 +63,8 @@ class TomlTrapFinder {
     rest_.remove_prefix(bytes);
   }
 
-  /// A backslash in a string, with what it escapes: at most the white space of a continued line.
+  /// Skips a backslash in a string with its escaped character, or the white space of a continued
+  /// line.
   void skip_escape(bool is_multi_line) {
     skip(1);
     if (rest_.empty()) return;
@@ -77,8 +78,8 @@ class TomlTrapFinder {
     }
   }
 
-  /// To behind the closing quote. A string of one line that is not closed ends there: the parser's
-  /// business.
+  /// Skips to after the closing quote. An unclosed one-line string ends at the line end; the parser
+  /// reports it.
   void skip_string(char quote_mark) {
     const std::string_view triple = quote_mark == '"' ? "\"\"\"" : "'''";
     const std::string_view quote = rest_.starts_with(triple) ? triple : triple.substr(0, 1);
@@ -95,8 +96,8 @@ class TomlTrapFinder {
     skip(quote.size());
   }
 
-  /// A quote opens a string only where a key or a value begins: in 30''' or 5["" it is part of a
-  /// mistake in a number, which toml++ reads on and on.
+  /// A quote opens a string only at the begin of a key or value: in 30''' or 5["" it is part of an
+  /// invalid number.
   void pass(char c) {
     if (c == '\n' || c == ',') {
       in_word_ = in_value_ = false;
@@ -108,7 +109,7 @@ class TomlTrapFinder {
       in_word_ = c != '=' || in_value_;
       in_value_ = in_value_ || c == '=';
     }
-    const bool is_dot_of_key = c == '.' && !in_value_;  // a table in a table
+    const bool is_dot_of_key = c == '.' && !in_value_;  // nested table
     const bool begins_piece = c == '\n' || c == ',' || c == '=' || c == '[' || c == '{';
     if (is_dot_of_key) ++dots_;
     if (begins_piece) dots_ = 0;
@@ -123,7 +124,7 @@ class TomlTrapFinder {
   int pieces_ = 0;  ///< lines, parts of keys and values so far
   bool escapes_letter_ = false;
   bool in_word_ = false;
-  bool in_value_ = false;  ///< behind the = of a key
+  bool in_value_ = false;  ///< after the = of a key
 };
 
 }  // namespace bess

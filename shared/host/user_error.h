@@ -1,5 +1,5 @@
-// Errors that the user can mend: bad file, bad key, bad value. Thrown at file borders, caught in
-// main, printed as one line that names the place and the mend; the exit code is 1.
+// Errors that the user can correct: bad file, bad key, bad value. Thrown when reading files, caught
+// in main, printed as one line with place and remedy; exit code 1.
 #pragma once
 
 #include <fmt/core.h>

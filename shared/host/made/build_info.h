@@ -1,5 +1,4 @@
-// How a program was built, for --version: commit, compiler, and the instructions it was compiled
-// for.
+// Build information for --version: commit, compiler, instruction set.
 #pragma once
 
 #include <string>
@@ -7,13 +6,13 @@
 
 namespace bess {
 
-/// "1234abcd5678", with "-dirty" behind it when files were changed since; or "unknown".
+/// "1234abcd5678", with the suffix "-dirty" for changed files; or "unknown".
 std::string_view build_commit();
 
 /// "g++ 12.2.0" or "clang 14.0.6".
 std::string_view build_compiler();
 
-/// Of whoever includes this: its own compiler options decide.
+/// Inline, because it depends on the compiler options of the including file.
 inline std::string_view instruction_set() {
 #if defined(__AVX512F__)
   return "x86-64 with AVX-512";

@@ -33,7 +33,7 @@ TEST_F(DistinctFiles, AnOutputThatIsAnInputIsRefusedUnderAnyName) {
                                   linked_folder + "/prices.csv", fs::relative(input_).string()}) {
     EXPECT_EQ(refusal({{"--out", name}}, {{"--config", ""}, {"--prices", input_}}),
               "--out " + name + ": would replace the input --prices " + input_ +
-                  "; write to another name");
+                  "; use another name");
   }
 }
 
