@@ -43,7 +43,7 @@ void print_json(const RunSettlement& s) {
 }
 
 void print_text(const RunSettlement& s) {
-  fmt::print("{} cycles, {} of them running\n", s.cycles, s.cycles_running);
+  fmt::print("{} control cycles, {} of them running\n", s.cycles, s.cycles_running);
   fmt::print("{:24} {:>12} {:>14} {:>10} {:>9}\n", "", "charged Wh", "discharged Wh", "EUR",
              "SoC end");
   const auto line = [](const char* name, const Account& a) {
