@@ -102,8 +102,10 @@ void add_size_command(ProgramCommand& app) {
       .value_name("FILE")
       .required();
   options->price_input.add(command);
-  command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)").required();
-  command.option("--out", options->out, "folder for table and page").required();
+  command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)")
+      .value_name("FILE")
+      .required();
+  command.option("--out", options->out, "folder for table and page").value_name("DIR").required();
   options->day_ahead.add(command);
   command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);

@@ -1,4 +1,4 @@
-# BESS_CHART_JS: chart library, embedded in the report and in the edge's page.
+# BESS_PAGE_FILES: chart library and base style sheet, embedded in every page.
 find_file(BESS_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_PATH
           NO_CMAKE_FIND_ROOT_PATH  # a sysroot has no scripts
           DOC "Chart.js 3.9, minified, of Debian's libjs-chart.js")

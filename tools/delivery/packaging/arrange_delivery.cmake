@@ -1,5 +1,5 @@
 # Package layout, run by cpack before packing: the files of a version go to /usr/lib/bess-edge, for
-# delivery only (edge/delivery/package/README.md); /usr/bin links to the version that runs.
+# delivery only; /usr/bin links to the version that runs.
 file(GLOB_RECURSE programs ${CPACK_TEMPORARY_DIRECTORY}/*/usr/bin/bess-edge)
 foreach(program ${programs})
   string(REGEX REPLACE "/bin/bess-edge$" "" usr ${program})

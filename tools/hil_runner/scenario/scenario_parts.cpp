@@ -366,7 +366,7 @@ void read_expectation(TomlTable table, Scenario& scenario) {
       {"reason", &expectation.reason}, {"no_reason", &expectation.no_reason}};
   for (const auto& [key, name] : reasons) {
     if (table.ok() && !name->empty() && !is_reason(*name)) {
-      table.fail(key, "is not a reason of the guard (see edge/README.md)");
+      table.fail(key, "is not a reason of the guard (see shared/manual/guides/troubleshooting.md)");
     }
   }
   check_expectation(table, scenario, expectation);
