@@ -1,7 +1,8 @@
-// Reports of runs: an HTML page with a plot of each run as inline SVG, and JUnit XML.
+// Reports of runs: JUnit XML, and an HTML page with a chart for each run.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/hil_runner/run/outcome.h"
@@ -12,13 +13,12 @@ namespace bess {
 
 std::string junit_text(const std::vector<Outcome>& outcomes);
 
-// Plot of one run: price, orders and measured power, SoC, modes of the edge; faults as named bands.
-// Axes are UTC.
+// One self-contained page. Charts by UTC: price, power ordered and measured, SoC, mode of the edge;
+// faults and events by name.
 
-/// SVG element. `span`: minutes of the scenario. Throws UserError without gnuplot.
-std::string run_picture(const Outcome& outcome, const MinuteSpan& span);
+/// Embedded file of the page: style sheet or script.
+std::string_view page_file(std::string_view name);
 
-/// Self-contained page without scripts. Throws UserError without gnuplot.
 std::string report_page(const std::vector<Outcome>& outcomes);
 
 }  // namespace bess

@@ -364,7 +364,7 @@ void add_run_command(ProgramCommand& app) {
   command.option("--seed", options->seed, "Random seed for --draw").needs("--draw");
   command.flag("--json", options->json, "Output as one JSON object");
   command.option("--junit", options->junit, "Output file in JUnit XML");
-  command.option("--report", options->report, "Output file of the HTML report");
+  command.option("--report", options->report, "Output file of the HTML report with charts");
   command
       .option("--records", options->records,
               "Output folder for battery traces and decision logs (CSV), for bess-sim settle")

@@ -1,6 +1,15 @@
 // Start of the page: data, charts, day and maps. Errors are shown on the page.
 "use strict";
 
+/** Colours of the run's own policies; openPage adds those of the baselines. */
+const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1",
+                        "plain student": "line-2", "teacher": "line-3"};
+
+/** Colour of a policy on the whole page. */
+function policyColour(name) {
+  return colour(kPolicyColours[name] || "muted");
+}
+
 /** State for tests and the console. */
 const page = {};
 

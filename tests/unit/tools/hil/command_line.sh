@@ -39,25 +39,20 @@ grep -q "^FAIL .*$told" "$work/wrong.txt" ||
 grep -q '<failure message="expect 1: ' "$work/b.xml" ||
   complain "$(cat "$work/b.xml")"
 
-# A page with pictures: faults by name, the axis in UTC.
-if command -v gnuplot >/dev/null; then
-  "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" \
-    --report "$work/page.html" >/dev/null || complain "--report"
-  for text in 'battery: silence' 'edge_kill' '2023-03-26T00:00:00Z' ' W' 'SoC' 'EUR/MWh'; do
-    grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
-  done
-  # Dark mode, narrow screens, keyboard and screen reader; a minus is no hyphen.
-  "$program" run "$work/wrong.toml" "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" \
-    --report "$work/page.html" >/dev/null 2>&1
-  for text in 'prefers-color-scheme:dark' 'width=device-width' 'role="region" tabindex="0"' \
-    '<th scope="col">' '<th scope="row">expect 1' '<svg role="img" aria-label="' \
-    '<td>−[0-9]* W' '<p>1 [a-z]*, 1 [a-z]*, 1 ' '<a href="#virtual-wrong">wrong' \
-    '<section id="virtual-wrong">'; do
-    grep -q -e "$text" "$work/page.html" || complain "no \"$text\" on the page"
-  done
-  grep -m 1 '>-[0-9]' "$work/page.html" && complain "a hyphen for a minus"
-  grep -q '<rect[^>]*fill="#ffffff"' "$work/page.html" && complain "a white ground on a dark page"
-fi
+# A page with charts: their data, faults and events by name, links, findings; a minus is no hyphen.
+"$program" run "$work/wrong.toml" "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" \
+  "$scenarios/disk_full.toml" --report "$work/page.html" >/dev/null 2>&1
+for text in '"kind":"battery","name":"battery: silence"' \
+  'silence","from_utc_s":1679790000,"to_utc_s":1679791200' \
+  '"kind":"event","name":"edge_kill"' '"price_eur_per_mwh":\[\[1679788' '"ordered_w":\[\[' \
+  '"measured_w":\[\[' '"soc_percent":\[\[' '"mode":\[\[[0-9]*,"[a-z]*"\]' 'width=device-width' \
+  'prefers-color-scheme: dark' '<canvas id="chart-virtual-wrong" role="img">' \
+  '<th scope="col">' '<th scope="row">expect 1' '<td [^>]*>−[0-9]* W' \
+  '<a href="#virtual-wrong">.*<span class="failed">' '<section id="virtual-wrong">' \
+  '<span class="skipped">'; do
+  grep -q -e "$text" "$work/page.html" || complain "no \"$text\" on the page"
+done
+grep -m 1 '<td [^>]*>-[0-9]' "$work/page.html" && complain "a hyphen for a minus"
 
 # An unreadable file: one line with file, line and correction; a wrong option: 2.
 printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"

@@ -22,15 +22,6 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 }
 
-/** Colours of the run's own policies; page.js adds those of the baselines. */
-const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1",
-                        "plain student": "line-2", "teacher": "line-3"};
-
-/** Colour of a policy on the whole page. */
-function policyColour(name) {
-  return colour(kPolicyColours[name] || "muted");
-}
-
 /** Few enough that Chart.js drops none. */
 const kFewTicks = {maxTicksLimit: 7};
 
