@@ -34,9 +34,9 @@ struct TableValue {
 inline constexpr int kAllDecimals = -1;
 
 struct ColumnName {
-  std::string key{};   ///< in CSV and JSON; empty: omitted
-  std::string head{};  ///< in the terminal; empty: omitted
-  std::string form{};  ///< fmt format of a shown number; with "%", a share in percent
+  std::string key{};            ///< in CSV and JSON; empty: omitted
+  std::string head{};           ///< in the terminal; empty: omitted
+  std::string form{};           ///< fmt format of a shown number; with "%", a share in percent
   int decimals = kAllDecimals;  ///< of a number in CSV and JSON
   std::string title{};          ///< on a page; empty: omitted
 };

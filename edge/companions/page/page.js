@@ -338,7 +338,8 @@ async function renew() {
     if (cycle !== shownCycle) {
       const shown = await Promise.all([
         show("api/why", "why-trouble", showWhy),
-        shownDay || show("api/log", "log-trouble", drawDay), show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
+        shownDay || show("api/log", "log-trouble", drawDay),
+        show("api/map", "map-trouble", drawMap), show("api/month", "month-trouble", showMonth)]);
       shownCycle = shown.every(Boolean) ? cycle : null;
     }
     markOld(isRunning() ? "" : "No controller is running.");

@@ -103,9 +103,8 @@ std::optional<RowClash> ConstraintLayer::project(Block& block) const {
   const QuadraticOutcome outcome = block.program->solve(block.point);
   if (outcome == QuadraticOutcome::kSolved) return {};
   if (outcome == QuadraticOutcome::kStalled) {
-    fail(
-        "rule \"{}\" and those coupled to it: factors and bounds are too badly scaled to solve",
-        rows_[block.rows.front()].rule);
+    fail("rule \"{}\" and those coupled to it: factors and bounds are too badly scaled to solve",
+         rows_[block.rows.front()].rule);
   }
   RowClash clash;
   for (const ClashingRow& part : block.program->clash()) {

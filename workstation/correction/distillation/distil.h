@@ -25,7 +25,7 @@ namespace bess {
 /// How the student satisfies property 3.
 enum class CorrectionMethod : std::uint8_t {
   kConstruction,  ///< by signs of weights (monotone_distil.h)
-  kLayer,  ///< the paper's: training through the optimisation layer until the proof succeeds
+  kLayer,         ///< the paper's: training through the optimisation layer until the proof succeeds
 };
 
 struct DistilOptions {

@@ -31,9 +31,9 @@ TEST_F(DistinctFiles, AnOutputThatIsAnInputIsRefusedUnderAnyName) {
   fs::create_directory_symlink(folder_.file(""), linked_folder);
   for (const std::string& name : {input_, link, folder_.file("sub/../prices.csv"),
                                   linked_folder + "/prices.csv", fs::relative(input_).string()}) {
-    EXPECT_EQ(refusal({{"--out", name}}, {{"--config", ""}, {"--prices", input_}}),
-              "--out " + name + ": would replace the input --prices " + input_ +
-                  "; use another name");
+    EXPECT_EQ(
+        refusal({{"--out", name}}, {{"--config", ""}, {"--prices", input_}}),
+        "--out " + name + ": would replace the input --prices " + input_ + "; use another name");
   }
 }
 
