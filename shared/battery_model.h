@@ -163,16 +163,16 @@ inline BatteryStep battery_step(const BatteryParameters& battery, double soc_fra
 
 /// Step with power response: includes the power state before and after the step. At a bound the
 /// power ends at 0.
-struct FollowedStep {
+struct ResponseStep {
   BatteryStep step;
   PowerState power;
 };
-inline FollowedStep followed_step(const BatteryParameters& battery, double soc_frac,
+inline ResponseStep response_step(const BatteryParameters& battery, double soc_frac,
                                   PowerState power, double wanted_power_w, double hours) {
   const BatteryStep at_once = battery_step(battery, soc_frac, wanted_power_w, hours);
   if (!battery.response.exists()) return {at_once, {}};
-  const FollowedPower followed =
-      followed_power(battery.response, power, at_once.power_w, hours * 3'600);
+  const ResponsePower followed =
+      response_power(battery.response, power, at_once.power_w, hours * 3'600);
   const BatteryStep step = battery_step(battery, soc_frac, followed.mean_w, hours);
   if (step.power_w == followed.mean_w) return {step, followed.end};
   const bool is_at_bound =

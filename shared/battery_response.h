@@ -22,13 +22,13 @@ struct PowerState {
   double flowing_w = 0;
 };
 
-struct FollowedPower {
+struct ResponsePower {
   double mean_w;
   PowerState end;
 };
 
 /// Power within `seconds` (above 0) after an order of `wanted_w`; unchanged during the dead time.
-inline FollowedPower followed_power(const PowerResponse& response, PowerState from, double wanted_w,
+inline ResponsePower response_power(const PowerResponse& response, PowerState from, double wanted_w,
                                     double seconds) {
   const double left_s = seconds - response.delay_s;
   if (left_s <= 0) return {from.flowing_w, from};

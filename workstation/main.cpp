@@ -4,7 +4,7 @@
 #include <csignal>
 
 #include "shared/host/command_line.h"
-#include "shared/host/made/build_info.h"
+#include "shared/host/embed/build_info.h"
 #include "shared/local_time.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/chain/folder_lock.h"

@@ -20,9 +20,9 @@ bool is_close(double power_w, double other_w) {
 using Visit = std::function<void(const Exchange&)>;
 
 /// Consecutive stretches of constant power between two samples.
-class Stretches {
+class FlowIntervals {
  public:
-  Stretches(const ExchangeSample& from, const ExchangeSample& until, const Visit& visit)
+  FlowIntervals(const ExchangeSample& from, const ExchangeSample& until, const Visit& visit)
       : at_s_(static_cast<double>(from.utc_s)),
         end_s_(static_cast<double>(until.utc_s)),
         visit_(visit) {}
@@ -57,28 +57,28 @@ class Stretches {
 };
 
 /// Walk over samples, with a finer charge count than the display of the battery.
-class Walk {
+class FlowIntegrator {
  public:
-  Walk(const ChargeScale& scale, const ExchangeSample& first, const Visit& visit)
+  FlowIntegrator(const ChargeScale& scale, const ExchangeSample& first, const Visit& visit)
       : scale_(scale), visit_(visit), soc_e4_(first.soc_e4), order_before_w_(first.power_w) {
     ExchangeSample before = first;
     before.utc_s -= kSecondsPerStep;
-    Stretches(before, first, visit).flow(first.power_w);
+    FlowIntervals(before, first, visit).flow(first.power_w);
   }
 
   void go(const ExchangeSample& from, const ExchangeSample& until) {
     if (until.utc_s < from.utc_s) return anchor(until);
-    Stretches stretches(from, until, visit_);
+    FlowIntervals intervals(from, until, visit_);
     const double head_s = std::min<double>(from.written_after_s, kWrittenWithinS);
-    stretches.flow(from.power_w, head_s);
+    intervals.flow(from.power_w, head_s);
     if (is_constant(from, until)) {
-      stretches.flow(until.power_w);
+      intervals.flow(until.power_w);
     } else if (is_gap(from, until)) {
-      tell_gap(from, until, stretches);
+      report_gap(from, until, intervals);
     } else {
-      tell_change(from, until, stretches);
+      report_change(from, until, intervals);
     }
-    count(stretches.energy_wh(), until);
+    count(intervals.energy_wh(), until);
     if (is_gap(from, until)) anchor(until);
     order_before_w_ = from.is_ordered ? from.order_w : from.power_w;
   }
@@ -102,17 +102,17 @@ class Walk {
   }
 
   /// Energy since the older sample from the SoC, minus energy already counted.
-  [[nodiscard]] double by_soc_wh(const ExchangeSample& until, const Stretches& told) const {
-    return scale_.energy_wh(until.soc_e4 - soc_e4_, until.capacity_wh) - told.energy_wh();
+  [[nodiscard]] double by_soc_wh(const ExchangeSample& until, const FlowIntervals& reported) const {
+    return scale_.energy_wh(until.soc_e4 - soc_e4_, until.capacity_wh) - reported.energy_wh();
   }
 
   /// Ordered power first, then measured power; the SoC gives the time of the change.
-  void tell_change(const ExchangeSample& from, const ExchangeSample& until,
-                   Stretches& stretches) const {
-    const double left_h = stretches.left_s() / kSecondsPerHour;
+  void report_change(const ExchangeSample& from, const ExchangeSample& until,
+                     FlowIntervals& intervals) const {
+    const double left_h = intervals.left_s() / kSecondsPerHour;
     const double found_wh = until.power_w * left_h;
     const double ordered_wh = ordered_w(from) * left_h;
-    const double soc_wh = by_soc_wh(until, stretches);
+    const double soc_wh = by_soc_wh(until, intervals);
     const double step_wh = 1.5 * scale_.soc_step_e4 / kSocFullE4 * until.capacity_wh;
     const bool says_nothing =
         until.capacity_wh <= 0 || scale_.stands_still() ||
@@ -120,24 +120,24 @@ class Walk {
     const auto [low_wh, high_wh] = std::minmax(found_wh, ordered_wh);
     const double flowed_wh = says_nothing ? found_wh : std::clamp(soc_wh, low_wh, high_wh);
     const double share = (flowed_wh - found_wh) / (ordered_wh - found_wh);
-    stretches.flow(ordered_w(from), share * left_h * kSecondsPerHour);
-    stretches.flow(until.power_w);
+    intervals.flow(ordered_w(from), share * left_h * kSecondsPerHour);
+    intervals.flow(until.power_w);
   }
 
   /// The order in force continues until the energy is reached; without an order constant power.
-  void tell_gap(const ExchangeSample& from, const ExchangeSample& until,
-                Stretches& stretches) const {
+  void report_gap(const ExchangeSample& from, const ExchangeSample& until,
+                  FlowIntervals& intervals) const {
     constexpr bool kIsSeen = false;
     const double order_w = from.is_ordered ? from.order_w : 0;
     double rest_wh = scale_.energy_wh(until.soc_e4 - from.soc_e4, until.capacity_wh);
-    if (rest_wh != 0) rest_wh -= stretches.energy_wh();
+    if (rest_wh != 0) rest_wh -= intervals.energy_wh();
     if (order_w * rest_wh > 0) {
-      const double seconds = std::min(rest_wh / order_w * kSecondsPerHour, stretches.left_s());
-      stretches.flow(order_w, seconds, kIsSeen);
+      const double seconds = std::min(rest_wh / order_w * kSecondsPerHour, intervals.left_s());
+      intervals.flow(order_w, seconds, kIsSeen);
       rest_wh -= order_w * seconds / kSecondsPerHour;
     }
-    const double left_s = stretches.left_s();
-    if (left_s > 0) stretches.flow(rest_wh * kSecondsPerHour / left_s, left_s, kIsSeen);
+    const double left_s = intervals.left_s();
+    if (left_s > 0) intervals.flow(rest_wh * kSecondsPerHour / left_s, left_s, kIsSeen);
   }
 
   void anchor(const ExchangeSample& sample) { soc_e4_ = sample.soc_e4; }
@@ -157,27 +157,27 @@ class Walk {
 };
 
 /// Energy from power, and change of charge, over stretches of one order.
-struct Seen {
+struct MeasuredCharge {
   double energy_wh = 0;
   double charge_wh = 0;
 
   /// False until the change of charge exceeds half of the capacity.
-  [[nodiscard]] bool tells(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
+  [[nodiscard]] bool is_sufficient(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
 };
 
 constexpr double sane(double efficiency) { return std::clamp(efficiency, 0.6, 1.0); }
 
-void walk_along(std::span<const ExchangeSample> samples, const ChargeScale& scale,
-                const Visit& visit) {
-  Walk walk(scale, samples.front(), visit);
-  for (std::size_t i = 1; i < samples.size(); ++i) walk.go(samples[i - 1], samples[i]);
+void integrate_along(std::span<const ExchangeSample> samples, const ChargeScale& scale,
+                     const Visit& visit) {
+  FlowIntegrator integrator(scale, samples.front(), visit);
+  for (std::size_t i = 1; i < samples.size(); ++i) integrator.go(samples[i - 1], samples[i]);
 }
 
 /// Common efficiency e of both directions that matches the charge at both ends:
 /// in * e - out / e = stored.
 ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples) {
   double in_wh = 0, out_wh = 0;
-  walk_along(samples, scale, [&](const Exchange& e) {
+  integrate_along(samples, scale, [&](const Exchange& e) {
     if (e.from_utc_s < static_cast<double>(samples.front().utc_s)) return;
     in_wh += e.charged_wh();
     out_wh += e.discharged_wh();
@@ -210,7 +210,7 @@ double ChargeScale::moved_e4(double energy_wh, double capacity_wh) const {
 }
 
 ChargeScale charge_scale_of(std::span<const ExchangeSample> samples) {
-  Seen in, out;
+  MeasuredCharge in, out;
   std::int32_t step_e4 = INT32_MAX;
   double capacity_wh = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -223,14 +223,15 @@ ChargeScale charge_scale_of(std::span<const ExchangeSample> samples) {
                               is_close(until.power_w, from.order_w) &&
                               is_close(from.power_w, from.order_w);
     if (!is_one_order || from.order_w == 0) continue;
-    Seen& seen = from.order_w > 0 ? in : out;
+    MeasuredCharge& seen = from.order_w > 0 ? in : out;
     seen.energy_wh += std::fabs(until.power_w * kHoursPerStep);
     seen.charge_wh += std::abs(moved_e4) / static_cast<double>(kSocFullE4) * until.capacity_wh;
   }
   ChargeScale scale;
   if (samples.empty()) return scale;
-  if (in.tells(capacity_wh)) scale.charge_efficiency = sane(in.charge_wh / in.energy_wh);
-  if (out.tells(capacity_wh)) scale.discharge_efficiency = sane(out.energy_wh / out.charge_wh);
+  if (in.is_sufficient(capacity_wh)) scale.charge_efficiency = sane(in.charge_wh / in.energy_wh);
+  if (out.is_sufficient(capacity_wh))
+    scale.discharge_efficiency = sane(out.energy_wh / out.charge_wh);
   if (step_e4 != INT32_MAX) scale.soc_step_e4 = step_e4;
   const auto [low, high] = std::ranges::minmax(samples, {}, &ExchangeSample::soc_e4);
   scale.soc_low_e4 = low.soc_e4;
@@ -244,7 +245,7 @@ void for_each_exchange(std::span<const ExchangeSample> samples,
   ChargeScale scale = charge_scale_of(samples);
   constexpr int kRounds = 3;
   for (int i = 0; i < kRounds && scale.is_coarse(); ++i) scale = balanced(scale, samples);
-  walk_along(samples, scale, visit);
+  integrate_along(samples, scale, visit);
 }
 
 }  // namespace bess

@@ -42,9 +42,9 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<GivenPath>& inputs) {
+void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
-    for (const GivenPath& input : inputs) {
+    for (const NamedPath& input : inputs) {
       if (!is_same_file(output->path, input.path)) continue;
       fail("{} {}: would replace the input {} {}; use another name", output->option,
            output->path.string(), input.option, input.path.string());
@@ -57,11 +57,11 @@ void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<G
   }
 }
 
-std::vector<GivenPath> given_paths(const std::string& option,
+std::vector<NamedPath> named_paths(const std::string& option,
                                    const std::vector<std::string>& paths) {
-  std::vector<GivenPath> given;
-  for (const std::string& path : paths) given.push_back({option, path});
-  return given;
+  std::vector<NamedPath> named;
+  for (const std::string& path : paths) named.push_back({option, path});
+  return named;
 }
 
 namespace {
@@ -249,13 +249,13 @@ void create_parent(const fs::path& path) {
 
 /// Content of a plain or gzip file (one or more members) during reading, bounded: a small gzip file
 /// can unpack to gigabytes.
-class WholeFile {
+class GzipFile {
  public:
-  WholeFile(std::string name, std::size_t bytes_max)
+  GzipFile(std::string name, std::size_t bytes_max)
       : name_(std::move(name)), bytes_max_(bytes_max) {}
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
-  ~WholeFile() {
+  GzipFile(const GzipFile&) = delete;
+  GzipFile& operator=(const GzipFile&) = delete;
+  ~GzipFile() {
     if (kind_ == Kind::kGzip) inflateEnd(&stream_);
   }
 
@@ -355,7 +355,7 @@ std::string read_file(const fs::path& path, std::size_t bytes_max) {
   if (fstat(file.get(), &info) == 0 && S_ISDIR(info.st_mode)) {
     fail("{}: is a folder, not a file", path.string());
   }
-  WholeFile whole(path.string(), bytes_max);
+  GzipFile whole(path.string(), bytes_max);
   std::string chunk(1 << 20, '\0');
   while (true) {
     const ssize_t got = ::read(file.get(), chunk.data(), chunk.size());

@@ -13,17 +13,17 @@ namespace bess {
 // Check, before reading, that no command overwrites its input.
 
 /// File named on the command line: option, for messages, and path; empty path: none.
-struct GivenPath {
+struct NamedPath {
   std::string option;
   std::filesystem::path path;
 };
 
 /// Throws UserError if one of `outputs` equals an input or another output, also by a link or
 /// another spelling. Devices and pipes may be used several times.
-void require_distinct(const std::vector<GivenPath>& outputs, const std::vector<GivenPath>& inputs);
+void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs);
 
 /// One option given several times.
-std::vector<GivenPath> given_paths(const std::string& option,
+std::vector<NamedPath> named_paths(const std::string& option,
                                    const std::vector<std::string>& paths);
 
 // Unfinished temporary files, removed by a signal that ends the program.

@@ -147,16 +147,16 @@ constexpr std::size_t kHeaderBytesMax = 100'000;
 constexpr int kAddressesMax = 4;  // tried per host
 
 template <auto kFree>
-struct FreeWith {
+struct Deleter {
   template <typename T>
   void operator()(T* held) const {
     kFree(held);
   }
 };
-using Handle = std::unique_ptr<CURL, FreeWith<curl_easy_cleanup>>;
-using List = std::unique_ptr<curl_slist, FreeWith<curl_slist_free_all>>;
-using Url = std::unique_ptr<CURLU, FreeWith<curl_url_cleanup>>;
-using Text = std::unique_ptr<char, FreeWith<curl_free>>;
+using Handle = std::unique_ptr<CURL, Deleter<curl_easy_cleanup>>;
+using List = std::unique_ptr<curl_slist, Deleter<curl_slist_free_all>>;
+using Url = std::unique_ptr<CURLU, Deleter<curl_url_cleanup>>;
+using Text = std::unique_ptr<char, Deleter<curl_free>>;
 
 struct Received {
   std::string body;
@@ -217,7 +217,7 @@ Place place_of(const std::string& url) {
 
 /// Last working address of a host: a dual-stack host with one dead address costs one timeout, not
 /// one per request.
-class GoodAddresses {
+class ReachableAddresses {
  public:
   std::string find(const Place& place) {
     const std::lock_guard lock(mutex_);
@@ -234,8 +234,8 @@ class GoodAddresses {
   std::map<std::string, std::string> addresses_;
 };
 
-GoodAddresses& good_addresses() {
-  static GoodAddresses addresses;
+ReachableAddresses& reachable_addresses() {
+  static ReachableAddresses addresses;
   return addresses;
 }
 
@@ -319,12 +319,13 @@ HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received re
     return {Kind::kDone, std::move(received.body)};
   }
   const std::string_view retry_after = header(curl, "Retry-After");
-  const std::string told(retry_after.empty() ? header(curl, "X-RateLimit-Reset") : retry_after);
+  const std::string wait_text(retry_after.empty() ? header(curl, "X-RateLimit-Reset")
+                                                  : retry_after);
   const std::string body = one_line(received.body, kReasonMax);
   const std::string reason =
       formatted("the server answered %ld%s%s", status, body.empty() ? "" : ": ", body.c_str());
   if (status == 429 || status == 503) {
-    return {Kind::kBusy, {}, reason, wait_seconds(told, now_s())};
+    return {Kind::kBusy, {}, reason, wait_seconds(wait_text, now_s())};
   }
   // 501 and 505 are permanent.
   const bool may_pass = status == 408 || (status >= 500 && status != 501 && status != 505);
@@ -444,7 +445,7 @@ struct Transfer {
   HttpOutcome perform_at_addresses(const std::string& url, const List& headers) {
     constexpr double kFirstShare = 0.5;
     const Place place = place_of(url);
-    const std::string known = good_addresses().find(place);
+    const std::string known = reachable_addresses().find(place);
     HttpOutcome outcome = perform(url, headers, known, kFirstShare);
     // libcurl itself tries the next address after a refused connection.
     const bool has_tried_all = known.empty() && outcome.transfer_code == CURLE_COULDNT_CONNECT;
@@ -457,7 +458,7 @@ struct Transfer {
     others.erase(end, others.end());
     for (std::size_t i = 0; i < others.size() && may_be_the_address(outcome); ++i) {
       // The next request begins with this address, even if no time is left now.
-      good_addresses().set(place, others[i]);
+      reachable_addresses().set(place, others[i]);
       if (left_s() < 0.05) break;
       outcome = perform(url, headers, others[i], 1.0 / static_cast<double>(others.size() - i));
     }

@@ -73,7 +73,7 @@ pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pip
 }
 
 /// Deadline and stop request of a program.
-struct Patience {
+struct Timeouts {
   std::int64_t deadline_ns;
   const std::stop_token& stop;
 
@@ -99,13 +99,13 @@ void give_input(Pipe& in, std::string_view& input) {
 
 /// Writes and reads until the program closes its outputs; false after the deadline or with too much
 /// output.
-bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const Patience& patience,
+bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const Timeouts& timeouts,
               ProgramResult& result) {
   constexpr int kLookMs = 100;
   fcntl(in.ends[1], F_SETFL, O_NONBLOCK);
   if (input.empty()) in.close_end(1);
   while (out.ends[0] >= 0 || errors.ends[0] >= 0) {
-    const int left_ms = patience.left_ms();
+    const int left_ms = timeouts.left_ms();
     if (left_ms == 0) return false;
     pollfd waiting[] = {{.fd = out.ends[0], .events = POLLIN, .revents = 0},
                         {.fd = errors.ends[0], .events = POLLIN, .revents = 0},
@@ -123,17 +123,17 @@ bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const P
 }
 
 /// Waits for the end, which may be later than that of the output. False after the deadline.
-bool reap(pid_t pid, const Patience& patience, int& status) {
+bool reap(pid_t pid, const Timeouts& timeouts, int& status) {
   constexpr std::int64_t kSliceNs = 2'000'000;
   while (waitpid(pid, &status, WNOHANG) == 0) {
-    if (patience.left_ms() == 0) return false;
+    if (timeouts.left_ms() == 0) return false;
     sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kSliceNs);
   }
   return true;
 }
 
 ProgramResult run(const std::vector<std::string>& arguments, std::string_view input,
-                  bool hears_errors, const Patience& patience) {
+                  bool hears_errors, const Timeouts& timeouts) {
   ProgramResult result;
   Pipe in;
   Pipe out;
@@ -150,7 +150,7 @@ ProgramResult run(const std::vector<std::string>& arguments, std::string_view in
   errors.close_end(1);
   int status = 0;
   const bool in_time =
-      exchange(in, out, errors, input, patience, result) && reap(pid, patience, status);
+      exchange(in, out, errors, input, timeouts, result) && reap(pid, timeouts, status);
   if (!in_time) {
     kill(-pid, SIGKILL);
     waitpid(pid, &status, 0);
@@ -180,7 +180,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, std::string
              {clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL, stop});
 }
 
-ProgramResult run_and_hear(const std::vector<std::string>& arguments, std::int64_t timeout_s) {
+ProgramResult run_and_capture(const std::vector<std::string>& arguments, std::int64_t timeout_s) {
   const std::stop_token never;
   return run(arguments, "", true,
              {clock_ns(CLOCK_MONOTONIC) + timeout_s * kNanosecondsPerSecond, never});

@@ -41,6 +41,6 @@ ProgramResult run_program(const std::vector<std::string>& arguments, std::string
                           int time_ms_max, const std::stop_token& stop = {});
 
 /// The same without input, capturing standard error.
-ProgramResult run_and_hear(const std::vector<std::string>& arguments, std::int64_t timeout_s);
+ProgramResult run_and_capture(const std::vector<std::string>& arguments, std::int64_t timeout_s);
 
 }  // namespace bess

@@ -2,7 +2,7 @@
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "workstation/data/env/evaluate.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/policy/planners/foresight.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "shared/host/child_process.h"
-#include "tests/support/said.h"
+#include "tests/support/program_output.h"
 #include "tests/support/tokens.h"
 
 namespace bess {

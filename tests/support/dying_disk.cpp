@@ -21,12 +21,12 @@ namespace {
 enum class Fault { kNone, kReadOnly, kBroken };
 
 /// A successful call leaves errno unchanged, here too.
-class KeptErrno {
+class SavedErrno {
  public:
-  KeptErrno() = default;
-  KeptErrno(const KeptErrno&) = delete;
-  KeptErrno& operator=(const KeptErrno&) = delete;
-  ~KeptErrno() { errno = kept_; }
+  SavedErrno() = default;
+  SavedErrno(const SavedErrno&) = delete;
+  SavedErrno& operator=(const SavedErrno&) = delete;
+  ~SavedErrno() { errno = kept_; }
 
  private:
   int kept_ = errno;
@@ -34,7 +34,7 @@ class KeptErrno {
 
 /// Fault of the disk that holds `path`, which is absolute.
 Fault fault_at(const char* path) {
-  const KeptErrno kept;
+  const SavedErrno kept;
   const char* const control = std::getenv("BESS_DYING_DISK");
   if (control == nullptr) return Fault::kNone;
   char text[512] = {};
@@ -52,7 +52,7 @@ Fault fault_at(const char* path) {
 }
 
 Fault fault_of(int fd) {
-  const KeptErrno kept;
+  const SavedErrno kept;
   char name[64];
   char path[512] = {};
   std::snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
@@ -71,7 +71,7 @@ long unless(Fault fault, long number, Arguments... arguments) {
 }
 
 bool exists(const char* path) {
-  const KeptErrno kept;
+  const SavedErrno kept;
   return syscall(SYS_faccessat, AT_FDCWD, path, F_OK) == 0;
 }
 

@@ -10,14 +10,14 @@
 #include "shared/host/json.h"
 #include "shared/local_text.h"
 #include "shared/utc_text.h"
+#include "tests/support/program_output.h"
 #include "tests/support/programs_under_test.h"
-#include "tests/support/said.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
 
 /// Runs bess-edge. `arguments`: without the program.
-inline Said edge(std::vector<std::string> arguments) {
+inline ProgramOutput edge(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), edge_program());
   return answer_of(std::move(arguments));
 }
@@ -45,7 +45,7 @@ class SiteTest : public ::testing::Test {
     config_ = site_.commission();
   }
   /// Output of bess-edge with that configuration.
-  [[nodiscard]] Said ask(std::vector<std::string> words) const {
+  [[nodiscard]] ProgramOutput ask(std::vector<std::string> words) const {
     return edge(joined(std::move(words), {"--config", config_}));
   }
   /// A controller with that configuration.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/said.h"
+#include "tests/support/program_output.h"
 
 namespace bess {
 

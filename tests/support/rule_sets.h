@@ -7,7 +7,7 @@
 
 namespace bess {
 
-inline constexpr const char* kExampleRules[] = {"blackout_reserve", "no_dear_charging",
+inline constexpr const char* kExampleRules[] = {"blackout_reserve", "no_charging_at_high_prices",
                                                 "no_cheap_discharge", "quiet_hours",
                                                 "evening_power_cap"};
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "shared/host/file.h"
-#include "tests/support/said.h"
+#include "tests/support/program_output.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

@@ -8,7 +8,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
 #include "workstation/cli/commands.h"
 #include "workstation/correction/student/correct_and_prove.h"
@@ -22,10 +22,10 @@
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/learnt_for.h"
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_plan.h"
 #include "workstation/runs/run/run_record.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {
@@ -149,7 +149,7 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
                     static_cast<double>(folds.traded.size() - missing.size()));
   std::mutex mutex;
   std::size_t done = folds.traded.size() - missing.size();
-  in_parallel(missing.size(), threads, [&](std::size_t i) {
+  parallel_for(missing.size(), threads, [&](std::size_t i) {
     learn_fold(*missing[i], of);
     const std::lock_guard lock(mutex);
     progress.update(static_cast<double>(++done), missing[i]->month);
@@ -159,10 +159,10 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
 void run_backtest(const BacktestArguments& options) {
   const RunConfig config = options.common.resolve(options.day_ahead.context_unless_said());
   const fs::path folder = options.out;
-  std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
+  std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
   inputs.push_back({"--config", options.common.config_path});
   inputs.push_back({"--day-ahead", options.day_ahead.path()});
-  std::vector<GivenPath> outputs;
+  std::vector<NamedPath> outputs;
   for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
     outputs.push_back({"--out", folder / name});
   }

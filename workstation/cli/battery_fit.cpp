@@ -108,7 +108,7 @@ BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& n
 
 void write_fit(const FitArguments& options) {
   if (options.logs.empty() && options.steps.empty()) fail("battery fit needs --log or --steps");
-  std::vector<GivenPath> inputs = given_paths("--log", options.logs);
+  std::vector<NamedPath> inputs = named_paths("--log", options.logs);
   inputs.push_back({"--config", options.config});
   inputs.push_back({"--steps", options.steps});
   require_distinct({{"--out", options.out}}, inputs);

@@ -17,7 +17,7 @@
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/chain/rule_files.h"
-#include "workstation/runs/run/learnt_for.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {

@@ -13,14 +13,14 @@
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/learnt_for.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {
@@ -151,7 +151,7 @@ bool is_fitted(const std::string& policy) {
 }
 
 /// Common inputs of all evaluations.
-struct Trial {
+struct EvaluationSetup {
   const MarketSteps& market;
   const MarketSteps& fitting;
   std::vector<MarketDay> days;
@@ -161,39 +161,40 @@ struct Trial {
 };
 
 /// In the requested accountings; days and steps go to `records` when given.
-NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
-  const EvaluateArguments& options = trial.options;
-  const RunConfig& config = trial.config;
-  const std::shared_ptr<Policy> policy = make_policy(name, trial.fitting, config.battery);
+NamedEvaluation evaluate_policy(const std::string& name, const EvaluationSetup& setup,
+                                Records* records) {
+  const EvaluateArguments& options = setup.options;
+  const RunConfig& config = setup.config;
+  const std::shared_ptr<Policy> policy = make_policy(name, setup.fitting, config.battery);
   NamedEvaluation named{name, {}, {}, policy->description()};
   const bool wants_steps = records != nullptr && !options.steps_out.empty();
   for (const bool carry_soc : {false, true}) {
     if (!(carry_soc ? options.wants_carried() : options.wants_reset())) continue;
     std::vector<StepRecord> steps;
     Evaluation& evaluation = carry_soc ? named.carried_over : named.day_reset;
-    evaluation = evaluate(trial.market, trial.days, *policy,
+    evaluation = evaluate(setup.market, setup.days, *policy,
                           {config.battery, config.initial_soc_frac, carry_soc},
                           wants_steps ? &steps : nullptr);
     if (carry_soc) {
       value_charge_left(evaluation, config.battery,
-                        mean_settled_eur_per_mwh(trial.market, trial.days));
+                        mean_settled_eur_per_mwh(setup.market, setup.days));
     }
-    if (trial.only_day) keep_day(*trial.only_day, trial.market, evaluation, steps);
+    if (setup.only_day) keep_day(*setup.only_day, setup.market, evaluation, steps);
     if (records != nullptr) records->add(name, carry_soc, evaluation, steps);
   }
   return named;
 }
 
-std::vector<std::string> dates_of(const Trial& trial) {
-  if (trial.only_day) return {trial.only_day->date()};
+std::vector<std::string> dates_of(const EvaluationSetup& setup) {
+  if (setup.only_day) return {setup.only_day->date()};
   std::vector<std::string> dates;
-  for (const MarketDay& day : trial.days) dates.push_back(day.date());
+  for (const MarketDay& day : setup.days) dates.push_back(day.date());
   return dates;
 }
 
 /// Checked first, so that a wrong name costs no time.
 void require_outputs_writable(const EvaluateArguments& options) {
-  std::vector<GivenPath> inputs = given_paths("--policy", options.policies);
+  std::vector<NamedPath> inputs = named_paths("--policy", options.policies);
   inputs.push_back({"--prices", options.prices});
   inputs.push_back({"--fit", options.fit});
   inputs.push_back({"--day-ahead", options.day_ahead.path()});
@@ -219,22 +220,23 @@ void run_evaluate(const EvaluateArguments& options) {
                                                 config.market.day_ahead_published_min);
   attach_day_ahead(market, day_ahead);
   attach_day_ahead(fitting, day_ahead);
-  Trial trial{market, fitting, market.days_of(parse_split(options.split)), {}, config, options};
-  if (trial.days.empty()) {
+  EvaluationSetup setup{market, fitting, market.days_of(parse_split(options.split)),
+                        {},     config,  options};
+  if (setup.days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);
   }
-  if (!options.date.empty()) trial.only_day = select_day(market, trial.days, options.date);
-  const JudgedDays judged{parse_split(options.split), dates_of(trial), last_learnt_day(fitting)};
-  const NamedEvaluation foresight = evaluate_policy(kForesightName, trial, nullptr);
+  if (!options.date.empty()) setup.only_day = select_day(market, setup.days, options.date);
+  const JudgedDays judged{parse_split(options.split), dates_of(setup), last_learnt_day(fitting)};
+  const NamedEvaluation foresight = evaluate_policy(kForesightName, setup, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;
   if (std::ranges::any_of(options.policies, is_fitted)) {
-    warn_unknown_regimes("fitted policies", fitting, market, trial.days);
+    warn_unknown_regimes("fitted policies", fitting, market, setup.days);
   }
   for (const std::string& name : options.policies) {
-    warn_learnt_otherwise(name, circumstances_of(config_entries(config)), market, trial.days);
-    results.push_back(evaluate_policy(name, trial, &records));
+    warn_learnt_otherwise(name, circumstances_of(config_entries(config)), market, setup.days);
+    results.push_back(evaluate_policy(name, setup, &records));
   }
   if (!options.days_out.empty()) write_file(options.days_out, records.days);
   if (!options.steps_out.empty()) write_file(options.steps_out, records.steps);

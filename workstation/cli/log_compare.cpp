@@ -27,7 +27,7 @@ std::vector<std::string> usual_policies() {
 void print_json(const std::vector<NamedEvaluation>& all) {
   const auto rows = comparison_rows(all, &NamedEvaluation::carried_over);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Paid paid = paid_of(all[i].carried_over);
+    const NetEarnings paid = net_earnings_of(all[i].carried_over);
     Json json = answer("log_comparison");
     json.set("policy", all[i].name);
     json.set("paid_eur", Decimals{paid.paid_eur, 4});
@@ -45,7 +45,7 @@ void run_compare(const CompareArguments& options) {
   fmt::print("{} to {}\n{:<20} {:>10} {:>10} {:>10}\n", read.days.front().date,
              read.days.back().date, "EUR, whole battery", "paid", "charge", "together");
   for (const NamedEvaluation& one : all) {
-    const auto [paid_eur, charge_eur] = paid_of(one.carried_over);
+    const auto [paid_eur, charge_eur] = net_earnings_of(one.carried_over);
     fmt::print("{:<20} {:>+10.2f} {:>+10.2f} {:>+10.2f}\n", one.name, paid_eur, charge_eur,
                paid_eur + charge_eur);
   }

@@ -75,7 +75,7 @@ class AgreementCounter final : public Policy {
 };
 
 /// Common inputs of all distillations and evaluations.
-struct Bench {
+struct SweepContext {
   const Teacher& teacher;
   const Matrix& visited;
   const MarketSteps& market;
@@ -83,15 +83,15 @@ struct Bench {
   EvaluationOptions evaluation;
 };
 
-OmegaPoint measure(const Bench& bench, const DistilOptions& options) {
+OmegaPoint measure(const SweepContext& context, const DistilOptions& options) {
   const CorrectionResult result =
-      correct_and_prove(bench.teacher, bench.visited, options, interruption());
+      correct_and_prove(context.teacher, context.visited, options, interruption());
   const StudentFile& student = student_of(result.verdict);
-  AgreementCounter counter(bench.teacher, student.net);
-  evaluate(bench.market, bench.days, counter, bench.evaluation);
+  AgreementCounter counter(context.teacher, student.net);
+  evaluate(context.market, context.days, counter, context.evaluation);
   StudentPolicy policy(student.net);
   return {options.omega, student.certificate, result.curve.back().visited_loss, counter.share(),
-          evaluate(bench.market, bench.days, policy, bench.evaluation)};
+          evaluate(context.market, context.days, policy, context.evaluation)};
 }
 
 void print_json(const OmegaPoint& point, const Evaluation& teacher) {
@@ -126,20 +126,20 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
   const MarketSteps market =
       market_of(options.price_input.read(options.prices), config.market, options.prices);
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
-  const Bench bench{teacher,
-                    visited,
-                    market,
-                    market.days_of(Split::kHeldOut),
-                    {config.battery, config.initial_soc_frac, true}};
-  if (bench.days.empty()) {
+  const SweepContext context{teacher,
+                             visited,
+                             market,
+                             market.days_of(Split::kHeldOut),
+                             {config.battery, config.initial_soc_frac, true}};
+  if (context.days.empty()) {
     fail("{}: no complete validation or test day (21 to the end of a month)", options.prices);
   }
   TeacherPolicy teacher_policy(teacher);
-  const Evaluation of_teacher = evaluate(market, bench.days, teacher_policy, bench.evaluation);
+  const Evaluation of_teacher = evaluate(market, context.days, teacher_policy, context.evaluation);
   std::vector<OmegaPoint> points;
   for (const double omega : omegas) {
     config.distil.omega = omega;
-    points.push_back(measure(bench, config.distil));
+    points.push_back(measure(context, config.distil));
     if (options.json) print_json(points.back(), of_teacher);
   }
   write_file(out / kCsvName, omega_csv(points, of_teacher));

@@ -15,7 +15,7 @@ struct PricesImportArguments {
   std::vector<std::string> files;
   std::string out;
   bool day_ahead = false;
-  OwnForm own;
+  CustomCsvFormat own;
 };
 
 void import_day_ahead(const PricesImportArguments& options) {
@@ -30,7 +30,7 @@ void import_day_ahead(const PricesImportArguments& options) {
 }
 
 void run_prices_import(const PricesImportArguments& options) {
-  require_distinct({{"--out", options.out}}, given_paths("files", options.files));
+  require_distinct({{"--out", options.out}}, named_paths("files", options.files));
   require_writable(options.out);
   if (options.day_ahead) return import_day_ahead(options);
   std::set<MarketSource> sources;

@@ -22,7 +22,7 @@ struct PricesReconstructArguments {
 };
 
 void run_prices_reconstruct(const PricesReconstructArguments& options) {
-  require_distinct({{"--out", options.out}}, given_paths("--quarter-hours", options.files));
+  require_distinct({{"--out", options.out}}, named_paths("--quarter-hours", options.files));
   require_writable(options.out);
   SettledQuarterHours settled = read_quarter_hour_files(options.files);
   std::vector<QuarterHour>& quarter_hours = settled.quarter_hours;

@@ -6,7 +6,7 @@
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
 #include "workstation/data/market/feed/market_files.h"
-#include "workstation/data/market/series/judged_prices.h"
+#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/plausibility.h"
 #include "workstation/data/market/statistics/market_statistics.h"
 #include "workstation/runs/chain/price_input.h"
@@ -19,20 +19,22 @@ struct PricesStatsArguments {
   bool json = false;
 };
 
-struct Described {
+struct FileStatistics {
   MarketStatistics statistics;
   std::string_view what = "settled price";
 };
 
-Described describe_minutes(const MinuteSeries& series) { return {statistics_of_minutes(series)}; }
+FileStatistics describe_minutes(const MinuteSeries& series) {
+  return {statistics_of_minutes(series)};
+}
 
-Described describe_minute_file(std::string_view text, const std::string& name) {
+FileStatistics describe_minute_file(std::string_view text, const std::string& name) {
   const MinuteSeries series = parse_minute_csv(text, name);
   judge_minutes(series, {name, text}, AcceptedFindings::all());
   return describe_minutes(series);
 }
 
-Described describe_download(std::string_view text, const std::string& name) {
+FileStatistics describe_download(std::string_view text, const std::string& name) {
   MarketRows rows = parse_market_text(text, name);
   const bool minutes = !rows.minutes.empty();
   JoinReport report;
@@ -44,7 +46,7 @@ Described describe_download(std::string_view text, const std::string& name) {
 }
 
 /// Statistics as of settled quarter-hours; findings are warnings.
-Described describe_day_ahead_file(std::string_view text, const std::string& name) {
+FileStatistics describe_day_ahead_file(std::string_view text, const std::string& name) {
   const DayAheadSeries series = parse_day_ahead_csv(text, name);
   judge(implausible_day_ahead(series), AcceptedFindings::all(), {{name, text}});
   std::vector<QuarterHour> quarter_hours;
@@ -57,9 +59,10 @@ Described describe_day_ahead_file(std::string_view text, const std::string& name
 
 void run_prices_stats(const PricesStatsArguments& options) {
   const std::string text = read_file(options.file);
-  const Described described = is_minute_csv(text)      ? describe_minute_file(text, options.file)
-                              : is_day_ahead_csv(text) ? describe_day_ahead_file(text, options.file)
-                                                       : describe_download(text, options.file);
+  const FileStatistics described = is_minute_csv(text) ? describe_minute_file(text, options.file)
+                                   : is_day_ahead_csv(text)
+                                       ? describe_day_ahead_file(text, options.file)
+                                       : describe_download(text, options.file);
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {

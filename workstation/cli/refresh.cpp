@@ -40,7 +40,7 @@ FetchSpan span_of(const RefreshArguments& options) {
   return {add_days(yesterday, -kJudgedDays - options.window_days - kSettlingDays), yesterday};
 }
 
-void bring_prices(const RefreshArguments& options, const fs::path& out) {
+void provide_prices(const RefreshArguments& options, const fs::path& out) {
   if (!options.prices.empty()) {
     return write_minute_file(out, options.price_input.read_joined(options.prices).series,
                              "From " + file_names(options.prices));
@@ -73,8 +73,8 @@ void fetch_day_ahead_to(const RefreshArguments& options, const fs::path& out) {
   write_day_ahead_file(out, fetched->series, "Day-ahead prices fetched from " + url);
 }
 
-void bring_day_ahead(const RefreshArguments& options, const fs::path& out,
-                     const MinuteSeries& settled) {
+void provide_day_ahead(const RefreshArguments& options, const fs::path& out,
+                       const MinuteSeries& settled) {
   if (!options.day_ahead.path().empty()) {
     write_file(out, read_file(options.day_ahead.path()));
   } else if (options.prices.empty()) {
@@ -123,10 +123,10 @@ void add_refresh_command(ProgramCommand& app) {
     refresh({.run = options->run,
              .window_days = options->window_days,
              .adopt = options->adopt,
-             .bring_prices = [&](const fs::path& out) { bring_prices(*options, out); },
-             .bring_day_ahead =
+             .provide_prices = [&](const fs::path& out) { provide_prices(*options, out); },
+             .provide_day_ahead =
                  [&](const fs::path& out, const MinuteSeries& settled) {
-                   bring_day_ahead(*options, out, settled);
+                   provide_day_ahead(*options, out, settled);
                  }},
             stdout);
   });

@@ -23,7 +23,7 @@ void run_report(const std::string& path, const std::string& prices) {
     fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'", path,
          run_file::kRecord, path);
   }
-  std::vector<GivenPath> outputs;
+  std::vector<NamedPath> outputs;
   for (const std::string& name : RunStages::files())
     outputs.push_back({"--run", folder.file(name)});
   if (record->prices != run_file::kSimulatedPrices) {

@@ -31,7 +31,7 @@ struct PriceArguments {
 };
 
 /// Day-reset and carried-over evaluation of the same days.
-struct BothWays {
+struct ResetAndCarried {
   Evaluation reset, carried;
 };
 
@@ -64,7 +64,7 @@ class Pricing {
     if (days_.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
   }
 
-  BothWays run(Policy& policy) const {
+  ResetAndCarried run(Policy& policy) const {
     const auto evaluated = [&](bool carry_soc) {
       return evaluate(market_, days_, policy,
                       {config_.battery, config_.initial_soc_frac, carry_soc});
@@ -72,7 +72,7 @@ class Pricing {
     return {evaluated(false), evaluated(true)};
   }
 
-  void print_head(const BothWays& base, const std::string& name) const {
+  void print_head(const ResetAndCarried& base, const std::string& name) const {
     if (options_.json) return;
     fmt::print(
         "{} split, {} days; {} earns {:.1f} EUR per day per MWh of capacity, with the SoC carried "
@@ -83,7 +83,7 @@ class Pricing {
         "s.e.", "by month", "decisions, %");
   }
 
-  void print_row(const std::string& rule, const BothWays& base, const BothWays& ruled,
+  void print_row(const std::string& rule, const ResetAndCarried& base, const ResetAndCarried& ruled,
                  double changed_share) const {
     const RuleGain reset(ruled.reset, base.reset), carried(ruled.carried, base.carried);
     if (options_.json) return print_json(rule, reset, carried, changed_share);
@@ -133,11 +133,11 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
         "not see the future",
         options.policy);
   }
-  const BothWays base = pricing.run(*policy);
+  const ResetAndCarried base = pricing.run(*policy);
   pricing.print_head(base, options.policy);
   const auto price = [&](const std::string& name, const RuleSet& some) {
     RuledPolicy ruled(policy, some, classes);
-    const BothWays evaluated = pricing.run(ruled);
+    const ResetAndCarried evaluated = pricing.run(ruled);
     pricing.print_row(name, base, evaluated, ruled.changed_share());
   };
   for (const Rule& rule : rules.rules) {

@@ -11,11 +11,11 @@
 #include "workstation/runs/chain/config_plausibility.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/learnt_for.h"
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_plan.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/run_stages.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {

@@ -48,7 +48,7 @@ std::vector<RunFolder> all_runs(const Options& options) {
 }
 
 void write_page(const Options& options) {
-  require_distinct({{"--html", options.html}}, given_paths("folders", options.folders));
+  require_distinct({{"--html", options.html}}, named_paths("folders", options.folders));
   require_writable(options.html);
   std::vector<RunLine> runs;
   for (const RunFolder& folder : all_runs(options)) runs.push_back(load_run_line(folder));

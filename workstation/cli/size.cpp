@@ -31,11 +31,11 @@ struct SizeArguments {
 };
 
 void require_files(const SizeArguments& options) {
-  std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
+  std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
   inputs.push_back({"--plan", options.plan});
   inputs.push_back({"--config", options.common.config_path});
   inputs.push_back({"--day-ahead", options.day_ahead.path()});
-  std::vector<GivenPath> outputs;
+  std::vector<NamedPath> outputs;
   for (const char* name : {"size.csv", "size.html", "best.toml"}) {
     outputs.push_back({"--out", fs::path(options.out) / name});
   }
@@ -74,7 +74,8 @@ void run_size(const SizeArguments& options) {
   const fs::path folder = options.out;
   require_writable(folder / "size.csv");
   end_when_interrupted();
-  const SizeCells weighed = weigh_up(plan, base, {market, folds, plan.policy, base.train.threads});
+  const SizeCells weighed =
+      evaluate_cells(plan, base, {market, folds, plan.policy, base.train.threads});
   const SizeReport report{
       plan, weighed,
       fmt::format("{} cells of {} classes, {} on prices {:08x}, {} months, each fitted on the {} "

@@ -27,7 +27,7 @@ std::size_t count_of(const std::vector<CollectedTask>& tasks, TaskState state) {
 }
 
 /// Lists tasks without output, with cause and the commands that run them.
-void tell_holes(const SweepFolder& folder, const std::vector<CollectedTask>& tasks) {
+void report_missing_tasks(const SweepFolder& folder, const std::vector<CollectedTask>& tasks) {
   constexpr int kShown = 20;
   std::vector<int> holes;
   int shown = 0;
@@ -63,7 +63,7 @@ void collect_sweep(const CollectArguments& options) {
   } else {
     fmt::print("{}: {}, {} proved, {} not proved\n", options.folder, counted(tasks.size(), "task"),
                proved, unproved);
-    tell_holes(folder, tasks);
+    report_missing_tasks(folder, tasks);
   }
   if (proved + unproved < tasks.size() && !options.partial) {
     fail("{}: tasks are missing or failed: add --partial for tables of the others", options.folder);

@@ -18,7 +18,7 @@ struct PlanArguments {
   bool dry_run = false;
 };
 
-void tell_plan(const PlanArguments& options, const SweepPlan& plan) {
+void report_plan(const PlanArguments& options, const SweepPlan& plan) {
   const std::size_t added = plan.tasks.size() - plan.known;
   fmt::print("{}: {}, {} new{}\n", options.out, counted(plan.tasks.size(), "task"), added,
              options.dry_run ? " (nothing was written)" : "");
@@ -39,7 +39,7 @@ void plan_now(PlanArguments& options) {
   const SweepFolder folder{options.out};
   const SweepPlan planned = plan_sweep(options.request, folder);
   if (!options.dry_run) write_plan(planned, options.request);
-  tell_plan(options, planned);
+  report_plan(options, planned);
 }
 
 }  // namespace

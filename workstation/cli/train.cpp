@@ -17,8 +17,8 @@
 #include "workstation/runs/chain/config_plausibility.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/learnt_for.h"
 #include "workstation/runs/run/run_record.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {
@@ -70,8 +70,8 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
                                      identity_of(config, series, options.day_ahead.path())};
-  TrainResult result = train_teacher(market, config.battery, config.train,
-                                     watched_from_the_first_look(), checkpoint);
+  TrainResult result =
+      train_teacher(market, config.battery, config.train, watch_from_first_call(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
   result.teacher.learnt_for = learnt_for(config, series);
   if (!result.curve.empty()) {
@@ -104,7 +104,8 @@ void run_train(const TrainArguments& options) {
                     {"--day-ahead", options.day_ahead.path()},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
-  const FolderLock folder_lock(fs::path(options.out).parent_path(), FolderLock::Of::kOneFile);
+  const FolderLock folder_lock(fs::path(options.out).parent_path(),
+                               FolderLock::LockScope::kOneFile);
   const FileLock lock(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
   MarketSteps market = market_of(series, config.market, options.prices);

@@ -12,8 +12,8 @@
 #include "shared/units_and_limits.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/figures/html.h"
+#include "workstation/report/foresight_gap_page.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/report_page.h"
 
@@ -80,7 +80,7 @@ double capacity_mwh_of(const ReportInputs& in) {
 
 std::string page_of(const ReportInputs& in, const PageSteps& steps,
                     const std::vector<DayLoss>& losses) {
-  std::vector<Fact> facts = in.facts;
+  std::vector<ProvenanceLine> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   const bool has_failed = !in.broken.empty();
@@ -93,8 +93,8 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
         section_of("comparison", "Profit of each policy",
                    comparison_html(in.evaluations) + same_program_html(in.evaluations) +
                        whole_battery_html(in.evaluations))},
-       {"lost",
-        section_of("lost", "Gap to perfect foresight", lost_html(losses, capacity_mwh_of(in)))},
+       {"lost", section_of("lost", "Gap to perfect foresight",
+                           foresight_gap_html(losses, capacity_mwh_of(in)))},
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Gap to foresight</a></li>\n"},
        {"rules", section_of("rules", "Rules",
                             rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
@@ -131,12 +131,14 @@ ContextClasses context_classes_of(const ReportInputs& in) {
 
 int context_class_of(const ReportInputs& in, const MarketStep& step) {
   const StudentFile* student = in.corrected != nullptr ? in.corrected : in.uncorrected;
-  const std::shared_ptr<const OutlookBook> book = student != nullptr      ? student->outlook
-                                                  : in.teacher != nullptr ? in.teacher->book
-                                                                          : nullptr;
+  const std::shared_ptr<const PlanCache> plan_cache = student != nullptr ? student->outlook
+                                                      : in.teacher != nullptr
+                                                          ? in.teacher->plan_cache
+                                                          : nullptr;
   const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
   return context_classes_of(in).class_of(
-      step.month, book ? book->break_even_centi(step, middle_frac) : step.level_centi_eur_per_mwh);
+      step.month,
+      plan_cache ? plan_cache->break_even_centi(step, middle_frac) : step.level_centi_eur_per_mwh);
 }
 
 PriceThresholds thresholds_of(const ReportInputs& in) {
@@ -155,7 +157,8 @@ std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path
   const std::vector<DayLoss> losses = losses_of(inputs);
   const PageSteps steps = page_steps(inputs);
   std::vector<PictureTable> pictures = page_pictures(inputs, steps);
-  std::ranges::move(lost_tables(losses, capacity_mwh_of(inputs)), std::back_inserter(pictures));
+  std::ranges::move(foresight_gap_tables(losses, capacity_mwh_of(inputs)),
+                    std::back_inserter(pictures));
   for (const PictureTable& table : pictures) {
     write_picture(table, folder);
     names.push_back(picture_file(table));

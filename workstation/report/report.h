@@ -31,8 +31,8 @@ struct ReportInputs {
   const StudentFile* corrected = nullptr;
   std::vector<BrokenDemand> broken = {};  ///< of an unproved student
   WalkForwardOfRun walk_forward = {};
-  std::string provenance = {};   ///< shown unchanged
-  std::vector<Fact> facts = {};  ///< date, host, inputs and command
+  std::string provenance = {};             ///< shown unchanged
+  std::vector<ProvenanceLine> facts = {};  ///< date, host, inputs and command
 };
 
 /// Of the corrected student, else the uncorrected student, else the teacher.

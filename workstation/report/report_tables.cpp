@@ -252,9 +252,9 @@ std::string proof_sentence(const Certificate& c) {
       grouped(c.states_checked));
 }
 
-std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines) {
+std::string provenance_html(const std::vector<ProvenanceLine>& facts, const std::string& lines) {
   std::string text = "<dl class=\"facts\">\n";
-  for (const Fact& fact : facts) {
+  for (const ProvenanceLine& fact : facts) {
     text +=
         fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(fact.name), html_escaped(fact.value));
   }

@@ -13,7 +13,7 @@ namespace bess {
 
 // Line of the provenance of a page.
 
-struct Fact {
+struct ProvenanceLine {
   std::string name;
   std::string value;
 };
@@ -47,7 +47,7 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
                        ContextKind kind, const RulePrices* prices);
 
 /// Names and values, then `lines` unchanged.
-std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines);
+std::string provenance_html(const std::vector<ProvenanceLine>& facts, const std::string& lines);
 
 /// 6,950,033,280
 std::string grouped(std::int64_t count);

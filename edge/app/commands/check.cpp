@@ -7,13 +7,13 @@
 
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/startup.h"
-#include "edge/app/settings/idle_keys.h"
 #include "edge/app/settings/price_config.h"
+#include "edge/app/settings/unused_keys.h"
 #include "edge/app/storage/commission_file.h"
 #include "edge/app/storage/instance_lock.h"
 #include "edge/app/storage/operator_files.h"
 #include "edge/core/control/policy.h"
-#include "edge/core/site/meter_witness.h"
+#include "edge/core/site/meter_check.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/device/registers/codec.h"
 #include "edge/records/log/journal.h"
@@ -33,7 +33,7 @@ PriceCheck check_prices(const std::string& config_path) {
   name = "bess-prices" + (is_usual ? name.substr(kEdge.size()) : "");
   const std::string program = (self.parent_path() / name).string();
   const ProgramResult result =
-      run_and_hear({program, "--check", "--config", config_path}, kPatienceS);
+      run_and_capture({program, "--check", "--config", config_path}, kPatienceS);
   PriceCheck check{.is_well = result.is_well(), .lines = result.output + result.errors};
   if (!result.trouble.empty()) check.lines += program + ": " + result.trouble + "\n";
   return check;
@@ -216,7 +216,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
   print_thresholds(config);
   print_transport(config);
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const Hold hold = read_newest_hold(both_places(config, kHoldFileName)).hold;
+  const Hold hold = read_newest_hold(state_file_paths(config, kHoldFileName)).hold;
   std::fputs(operator_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   const BatterySearch found = identify_battery(config, battery);
@@ -232,7 +232,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
                 m.dispatch_active ? "active" : "off");
   }
   print_absent(config, battery);
-  const int twin = holder_of(name_lock_path(config).c_str());
+  const int twin = lock_owner_pid(name_lock_path(config).c_str());
   if (twin > 0) {
     report(JournalLevel::kError,
            "another controller (process %d) uses [battery] name %s: change one of the names", twin,

@@ -3,16 +3,16 @@
 
 #include "edge/app/commands/command.h"
 #include "edge/app/storage/instance_lock.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
 
-struct ClearGiven {
+struct ClearOptions {
   bool yes = false;
 };
 
@@ -33,7 +33,7 @@ bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
 }
 
 /// Written to both folders; one is enough for the controller.
-int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
+int clear(const EdgeConfig& config, const StateFilePaths& paths, const Trip& trip) {
   FileMessage state_error;
   FileMessage run_error;
   const bool in_state = leave_word(paths.state.c_str(), trip.utc_s, state_error);
@@ -55,7 +55,7 @@ int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
   return 0;
 }
 
-int run_clear(const ClearGiven& given, SettingsFile& settings) {
+int run_clear(const ClearOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
@@ -64,7 +64,7 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
     return 1;
   }
   if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
-  const BothPlaces paths = both_places(config, kClearedFileName);
+  const StateFilePaths paths = state_file_paths(config, kClearedFileName);
   const std::optional<Trip> trip = standing_trip(log.ring(), log.run_ring(), paths);
   if (!trip) {
     std::printf("nothing to clear: no trip\n");
@@ -72,7 +72,7 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
   }
   std::printf("tripped    %s at %s\n", reason_name(trip->reason).data(),
               utc_text(trip->utc_s).c_str());
-  if (!given.yes) {
+  if (!options.yes) {
     report(JournalLevel::kError,
            "check the cause (bess-edge log --last 10), then repeat with --yes");
     return 2;
@@ -84,10 +84,10 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
 
 void add_clear(EdgeCommand root) {
   EdgeCommand command = root.subcommand("clear", "clear a trip after its cause is found");
-  const auto given = std::make_shared<ClearGiven>();
-  command.flag("--yes", given->yes, "clear the trip; default: only show it");
+  const auto options = std::make_shared<ClearOptions>();
+  command.flag("--yes", options->yes, "clear the trip; default: only show it");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_clear(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_clear(*options, settings); });
 }
 
 }  // namespace bess

@@ -45,7 +45,7 @@ class EdgeCommand : public ProgramCommand {
   using Action = std::function<int(SettingsFile&)>;
   using Complaint = std::function<std::string()>;
   /// Takes --config, and loads the settings before `action`. `complaint`: as ProgramCommand::runs.
-  void does(Action action, Complaint complaint = nullptr);
+  void set_action(Action action, Complaint complaint = nullptr);
   /// Loads no settings; `action` may load them.
   void does_without_settings(Action action, Complaint complaint = nullptr);
 

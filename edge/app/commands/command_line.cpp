@@ -9,7 +9,7 @@
 #include "edge/records/log/journal.h"
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/local_moment.h"
-#include "shared/host/made/build_info.h"
+#include "shared/host/embed/build_info.h"
 
 namespace bess {
 namespace {
@@ -60,7 +60,7 @@ void EdgeCommand::does_without_settings(Action action, Complaint complaint) {
       std::move(complaint));
 }
 
-void EdgeCommand::does(Action action, Complaint complaint) {
+void EdgeCommand::set_action(Action action, Complaint complaint) {
   config();
   does_without_settings(
       [action = std::move(action)](SettingsFile& settings) {

@@ -8,7 +8,7 @@
 #include "edge/app/recording/exchange_recorder.h"
 #include "edge/app/storage/commission_file.h"
 #include "edge/app/storage/operator_files.h"
-#include "edge/core/site/meter_witness.h"
+#include "edge/core/site/meter_check.h"
 #include "edge/device/battery/commission.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/records/log/journal.h"
@@ -16,7 +16,7 @@
 namespace bess {
 namespace {
 
-struct CommissionGiven {
+struct CommissionOptions {
   bool yes = false;
   std::string record_path;
 };
@@ -45,7 +45,7 @@ class SiteMeter {
   SiteMeter(const SiteSettings& settings, ModbusMeter& meter)
       : settings_(settings), meter_(meter) {}
   [[nodiscard]] bool exists() const {
-    return settings_.meter != MeterSource::kNone && settings_.witness.judges;
+    return settings_.meter != MeterSource::kNone && settings_.meter_check.judges;
   }
   Status read(const BatteryMeasurement& m, std::int32_t& grid_power_w) {
     if (settings_.meter == MeterSource::kMap) return meter_.read(grid_power_w);
@@ -62,7 +62,8 @@ class SiteMeter {
 /// more than the power of the sign test is ordered.
 bool may_drive_further(const SiteConfig& site, std::int64_t utc_s) {
   const ConnectionSettings& connection = site.settings.connection;
-  const bool is_seen = site.settings.meter != MeterSource::kNone && site.settings.witness.judges;
+  const bool is_seen =
+      site.settings.meter != MeterSource::kNone && site.settings.meter_check.judges;
   const std::int32_t narrowest_w =
       std::min({connection.import_w_max, connection.export_w_max, connection.peak_w_max});
   if (narrowest_w < kAnyPowerW && !is_seen) return false;
@@ -129,7 +130,7 @@ void complain_about_release(const EdgeConfig& config, const CommissionResult& re
 
 /// Doubts are reported with their values and cause no refusal.
 void print_speed(const DirectionResult& direction, const EdgeConfig& config) {
-  const AnswerSpeed& speed = direction.speed;
+  const StepResponseResult& speed = direction.speed;
   if (speed.largest.most <= 0) return;  // refused before this test
   const std::int32_t step_w = settings_of(config).step_w_max;
   const char* const indent = "           ";
@@ -221,26 +222,26 @@ int refuse(const EdgeConfig& config, ModbusBattery& battery, const CommissionRes
   return 1;
 }
 
-int run_commission(const CommissionGiven& given, SettingsFile& settings) {
+int run_commission(const CommissionOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
   EdgeClock& clock = session.clock();
   CommissionSettings test = settings_of(config);
   test.drives_further = may_drive_further(config.site, clock.now_utc_ns() / kNanosecondsPerSecond);
-  if (!given.yes) return ask_for_yes(config, test);
+  if (!options.yes) return ask_for_yes(config, test);
   static ModbusBattery battery(config.battery.link, config.battery.map,
                                config.clock);  // outlives a failed check
   static ExchangeRecorder recorder;            // outlives its listener
   FileMessage message;
-  if (!given.record_path.empty()) {
-    if (!recorder.start(given.record_path.c_str(),
+  if (!options.record_path.empty()) {
+    if (!recorder.start(options.record_path.c_str(),
                         recording_head_of(config.battery.map, config.battery.link, config.clock),
                         config.battery.map, config.clock, message)) {
       report(JournalLevel::kError, "%s", message.c_str());
       return 1;
     }
-    battery.link().tell_exchanges(recorder.listener());
+    battery.link().set_exchange_listener(recorder.listener());
   }
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   release_if_a_check_fails(battery);
@@ -254,7 +255,7 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
                                 test, battery, clock, SiteMeter(config.site.settings, meter))
                                 .run();
-  battery.link().tell_exchanges({});
+  battery.link().set_exchange_listener({});
   if (!recorder.finish(message)) report(JournalLevel::kError, "%s", message.c_str());
   if (result.release_status != Status::kOk) complain_about_release(config, result);
   print_measured(config, result);
@@ -279,14 +280,15 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
 void add_commission(EdgeCommand root) {
   EdgeCommand command =
       root.subcommand("commission", "test once that the battery follows the sign of set points");
-  const auto given = std::make_shared<CommissionGiven>();
+  const auto options = std::make_shared<CommissionOptions>();
   command
-      .option("--record", given->record_path,
+      .option("--record", options->record_path,
               "record Modbus exchanges to FILE, for map check --steps")
       .value_name("FILE");
-  command.flag("--yes", given->yes, "send the orders; default: only list them");
+  command.flag("--yes", options->yes, "send the orders; default: only list them");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_commission(*given, settings); });
+  command.set_action(
+      [options](SettingsFile& settings) { return run_commission(*options, settings); });
 }
 
 }  // namespace bess

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
-#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_accounts.h"
 #include "edge/records/account/earnings.h"
 #include "edge/records/log/journal.h"
 #include "shared/local_day.h"
@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-struct EarnedGiven {
+struct EarnedOptions {
   std::string period;  ///< empty = today
   bool csv = false;
   bool json = false;
@@ -51,7 +51,7 @@ std::string held_text(const LogReader& log) {
   return "; it covers " + span_text(local_day_at(oldest.utc_s), local_day_at(newest.utc_s));
 }
 
-int run_earned(const EarnedGiven& given, SettingsFile& settings) {
+int run_earned(const EarnedOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
@@ -59,7 +59,7 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   if (!log.open(config.log, error)) return failed(error.c_str());
   const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   Period period{today, today};
-  if (!given.period.empty()) parse_period(given.period, today, period);
+  if (!options.period.empty()) parse_period(options.period, today, period);
   std::string trouble;
   const MoneyTerms terms =
       money_terms({.capacity_wh = config.battery.capacity_wh,
@@ -71,9 +71,9 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
     return failed("the log has no control cycle of " +
                   span_text(period.first_day, period.last_day) + held_text(log));
   }
-  const std::string text = given.csv    ? earnings.csv()
-                           : given.json ? earnings.json().text()
-                                        : earnings.text();
+  const std::string text = options.csv    ? earnings.csv()
+                           : options.json ? earnings.json().text()
+                                          : earnings.text();
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return failed("the output cannot be written");
@@ -83,17 +83,17 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
 
 void add_earned(EdgeCommand root) {
   EdgeCommand command = root.subcommand("earned", "earnings and energy by local day");
-  const auto given = std::make_shared<EarnedGiven>();
+  const auto options = std::make_shared<EarnedOptions>();
   command
-      .option("period", given->period,
+      .option("period", options->period,
               "local days: today, yesterday, week, month, last-month, 2026-10, 2026-11-23 or "
               "2026-11-01..2026-11-23; default: today")
       .value_name("PERIOD")
       .check(complaint);
-  command.flag("--csv", given->csv, "CSV with a header, one line per day");
-  command.flag("--json", given->json, "one JSON object: days and their sum").excludes("--csv");
+  command.flag("--csv", options->csv, "CSV with a header, one line per day");
+  command.flag("--json", options->json, "one JSON object: days and their sum").excludes("--csv");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_earned(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_earned(*options, settings); });
 }
 
 }  // namespace bess

@@ -10,19 +10,19 @@
 #include "edge/app/commands/command.h"
 #include "edge/app/storage/instance_lock.h"
 #include "edge/app/storage/operator_files.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/control/tick.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
 
-struct HoldGiven {
+struct HoldOptions {
   std::optional<std::int64_t> power_w;
   bool release = false;
   std::int64_t for_s = 0;  ///< 0 = not given
@@ -70,7 +70,7 @@ void print_trip(const EdgeConfig& config) {
   FileMessage ignored;
   if (!log.open(config.log, ignored)) return;
   const std::optional<Trip> trip =
-      standing_trip(log.ring(), log.run_ring(), both_places(config, kClearedFileName));
+      standing_trip(log.ring(), log.run_ring(), state_file_paths(config, kClearedFileName));
   if (!trip) return;
   std::printf(
       "           NOT FOLLOWED: tripped, %s at %s, until cleared with bess-edge clear --yes (check "
@@ -113,7 +113,7 @@ bool is_gone(const char* path) {
   return true;
 }
 
-void warn_of_next_boot(const BothPlaces& paths, const FileMessage& error) {
+void warn_of_next_boot(const StateFilePaths& paths, const FileMessage& error) {
   report(JournalLevel::kWarning,
          "%s; stored only in %s, lost at the next boot: then repeat bess-edge hold", error.c_str(),
          paths.run.c_str());
@@ -121,7 +121,7 @@ void warn_of_next_boot(const BothPlaces& paths, const FileMessage& error) {
 
 /// One copy is enough: the controller follows the newest.
 int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
-  const BothPlaces paths = both_places(config, kHoldFileName);
+  const StateFilePaths paths = state_file_paths(config, kHoldFileName);
   FileMessage error;
   FileMessage run_error;
   const bool in_state = is_kept(paths.state.c_str(), hold) ||
@@ -142,7 +142,7 @@ int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s
 /// If one copy cannot be deleted, an expired hold in the other folder overrides it.
 int release_hold(const EdgeConfig& config) {
   constexpr Hold kOver{.power_w = 0, .until_utc_s = 1};
-  const BothPlaces paths = both_places(config, kHoldFileName);
+  const StateFilePaths paths = state_file_paths(config, kHoldFileName);
   const bool has_run = !paths.run.empty();
   FileMessage error;
   const bool of_state = is_gone(paths.state.c_str()) ||
@@ -160,11 +160,11 @@ int release_hold(const EdgeConfig& config) {
   return 0;
 }
 
-int run_hold(const HoldGiven& given, SettingsFile& settings) {
+int run_hold(const HoldOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
-  if (given.release) return release_hold(config);
+  if (options.release) return release_hold(config);
   const std::int64_t power_w_max = config.control.guard.power_w;
-  const std::int64_t power_w = *given.power_w;
+  const std::int64_t power_w = *options.power_w;
   if (power_w > power_w_max || power_w < -power_w_max) {
     report(JournalLevel::kError,
            "hold %lld W exceeds [battery] power_w of %s: choose -%lld to %lld",
@@ -175,7 +175,7 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
   set_market_time_zone();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
-                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + given.for_s)};
+                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + options.for_s)};
   for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {
     if (!folder->empty()) make_folder(folder->c_str());  // a failure is reported when writing
   }
@@ -187,23 +187,27 @@ int run_hold(const HoldGiven& given, SettingsFile& settings) {
 void add_hold(EdgeCommand root) {
   EdgeCommand command =
       root.subcommand("hold", "order a constant power until an end time, at any price");
-  const auto given = std::make_shared<HoldGiven>();
+  const auto options = std::make_shared<HoldOptions>();
   command
       .parsed(
-          "watts", [given](const std::string& text) { return take_power(text, given->power_w); },
+          "watts",
+          [options](const std::string& text) { return take_power(text, options->power_w); },
           "power, W or kW (2000, 2000W, 2kW): positive charges, negative discharges, 0 is idle; "
           "at most [battery] power_w")
       .value_name("WATTS");
-  command.duration("--for", given->for_s, 120, "duration, 2m to 7d, such as 90m or 1d12h");
-  command.flag("--release", given->release, "end the hold now").excludes("--for").excludes("watts");
+  command.duration("--for", options->for_s, 120, "duration, 2m to 7d, such as 90m or 1d12h");
+  command.flag("--release", options->release, "end the hold now")
+      .excludes("--for")
+      .excludes("watts");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_hold(*given, settings); },
-               [given] {
-                 const bool is_order = given->power_w.has_value() && given->for_s > 0;
-                 return std::string(given->release || is_order
-                                        ? ""
-                                        : "WATTS and --for DURATION, or --release, is missing");
-               });
+  command.set_action(
+      [options](SettingsFile& settings) { return run_hold(*options, settings); },
+      [options] {
+        const bool is_order = options->power_w.has_value() && options->for_s > 0;
+        return std::string(options->release || is_order
+                               ? ""
+                               : "WATTS and --for DURATION, or --release, is missing");
+      });
 }
 
 }  // namespace bess

@@ -7,13 +7,13 @@
 #include <cstring>
 
 #include "edge/app/commands/command.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
-#include "edge/records/log/whole_file.h"
 
 namespace bess {
 namespace {
 
-struct LimitGiven {
+struct LimitOptions {
   std::string charge_w;  ///< empty = any
   std::string discharge_w;
   bool clear = false;
@@ -53,22 +53,23 @@ std::string power_text(const std::string& power) {
   return power.empty() ? std::string(kAnyPowerText) : power;
 }
 
-int run_limit(const LimitGiven& given, SettingsFile& settings) {
+int run_limit(const LimitOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   const char* const path = config.site.limit_file.c_str();
   if (!config.site.settings.has_outside_limits) {
     return refuse(settings.path + ": [limits] file is missing: add it, then restart bess-edge");
   }
-  if (given.clear) return clear(path);
-  const std::string charge = power_text(given.charge_w);
-  const std::string discharge = power_text(given.discharge_w);
+  if (options.clear) return clear(path);
+  const std::string charge = power_text(options.charge_w);
+  const std::string discharge = power_text(options.discharge_w);
   std::int32_t power_w = 0;
   for (const std::string* const text : {&charge, &discharge}) {
     if (parse_limit_power(*text, power_w)) continue;
     refuse("\"" + *text + "\" is not a power: use whole watts, 0 or more");
     return 2;
   }
-  const std::int64_t until_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond + given.for_s;
+  const std::int64_t until_utc_s =
+      config.clock.now_utc_ns() / kNanosecondsPerSecond + options.for_s;
   const std::string until = utc_text(until_utc_s).c_str();
   if (!replace_file(path, charge + " " + discharge + " " + until + "\n")) {
     return refuse(std::string(path) + ": cannot be written: " + std::strerror(errno) +
@@ -84,21 +85,22 @@ int run_limit(const LimitGiven& given, SettingsFile& settings) {
 void add_limit(EdgeCommand root) {
   EdgeCommand command =
       root.subcommand("limit", "limit charging or discharging power until an end time");
-  const auto given = std::make_shared<LimitGiven>();
-  command.option("--charge", given->charge_w, "charging power, W, 0 or more; default: no limit")
+  const auto options = std::make_shared<LimitOptions>();
+  command.option("--charge", options->charge_w, "charging power, W, 0 or more; default: no limit")
       .value_name("W");
   command
-      .option("--discharge", given->discharge_w,
+      .option("--discharge", options->discharge_w,
               "discharging power, W, 0 or more; default: no limit")
       .value_name("W");
-  command.duration("--for", given->for_s, 1, "duration, up to 7d, such as 90s or 1h30m");
-  command.flag("--clear", given->clear, "remove the limit").excludes("--for");
+  command.duration("--for", options->for_s, 1, "duration, up to 7d, such as 90s or 1h30m");
+  command.flag("--clear", options->clear, "remove the limit").excludes("--for");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_limit(*given, settings); },
-               [given] {
-                 const bool is_complete = given->clear || given->for_s > 0;
-                 return std::string(is_complete ? "" : "--for DURATION or --clear is missing");
-               });
+  command.set_action(
+      [options](SettingsFile& settings) { return run_limit(*options, settings); },
+      [options] {
+        const bool is_complete = options->clear || options->for_s > 0;
+        return std::string(is_complete ? "" : "--for DURATION or --clear is missing");
+      });
 }
 
 }  // namespace bess

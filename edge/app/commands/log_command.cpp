@@ -13,7 +13,7 @@
 namespace bess {
 namespace {
 
-struct LogGiven {
+struct LogOptions {
   bool csv = false;
   bool is_short = false;
   bool local = false;
@@ -48,83 +48,83 @@ struct LogSpan {
 };
 
 /// By number first, because torn records count and the clock may have been stepped.
-LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_utc_s) {
+LogSpan span_of(const LogOptions& options, const LogReader& log, std::int64_t now_utc_s) {
   LogSpan span{.first = log.oldest_number(), .last = log.newest_number()};
   std::int64_t at_utc_s = 0;
-  if (!given.at.empty() && parse_moment(given.at, now_utc_s, at_utc_s)) {
+  if (!options.at.empty() && parse_moment(options.at, now_utc_s, at_utc_s)) {
     const std::uint64_t number = number_at(log, at_utc_s);
     return {.first = std::max<std::uint64_t>(number, 1), .last = number};  // 0: none
   }
-  if (given.last >= 0 && static_cast<std::uint64_t>(given.last) <= span.last) {
-    span.first = std::max(span.first, span.last - static_cast<std::uint64_t>(given.last) + 1);
+  if (options.last >= 0 && static_cast<std::uint64_t>(options.last) <= span.last) {
+    span.first = std::max(span.first, span.last - static_cast<std::uint64_t>(options.last) + 1);
   }
-  if (!given.since.empty()) parse_moment(given.since, now_utc_s, span.since_utc_s);
-  if (!given.until.empty()) parse_moment(given.until, now_utc_s, span.until_utc_s);
+  if (!options.since.empty()) parse_moment(options.since, now_utc_s, span.since_utc_s);
+  if (!options.until.empty()) parse_moment(options.until, now_utc_s, span.until_utc_s);
   return span;
 }
 
-void print_csv(const CycleRecord& record, const LogGiven& given,
+void print_csv(const CycleRecord& record, const LogOptions& options,
                const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
   format_csv_line(record, line);
   std::fputs(line, stdout);
-  if (given.local) {
+  if (options.local) {
     std::printf(",%s,%.2f,%.6f", local_text(record.utc_s).c_str(), cycle_energy_wh(record),
                 cycle_earned_eur(record));
   }
   Margins at;
-  if (given.explain && margins_of(record, thresholds, at)) {
+  if (options.explain && margins_of(record, thresholds, at)) {
     std::printf(",%.2f,%.2f", eur_of(at.charge_up_to_centi), eur_of(at.discharge_from_centi));
-  } else if (given.explain) {
+  } else if (options.explain) {
     std::fputs(",,", stdout);  // no student decision
   }
   std::putchar('\n');
 }
 
-void print_text(const CycleRecord& record, const LogGiven& given,
+void print_text(const CycleRecord& record, const LogOptions& options,
                 const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
-  if (given.is_short) {
+  if (options.is_short) {
     format_short_line(record, line);
   } else {
     format_log_line(record, line);
   }
-  if (given.local) {
+  if (options.local) {
     std::printf("%s  %+8.1f Wh  %+8.4f EUR  ", local_text(record.utc_s).c_str(),
                 cycle_energy_wh(record), cycle_earned_eur(record));
   }
   std::fputs(line, stdout);
   Margins at;
-  if (given.explain && margins_of(record, thresholds, at)) {
+  if (options.explain && margins_of(record, thresholds, at)) {
     std::printf(" charge_up_to=%.2f discharge_from=%.2f", eur_of(at.charge_up_to_centi),
                 eur_of(at.discharge_from_centi));
   }
   std::putchar('\n');
 }
 
-int run_log(const LogGiven& given, SettingsFile& settings) {
+int run_log(const LogOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
   if (!log.open(config.log, error)) return failed(error.c_str());
-  if (given.csv) {
+  if (options.csv) {
     char header[kLogLineBytes];
     format_csv_header(header);
-    std::printf("%s%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "",
-                given.explain ? ",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh" : "");
+    std::printf("%s%s%s\n", header, options.local ? ",local,energy_wh,earned_eur" : "",
+                options.explain ? ",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh" : "");
   }
-  if (given.is_short) std::puts(kShortLineHead);
+  if (options.is_short) std::puts(kShortLineHead);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
-  const LogSpan span = span_of(given, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const LogSpan span = span_of(options, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   CycleRecord record;
   for (std::uint64_t n = span.first; n <= span.last; ++n) {
     if (!log.read(n, record)) continue;
     if (record.utc_s < span.since_utc_s || record.utc_s > span.until_utc_s) continue;
-    if (given.csv) {
-      print_csv(record, given, thresholds);
+    if (options.csv) {
+      print_csv(record, options, thresholds);
     } else {
-      print_text(record, given, thresholds);
+      print_text(record, options, thresholds);
     }
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
@@ -135,29 +135,29 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
 
 void add_log(EdgeCommand root) {
   EdgeCommand command = root.subcommand("log", "decision log: one line per control cycle");
-  const auto given = std::make_shared<LogGiven>();
-  command.flag("--csv", given->csv,
+  const auto options = std::make_shared<LogOptions>();
+  command.flag("--csv", options->csv,
                "CSV with a header; default: one key=value line per control cycle");
   command
-      .flag("--short", given->is_short,
+      .flag("--short", options->is_short,
             "local time, order, price, SoC and reason of each control cycle, as a table")
       .excludes("--csv")
       .excludes("--local");
-  command.flag("--local", given->local,
+  command.flag("--local", options->local,
                "also local time, energy (Wh, positive charges) and money (EUR)");
-  command.flag("--explain", given->explain,
+  command.flag("--explain", options->explain,
                "also the decision margins (EUR/MWh): highest price to charge, lowest to discharge");
-  command.option("--last", given->last, "only the newest N control cycles")
+  command.option("--last", options->last, "only the newest N control cycles")
       .value_name("N")
       .positive();
-  command.moment("--since", given->since, "only from MOMENT");
-  command.moment("--until", given->until, "only up to MOMENT");
-  command.moment("--at", given->at, "only the control cycle in force at MOMENT")
+  command.moment("--since", options->since, "only from MOMENT");
+  command.moment("--until", options->until, "only up to MOMENT");
+  command.moment("--at", options->at, "only the control cycle in force at MOMENT")
       .excludes("--last")
       .excludes("--since")
       .excludes("--until");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_log(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_log(*options, settings); });
 }
 
 }  // namespace bess

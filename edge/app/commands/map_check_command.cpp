@@ -15,7 +15,7 @@
 namespace bess {
 namespace {
 
-struct MapCheckGiven {
+struct MapCheckOptions {
   std::string map_path;  ///< empty = the configuration's map
   std::string variant;
   std::string against_path;
@@ -95,11 +95,11 @@ void print_text(const RegisterMap& map, const Result& result) {
 }
 
 /// A named map needs no configuration. Returns the exit code.
-int find_map(const MapCheckGiven& given, SettingsFile& settings) {
-  if (given.map_path.empty()) return load_settings(settings);
+int find_map(const MapCheckOptions& options, SettingsFile& settings) {
+  if (options.map_path.empty()) return load_settings(settings);
   std::string error;
   RegisterMap& map = settings.config.battery.map;
-  return load_register_map(given.map_path, given.variant, map, error) ? 0 : failed(error);
+  return load_register_map(options.map_path, options.variant, map, error) ? 0 : failed(error);
 }
 
 /// Readings are 1 s apart. A shorter time is not resolved and counts as delay: a lag in full, the
@@ -109,15 +109,16 @@ constexpr double kLagS = 0.5;
 constexpr double kSpare = 1.2;  ///< as commission proposes a settle_s
 
 /// Prints keys of [battery], and a proposal for [response] of the map.
-int print_steps(const MapCheckGiven& given, const RegisterMap& map, const RecordedSteps& steps) {
-  const std::vector<const AnswerCurve*> whole = steps.whole();
+int print_steps(const MapCheckOptions& options, const RegisterMap& map,
+                const RecordedSteps& steps) {
+  const std::vector<const StepResponse*> whole = steps.whole();
   if (whole.empty()) {
-    return failed(given.against_path + ": of " + std::to_string(steps.orders()) +
+    return failed(options.against_path + ": of " + std::to_string(steps.orders()) +
                   " set point steps none was recorded until its power was reached: record steps "
                   "with bess-edge commission --record FILE --yes");
   }
   const StepFit fit(whole);
-  const auto [least, most] = std::ranges::minmax(whole, {}, &AnswerCurve::step_w);
+  const auto [least, most] = std::ranges::minmax(whole, {}, &StepResponse::step_w);
   const double ramp_s = fit.best().ramp_s_per_w * most->step_w();
   const bool has_ramp = fit.has_ramp() && ramp_s >= kRampS;
   const double lag_s = fit.best().time_constant_s;
@@ -135,13 +136,13 @@ int print_steps(const MapCheckGiven& given, const RegisterMap& map, const Record
   return 0;
 }
 
-int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
-  if (const int code = find_map(given, settings)) return code;
+int run_map_check(const MapCheckOptions& options, SettingsFile& settings) {
+  if (const int code = find_map(options, settings)) return code;
   RegisterMap& map = settings.config.battery.map;
   std::string error;
   BusRecordingReader recording;
-  const CutRecording cut = given.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;
-  if (!recording.open(given.against_path, cut, error)) return failed(error);
+  const CutRecording cut = options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;
+  if (!recording.open(options.against_path, cut, error)) return failed(error);
   take_units(recording.head(), map);
   const auto check = std::make_unique<MapCheck>(map, recording.head().unit);
   const auto steps =
@@ -153,13 +154,13 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
     steps->add(exchange);
   }
   if (next == BusRecordingReader::Next::kDamaged) return failed(error);
-  if (given.steps) return print_steps(given, map, *steps);
+  if (options.steps) return print_steps(options, map, *steps);
   Result result{.points = check->verdicts(),
                 .unjudged = check->unjudged(),
                 .exchanges = recording.exchanges()};
   result.findings = std::count_if(result.points.begin(), result.points.end(),
                                   [](const PointVerdict& p) { return !p.finding.empty(); });
-  if (given.json) {
+  if (options.json) {
     print_json(map, result);
   } else {
     print_text(map, result);
@@ -174,26 +175,26 @@ void add_map_check(EdgeCommand root) {
   map.requires_subcommand();
   EdgeCommand command =
       map.subcommand("check", "compare a register map with a recording of a battery");
-  const auto given = std::make_shared<MapCheckGiven>();
-  command.option("--against", given->against_path, "recording of bess-edge record or --record")
+  const auto options = std::make_shared<MapCheckOptions>();
+  command.option("--against", options->against_path, "recording of bess-edge record or --record")
       .value_name("FILE")
       .required();
-  command.option("--map", given->map_path, "register map; default: the map of the configuration")
+  command.option("--map", options->map_path, "register map; default: the map of the configuration")
       .value_name("FILE");
-  command.option("--variant", given->variant, "variant of the map; default: the first")
+  command.option("--variant", options->variant, "variant of the map; default: the first")
       .value_name("NAME")
       .needs("--map");
   command.config().excludes("--map");
-  command.flag("--accept-cut", given->accept_cut,
+  command.flag("--accept-cut", options->accept_cut,
                "accept a recording whose last line is incomplete");
-  command.flag("--json", given->json, "one JSON object");
+  command.flag("--json", options->json, "one JSON object");
   command
-      .flag("--steps", given->steps,
+      .flag("--steps", options->steps,
             "print the fitted step response as [battery] in TOML for bess-train and bess-sim")
       .excludes("--json");
   command.footer(kFooter);
   command.does_without_settings(
-      [given](SettingsFile& settings) { return run_map_check(*given, settings); });
+      [options](SettingsFile& settings) { return run_map_check(*options, settings); });
 }
 
 }  // namespace bess

@@ -17,7 +17,7 @@
 namespace bess {
 namespace {
 
-struct RecordGiven {
+struct RecordOptions {
   std::string out_path;      ///< empty = name from the time
   std::int64_t for_s = 0;    ///< 0 = not given
   std::int64_t every_s = 0;  ///< 0 = not given
@@ -44,8 +44,8 @@ constexpr std::int64_t kAllEveryS =
 using Bus = BatteryBus<ModbusLink, DeviceTime>;
 
 /// Default: "bess-20261122T060000Z.jsonl" in the current folder.
-std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
-  if (!given.out_path.empty()) return given.out_path;
+std::string path_of(const RecordOptions& options, std::int64_t utc_s) {
+  if (!options.out_path.empty()) return options.out_path;
   std::string name(utc_text(utc_s).view());
   std::erase_if(name, [](char c) { return c == '-' || c == ':'; });
   return "bess-" + name + ".jsonl";
@@ -53,7 +53,7 @@ std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
 
 /// Locates the SunSpec models and reads each point separately, so that a refused point affects no
 /// other. Points that commands write are read as holding registers.
-void read_everything(const RegisterMap& map, const PointPlaces& places, Bus& bus,
+void read_all_points(const RegisterMap& map, const PointPlaces& places, Bus& bus,
                      EdgeClock& clock) {
   std::uint16_t missing_model = 0;
   static_cast<void>(bus.locate_models(missing_model));
@@ -90,17 +90,18 @@ class Progress {
 };
 
 /// Until the end time or a stop request.
-void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, EdgeClock& clock) {
-  const std::int64_t every_s = given.every_s > 0 ? given.every_s : kEveryDefaultS;
+void poll_device(const RecordOptions& options, const EdgeConfig& config, Bus& bus,
+                 EdgeClock& clock) {
+  const std::int64_t every_s = options.every_s > 0 ? options.every_s : kEveryDefaultS;
   const std::int64_t begin_ns = clock.now_utc_ns();
-  const std::int64_t end_ns = begin_ns + given.for_s * kNanosecondsPerSecond;
+  const std::int64_t end_ns = begin_ns + options.for_s * kNanosecondsPerSecond;
   const PointPlaces places(config.battery.map, config.battery.link.unit);
-  const Progress progress(given.for_s);
+  const Progress progress(options.for_s);
   std::int64_t next_all_ns = begin_ns;
   std::int64_t next_ns = begin_ns;
   while (!clock.stop_requested()) {
     if (next_ns >= next_all_ns) {
-      read_everything(config.battery.map, places, bus, clock);
+      read_all_points(config.battery.map, places, bus, clock);
       next_all_ns += kAllEveryS * kNanosecondsPerSecond;
     }
     static_cast<void>(bus.read_due());
@@ -113,14 +114,14 @@ void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, E
   progress.end();
 }
 
-int run_record(const RecordGiven& given, SettingsFile& settings) {
+int run_record(const RecordOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
   EdgeClock& clock = session.clock();
   const RecordingHead head =
       recording_head_of(config.battery.map, config.battery.link, config.clock);
-  const std::string path = path_of(given, head.begin_utc_s);
+  const std::string path = path_of(options, head.begin_utc_s);
   const auto recorder = std::make_unique<ExchangeRecorder>();
   FileMessage error;
   if (!recorder->start(path.c_str(), head, config.battery.map, config.clock, error)) {
@@ -129,9 +130,9 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
   }
   Bus bus(config.battery.map, DeviceTime(config.clock), config.battery.link.unit,
           config.battery.link, timing_of(config.battery.map), config.clock);
-  bus.link().tell_exchanges(recorder->listener());
-  poll_device(given, config, bus, clock);
-  bus.link().tell_exchanges({});
+  bus.link().set_exchange_listener(recorder->listener());
+  poll_device(options, config, bus, clock);
+  bus.link().set_exchange_listener({});
   if (!recorder->finish(error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
@@ -153,18 +154,18 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
 
 void add_record(EdgeCommand root) {
   EdgeCommand command = root.subcommand("record", "record a battery's Modbus answers (read-only)");
-  const auto given = std::make_shared<RecordGiven>();
-  command.duration("--for", given->for_s, 1, "duration, 1s to 7d; Ctrl-C ends it earlier")
+  const auto options = std::make_shared<RecordOptions>();
+  command.duration("--for", options->for_s, 1, "duration, 1s to 7d; Ctrl-C ends it earlier")
       .required();
-  command.duration("--every", given->every_s, 1,
+  command.duration("--every", options->every_s, 1,
                    "interval between readings of measured values; default: 10s. Other registers of "
                    "the map: every 10 minutes");
   command
-      .option("--out", given->out_path,
+      .option("--out", options->out_path,
               "output file; default: bess-TIME.jsonl in the current folder")
       .value_name("FILE");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_record(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_record(*options, settings); });
 }
 
 }  // namespace bess

@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-struct ReleaseGiven {
+struct ReleaseOptions {
   bool yes = false;
   bool force = false;
 };
@@ -24,19 +24,19 @@ Exit codes:
 Examples:
   systemctl stop bess-edge; bess-edge release --yes)";
 
-int run_release(const ReleaseGiven& given, SettingsFile& settings) {
+int run_release(const ReleaseOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   const auto place = battery_place(config.battery);
-  if (!given.yes) {
+  if (!options.yes) {
     report(JournalLevel::kError,
            "release returns the battery at %s to its own mode: repeat with --yes", place.c_str());
     return 2;
   }
-  if (given.force) battery.permit_release();
-  if (!reach_battery(config, battery, session.clock()) && !given.force) {
+  if (options.force) battery.permit_release();
+  if (!reach_battery(config, battery, session.clock()) && !options.force) {
     report(JournalLevel::kError, "not released; --force releases it anyway");
     return 1;
   }
@@ -53,12 +53,12 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
 
 void add_release(EdgeCommand root) {
   EdgeCommand command = root.subcommand("release", "return a battery to its own mode");
-  const auto given = std::make_shared<ReleaseGiven>();
-  command.flag("--yes", given->yes, "required: release the battery now");
-  command.flag("--force", given->force,
+  const auto options = std::make_shared<ReleaseOptions>();
+  command.flag("--yes", options->yes, "required: release the battery now");
+  command.flag("--force", options->force,
                "release even if the device does not match its register map");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_release(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_release(*options, settings); });
 }
 
 }  // namespace bess

@@ -15,7 +15,7 @@
 namespace bess {
 namespace {
 
-struct RunGiven {
+struct RunCommandOptions {
   bool check = false;
   bool self_test = false;
   bool dry_run = false;
@@ -44,7 +44,7 @@ int fail(const FileMessage& error) {
 }
 
 /// Once per process: the objects are static, and the process stays sealed after the run.
-int run_controller(const RunGiven& given, const EdgeConfig& config) {
+int run_controller(const RunCommandOptions& options, const EdgeConfig& config) {
   static DeviceSession session;
   if (!session.begin(config)) return 1;
   static ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
@@ -55,40 +55,40 @@ int run_controller(const RunGiven& given, const EdgeConfig& config) {
   if (!lock_state(config, session.locks(), error)) return fail(error);
   static RealWorld world(
       config, {.clock = session.clock(), .battery = battery, .meter = meter, .prices = prices});
-  if (!world.record_battery(given.record_path, error)) return fail(error);
+  if (!world.record_battery(options.record_path, error)) return fail(error);
   static Controller<RealWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;
-  const bool is_released = controller.run(given.cycles);
+  const bool is_released = controller.run(options.cycles);
   if (!world.finish_recording(error)) return fail(error);
   return is_released ? 0 : 1;
 }
 
-int run(const RunGiven& given, SettingsFile& settings) {
-  if (given.self_test) return run_self_test(settings.config, settings.path);
-  if (given.dry_run) settings.config.control.control = false;
-  return given.check ? run_check(settings.config, settings.path)
-                     : run_controller(given, settings.config);
+int run(const RunCommandOptions& options, SettingsFile& settings) {
+  if (options.self_test) return run_self_test(settings.config, settings.path);
+  if (options.dry_run) settings.config.control.control = false;
+  return options.check ? run_check(settings.config, settings.path)
+                       : run_controller(options, settings.config);
 }
 
 }  // namespace
 
 void add_run(EdgeCommand root) {
-  const auto given = std::make_shared<RunGiven>();
-  root.flag("--check", given->check,
+  const auto options = std::make_shared<RunCommandOptions>();
+  root.flag("--check", options->check,
             "check settings, map, student and sign check, print the encoded orders, read battery "
             "and newest price once, then exit; writes nothing to the battery");
-  root.flag("--self-test", given->self_test,
+  root.flag("--self-test", options->self_test,
             "test student, signature, heap seal, clock, certificates, price server, storage and "
             "battery once, then exit; writes nothing to the battery");
-  root.flag("--dry-run", given->dry_run, "run read-only, as with control = false");
-  root.option("--cycles", given->cycles, "stop after N control cycles; default: no limit")
+  root.flag("--dry-run", options->dry_run, "run read-only, as with control = false");
+  root.option("--cycles", options->cycles, "stop after N control cycles; default: no limit")
       .value_name("N")
       .positive();
-  root.option("--record", given->record_path,
+  root.option("--record", options->record_path,
               "record all Modbus traffic to FILE; replay with bess-sim battery --replay FILE")
       .value_name("FILE");
   root.footer(kFooter);
-  root.does([given](SettingsFile& settings) { return run(*given, settings); });
+  root.set_action([options](SettingsFile& settings) { return run(*options, settings); });
 }
 
 }  // namespace bess

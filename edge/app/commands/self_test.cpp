@@ -141,7 +141,7 @@ void test_ca_file(const EdgeConfig& config, Table& table) {
 
 void test_storage(const EdgeConfig& config, Table& table) {
   constexpr double kFreeMbMin = 20;  // log of 35 days, current and previous package
-  const StorageHealth disk = look_at_storage(config.state.folder.c_str());
+  const StorageHealth disk = check_storage(config.state.folder.c_str());
   const std::string folder = config.state.folder.c_str();
   if (!disk.is_writable) return table.add("storage", false, folder + ": " + disk.error);
   const int used_life_percent = disk.wear.used_life_percent;

@@ -7,15 +7,15 @@
 #include <sstream>
 
 #include "edge/app/commands/command.h"
-#include "edge/app/settings/idle_keys.h"
+#include "edge/app/settings/unused_keys.h"
 #include "edge/app/storage/published_status.h"
 #include "edge/app/storage/storage_health.h"
 #include "edge/core/control/tick.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/health.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "edge/records/log/log_text.h"
-#include "edge/records/log/whole_file.h"
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/next_decision.h"
 #include "shared/host/json.h"
@@ -27,7 +27,7 @@
 namespace bess {
 namespace {
 
-struct StatusGiven {
+struct StatusOptions {
   bool json = false;
   bool prometheus = false;
   bool follow = false;
@@ -62,7 +62,7 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
                         .is_of_this_run = published.is_of_this_run,
                         .age_ms = published.age_ms,
                         .cycles_behind = published.cycles_behind,
-                        .wear = card_wear_of(config.state.folder.c_str()),
+                        .wear = storage_wear_of(config.state.folder.c_str()),
                         .disk_is_full = takes_no_file(config.state.folder.c_str()),
                         .unknown = published.unknown,
                         .update_trouble = update_trouble});
@@ -359,15 +359,15 @@ std::string update_note() {
   return note.substr(0, note.find('\n'));
 }
 
-int print_once(const StatusGiven& given, const EdgeConfig& config) {
-  const PublishedStatus published = read_published_status(config, given.no_lock);
+int print_once(const StatusOptions& options, const EdgeConfig& config) {
+  const PublishedStatus published = read_published_status(config, options.no_lock);
   const std::string update = update_note();
   const bool is_trouble = update.starts_with("WARN: ");
   const Health health = health_of(config, published, is_trouble ? update.substr(6) : "");
-  if (given.prometheus) {
+  if (options.prometheus) {
     const bool is_running = health.level != HealthLevel::kNotRunning;
     if (!print_metrics(config, published.status, is_running)) return 1;
-  } else if (given.json) {
+  } else if (options.json) {
     print_json(config, published, health, update);
   } else {
     print_text(config, published, health, update);
@@ -376,14 +376,14 @@ int print_once(const StatusGiven& given, const EdgeConfig& config) {
   return static_cast<int>(health.level);
 }
 
-int run_status(const StatusGiven& given, SettingsFile& settings) {
+int run_status(const StatusOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   constexpr const char* kClearScreen = "\033[H\033[2J";
   while (true) {
-    if (given.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
-    const int exit_code = print_once(given, config);
-    if (!given.follow) return exit_code;
+    if (options.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
+    const int exit_code = print_once(options, config);
+    if (!options.follow) return exit_code;
     sleep(2);
   }
 }
@@ -392,16 +392,16 @@ int run_status(const StatusGiven& given, SettingsFile& settings) {
 
 void add_status(EdgeCommand root) {
   EdgeCommand command = root.subcommand("status", "state and health of the running controller");
-  const auto given = std::make_shared<StatusGiven>();
-  command.flag("--json", given->json, "one JSON object, with \"health\"");
+  const auto options = std::make_shared<StatusOptions>();
+  command.flag("--json", options->json, "one JSON object, with \"health\"");
   command
-      .flag("--prometheus", given->prometheus,
+      .flag("--prometheus", options->prometheus,
             "metrics for the textfile collector of the Prometheus node exporter")
       .excludes("--json");
-  command.flag("--follow", given->follow, "repeat every two seconds until Ctrl-C");
-  command.flag("--no-lock", given->no_lock, "check the process id instead of the lock");
+  command.flag("--follow", options->follow, "repeat every two seconds until Ctrl-C");
+  command.flag("--no-lock", options->no_lock, "check the process id instead of the lock");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_status(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_status(*options, settings); });
 }
 
 }  // namespace bess

@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-struct WhyGiven {
+struct WhyOptions {
   std::string at;  ///< empty = newest control cycle
   bool json = false;
 };
@@ -30,13 +30,13 @@ Examples:
   bess-edge why --json | jq .margins)";
 
 /// Record number of the requested control cycle; `trouble` names the cause if there is none.
-std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const LogReader& log,
+std::uint64_t find_cycle(const WhyOptions& options, const EdgeConfig& config, const LogReader& log,
                          std::string& trouble) {
   if (log.newest_number() == 0) trouble = "the decision log is empty";
-  if (given.at.empty() || !trouble.empty()) return log.newest_number();
+  if (options.at.empty() || !trouble.empty()) return log.newest_number();
   std::int64_t at_utc_s = 0;
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  parse_moment(given.at, now_utc_s, at_utc_s);
+  parse_moment(options.at, now_utc_s, at_utc_s);
   const std::uint64_t number = number_at(log, at_utc_s);
   CycleRecord oldest;
   if (number == 0 && log.read(log.oldest_number(), oldest)) {
@@ -46,21 +46,21 @@ std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const 
   return number;
 }
 
-int run_why(const WhyGiven& given, SettingsFile& settings) {
+int run_why(const WhyOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
   if (!log.open(config.log, error)) return failed(error.c_str());
   std::string trouble;
-  const std::uint64_t number = find_cycle(given, config, log, trouble);
+  const std::uint64_t number = find_cycle(options, config, log, trouble);
   if (!trouble.empty()) return failed(trouble);
   Explanation explanation;
   if (!explain(log, number, config.control.guard.thresholds, explanation)) {
     return failed("the record of that control cycle cannot be read");
   }
-  const std::string text = given.json ? explanation_json(explanation, config.control).text()
-                                      : explanation_text(explanation, config.control);
+  const std::string text = options.json ? explanation_json(explanation, config.control).text()
+                                        : explanation_text(explanation, config.control);
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return failed("the output cannot be written");
@@ -70,13 +70,13 @@ int run_why(const WhyGiven& given, SettingsFile& settings) {
 
 void add_why(EdgeCommand root) {
   EdgeCommand command = root.subcommand("why", "explain one decision and its margins");
-  const auto given = std::make_shared<WhyGiven>();
-  command.moment("--at", given->at,
+  const auto options = std::make_shared<WhyOptions>();
+  command.moment("--at", options->at,
                  "control cycle in force at MOMENT, local time: 14:32 (the latest), \"2026-11-23 "
                  "14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest");
-  command.flag("--json", given->json, "one JSON object with the same values");
+  command.flag("--json", options->json, "one JSON object with the same values");
   command.footer(kFooter);
-  command.does([given](SettingsFile& settings) { return run_why(*given, settings); });
+  command.set_action([options](SettingsFile& settings) { return run_why(*options, settings); });
 }
 
 }  // namespace bess

@@ -11,12 +11,12 @@
 #include <string>
 
 #include "edge/app/program/find_battery.h"
+#include "edge/app/program/restored_run.h"
 #include "edge/app/program/startup.h"
-#include "edge/app/program/take_over.h"
 #include "edge/app/storage/commission_file.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/loop/control_loop.h"
-#include "edge/prices/record/http_trust.h"
+#include "edge/prices/record/transport_security.h"
 #include "edge/records/log/journal.h"
 
 namespace bess {
@@ -37,17 +37,17 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
   { world.meter() } -> std::same_as<typename World::Meter&>;
   { world.limits() } -> std::same_as<typename World::Limits&>;
   // First price answer, and price level of the last hours.
-  { world.greet_prices() } -> std::same_as<Status>;
+  { world.check_price_server() } -> std::same_as<Status>;
   { world.find_history() } -> std::same_as<PublishedHistory>;
-  // Persistent state. `open` and `recall` report their own errors.
+  // Persistent state. `open` and `restore_state` report their own errors.
   { world.open() } -> std::same_as<bool>;
-  { world.recall() } -> std::same_as<Recall>;
+  { world.restore_state() } -> std::same_as<RestoredState>;
   { known.read_back(number, record) } -> std::same_as<bool>;  // 0: the newest
   world.keep(done);
   // Operator: holds, and whether the trip of a time was cleared.
-  { world.listen() } -> std::same_as<const HoldMailbox&>;
+  { world.listen() } -> std::same_as<const LatestHold&>;
   // Plans for a student by outlook, from this level; null for other contexts.
-  { world.look_out(level) } -> std::same_as<OutlookBoard*>;
+  { world.await_outlook(level) } -> std::same_as<OutlookExchange*>;
   { world.is_cleared(number) } -> std::same_as<bool>;
   // Observers.
   world.needs_time(number);
@@ -86,9 +86,9 @@ class Controller {
   /// False if this run must not control, or cannot store its log.
   bool begin() {
     if (!world_.open()) return false;
-    const Status greeting = greet_price_server();
+    const Status price_server_status = await_price_server();
     world_.begins();
-    take_over(greeting);
+    take_over(price_server_status);
     loop_.follow_holds(world_.listen());
     world_.is_ready();
     return true;
@@ -121,8 +121,8 @@ class Controller {
   }
 
   /// Reports a missing first price.
-  Status greet_price_server() {
-    const Status status = world_.greet_prices();
+  Status await_price_server() {
+    const Status status = world_.check_price_server();
     if (status == Status::kOk) return status;
     world_.complain(JournalLevel::kWarning,
                     "note: price from " +
@@ -131,17 +131,19 @@ class Controller {
     return status;
   }
 
-  void take_over(Status greeting) {
+  void take_over(Status price_server_status) {
     const bool needs_level = student_context().kind != ContextKind::kMonth;
     if (needs_level) world_.needs_time(kHistoryWait_s + kStartMarginS);
-    const Recall recalled = world_.recall();
-    const BatteryCounters& counters = recalled.before.counters;
+    const RestoredState restored = world_.restore_state();
+    const BatteryCounters& counters = restored.before.counters;
     world_.battery().restore_flash_writes(counters.flash_day, counters.flash_writes_today);
-    const LevelNews news = starting_level(config_, recalled.before.price_level, greeting, world_);
-    if (needs_level) world_.write_line(journal_level_of(news), level_note(news));
+    const LevelStartReport level_report =
+        starting_level(config_, restored.before.price_level, price_server_status, world_);
+    if (needs_level)
+      world_.write_line(journal_level_of(level_report), level_start_text(level_report));
     recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
-    loop_.take_over(take_over_of(recalled.before, news.start.level), recalled.trip);
-    loop_.follow_outlook(world_.look_out(news.start.level.centi_eur_per_mwh()));
+    loop_.take_over(take_over_of(restored.before, level_report.start.level), restored.trip);
+    loop_.follow_outlook(world_.await_outlook(level_report.start.level.centi_eur_per_mwh()));
   }
 
   const EdgeConfig& config_;

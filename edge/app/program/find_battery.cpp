@@ -116,29 +116,29 @@ std::string reading_text(const EdgeConfig& config, ModbusBattery& battery, Statu
                           static_cast<long long>(point.value_max));
 }
 
-std::string measured_text(const RegisterMap& map, const LivePoints& live) {
+std::string measured_text(const RegisterMap& map, const PointValues& live) {
   std::string text;
-  bool is_told[kPointsMax] = {};
-  const auto tell = [&](std::int8_t point) {
-    if (point < 0 || is_told[point] || !live.known[point]) return;
-    is_told[point] = true;
+  bool is_listed[kPointsMax] = {};
+  const auto add_point = [&](std::int8_t point) {
+    if (point < 0 || is_listed[point] || !live.known[point]) return;
+    is_listed[point] = true;
     const RegisterPoint& p = map.points[point];
     text += formatted("%s%s (register %d) raw %s", text.empty() ? "" : ", ", p.name.c_str(),
                       p.address, raw_text(p, live.raw[point]).c_str());
   };
   for (const PowerCase& c : map.measured_power) {
-    tell(c.when.point);
-    for (const PowerCase::Term& term : c.terms) tell(term.point);
+    add_point(c.when.point);
+    for (const PowerCase::Term& term : c.terms) add_point(term.point);
   }
   for (const char* const name : {"soc", "charge_power_max", "discharge_power_max"}) {
-    tell(static_cast<std::int8_t>(find_point(map, name)));
+    add_point(static_cast<std::int8_t>(find_point(map, name)));
   }
-  for (const Condition& c : map.active) tell(c.point);
+  for (const Condition& c : map.active) add_point(c.point);
   for (const Condition& alarm : map.alarms) {
     std::int64_t value = 0;
-    if (live_value(map, live, alarm.point, value) && alarm.holds(value)) tell(alarm.point);
+    if (live_value(map, live, alarm.point, value) && alarm.holds(value)) add_point(alarm.point);
   }
-  tell(map.off_grid.point);
+  add_point(map.off_grid.point);
   return text;
 }
 

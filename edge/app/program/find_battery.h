@@ -45,7 +45,7 @@ std::string reading_text(const EdgeConfig& config, ModbusBattery& battery, Statu
                          int lost_point);
 
 /// Raw values of the registers of the measurement and of active alarms.
-std::string measured_text(const RegisterMap& map, const LivePoints& live);
+std::string measured_text(const RegisterMap& map, const PointValues& live);
 
 /// Checks that this is the configured battery.
 BatterySearch identify_battery(const EdgeConfig& config, ModbusBattery& battery);

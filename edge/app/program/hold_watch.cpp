@@ -34,7 +34,8 @@ HoldWatch::~HoldWatch() {
   sem_destroy(&ending_);
 }
 
-void HoldWatch::start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale) {
+void HoldWatch::start(const StateFilePaths& paths, const StateFilePaths& cleared,
+                      std::int32_t time_scale) {
   constexpr std::int64_t kPeriodNsMin = kNanosecondsPerSecond / 1'000;
   paths_ = paths;
   cleared_ = cleared;
@@ -50,18 +51,18 @@ void HoldWatch::run() {
 
 void HoldWatch::look() {
   const HoldReading reading = read_newest_hold(paths_);
-  mailbox_.publish(reading.hold);
-  tell_of_losses(reading);
+  latest_hold_.publish(reading.hold);
+  report_losses(reading);
   const std::int64_t trip_utc_s = asked_trip_utc_s_;
   if (trip_utc_s == 0 || cleared_trip_utc_s_ == trip_utc_s) return;
   if (is_trip_cleared(cleared_, trip_utc_s)) cleared_trip_utc_s_ = trip_utc_s;
 }
 
 /// Reports each loss once. Without any readable file, the control cycle reports it.
-void HoldWatch::tell_of_losses(const HoldReading& reading) {
-  const bool state_is_new = reading.state_is_lost && !told_.state_is_lost;
-  const bool run_is_new = reading.run_is_lost && !told_.run_is_lost;
-  told_ = reading;
+void HoldWatch::report_losses(const HoldReading& reading) {
+  const bool state_is_new = reading.state_is_lost && !reported_.state_is_lost;
+  const bool run_is_new = reading.run_is_lost && !reported_.run_is_lost;
+  reported_ = reading;
   if (!state_is_new && !run_is_new) return;
   report(JournalLevel::kError, "hold: %s is malformed; %s is used",
          state_is_new ? paths_.state.c_str() : paths_.run.c_str(),

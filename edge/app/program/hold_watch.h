@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "edge/app/storage/operator_files.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/memory/plain_thread.h"
 #include "shared/fixed_text.h"
@@ -25,8 +25,8 @@ class HoldWatch {
 
   /// Reads the files once for the first control cycle, then in the background. `time_scale`: the
   /// period is one second of simulated time.
-  void start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale);
-  [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
+  void start(const StateFilePaths& paths, const StateFilePaths& cleared, std::int32_t time_scale);
+  [[nodiscard]] const LatestHold& latest_hold() const { return latest_hold_; }
 
   /// Called by the control thread, never waits: whether the trip of this time is known to be
   /// cleared. The watcher checks it from the first call.
@@ -36,15 +36,15 @@ class HoldWatch {
   void run();
   void look();
 
-  void tell_of_losses(const HoldReading& reading);
+  void report_losses(const HoldReading& reading);
 
-  BothPlaces paths_;
-  HoldReading told_;
-  BothPlaces cleared_;
+  StateFilePaths paths_;
+  HoldReading reported_;
+  StateFilePaths cleared_;
   std::atomic<std::int64_t> asked_trip_utc_s_{0};
   std::atomic<std::int64_t> cleared_trip_utc_s_{0};
   std::int64_t period_ns_ = 0;
-  HoldMailbox mailbox_;
+  LatestHold latest_hold_;
   sem_t ending_;
   PlainThread thread_;
 };

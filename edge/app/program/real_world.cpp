@@ -43,7 +43,7 @@ bool RealWorld::record_battery(const std::string& path, FileMessage& error) {
                        config_.battery.map, config_.clock, error)) {
     return false;
   }
-  battery().link().tell_exchanges(recorder_.listener());
+  battery().link().set_exchange_listener(recorder_.listener());
   return true;
 }
 
@@ -61,16 +61,16 @@ bool RealWorld::open() {
   return false;
 }
 
-Recall RealWorld::recall() { return recall_at_start(config_, log_, published_); }
+RestoredState RealWorld::restore_state() { return restore_at_start(config_, log_, published_); }
 
-const HoldMailbox& RealWorld::listen() {
-  people_.start(both_places(config_, kHoldFileName), both_places(config_, kClearedFileName),
-                config_.clock.scale);
-  return people_.mailbox();
+const LatestHold& RealWorld::listen() {
+  hold_watch_.start(state_file_paths(config_, kHoldFileName),
+                    state_file_paths(config_, kClearedFileName), config_.clock.scale);
+  return hold_watch_.latest_hold();
 }
 
 /// In wall time: bess-prices may just have started.
-Status RealWorld::greet_prices() {
+Status RealWorld::check_price_server() {
   const std::int64_t request_ms = config_.price.feed.http.timeout_ms + 1'000;
   return devices_.prices.first_answer(request_ms * kMillisecondsNs);
 }
@@ -80,7 +80,7 @@ PublishedHistory RealWorld::find_history() {
   return devices_.prices.await_history(wait_ns + kNanosecondsPerSecond);
 }
 
-OutlookBoard* RealWorld::look_out(std::int32_t) {
+OutlookExchange* RealWorld::await_outlook(std::int32_t) {
   if (student_outlook() == nullptr) return nullptr;
   const std::int64_t patience_s = config_.outlook.http.timeout_ms / 1'000 + kPlanningSMax;
   needs_time(patience_s);

@@ -10,7 +10,7 @@
 #include "edge/app/recording/exchange_recorder.h"
 #include "edge/app/settings/edge_config.h"
 #include "edge/app/storage/operator_files.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/memory/heap_seal.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/prices/record/price_reader.h"
@@ -48,17 +48,17 @@ class RealWorld {
 
   /// Checks the commissioning, then opens the log, so that a refused run keeps the previous status.
   bool open();
-  Recall recall();
+  RestoredState restore_state();
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return log_.read_back(records, record);
   }
   void keep(const CycleRecord& record) { log_.write(record); }
 
-  Status greet_prices();
+  Status check_price_server();
   PublishedHistory find_history();
-  const HoldMailbox& listen();
-  OutlookBoard* look_out(std::int32_t level_centi);
-  bool is_cleared(std::int64_t trip_utc_s) { return people_.is_cleared(trip_utc_s); }
+  const LatestHold& listen();
+  OutlookExchange* await_outlook(std::int32_t level_centi);
+  bool is_cleared(std::int64_t trip_utc_s) { return hold_watch_.is_cleared(trip_utc_s); }
 
   void needs_time(std::int64_t seconds) { notify_.extend_start(seconds); }
   static void complain(JournalLevel level, const std::string& line);
@@ -79,7 +79,7 @@ class RealWorld {
   EventLog log_;
   ExchangeRecorder recorder_;
   LimitFile limits_;
-  HoldWatch people_;
+  HoldWatch hold_watch_;
   std::uint64_t published_ = 0;  ///< newest record number in a status at the start
 };
 

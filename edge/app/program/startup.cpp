@@ -36,31 +36,31 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 }
 
 void report_commission_losses(const EdgeConfig& config) {
-  for (const std::string& line : mend_commission_file(config)) {
+  for (const std::string& line : repair_commission_file(config)) {
     report(JournalLevel::kError, "%s", line.c_str());
   }
 }
 
-Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
-                       std::uint64_t published_number) {
-  const BothPlaces paths = both_places(config, kClearedFileName);
+RestoredState restore_at_start(const EdgeConfig& config, const EventLog& log,
+                               std::uint64_t published_number) {
+  const StateFilePaths paths = state_file_paths(config, kClearedFileName);
   for (const FixedText<639>* path : {&paths.state, &paths.run}) {
     if (!read_cleared(path->c_str()).unreadable) continue;
     report(JournalLevel::kError, "%s is malformed: trips cleared there are active again",
            path->c_str());
   }
-  Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
-  if (recalled.unknown.empty()) return recalled;
-  const char* const what = recalled.unknown.c_str();
-  if (recalled.trip) {
+  RestoredState restored = restore_state(log.ring(), log.run_ring(), published_number, paths);
+  if (restored.unknown.empty()) return restored;
+  const char* const what = restored.unknown.c_str();
+  if (restored.trip) {
     report(JournalLevel::kError,
            "state: %s: full-cycle budget and price level of earlier runs are unknown", what);
-    return recalled;
+    return restored;
   }
   report(JournalLevel::kError,
          "state: %s: a trip may be lost, so there is no control until bess-edge clear --yes", what);
-  recalled.trip = trip_without_state(recalled, config.clock.now_utc_ns() / kNanosecondsPerSecond);
-  return recalled;
+  restored.trip = trip_without_state(restored, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  return restored;
 }
 
 void journal_thresholds(const EdgeConfig& config) {
@@ -94,32 +94,33 @@ std::string eur_text(std::int32_t centi) {
   return text;
 }
 
-std::string why_no_more(const LevelNews& news) {
-  if (news.hours_wanted == 0) return "history_hours = 0";
-  if (news.status == Status::kOk) return "no more rows at the server";
-  return std::string(price_status_text(news.status));
+std::string why_no_more(const LevelStartReport& level_report) {
+  if (level_report.hours_wanted == 0) return "history_hours = 0";
+  if (level_report.status == Status::kOk) return "no more rows at the server";
+  return std::string(price_status_text(level_report.status));
 }
 
-std::string history_note(const LevelNews& news) {
-  std::string text = "from " + std::to_string(news.rows) + " rows of the last " +
-                     std::to_string(news.hours) + " h";
-  if (news.hours >= news.hours_wanted) return text;
-  return text + " instead of " + std::to_string(news.hours_wanted) + " h: " + why_no_more(news);
+std::string history_note(const LevelStartReport& level_report) {
+  std::string text = "from " + std::to_string(level_report.rows) + " rows of the last " +
+                     std::to_string(level_report.hours) + " h";
+  if (level_report.hours >= level_report.hours_wanted) return text;
+  return text + " instead of " + std::to_string(level_report.hours_wanted) +
+         " h: " + why_no_more(level_report);
 }
 
-std::string source_note(const LevelNews& news) {
-  const std::string level = eur_text(news.start.level.centi_eur_per_mwh());
-  switch (news.start.source) {
+std::string source_note(const LevelStartReport& level_report) {
+  const std::string level = eur_text(level_report.start.level.centi_eur_per_mwh());
+  switch (level_report.start.source) {
     case LevelSource::kLog:
       return level + ", from the decision log";
     case LevelSource::kHistory:
-      return level + ", " + history_note(news);
+      return level + ", " + history_note(level_report);
     case LevelSource::kSetting:
-      return level + ", from level_start_eur_per_mwh; no history: " + why_no_more(news);
+      return level + ", from level_start_eur_per_mwh; no history: " + why_no_more(level_report);
     case LevelSource::kNone:
       break;
   }
-  return "set by the first price; no history: " + why_no_more(news);
+  return "set by the first price; no history: " + why_no_more(level_report);
 }
 
 }  // namespace
@@ -137,13 +138,15 @@ std::string context_note(const ContextClasses& context) {
   return text + " EUR/MWh";
 }
 
-std::string level_note(const LevelNews& news) {
-  const char* const refused = news.start.refused_log ? "value in the log out of range; " : "";
-  return std::string("price level: ").append(refused).append(source_note(news));
+std::string level_start_text(const LevelStartReport& level_report) {
+  const char* const refused =
+      level_report.start.refused_log ? "value in the log out of range; " : "";
+  return std::string("price level: ").append(refused).append(source_note(level_report));
 }
 
-JournalLevel journal_level_of(const LevelNews& news) {
-  return news.start.source == LevelSource::kNone ? JournalLevel::kWarning : JournalLevel::kNotice;
+JournalLevel journal_level_of(const LevelStartReport& level_report) {
+  return level_report.start.source == LevelSource::kNone ? JournalLevel::kWarning
+                                                         : JournalLevel::kNotice;
 }
 
 namespace {

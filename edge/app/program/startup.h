@@ -7,7 +7,7 @@
 #include "edge/app/program/edge_clock.h"
 #include "edge/app/program/find_battery.h"
 #include "edge/app/settings/edge_config.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/base/status.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/control/level_start.h"
@@ -32,9 +32,9 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 void report_commission_losses(const EdgeConfig& config);
 
 /// Restores the state of earlier runs. If it is unreadable, a journal line has the cause, and there
-/// is no control until a person clears it. `published_number`: recall.h.
-Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
-                       std::uint64_t published_number);
+/// is no control until a person clears it. `published_number`: restored_state.h.
+RestoredState restore_at_start(const EdgeConfig& config, const EventLog& log,
+                               std::uint64_t published_number);
 
 /// One journal line: price thresholds of guard and student's proof.
 void journal_thresholds(const EdgeConfig& config);
@@ -54,7 +54,7 @@ bool check_student();
 std::string context_note(const ContextClasses& context);
 
 /// Source of the starting price level. The history fields are valid only after a request.
-struct LevelNews {
+struct LevelStartReport {
   LevelStart start{};
   int hours_wanted = 0;
   int hours = 0;  ///< covered by the rows
@@ -62,9 +62,9 @@ struct LevelNews {
   Status status = Status::kOk;  ///< what ended or prevented the request
 };
 
-std::string level_note(const LevelNews& news);
+std::string level_start_text(const LevelStartReport& level_report);
 /// A warning only for an unknown level, which needs days to settle.
-JournalLevel journal_level_of(const LevelNews& news);
+JournalLevel journal_level_of(const LevelStartReport& level_report);
 
 /// Operator's orders for --check: lines with line ends, or empty. `now_utc_s` selects reserve and
 /// hold.
@@ -81,25 +81,27 @@ struct ThresholdNote {
 ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved);
 
 /// Price level to start with: from the log, or for a student by level from the prices of the last
-/// hours. `logged`: of the newest record. `greeting`: first price answer.
+/// hours. `logged`: of the newest record. `price_server_status`: first price answer.
 template <typename World>
-LevelNews starting_level(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
-                         World& world) {
+LevelStartReport starting_level(const EdgeConfig& config, const PriceLevel& logged,
+                                Status price_server_status, World& world) {
   const std::int64_t now_utc_s = world.clock().now_utc_ns() / kNanosecondsPerSecond;
-  LevelNews news{.hours_wanted = config.price.history.hours, .status = greeting};
+  LevelStartReport level_report{.hours_wanted = config.price.history.hours,
+                                .status = price_server_status};
   const auto fetch = [&]() -> PriceLevel {
     // A server that has not answered would only delay the start.
-    const bool has_answered = greeting == Status::kOk || greeting == Status::kNoRow;
-    if (news.hours_wanted == 0 || !has_answered) return {};
+    const bool has_answered =
+        price_server_status == Status::kOk || price_server_status == Status::kNoRow;
+    if (level_report.hours_wanted == 0 || !has_answered) return {};
     const PublishedHistory history = world.find_history();
-    news.status = history.status;
-    news.hours = history.hours;
-    news.rows = history.rows;
+    level_report.status = history.status;
+    level_report.hours = history.hours;
+    level_report.rows = history.rows;
     return history.level;
   };
-  news.start = find_start_level(student_context().kind, logged, now_utc_s,
-                                config.price.level_start_centi_eur_per_mwh, fetch);
-  return news;
+  level_report.start = find_start_level(student_context().kind, logged, now_utc_s,
+                                        config.price.level_start_centi_eur_per_mwh, fetch);
+  return level_report;
 }
 
 }  // namespace bess

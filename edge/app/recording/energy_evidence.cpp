@@ -92,9 +92,9 @@ std::int32_t RecordedSteps::band_w(std::int64_t order_w) const {
   return map_.response.tolerance_of_w(0, static_cast<std::int32_t>(std::abs(order_w)));
 }
 
-std::vector<const AnswerCurve*> RecordedSteps::whole() const {
-  std::vector<const AnswerCurve*> whole;
-  for (const AnswerCurve& curve : curves_) {
+std::vector<const StepResponse*> RecordedSteps::whole() const {
+  std::vector<const StepResponse*> whole;
+  for (const StepResponse& curve : curves_) {
     const bool is_whole = curve.has_come() && curve.readings().size() >= kReadingsMin &&
                           curve.step_w() > 2 * curve.band_w();
     if (is_whole) whole.push_back(&curve);

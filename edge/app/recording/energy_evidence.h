@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edge/device/battery/step_fit.h"
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "shared/bus_exchange.h"
 
@@ -28,7 +28,7 @@ class RecordedSteps {
   void add(const BusExchange& exchange);
 
   /// Complete steps so far; valid as long as this object.
-  [[nodiscard]] std::vector<const AnswerCurve*> whole() const;
+  [[nodiscard]] std::vector<const StepResponse*> whole() const;
   [[nodiscard]] int orders() const { return orders_; }  ///< that changed the power
 
  private:
@@ -39,7 +39,7 @@ class RecordedSteps {
 
   const RegisterMap& map_;
   PointPlaces places_;
-  LivePoints live_;
+  PointValues live_;
   std::int32_t time_scale_;
   int power_ = -1;                       ///< last point of the measured power
   std::optional<std::int64_t> order_w_;  ///< in force, if known
@@ -47,8 +47,8 @@ class RecordedSteps {
   std::int64_t order_ns_ = 0;            ///< time of the order, or of its immediate repetition
   std::int64_t from_w_ = 0;              ///< measured before the step
   int sign_ = 1;
-  std::list<AnswerCurve> curves_;
-  AnswerCurve* step_ = nullptr;  ///< current
+  std::list<StepResponse> curves_;
+  StepResponse* step_ = nullptr;  ///< current
   int orders_ = 0;
 };
 

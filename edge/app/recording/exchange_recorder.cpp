@@ -85,7 +85,7 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
 }
 
 ExchangeListener ExchangeRecorder::listener() {
-  return {.tell =
+  return {.on_exchange =
               [](void* recorder, const BusExchange& exchange) {
                 static_cast<ExchangeRecorder*>(recorder)->push(exchange);
               },

@@ -13,8 +13,8 @@
 #include "edge/app/recording/recording_mask.h"
 #include "edge/core/memory/plain_thread.h"
 #include "edge/device/battery/modbus_link.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/handover_queue.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/host/bus_recording.h"
 #include "shared/scaled_clock.h"
 

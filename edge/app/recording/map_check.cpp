@@ -155,7 +155,7 @@ void MapCheck::take(const BusExchange& exchange, int point, int offset) {
     }
     return;
   }
-  Seen& seen = seen_[point];
+  PointStatistics& seen = seen_[point];
   ++seen.asked;
   // One refused register refuses its whole block: only a point read separately counts as refused.
   const bool is_alone = exchange.count == map_.points[point].register_count();
@@ -169,7 +169,7 @@ void MapCheck::take(const BusExchange& exchange, int point, int offset) {
 
 void MapCheck::take_value(int point, const std::uint16_t* raw) {
   const RegisterPoint& p = map_.points[point];
-  Seen& seen = seen_[point];
+  PointStatistics& seen = seen_[point];
   if (p.type == RegisterType::kText) return judge_identity(point, raw, 0);
   live_.keep(map_, point, raw);
   Scaling scaling;
@@ -206,7 +206,7 @@ void MapCheck::judge_identity(int point, const std::uint16_t* raw, std::int64_t 
 std::vector<PointVerdict> MapCheck::verdicts() const {
   std::vector<PointVerdict> verdicts;
   for (int i = 0; i < map_.points.size(); ++i) {
-    const Seen& seen = seen_[i];
+    const PointStatistics& seen = seen_[i];
     verdicts.push_back({.name = std::string(map_.points[i].name.view()),
                         .unit = places_.unit_of(i),
                         .address = places_.is_placed(i) ? places_.address_of(i) : -1,
@@ -220,7 +220,7 @@ std::vector<PointVerdict> MapCheck::verdicts() const {
 }
 
 std::string MapCheck::finding_of(int point) const {
-  const Seen& seen = seen_[point];
+  const PointStatistics& seen = seen_[point];
   if (seen.answers == 0) return unanswered_finding(point);
   if (seen.bad > 0) return range_finding(point);
   if (seen.strange > 0) {
@@ -253,7 +253,7 @@ bool MapCheck::is_needed(int point) const {
 }
 
 std::string MapCheck::unanswered_finding(int point) const {
-  const Seen& seen = seen_[point];
+  const PointStatistics& seen = seen_[point];
   // Points that are optional, only written, or read on demand are not reported as missing.
   const bool is_asked_for = seen.asked > 0 && !places_.is_written(point);
   if (map_.points[point].optional || !(is_needed(point) || is_asked_for)) return "";
@@ -271,7 +271,7 @@ std::string MapCheck::unanswered_finding(int point) const {
 
 std::string MapCheck::range_finding(int point) const {
   const RegisterPoint& p = map_.points[point];
-  const Seen& seen = seen_[point];
+  const PointStatistics& seen = seen_[point];
   std::int64_t value = 0;
   const bool is_number = decode_anything(p, seen.bad_raw.data(), seen.bad_scaling, value);
   const std::string fit = what_would_fit(p, seen.bad_raw.data(), seen.bad_scaling);

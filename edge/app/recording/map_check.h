@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "edge/app/recording/energy_evidence.h"
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "shared/bus_exchange.h"
 
@@ -43,7 +43,7 @@ class MapCheck {
   [[nodiscard]] std::string unjudged() const;
 
  private:
-  struct Seen {
+  struct PointStatistics {
     std::int64_t asked = 0;
     std::int64_t answers = 0;
     std::int64_t absent = 0;    ///< answers "not implemented"
@@ -75,8 +75,8 @@ class MapCheck {
 
   const RegisterMap& map_;
   PointPlaces places_;
-  LivePoints live_;
-  std::array<Seen, kPointsMax> seen_{};
+  PointValues live_;
+  std::array<PointStatistics, kPointsMax> seen_{};
   EnergyEvidence energy_;
   std::array<bool, kPointsMax> in_round_{};  ///< read since the newest round began
   std::int64_t power_utc_ns_ = 0;            ///< of the power in it

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "shared/bus_exchange.h"
 

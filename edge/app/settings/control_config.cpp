@@ -13,7 +13,7 @@
 #include "edge/app/settings/price_config.h"
 #include "edge/core/control/full_charge.h"
 #include "edge/device/registers/map_file.h"
-#include "edge/prices/record/http_trust.h"
+#include "edge/prices/record/transport_security.h"
 #include "edge/records/log/battery_name.h"
 #include "shared/units_and_limits.h"
 
@@ -154,7 +154,7 @@ void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
   }
   read_connection(table, settings.connection);
   table.choice("on_loss", on_loss, {"idle", "ignore"});
-  table.boolean("judged", settings.witness.judges);
+  table.boolean("judged", settings.meter_check.judges);
   table.integer("pv_w_max", settings.pv_w_max, 0, kConnectionWMax);
   table.finish();
   settings.idle_without_meter = on_loss == 0;

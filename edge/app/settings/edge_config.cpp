@@ -22,7 +22,7 @@ void keep_path(TomlTable& table, std::string_view key, const std::string& path,
   if (!kept.assign(path)) table.fail(key, "is too long");
 }
 
-void keep_run_paths(TomlTable& table, const std::string& path, KeptFiles kept) {
+void keep_run_paths(TomlTable& table, const std::string& path, StateAndLogSettings kept) {
   keep_path(table, "run_folder", path, kept.state.run_folder);
   keep_path(table, "run_folder", path + "/decisions.ring", kept.log.run_ring);
   keep_path(table, "run_folder", path + "/status.json", kept.log.run_status);
@@ -31,7 +31,7 @@ void keep_run_paths(TomlTable& table, const std::string& path, KeptFiles kept) {
 
 }  // namespace
 
-void read_state(TomlTable table, KeptFiles kept) {
+void read_state(TomlTable table, StateAndLogSettings kept) {
   FixedText<255> folder("state");
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
@@ -69,8 +69,8 @@ namespace {
 /// Completes the site's settings from battery and map.
 void set_site(EdgeConfig& config) {
   SiteSettings& site = config.site.settings;
-  site.witness.power_w = config.control.guard.power_w;
-  site.witness.settle_s = config.battery.map.response.settle_s;
+  site.meter_check.power_w = config.control.guard.power_w;
+  site.meter_check.settle_s = config.battery.map.response.settle_s;
   // A hybrid inverter has panels of unknown power.
   if (config.battery.map.response.charges_by_itself && site.pv_w_max == 0)
     site.pv_w_max = kAnyPowerW;
@@ -178,7 +178,7 @@ std::int32_t day_ahead_offset_s(const EdgeConfig& config) {
   return static_cast<std::int32_t>(crc.value() % kSpread_s);
 }
 
-BothPlaces both_places(const EdgeConfig& config, std::string_view name) {
+StateFilePaths state_file_paths(const EdgeConfig& config, std::string_view name) {
   return {.state = state_file(config, name), .run = run_file(config, name)};
 }
 

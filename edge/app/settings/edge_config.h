@@ -22,11 +22,11 @@ struct StateSettings {
 };
 
 /// Settings of [state], [log] and [metrics]; the log is in the [state] folders by default.
-struct KeptFiles {
+struct StateAndLogSettings {
   StateSettings& state;
   EventLogSettings& log;
 };
-void read_state(TomlTable table, KeptFiles kept);
+void read_state(TomlTable table, StateAndLogSettings kept);
 void read_log(TomlTable table, EventLogSettings& log);
 void read_metrics(TomlTable table, EventLogSettings& log);
 
@@ -59,10 +59,10 @@ FixedText<639> prices_file(const EdgeConfig& config);
 std::int32_t day_ahead_offset_s(const EdgeConfig& config);
 
 /// The same file in both folders, for state that must survive the failure of one.
-struct BothPlaces {
+struct StateFilePaths {
   FixedText<639> state;
   FixedText<639> run;  ///< empty = none
 };
-BothPlaces both_places(const EdgeConfig& config, std::string_view name);
+StateFilePaths state_file_paths(const EdgeConfig& config, std::string_view name);
 
 }  // namespace bess

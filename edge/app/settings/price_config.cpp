@@ -6,7 +6,7 @@
 #include <string>
 
 #include "edge/core/control/price_history.h"
-#include "edge/prices/record/http_trust.h"
+#include "edge/prices/record/transport_security.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

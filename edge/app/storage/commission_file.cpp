@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/crc32.h"
 #include "shared/host/toml_reader.h"
 #include "shared/utc_text.h"
@@ -53,7 +53,7 @@ std::string why_unreadable(int cause) {
 
 Stored read_place(const std::string& path) {
   Stored stored{.path = path, .text = std::string(kBytesMax, '\0'), .loss = ""};
-  const ssize_t size = read_beginning(path.c_str(), stored.text, Links::kRefused);
+  const ssize_t size = read_beginning(path.c_str(), stored.text, SymlinkPolicy::kRefused);
   if (size < 0) {
     stored.is_absent = errno == ENOENT;
     stored.loss = why_unreadable(errno);
@@ -62,9 +62,9 @@ Stored read_place(const std::string& path) {
   }
   stored.text.resize(static_cast<std::size_t>(size));
   std::string error;
-  const TextState state = check_text(stored.text, kCommentChecksum);
-  stored.is_checked = state == TextState::kIntact;
-  if (state == TextState::kBroken) {
+  const ChecksumState state = check_text(stored.text, kCommentChecksum);
+  stored.is_checked = state == ChecksumState::kIntact;
+  if (state == ChecksumState::kBroken) {
     stored.loss = "is damaged: wrong checksum";
   } else if (!parse_toml_text(stored.text, path, stored.document, error)) {
     stored.loss = "is damaged: " + error;
@@ -152,7 +152,7 @@ std::string battery_text(const EdgeConfig& config) {
 void add_direction(std::string_view name, const DirectionResult& direction,
                    std::ostringstream& text) {
   if (!direction.is_tested) return;
-  const AnswerSpeed& speed = direction.speed;
+  const StepResponseResult& speed = direction.speed;
   text << name << "_measured_w = " << direction.measured_power_w << "\n"
        << name << "_lag_ms = " << std::lround(speed.dynamics.dead_time_s * 1e3) << "\n"
        << name << "_time_constant_ms = " << std::lround(speed.dynamics.time_constant_s * 1e3)
@@ -299,7 +299,7 @@ std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
   return lines;
 }
 
-std::vector<std::string> mend_commission_file(const EdgeConfig& config) {
+std::vector<std::string> repair_commission_file(const EdgeConfig& config) {
   std::vector<std::string> lines;
   for_each_other(
       config, [&](const Stored& one, const Stored& good, const std::string& text, bool is_lost) {

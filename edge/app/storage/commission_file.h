@@ -27,6 +27,6 @@ std::vector<std::string> commission_file_losses(const EdgeConfig& config);
 
 /// Restores lost or damaged places from the usable one. A journal line for each loss; a run folder
 /// emptied by a boot is none.
-std::vector<std::string> mend_commission_file(const EdgeConfig& config);
+std::vector<std::string> repair_commission_file(const EdgeConfig& config);
 
 }  // namespace bess

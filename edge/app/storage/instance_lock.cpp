@@ -20,7 +20,7 @@ namespace bess {
 
 bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
 
-FileMessage strangers_file(const char* path) {
+FileMessage foreign_file_error(const char* path) {
   struct stat info {};
   const bool is_known = lstat(path, &info) == 0;
   char line[768];
@@ -32,14 +32,14 @@ FileMessage strangers_file(const char* path) {
   return {line};
 }
 
-bool refuse_stranger(const char* path, FileMessage& error) {
+bool check_file_owner(const char* path, FileMessage& error) {
   struct stat info {};
   if (lstat(path, &info) != 0 || is_trusted(info.st_uid)) return true;
-  error = strangers_file(path);
+  error = foreign_file_error(path);
   return false;
 }
 
-bool refuse_roots_leftover(const char* path, FileMessage& error) {
+bool check_root_leftover(const char* path, FileMessage& error) {
   struct stat info {};
   if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
   char line[1'400];  // longer than a message, which is cut
@@ -53,14 +53,14 @@ bool refuse_roots_leftover(const char* path, FileMessage& error) {
 
 bool is_believable(const char* path) {
   struct stat file {};
-  return lstat(path, &file) != 0 || is_of_the_house(file.st_uid, path);
+  return lstat(path, &file) != 0 || has_trusted_owner(file.st_uid, path);
 }
 
 namespace {
 
 /// Lock name of the battery. Serial devices by real path, because /dev/serial/by-id/... and
 /// /dev/ttyUSB0 may be one device; without the unit, because a line has one master.
-FixedText<159> locked_thing(const EdgeConfig& config) {
+FixedText<159> lock_subject(const EdgeConfig& config) {
   if (!config.battery.link.rtu) return battery_place(config.battery);
   char real[PATH_MAX];
   const char* const found = realpath(config.battery.link.device.c_str(), real);
@@ -86,7 +86,7 @@ bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& err
 
 FixedText<639> battery_lock_path(const EdgeConfig& config) {
   const std::string_view folder = lock_folder();
-  FixedText<159> thing = locked_thing(config);
+  FixedText<159> thing = lock_subject(config);
   char name[160];
   std::size_t size = 0;
   for (const char c : thing.view()) name[size++] = c == '/' || c == ' ' || c == ':' ? '_' : c;
@@ -112,9 +112,9 @@ std::string_view lock_folder() {
 
 int controller_holding(const EdgeConfig& config) {
   const bool has_run_folder = !config.state.run_folder.empty();
-  const int of_run_folder = has_run_folder ? holder_of(run_file(config, "lock").c_str()) : 0;
+  const int of_run_folder = has_run_folder ? lock_owner_pid(run_file(config, "lock").c_str()) : 0;
   if (of_run_folder > 0) return of_run_folder;
-  const int of_state_folder = holder_of(state_file(config, "lock").c_str());
+  const int of_state_folder = lock_owner_pid(state_file(config, "lock").c_str());
   return of_state_folder != 0 ? of_state_folder : of_run_folder;
 }
 
@@ -133,7 +133,7 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   }
   for (const auto& path : {stored_status_path(config.log.status), config.log.ring,
                            stored_status_path(config.log.run_status), config.log.run_ring}) {
-    if (!refuse_stranger(path.c_str(), error)) return false;
+    if (!check_file_owner(path.c_str(), error)) return false;
   }
   char what[560];
   std::snprintf(what, sizeof what, "the state folder %s", folder);
@@ -186,41 +186,41 @@ bool InstanceLock::take(const char* path, const char* what, FileMessage& error) 
   constexpr int kTries = 11;
   constexpr std::int64_t kPauseNs = kNanosecondsPerSecond / 10;
   for (int i = 0; i < kTries; ++i) {
-    const Try result = try_once(path);
-    if (result == Try::kTaken) {
+    const LockAttempt result = try_once(path);
+    if (result == LockAttempt::kTaken) {
       path_ = FixedText<639>(path);
       leave_pid();
       return true;
     }
-    if (result == Try::kFailed) return explain(path, error);
+    if (result == LockAttempt::kFailed) return explain(path, error);
     sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kPauseNs);
   }
   FileMessage stranger;
-  const bool is_strangers = !refuse_stranger(path, stranger);
+  const bool is_strangers = !check_file_owner(path, stranger);
   char line[1'700];  // longer than a message, which is cut
   std::snprintf(line, sizeof line,
                 "%s is in use by another program (process %d, lock %s), also reading needs "
                 "exclusive access: stop that program, or use bess-edge status%s%s",
-                what, holder_of(path), path, is_strangers ? "; " : "", stranger.c_str());
+                what, lock_owner_pid(path), path, is_strangers ? "; " : "", stranger.c_str());
   static_cast<void>(error.assign(line));
   return false;
 }
 
-InstanceLock::Try InstanceLock::try_once(const char* path) {
+InstanceLock::LockAttempt InstanceLock::try_once(const char* path) {
   const int fd = open_or_create(path);
-  if (fd < 0) return Try::kFailed;
+  if (fd < 0) return LockAttempt::kFailed;
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 || !is_still_at(fd, path)) {
     close(fd);
-    return Try::kHeld;  // or its file was just removed: the next try makes a new one
+    return LockAttempt::kHeld;  // or its file was just removed: the next try makes a new one
   }
   struct stat info {};
   if (fstat(fd, &info) == 0 && is_trusted(info.st_uid)) {
     fd_ = fd;
-    return Try::kTaken;
+    return LockAttempt::kTaken;
   }
   close(fd);
   errno = EACCES;  // its owner could lock or remove it at any time
-  return Try::kFailed;
+  return LockAttempt::kFailed;
 }
 
 /// True after a disk error, which does not prevent control.
@@ -232,8 +232,8 @@ bool InstanceLock::explain(const char* path, FileMessage& error) {
     error = {};
     return true;
   }
-  if (cause == EACCES && refuse_stranger(path, error)) {
-    static_cast<void>(refuse_roots_leftover(path, error));
+  if (cause == EACCES && check_file_owner(path, error)) {
+    static_cast<void>(check_root_leftover(path, error));
   }
   return false;
 }
@@ -246,10 +246,10 @@ void InstanceLock::leave_pid() const {
   static_cast<void>(written);  // only for the message of a second program
 }
 
-int holder_of(const char* path) {
+int lock_owner_pid(const char* path) {
   if (!is_believable(path)) return 0;
   const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (fd < 0) return errno == EACCES ? kHolderHidden : 0;
+  if (fd < 0) return errno == EACCES ? kOwnerHidden : 0;
   int holder = 0;
   if (flock(fd, LOCK_SH | LOCK_NB) != 0) holder = pid_in(fd);
   // On a read-only disk the file keeps an old process id.

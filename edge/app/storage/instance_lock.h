@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "edge/app/settings/edge_config.h"
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -18,15 +18,15 @@ namespace bess {
 bool is_trusted(uid_t owner);
 
 /// "PATH belongs to user N, ...", with the remedy.
-FileMessage strangers_file(const char* path);
+FileMessage foreign_file_error(const char* path);
 
 /// For a file that this process relies on or replaces: false with one line if it exists and belongs
 /// to another user. Checks a link itself.
-bool refuse_stranger(const char* path, FileMessage& error);
+bool check_file_owner(const char* path, FileMessage& error);
 
 /// For a file of root that this process may not open: false with one line and the command that
 /// removes it.
-bool refuse_roots_leftover(const char* path, FileMessage& error);
+bool check_root_leftover(const char* path, FileMessage& error);
 
 /// For a file that is only read: also accepts the owner of the folder, and a missing file.
 bool is_believable(const char* path);
@@ -38,15 +38,15 @@ class InstanceLock {
   InstanceLock& operator=(const InstanceLock&) = delete;
   ~InstanceLock();
 
-  /// Tries for one second, because a predecessor may be ending and `holder_of` locks briefly. False
-  /// with one line; `what` names the locked object. A lock file of another user except root is
-  /// refused, because that user could remove it. On a full or read-only disk, a note and true.
+  /// Tries for one second, because a predecessor may be ending and `lock_owner_pid` locks briefly.
+  /// False with one line; `what` names the locked object. A lock file of another user except root
+  /// is refused, because that user could remove it. On a full or read-only disk, a note and true.
   bool take(const char* path, const char* what, FileMessage& error);
 
  private:
-  enum class Try { kTaken, kHeld, kFailed };  ///< kFailed with errno set
+  enum class LockAttempt { kTaken, kHeld, kFailed };  ///< kFailed with errno set
 
-  Try try_once(const char* path);
+  LockAttempt try_once(const char* path);
   static bool explain(const char* path, FileMessage& error);
   void leave_pid() const;
 
@@ -54,11 +54,11 @@ class InstanceLock {
   int fd_ = -1;
 };
 
-inline constexpr int kHolderHidden = -2;
+inline constexpr int kOwnerHidden = -2;
 
-/// Process id of the lock's owner; 0 = none, or not trusted; -1 = unknown id; kHolderHidden = no
+/// Process id of the lock's owner; 0 = none, or not trusted; -1 = unknown id; kOwnerHidden = no
 /// permission to check.
-int holder_of(const char* path);
+int lock_owner_pid(const char* path);
 
 /// Lock of the battery, the same for every configuration with this address.
 FixedText<639> battery_lock_path(const EdgeConfig& config);
@@ -66,8 +66,8 @@ FixedText<639> battery_lock_path(const EdgeConfig& config);
 FixedText<639> name_lock_path(const EdgeConfig& config);
 /// Folder of the locks of all controllers of this machine, not configurable.
 std::string_view lock_folder();
-/// Process of the controller of this configuration, as `holder_of`: by the lock of its run folder
-/// or its state folder.
+/// Process of the controller of this configuration, as `lock_owner_pid`: by the lock of its run
+/// folder or its state folder.
 int controller_holding(const EdgeConfig& config);
 bool is_controller_running(const EdgeConfig& config);
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 
@@ -22,7 +22,7 @@ constexpr std::size_t kUntilCharacters = 20;
 constexpr Hold kUnreadable{.unreadable = true};
 
 /// Hold of one place, with its time.
-struct Word {
+struct StoredHold {
   Hold hold;
   bool is_there = false;
   std::int64_t given_ns = 0;
@@ -30,7 +30,7 @@ struct Word {
   [[nodiscard]] bool counts() const { return is_there && !hold.unreadable; }
 };
 
-Word read_word(const char* path) {
+StoredHold read_stored_hold(const char* path) {
   struct stat facts {};
   if (lstat(path, &facts) != 0 && errno == ENOENT) return {};
   return {.hold = read_hold(path),
@@ -69,14 +69,14 @@ Hold parse_hold(std::string_view text) {
 
 Hold read_hold(const char* path) {
   char text[kHoldFileBytes + 1];  // one more, to detect a longer file
-  const ssize_t size = read_beginning(path, text, Links::kRefused);
+  const ssize_t size = read_beginning(path, text, SymlinkPolicy::kRefused);
   if (size < 0) return errno == ENOENT ? Hold{} : kUnreadable;
   return parse_hold({text, static_cast<std::size_t>(size)});
 }
 
-HoldReading read_newest_hold(const BothPlaces& paths) {
-  const Word of_state = read_word(paths.state.c_str());
-  const Word of_run = paths.run.empty() ? Word{} : read_word(paths.run.c_str());
+HoldReading read_newest_hold(const StateFilePaths& paths) {
+  const StoredHold of_state = read_stored_hold(paths.state.c_str());
+  const StoredHold of_run = paths.run.empty() ? StoredHold{} : read_stored_hold(paths.run.c_str());
   if (!of_state.counts() && !of_run.counts()) {
     return {.hold = {.unreadable = of_state.is_there || of_run.is_there}};
   }
@@ -90,7 +90,7 @@ HoldReading read_newest_hold(const BothPlaces& paths) {
 Status LimitFile::read(OutsideLimit& limit, bool& is_set) const {
   is_set = false;
   char text[kLimitBytesMax + 1];
-  const ssize_t size = read_beginning(path_, text, Links::kFollowed);
+  const ssize_t size = read_beginning(path_, text, SymlinkPolicy::kFollowed);
   if (size < 0 && errno == ENOENT) return Status::kOk;
   if (size < 0 || size > static_cast<ssize_t>(kLimitBytesMax)) return Status::kMalformed;
   const Status status = parse_outside_limit({text, static_cast<std::size_t>(size)}, limit);

@@ -38,7 +38,7 @@ struct HoldReading {
   friend bool operator==(const HoldReading&, const HoldReading&) = default;
 };
 /// Newer hold of both places; no file is no hold.
-HoldReading read_newest_hold(const BothPlaces& paths);
+HoldReading read_newest_hold(const StateFilePaths& paths);
 
 // Limit file of another program (format: connection_guard.h), read by the control thread every few
 // seconds: no heap, fixed buffer, and no blocking, so a regular file in memory (/run), never a

@@ -39,7 +39,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.control = config.control.control;
   identity.pid = getpid();
   identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  identity.wear = card_wear_of(config.state.folder.c_str());
+  identity.wear = storage_wear_of(config.state.folder.c_str());
   identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
   return identity;
 }
@@ -55,7 +55,7 @@ std::optional<RunStatus> stored_status(const FixedText<511>& status_json) {
   if (status_json.empty()) return std::nullopt;
   const FixedText<511> path = stored_status_path(status_json);
   if (!is_believable(path.c_str())) {
-    report(JournalLevel::kWarning, "%s", strangers_file(path.c_str()).c_str());
+    report(JournalLevel::kWarning, "%s", foreign_file_error(path.c_str()).c_str());
     return std::nullopt;
   }
   RunStatus status;
@@ -142,11 +142,11 @@ int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>
 /// By the locks; by the files if the locks may not be opened.
 int find_controller(const EdgeConfig& config, const std::optional<RunStatus>& status,
                     bool no_lock) {
-  int holder = no_lock ? kHolderHidden : controller_holding(config);
+  int holder = no_lock ? kOwnerHidden : controller_holding(config);
   if (holder == 0 && !has_place_for_status(config)) {  // no locks there either
-    holder = holder_of(battery_lock_path(config).c_str());
+    holder = lock_owner_pid(battery_lock_path(config).c_str());
   }
-  if (holder == kHolderHidden) return controller_by_files(config, status);
+  if (holder == kOwnerHidden) return controller_by_files(config, status);
   // On a full disk the lock file has no process id.
   const int writer = holder < 0 ? living_writer_of(status) : 0;
   return writer != 0 ? writer : holder;
@@ -172,7 +172,7 @@ RunStatus status_of_record(const EdgeConfig& config, const std::optional<RunStat
 }
 
 /// Newer control cycles in the log replace the status.
-void believe_the_log(const EdgeConfig& config, PublishedStatus& published) {
+void restore_from_log(const EdgeConfig& config, PublishedStatus& published) {
   LogReader log;
   FileMessage ignored;
   CycleRecord newest;
@@ -217,7 +217,7 @@ bool read_text(const char* path, std::string& text) {
 PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
   PublishedStatus published{.status = newer_status(config), .unknown = ""};
   published.holder = find_controller(config, published.status, no_lock);
-  believe_the_log(config, published);
+  restore_from_log(config, published);
   const int pid = published.status ? published.status->identity.pid : 0;
   const std::int64_t cadence_ms = published.status ? published.status->identity.cadence_ms : 0;
   published.age_ms = published.status ? age_ms_of(*published.status) : 0;

@@ -15,7 +15,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -95,8 +95,8 @@ int spare_level(std::string_view pre_eol_info) {
   return level > kLevelMax ? 0 : level;
 }
 
-CardWear card_wear_of(const std::string& folder) {
-  CardWear wear;
+StorageWear storage_wear_of(const std::string& folder) {
+  StorageWear wear;
   const std::string device = block_device_of(folder);
   if (device.empty()) return wear;
   // The device itself, or the disk of a partition.
@@ -127,7 +127,7 @@ bool takes_no_file(const char* folder) {
   return is_read_only(folder) || (statvfs(folder, &disk) == 0 && disk.f_bavail == 0);
 }
 
-StorageHealth look_at_storage(const std::string& folder) {
+StorageHealth check_storage(const std::string& folder) {
   StorageHealth health;
   make_folder(folder.c_str());  // a failure is reported by the write
   const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
@@ -142,7 +142,7 @@ StorageHealth look_at_storage(const std::string& folder) {
   if (statvfs(folder.c_str(), &disk) == 0) {
     health.free_mb = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize) / 1e6;
   }
-  health.wear = card_wear_of(folder);
+  health.wear = storage_wear_of(folder);
   return health;
 }
 

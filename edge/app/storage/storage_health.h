@@ -14,11 +14,11 @@ namespace bess {
 /// cells, in tenths; the worse one); 0 = not reported.
 int used_life_percent(std::string_view life_time);
 
-/// CardWear::spare_level from the pre_eol_info file ("0x01").
+/// StorageWear::spare_level from the pre_eol_info file ("0x01").
 int spare_level(std::string_view pre_eol_info);
 
 /// Wear of the folder's device and errors of its file system, from /sys (below BESS_ROOT in tests).
-CardWear card_wear_of(const std::string& folder);
+StorageWear storage_wear_of(const std::string& folder);
 
 /// Whether the folder is read-only: mounted so, or set by the kernel after an error, which ext4
 /// does not report to statvfs (emergency_ro, Linux 6.15 and later). True if unknown.
@@ -32,10 +32,10 @@ struct StorageHealth {
   std::string error;  ///< why not writable
   double free_mb = 0;
   double synced_write_ms = 0;
-  CardWear wear;
+  StorageWear wear;
 };
 
 /// Writes 4 KiB into `folder` and deletes them; creates a missing folder.
-StorageHealth look_at_storage(const std::string& folder);
+StorageHealth check_storage(const std::string& folder);
 
 }  // namespace bess

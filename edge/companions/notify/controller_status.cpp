@@ -62,7 +62,7 @@ ControllerStatus ask_controller(const ControllerPlaces& controller) {
 Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words) {
   words.insert(words.begin(), {controller.program, "earned"});
   words.insert(words.end(), {"--json", "--config", controller.config_path});
-  return Json::parse(run_and_hear(words, kEarnedSMax).output);
+  return Json::parse(run_and_capture(words, kEarnedSMax).output);
 }
 
 std::vector<Trouble> troubles_of(const ControllerStatus& status) {

@@ -66,7 +66,7 @@ bool is_alone(const NotifySettings& settings, InstanceLock& lock) {
   make_folder(folder_of(settings.lock.c_str()).c_str());
   if (lock.take(settings.lock.c_str(), "[notify] folder", error)) return true;
   std::fprintf(stderr, "bess-notify: %s\n", error.c_str());
-  return holder_of(settings.lock.c_str()) == 0;
+  return lock_owner_pid(settings.lock.c_str()) == 0;
 }
 
 int run(const Options& options) {

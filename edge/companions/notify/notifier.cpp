@@ -65,8 +65,8 @@ Notifier::~Notifier() {
 
 void Notifier::run_round(std::int64_t now_utc_s) {
   const ControllerStatus status = ask_controller(settings_);
-  tell_alarms(status, now_utc_s);
-  tell_day(status, now_utc_s);
+  notify_of_alarms(status, now_utc_s);
+  notify_of_day(status, now_utc_s);
   if (mqtt_ != nullptr) note_connection();
   publish(status);
   keep();  // before sending: a kill in between delays a message but does not lose it
@@ -87,14 +87,14 @@ void Notifier::serve(TimePoint until, const std::stop_token& stop, bool is_for_c
     const std::deque<Order> orders = std::exchange(orders_, {});
     const std::optional<std::string> outcome = std::exchange(outcome_, std::nullopt);
     lock.unlock();
-    if (outcome.has_value()) hear_of_command(*outcome);
+    if (outcome.has_value()) note_command_result(*outcome);
     for (const Order& order : orders) follow(order);
     if (!orders.empty()) publish(ask_controller(settings_));
     lock.lock();
   }
 }
 
-void Notifier::tell_alarms(const ControllerStatus& status, std::int64_t now_utc_s) {
+void Notifier::notify_of_alarms(const ControllerStatus& status, std::int64_t now_utc_s) {
   std::vector<Trouble> troubles = troubles_of(status);
   if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
   if (!settings_.settled_file.empty()) {
@@ -116,13 +116,13 @@ void Notifier::tell_alarms(const ControllerStatus& status, std::int64_t now_utc_
     // It began up to one round before it was first seen and ended up to one round after the last.
     const std::int64_t lasted_s = alarm.seen_utc_s - alarm.since_utc_s + settings_.every_s;
     if (is_over) message.text += " (lasted " + duration_text(lasted_s) + ")";
-    tell(message);
+    send_message(message);
   }
 }
 
 /// Only after a new control cycle, because each answer reads the log. A day is complete with the
 /// first control cycle of the next day; days before the start are not reported.
-void Notifier::tell_day(const ControllerStatus& status, std::int64_t now_utc_s) {
+void Notifier::notify_of_day(const ControllerStatus& status, std::int64_t now_utc_s) {
   const std::string newest_utc = status.json.value()["last"]["utc"].text_or("");
   if (newest_utc.empty() || newest_utc == newest_utc_) return;
   newest_utc_ = newest_utc;
@@ -135,14 +135,14 @@ void Notifier::tell_day(const ControllerStatus& status, std::int64_t now_utc_s) 
   const Json yesterday = ask_earned(settings_, {"yesterday"});
   const JsonValue day = *yesterday.value()["days"].begin();
   if (!day.exists()) return;
-  tell({.severity = "day",
-        .key = day["date"].text_or(""),
-        .text = day["line"].text_or(""),
-        .utc_s = now_utc_s});
+  send_message({.severity = "day",
+                .key = day["date"].text_or(""),
+                .text = day["line"].text_or(""),
+                .utc_s = now_utc_s});
   if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.name, "day"), day_json(yesterday.value()));
 }
 
-void Notifier::tell(const Message& message) {
+void Notifier::send_message(const Message& message) {
   say(message.severity == "alarm" ? JournalLevel::kWarning : JournalLevel::kNotice,
       headline(message));
   if (mqtt_ != nullptr) {
@@ -196,7 +196,7 @@ void Notifier::follow(const Order& order) {
   }
   words.insert(words.end(), {"--config", settings_.config_path});
   constexpr std::int64_t kOrderSMax = 10;
-  const ProgramResult result = run_and_hear(words, kOrderSMax);
+  const ProgramResult result = run_and_capture(words, kOrderSMax);
   say(result.is_well() ? JournalLevel::kNotice : JournalLevel::kWarning,
       "mqtt order: hold " + words[2] + ": " + (result.is_well() ? "done" : result.complaint()));
 }
@@ -225,7 +225,7 @@ void Notifier::run_command() {
 }
 
 /// After a failure the queue waits for the next round.
-void Notifier::hear_of_command(const std::string& trouble) {
+void Notifier::note_command_result(const std::string& trouble) {
   is_command_running_ = false;
   const bool is_new = std::exchange(command_trouble_, trouble) != trouble;
   if (!trouble.empty()) {

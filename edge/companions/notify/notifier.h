@@ -49,15 +49,15 @@ class Notifier {
   };
 
   void serve(TimePoint until, const std::stop_token& stop, bool is_for_command);
-  void tell(const Message& message);
-  void tell_alarms(const ControllerStatus& status, std::int64_t now_utc_s);
-  void tell_day(const ControllerStatus& status, std::int64_t now_utc_s);
+  void send_message(const Message& message);
+  void notify_of_alarms(const ControllerStatus& status, std::int64_t now_utc_s);
+  void notify_of_day(const ControllerStatus& status, std::int64_t now_utc_s);
   void note_connection();
   void publish(const ControllerStatus& status);
   void follow(const Order& order);
   void keep();
   void run_command();
-  void hear_of_command(const std::string& trouble);
+  void note_command_result(const std::string& trouble);
 
   const NotifySettings settings_;
   const std::stop_token stop_;

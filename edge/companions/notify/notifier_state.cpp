@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "edge/companions/notify/topics.h"
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/host/json.h"
 #include "shared/utc_text.h"
 
@@ -73,12 +73,12 @@ NotifierState state_in(JsonValue all) {
 bool read_place(const std::string& path, NotifierState& state) {
   constexpr std::size_t kBytesMax = 4 * 1024 * 1024;  // 20 times the size of 200 messages
   std::string text(kBytesMax, '\0');
-  const ssize_t size = read_beginning(path.c_str(), text, Links::kRefused);
+  const ssize_t size = read_beginning(path.c_str(), text, SymlinkPolicy::kRefused);
   if (size < 0) return false;
   text.resize(static_cast<std::size_t>(size));
   errno = 0;
   const Json json = Json::parse(text);  // older versions wrote no checksum
-  const bool is_broken = check_text(text, kJsonChecksum) == TextState::kBroken;
+  const bool is_broken = check_text(text, kJsonChecksum) == ChecksumState::kBroken;
   if (is_broken || json.value()["version"].number() != kVersion) return false;
   state = state_in(json.value());
   return true;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/companions/notify/alarm_command.h"
+#include "edge/companions/notify/alert_command.h"
 
 namespace bess {
 

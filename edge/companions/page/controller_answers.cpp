@@ -67,7 +67,7 @@ std::int64_t Answer::age_ns() const { return clock_ns(CLOCK_MONOTONIC) - made_mo
 Answer ask_controller(const PageSettings& settings, std::vector<std::string> words, bool is_json) {
   words.insert(words.begin(), settings.program);
   words.insert(words.end(), {"--config", settings.config_path});
-  ProgramResult result = run_and_hear(words, kAnswerS);
+  ProgramResult result = run_and_capture(words, kAnswerS);
   // A degraded or stopped controller has another exit code and still gives an answer.
   const bool has_ended = result.trouble.empty() && result.exit_code < kSignalled;
   const bool is_answer =
@@ -82,13 +82,13 @@ Answer ask_controller(const PageSettings& settings, std::vector<std::string> wor
   return answer;
 }
 
-std::shared_ptr<const Answer> KeptAnswer::fresh() {
+std::shared_ptr<const Answer> CachedAnswer::fresh() {
   const std::scoped_lock lock(lock_);
   const bool is_fresh = kept_ != nullptr && kept_->age_ns() < keep_s_ * kNanosecondsPerSecond;
   return is_fresh ? kept_ : nullptr;
 }
 
-std::shared_ptr<const Answer> KeptAnswer::newest() {
+std::shared_ptr<const Answer> CachedAnswer::newest() {
   if (auto answer = fresh()) return answer;
   std::unique_lock making(making_, std::try_to_lock);
   if (!making.owns_lock()) {

@@ -47,10 +47,10 @@ struct Answer {
 /// Output of a command. With `is_json`, other output is an error.
 Answer ask_controller(const PageSettings& settings, std::vector<std::string> words, bool is_json);
 
-class KeptAnswer {
+class CachedAnswer {
  public:
   using Make = std::function<Answer()>;
-  KeptAnswer(std::int64_t keep_s, Make make) : keep_s_(keep_s), make_(std::move(make)) {}
+  CachedAnswer(std::int64_t keep_s, Make make) : keep_s_(keep_s), make_(std::move(make)) {}
 
   /// Older than `keep_s` only while another thread fetches a new one.
   std::shared_ptr<const Answer> newest();

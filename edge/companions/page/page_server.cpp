@@ -154,9 +154,9 @@ bool looks_like_date(std::string_view text) {
 
 }  // namespace
 
-KeptAnswer& PageServer::add_answer(const char* path, const char* type, KeptAnswer::Make make) {
-  answers_.push_back(std::make_unique<KeptAnswer>(settings_.refresh_s, std::move(make)));
-  KeptAnswer& kept = *answers_.back();
+CachedAnswer& PageServer::add_answer(const char* path, const char* type, CachedAnswer::Make make) {
+  answers_.push_back(std::make_unique<CachedAnswer>(settings_.refresh_s, std::move(make)));
+  CachedAnswer& kept = *answers_.back();
   server_->Get(path, [&kept, type](const httplib::Request&, httplib::Response& response) {
     send(*kept.newest(), type, response);
   });
@@ -175,7 +175,7 @@ void PageServer::add_answers() {
   add("/api/log", kCsv, {"log", "--csv", "--last", std::to_string(kStepsPerDay)});
   add("/metrics", "text/plain; version=0.0.4; charset=utf-8",
       {"status", "--prometheus", "--no-lock"});
-  KeptAnswer& why = add("/api/why", kJson, {"why", "--json"});
+  CachedAnswer& why = add("/api/why", kJson, {"why", "--json"});
   add_answer("/api/map", kJson, [&why] {
     Answer answer = *why.newest();
     if (answer.trouble.empty()) {

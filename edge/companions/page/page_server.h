@@ -49,10 +49,10 @@ class PageServer {
  private:
   void add_files();
   void add_answers();
-  KeptAnswer& add_answer(const char* path, const char* type, KeptAnswer::Make make);
+  CachedAnswer& add_answer(const char* path, const char* type, CachedAnswer::Make make);
 
   const PageSettings& settings_;
-  std::vector<std::unique_ptr<KeptAnswer>> answers_;
+  std::vector<std::unique_ptr<CachedAnswer>> answers_;
   std::mutex day_lock_;  ///< one log of an earlier day at a time
   std::unique_ptr<httplib::Server> server_;
   int listening_socket_ = -1;

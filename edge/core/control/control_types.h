@@ -138,7 +138,7 @@ struct CycleRecord {
   SiteReport site{};
   std::int32_t ended_orders = 0;  ///< orders ended early without a register change, since start
   LostOrderHistory lost_orders{};
-  StandingPrice standing_price{};
+  UnchangedPrice standing_price{};
   bool price_frozen = false;  ///< unchanged for longer than the reporting threshold
   ResponseFindings findings{};
   FollowedOrder followed{};

@@ -12,7 +12,7 @@
 
 namespace bess {
 
-enum class FullChargeWish : std::uint8_t { kNone, kNoDischarge, kCharge };
+enum class FullChargeRequest : std::uint8_t { kNone, kNoDischarge, kCharge };
 
 /// Days since 1970 of a local date.
 inline std::int32_t local_day_number(const LocalMinute& now) {
@@ -48,12 +48,12 @@ class FullCharge {
 
   [[nodiscard]] constexpr std::int16_t days_since_full() const { return days_since_full_; }
 
-  [[nodiscard]] constexpr FullChargeWish wish(std::int32_t price_centi_eur_per_mwh,
-                                              const PriceLevel& level) const {
-    if (every_days_ == 0 || days_since_full_ < every_days_) return FullChargeWish::kNone;
+  [[nodiscard]] constexpr FullChargeRequest request(std::int32_t price_centi_eur_per_mwh,
+                                                    const PriceLevel& level) const {
+    if (every_days_ == 0 || days_since_full_ < every_days_) return FullChargeRequest::kNone;
     const bool is_overdue = days_since_full_ > every_days_;
     const bool is_dear = level.is_known() && price_centi_eur_per_mwh > level.centi_eur_per_mwh();
-    return is_dear && !is_overdue ? FullChargeWish::kNoDischarge : FullChargeWish::kCharge;
+    return is_dear && !is_overdue ? FullChargeRequest::kNoDischarge : FullChargeRequest::kCharge;
   }
 
  private:

@@ -41,7 +41,7 @@ constexpr HoldReport hold_at(const Hold& hold, std::int64_t now_utc_s) {
 }
 
 /// The newest hold, from its reader to the control loop. Wait-free on both sides.
-class HoldMailbox {
+class LatestHold {
  public:
   void publish(const Hold& hold) {
     const std::uint64_t high = hold.unreadable ? kUnreadable : hold.until_utc_s;

@@ -20,7 +20,7 @@ namespace bess {
 // written, one is being read, and one holds the last posted value. Wait-free on both sides.
 
 template <typename Value>
-class Mailbox {
+class LatestValue {
  public:
   /// The writer's place, with the value of an earlier post.
   Value& draft() { return places_[writing_]; }
@@ -70,7 +70,7 @@ struct OutlookReport {
 };
 
 /// Rows of the next ticks, at the two levels that enclose the next decision's level.
-struct OutlookOffer {
+struct OutlookPlanRows {
   static constexpr int kTicks = 15;  ///< the planning thread may be half an hour late
   static constexpr int kLevels = 2;
 
@@ -92,14 +92,14 @@ struct UsualDay {
 };
 
 /// Data exchange between planning thread and control thread.
-struct OutlookBoard {
+struct OutlookExchange {
   const OutlookModel* model = nullptr;
   UsualDay usual{};  ///< written before the loop starts
-  Mailbox<OutlookOffer> offers{};
+  LatestValue<OutlookPlanRows> latest_rows{};
 };
 
 /// At a tick, at the level of its decision. Sets all fields but `planned_utc_s`.
-OutlookReport outlook_at(OutlookBoard& board, std::int64_t tick_utc_s, std::int32_t soc_e4,
+OutlookReport outlook_at(OutlookExchange& exchange, std::int64_t tick_utc_s, std::int32_t soc_e4,
                          std::int32_t level_centi);
 
 }  // namespace bess

@@ -1,6 +1,6 @@
 // Reasons of a control cycle, one row each, in order of precedence: earlier rows win. A row has
 //   enumerator, code on disk, name in log and status, effect on the battery, meaning,
-//   what to check, what ends it, with {values} that edge/records/why/what_ends.cpp fills in
+//   what to check, what ends it, with {values} that edge/records/why/reason_end.cpp fills in
 // A code is never reused: old logs must keep their meaning. A new row takes the next code.
 // shared/manual/guides/troubleshooting.md has the same table, checked by reasons_test.cpp.
 #pragma once
@@ -192,7 +192,7 @@ constexpr std::string_view reason_name(Reason reason) { return info_of(reason).n
 constexpr bool is_stop_reason(Reason reason) {
   return info_of(reason).effect != ReasonEffect::kGoesOn;
 }
-constexpr bool is_better_released(Reason reason) {
+constexpr bool must_release(Reason reason) {
   return info_of(reason).effect == ReasonEffect::kReleases;
 }
 

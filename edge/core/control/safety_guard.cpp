@@ -15,7 +15,7 @@ Reason students_reason(const GuardInputs& in) {
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
   if (in.link_ok) update_soc(in.measurement.soc_e4, in.reserve_soc_e4);
   if (const auto reason = stop_reason(in)) return {.power_w = 0, .reason = *reason};
-  GuardDecision decision = find_wish(in);
+  GuardDecision decision = find_requested_action(in);
   apply_ramp(in.previous_power_w, decision);
   apply_relief(in.site, decision);
   apply_limits(in, decision);
@@ -71,12 +71,12 @@ bool SafetyGuard::may_stand_in(const GuardInputs& in) const {
          age_stop_reason(in).has_value();
 }
 
-GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
+GuardDecision SafetyGuard::find_requested_action(const GuardInputs& in) const {
   if (in.held) {
     return {.power_w = clamp_to(in.held_power_w, -settings_.power_w, settings_.power_w),
             .reason = Reason::kHeld};
   }
-  GuardDecision decision = find_wish_of_price(in);
+  GuardDecision decision = find_price_action(in);
   apply_rules(in.rules, decision);
   return decision;
 }
@@ -87,20 +87,21 @@ void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) 
   if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
 }
 
-GuardDecision SafetyGuard::find_wish_of_price(const GuardInputs& in) const {
+GuardDecision SafetyGuard::find_price_action(const GuardInputs& in) const {
   const Action of_price = settings_.thresholds.action_beyond(in.price_centi_eur_per_mwh);
-  if (of_price == Action::kIdle) return find_wish_between_thresholds(in);
+  if (of_price == Action::kIdle) return find_student_action(in);
   const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;
   // Agreement with the student is no intervention.
   return {.power_w = power_sign(of_price) * settings_.power_w,
           .reason = of_price == in.student_action ? students_reason(in) : of_threshold};
 }
 
-GuardDecision SafetyGuard::find_wish_between_thresholds(const GuardInputs& in) const {
-  if (in.full_charge == FullChargeWish::kCharge) {
+GuardDecision SafetyGuard::find_student_action(const GuardInputs& in) const {
+  if (in.full_charge == FullChargeRequest::kCharge) {
     return {.power_w = settings_.full_charge_power_w, .reason = Reason::kFullCharge};
   }
-  if (in.full_charge == FullChargeWish::kNoDischarge && in.student_action == Action::kDischarge) {
+  if (in.full_charge == FullChargeRequest::kNoDischarge &&
+      in.student_action == Action::kDischarge) {
     return {.power_w = 0, .reason = Reason::kFullCharge};
   }
   return {.power_w = power_sign(in.student_action) * settings_.power_w,

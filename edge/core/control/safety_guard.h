@@ -51,7 +51,7 @@ struct GuardInputs {
   bool held = false;                ///< an operator's hold is in force
   std::int32_t held_power_w = 0;    ///< of that hold
   std::int32_t reserve_soc_e4 = 0;  ///< kept for a power failure at this hour; 0 = none
-  FullChargeWish full_charge = FullChargeWish::kNone;
+  FullChargeRequest full_charge = FullChargeRequest::kNone;
   RuleLimits rules{};  ///< operator's rules at this state
   SiteRange site{};
 };
@@ -81,9 +81,9 @@ class SafetyGuard {
   [[nodiscard]] std::optional<Reason> stop_reason(const GuardInputs& in) const;
   [[nodiscard]] std::optional<Reason> price_stop_reason(const GuardInputs& in) const;
   [[nodiscard]] std::optional<Reason> age_stop_reason(const GuardInputs& in) const;
-  [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
-  [[nodiscard]] GuardDecision find_wish_of_price(const GuardInputs& in) const;
-  [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision find_requested_action(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision find_price_action(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision find_student_action(const GuardInputs& in) const;
   void apply_rules(const RuleLimits& rules, GuardDecision& decision) const;
   void update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;

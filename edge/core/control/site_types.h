@@ -13,7 +13,7 @@ namespace bess {
 /// No limit, in W.
 inline constexpr std::int32_t kAnyPowerW = INT32_MAX;
 
-/// Trust in the meter, and its evidence (meter_witness.h). All zero: no doubt.
+/// Trust in the meter, and its evidence (meter_check.h). All zero: no doubt.
 struct MeterTrust {
   bool is_mismatch = false;            ///< finding: the meter does not step with the battery
   std::int32_t doubt = 0;              ///< points; 10 are a finding
@@ -37,7 +37,7 @@ struct SiteReport {
   Status meter_status = Status::kOk;  ///< of the last reading
   /// kTimeout: the outside limit has lapsed; kMalformed: it cannot be parsed.
   Status limit_status = Status::kOk;
-  bool house_is_implausible = false;  ///< meter_witness.h
+  bool house_is_implausible = false;  ///< meter_check.h
   MeterTrust trust{};
 };
 

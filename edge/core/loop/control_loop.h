@@ -14,18 +14,18 @@
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery and site measured   t  the row of minute t-1 is requested
 //   row in, or price_wait_s over                 decision, order written and read back
-// Between cycles: battery_watch.h. Parts of a decision: cycle_parts.h.
+// Between cycles: battery_monitor.h. Parts of a decision: cycle_parts.h.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "edge/core/loop/battery_watch.h"
+#include "edge/core/loop/battery_monitor.h"
 #include "edge/core/loop/control_settings.h"
 #include "edge/core/loop/cycle_parts.h"
 #include "edge/core/loop/decision.h"
 #include "edge/core/loop/order_in_force.h"
-#include "edge/core/loop/tick_waits.h"
+#include "edge/core/loop/tick_scheduler.h"
 
 namespace bess {
 
@@ -57,9 +57,9 @@ class ControlLoop {
   }
 
   /// Follows the holds published there; `holds` must outlive the loop.
-  void follow_holds(const HoldMailbox& holds) { of<HoldPart>().mailbox = &holds; }
+  void follow_holds(const LatestHold& holds) { of<HoldPart>().latest_hold = &holds; }
   /// Plans for a student by outlook; null for other contexts.
-  void follow_outlook(OutlookBoard* board) { of<OutlookPart>().board = board; }
+  void follow_outlook(OutlookExchange* exchange) { of<OutlookPart>().exchange = exchange; }
 
   [[nodiscard]] const std::optional<Trip>& trip() const {
     return parts_.template get<SupervisionPart>().supervision.trip();
@@ -74,7 +74,7 @@ class ControlLoop {
     order_.bind(tick_utc_s);
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     waits_.request_price();  // before the battery is read: a slow bus must not cost the price
-    watch_.read(Look::kTick, record);
+    watch_.read(ReadingPurpose::kTick, record);
     if (!waits_.sleep_until_tick()) return false;
     record.price = waits_.await_price();
     note_price_age(record.utc_s, record);
@@ -95,7 +95,7 @@ class ControlLoop {
   void stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
     if (settings_.control && !order_.has_looked()) {
-      watch_.read(Look::kLast, record);  // an order of the run before
+      watch_.read(ReadingPurpose::kLast, record);  // an order of the run before
       record.battery_status = Status::kOk;
     }
     if (!settings_.control || !order_.exists()) return;
@@ -105,7 +105,8 @@ class ControlLoop {
       clock_.pause_ns(kStopPauseNs);
       released = give_back(record);
     }
-    if (released == Status::kOk) watch_.read(Look::kLast, record);  // the final SoC, for the log
+    if (released == Status::kOk)
+      watch_.read(ReadingPurpose::kLast, record);  // the final SoC, for the log
     record.battery_status = released;
     fill_totals(record);
   }
@@ -157,7 +158,7 @@ class ControlLoop {
     in.clock_ok = clock_.is_synchronised();
     in.previous_power_w = order_.power_w();
     parts_.put({.power_w = settings_.guard.power_w}, record, in);
-    let_stand_in(guard_, of<FullChargePart>().level, record, in);
+    allow_stand_in(guard_, of<FullChargePart>().level, record, in);
     ask_student(of<FullChargePart>().level, of<OutlookPart>(), record, in);
     const GuardDecision decision = guard_.decide(in);
     record.reason = cause_of(decision.reason, in.supervision, record.battery_status);
@@ -180,7 +181,7 @@ class ControlLoop {
     mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
                               .stop_reason = is_stop_reason(record.reason),
                               .hold_elapsed = hold_elapsed,
-                              .release_now = is_better_released(record.reason),
+                              .release_now = must_release(record.reason),
                               .order_found = order_.was_found()});
     if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
     record.mode = mode_;
@@ -263,8 +264,8 @@ class ControlLoop {
   OrderInForce<Battery, Clock> order_;
   Mode mode_ = Mode::kStart;
   Battery& battery_;
-  BatteryWatch<Battery, Clock, Site> watch_;
-  TickWaits<Battery, PriceSource, Clock, Site> waits_;
+  BatteryMonitor<Battery, Clock, Site> watch_;
+  TickScheduler<Battery, PriceSource, Clock, Site> waits_;
   std::int64_t cycle_ = 0;
   std::int64_t hold_start_utc_s_ = 0;
   std::int32_t deadline_misses_ = 0;

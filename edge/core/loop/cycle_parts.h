@@ -27,7 +27,7 @@ namespace bess {
 // two of them distorts the time between them. The age of the followed order was measured steadily,
 // and shows the step.
 
-class RecalledTime {
+class RestoredClock {
  public:
   /// Time of the next reading, oldest first, `read_lead_s` before its tick; in UTC, advanced by
   /// `ahead_s`.
@@ -64,7 +64,7 @@ class RecalledTime {
   FollowedOrder followed_{};
 };
 
-enum class Look : std::uint8_t {
+enum class ReadingPurpose : std::uint8_t {
   kTick,   ///< at a tick, before its decision
   kLast,   ///< at the end of a run, after its release
   kCheck,  ///< between two ticks: is the order still allowed?
@@ -73,7 +73,7 @@ enum class Look : std::uint8_t {
 
 /// Result of a battery reading.
 struct Reading {
-  Look look = Look::kTick;
+  ReadingPurpose purpose = ReadingPurpose::kTick;
   std::int64_t utc_s = 0;       ///< the tick; between two ticks, now
   Status status = Status::kOk;  ///< of the reading
   bool is_read = false;
@@ -83,7 +83,9 @@ struct Reading {
   Response response{};
 
   /// The energy since the previous reading belongs to one order.
-  [[nodiscard]] bool ends_step() const { return look == Look::kTick || look == Look::kLast; }
+  [[nodiscard]] bool ends_step() const {
+    return purpose == ReadingPurpose::kTick || purpose == ReadingPurpose::kLast;
+  }
 };
 
 /// Time at which the guard decides.
@@ -116,7 +118,7 @@ struct SitePart : CyclePart {
 
   void restore(const CycleRecord& before) { site.take_over(before.utc_s, before.site); }
   void observe(const Reading& now) {
-    if (now.look != Look::kTick && now.look != Look::kCheck) return;
+    if (now.purpose != ReadingPurpose::kTick && now.purpose != ReadingPurpose::kCheck) return;
     const Response& response = now.response;
     site.observe(response.utc_s, now.is_read, response.measurement,
                  {.is_driven = now.is_read && response.is_driven, .age_s = response.order_age_s});
@@ -133,12 +135,13 @@ struct SitePart : CyclePart {
 
 struct HoldPart : CyclePart {
   void put(const Moment& now, CycleRecord& record, GuardInputs& in) {
-    if (now.is_tick && mailbox != nullptr) record.hold = hold_at(mailbox->latest(), record.utc_s);
+    if (now.is_tick && latest_hold != nullptr)
+      record.hold = hold_at(latest_hold->latest(), record.utc_s);
     in.held = record.hold.held;
     in.held_power_w = record.hold.power_w;
   }
 
-  const HoldMailbox* mailbox = nullptr;
+  const LatestHold* latest_hold = nullptr;
 };
 
 struct ReservePart : CyclePart {
@@ -163,7 +166,7 @@ struct CycleBudgetPart : CyclePart {
 
   void restore(const CycleRecord& before) { budget.restore(before.throughput); }
   void observe(const Reading& now) {
-    if (now.look == Look::kCheck) return;
+    if (now.purpose == ReadingPurpose::kCheck) return;
     if (!now.is_read) return budget.forget_soc();
     const std::int32_t today = local_day_of(local_minute_of(now.utc_s));
     budget.update(today, now.response.measurement.soc_e4, now.drives);
@@ -208,7 +211,7 @@ struct FullChargePart : CyclePart {
     if (now.is_tick && in.has_price) {
       level.observe(in.price_minute_utc_s, in.price_centi_eur_per_mwh);
     }
-    in.full_charge = charge.wish(in.price_centi_eur_per_mwh, level);
+    in.full_charge = charge.request(in.price_centi_eur_per_mwh, level);
   }
   void report(CycleRecord& record) const {
     record.price_level = level;
@@ -224,8 +227,8 @@ struct OutlookPart : CyclePart {
   /// Source of the student's context class; the battery was read.
   std::int32_t context_centi(const PriceLevel& level, CycleRecord& record) {
     const std::int32_t level_centi = level.centi_eur_per_mwh();
-    if (board == nullptr) return level_centi;
-    record.outlook = outlook_at(*board, record.utc_s, record.measurement.soc_e4, level_centi);
+    if (exchange == nullptr) return level_centi;
+    record.outlook = outlook_at(*exchange, record.utc_s, record.measurement.soc_e4, level_centi);
     if (record.outlook.source == OutlookSource::kPlanned || planned_utc_s == 0) {
       planned_utc_s = record.utc_s;
     }
@@ -233,7 +236,7 @@ struct OutlookPart : CyclePart {
   }
   void report(CycleRecord& record) const { record.outlook.planned_utc_s = planned_utc_s; }
 
-  OutlookBoard* board = nullptr;  ///< null unless the outlook is the student's context
+  OutlookExchange* exchange = nullptr;  ///< null unless the outlook is the student's context
   std::int64_t planned_utc_s = 0;
 };
 
@@ -286,8 +289,9 @@ struct SupervisionPart : CyclePart {
   void observe(const Reading& now) {
     const std::int32_t capacity_wh = now.response.measurement.capacity_wh;
     if (!now.is_under_control) return;
-    if (now.look == Look::kCut) return supervision.note_power(now.response);
-    if (now.look == Look::kCheck && now.is_read) return supervision.note_between(now.response);
+    if (now.purpose == ReadingPurpose::kCut) return supervision.note_power(now.response);
+    if (now.purpose == ReadingPurpose::kCheck && now.is_read)
+      return supervision.note_between(now.response);
     if (!now.ends_step()) return;
     const bool is_lost = now.response.measurement.lost_point != 0;
     if (is_lost && now.is_read) {
@@ -316,7 +320,7 @@ struct SupervisionPart : CyclePart {
   }
 
   Supervision supervision;
-  RecalledTime time;
+  RestoredClock time;
   std::int32_t read_lead_s;
 };
 

@@ -26,8 +26,8 @@ inline GuardInputs guard_inputs(const CycleRecord& record, std::int64_t now_utc_
 }
 
 /// Replaces a price that is too old to trade on by an estimate, if the guard permits.
-inline void let_stand_in(const SafetyGuard& guard, const PriceLevel& level, CycleRecord& record,
-                         GuardInputs& in) {
+inline void allow_stand_in(const SafetyGuard& guard, const PriceLevel& level, CycleRecord& record,
+                           GuardInputs& in) {
   if (!level.is_known() || !guard.may_stand_in(in)) return;
   in.price_centi_eur_per_mwh = stand_in_centi(in.price_centi_eur_per_mwh, level.centi_eur_per_mwh(),
                                               price_age_s(in.now_utc_s, in.price_minute_utc_s));

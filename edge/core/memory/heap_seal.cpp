@@ -174,8 +174,8 @@ void lock_memory() {
 }
 
 void forbid_system_calls() {
-  const char* wish = std::getenv("BESS_SECCOMP");
-  const bool kills = wish != nullptr && std::string_view(wish) == "kill";
+  const char* setting = std::getenv("BESS_SECCOMP");
+  const bool kills = setting != nullptr && std::string_view(setting) == "kill";
   const int error = install_seccomp_filter(kills ? ForbiddenCall::kKills : ForbiddenCall::kFails);
   if (error == 0) return;
   put_line("bess-edge: note: this kernel has no seccomp (%s): continuing without its filter\n",

@@ -9,7 +9,7 @@
 // large. It never restores power before the next tick, so that readings and orders cannot
 // oscillate. A tick's order keeps `margin_w` free; one in force is cut when half of that is used,
 // so that a refrigerator causes no write. A meter that does not step with the battery is treated as
-// lost (meter_witness.h).
+// lost (meter_check.h).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include "edge/core/control/control_types.h"
 #include "edge/core/control/site_types.h"
 #include "edge/core/site/connection_guard.h"
-#include "edge/core/site/meter_witness.h"
+#include "edge/core/site/meter_check.h"
 
 namespace bess {
 
@@ -39,7 +39,7 @@ struct SiteSettings {
   MeterSource meter = MeterSource::kNone;
   bool idle_without_meter = true;  ///< false: a lost meter sets no limit
   ConnectionSettings connection;
-  MeterWitnessSettings witness;
+  MeterCheckSettings meter_check;
   std::int32_t pv_w_max = 0;  ///< PV behind the meter; kAnyPowerW: unknown
   bool has_outside_limits = false;
   bool idle_after_timeout = false;  ///< false: a lapsed or missing limit sets no limit
@@ -50,7 +50,7 @@ struct NoSite {
   void take_over(std::int64_t, const SiteReport&) {}
   [[nodiscard]] std::int32_t check_every_s() const { return 0; }
   [[nodiscard]] bool needs_battery() const { return false; }
-  void observe(std::int64_t, bool, const BatteryMeasurement&, const SeenOrder&) {}
+  void observe(std::int64_t, bool, const BatteryMeasurement&, const ObservedOrder&) {}
   [[nodiscard]] SiteRange range(std::int64_t, std::int32_t, Margin) const { return {}; }
   [[nodiscard]] SiteReport report(std::int64_t) const { return {}; }
 };
@@ -63,14 +63,14 @@ class SiteLimits {
       : settings_(settings),
         meter_(meter),
         outside_(outside),
-        witness_(settings.witness),
+        meter_check_(settings.meter_check),
         energy_(settings.connection.peak_w_max == kAnyPowerW ? 0 : settings.connection.peak_w_max,
                 kMeterAgeMax_s) {}
 
   /// State of an earlier run, from its last record.
   void take_over(std::int64_t utc_s, const SiteReport& before) {
     energy_.restore(utc_s, before.quarter_hour_import_wh, before.quarter_hour_battery_wh);
-    witness_.restore(before.trust);
+    meter_check_.restore(before.trust);
   }
 
   /// 0: nothing to check between two ticks.
@@ -83,7 +83,7 @@ class SiteLimits {
   /// Reads meter and outside limits. `battery` was read just before; `is_read`: successfully;
   /// `order`: the order that it followed.
   void observe(std::int64_t utc_s, bool is_read, const BatteryMeasurement& battery,
-               const SeenOrder& order) {
+               const ObservedOrder& order) {
     read_outside_limits();
     if (!has_meter()) return;
     std::int32_t grid_w = 0;
@@ -94,7 +94,8 @@ class SiteLimits {
     battery_w_ = battery.power_w;
     energy_.add(utc_s, grid_w_, battery_w_);
     house_watch_.observe(is_plausible_house(grid_w_, battery_w_, settings_.pv_w_max));
-    witness_.observe({.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
+    meter_check_.observe(
+        {.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
   }
 
   /// Range of an order from `now_utc_s` on; `relief_w_max`: maximum discharge of the battery.
@@ -103,7 +104,7 @@ class SiteLimits {
     SiteRange range;
     limit_from_outside(now_utc_s, range);
     if (!has_meter()) return range;
-    if (witness_.is_mismatch() && !settings_.idle_without_meter) return range;
+    if (meter_check_.is_mismatch() && !settings_.idle_without_meter) return range;
     if (is_recent(now_utc_s)) {
       const std::int32_t trusted_w = limit_by_trust(now_utc_s, range);
       limit_at_connection_by_ratios(now_utc_s, relief_w_max, margin, range);
@@ -123,7 +124,7 @@ class SiteLimits {
     report.quarter_hour_import_wh = watt_hours(sums.import_ws);
     report.quarter_hour_battery_wh = watt_hours(sums.battery_ws);
     report.house_is_implausible = house_watch_.is_implausible();
-    report.trust = witness_.trust();
+    report.trust = meter_check_.trust();
     return report;
   }
 
@@ -139,7 +140,7 @@ class SiteLimits {
   /// Limits `range` by the trust in the meter; returns that limit.
   std::int32_t limit_by_trust(std::int64_t now_utc_s, SiteRange& range) const {
     const std::int32_t power_w =
-        settings_.idle_without_meter ? witness_.power_w_max(now_utc_s) : kAnyPowerW;
+        settings_.idle_without_meter ? meter_check_.power_w_max(now_utc_s) : kAnyPowerW;
     range.limit_charge(power_w, Reason::kMeterMismatch);
     range.limit_discharge(power_w, Reason::kMeterMismatch);
     return power_w;
@@ -154,7 +155,7 @@ class SiteLimits {
                           .battery_w = battery_w_,
                           .relief_w_max = relief_w_max,
                           .quarter_hour = energy_.at(now_utc_s)};
-    const MeterRatios ratios = witness_.possible_ratios(now_utc_s);
+    const MeterRatios ratios = meter_check_.possible_ratios(now_utc_s);
     // Ratio 1 is last: relief follows from the reading itself.
     for (const std::int32_t permille : {ratios.least_permille, ratios.most_permille, kTrueRatio}) {
       const std::int64_t grid_w = std::int64_t{grid_w_} * kTrueRatio / permille;
@@ -198,7 +199,7 @@ class SiteLimits {
   SiteSettings settings_;
   Meter* meter_;
   OutsideLimits* outside_;
-  MeterWitness witness_;
+  MeterCheck meter_check_;
   HouseWatch house_watch_;
   QuarterHourEnergy energy_;
   std::int64_t read_utc_s_ = INT64_MIN / 2;  ///< of the newest good reading

@@ -11,7 +11,7 @@ constexpr std::int64_t kIntervalMaxS = 3'600;
 
 }  // namespace
 
-void SeldomSoc::begin(const Response& now) {
+void SparseSocCheck::begin(const Response& now) {
   path_.begin(now.steady_s);
   noted_s_ = now.steady_s;
   now_ = before_ = reading_of(now, INT64_MIN / 2);
@@ -19,7 +19,7 @@ void SeldomSoc::begin(const Response& now) {
   restart_standstill();
 }
 
-void SeldomSoc::note_power(const Response& now, std::int32_t power_before_w) {
+void SparseSocCheck::note_power(const Response& now, std::int32_t power_before_w) {
   const std::int64_t seconds = std::max<std::int64_t>(now.steady_s - noted_s_, 0);
   const std::int64_t of_order_s = std::clamp<std::int64_t>(now.order_age_s, 0, seconds);
   const std::int32_t power_w = now.measurement.power_w;
@@ -30,7 +30,7 @@ void SeldomSoc::note_power(const Response& now, std::int32_t power_before_w) {
   noted_s_ = now.steady_s;
 }
 
-void SeldomSoc::observe(const Response& now) {
+void SparseSocCheck::observe(const Response& now) {
   before_ = now_;
   const bool is_new = now.measurement.soc_e4 != before_.soc_e4;
   now_ = reading_of(now, is_new ? before_.steady_s : INT64_MIN / 2);
@@ -39,8 +39,8 @@ void SeldomSoc::observe(const Response& now) {
 }
 
 /// Power may lag by the settling time, the SoC by its refresh time.
-SeldomSoc::Reading SeldomSoc::reading_of(const Response& now,
-                                         std::int64_t refreshed_after_s) const {
+SparseSocCheck::Reading SparseSocCheck::reading_of(const Response& now,
+                                                   std::int64_t refreshed_after_s) const {
   const std::int64_t refreshed_s =
       std::max(now.steady_s - settings_.band.soc_refresh_s, refreshed_after_s);
   return {.steady_s = now.steady_s,
@@ -50,7 +50,7 @@ SeldomSoc::Reading SeldomSoc::reading_of(const Response& now,
           .moved_ws = moved_ws_};
 }
 
-bool SeldomSoc::take_interval(Interval& interval) {
+bool SparseSocCheck::take_interval(Interval& interval) {
   interval = {.energy_ws = now_.energy_ws - from_.energy_ws,
               .surely_ws = now_.energy.since(from_.energy).surely_ws(),
               .soc_e4 = now_.soc_e4 - from_.soc_e4,
@@ -64,7 +64,7 @@ bool SeldomSoc::take_interval(Interval& interval) {
   return true;
 }
 
-bool SeldomSoc::is_too_long() const { return now_.steady_s - from_.steady_s > kIntervalMaxS; }
+bool SparseSocCheck::is_too_long() const { return now_.steady_s - from_.steady_s > kIntervalMaxS; }
 
 namespace {
 
@@ -112,7 +112,7 @@ struct Evidence {
   [[nodiscard]] bool holds(std::int64_t half_sigmas, std::int64_t deviation) const {
     return 2 * (sum - largest) > half_sigmas * deviation;
   }
-  [[nodiscard]] bool tells(std::int64_t deviation) const {
+  [[nodiscard]] bool is_significant(std::int64_t deviation) const {
     return holds(kHalfSigmasToTell, deviation);
   }
   [[nodiscard]] bool contradicts(std::int64_t deviation) const {
@@ -145,7 +145,7 @@ class Roughness {
 };
 
 /// Contribution to "less than `percent` of the energy arrives"; negated: more than that.
-std::int64_t lack(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc_e4) {
+std::int64_t deficit(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc_e4) {
   return (percent * energy_e4 - kPercent * soc_e4) * energy_e4;
 }
 
@@ -155,7 +155,7 @@ std::int64_t lack(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc
 std::int64_t lack_beyond_delay(const EnergyInterval& interval) {
   const std::int64_t energy = interval.energy_e4;
   const std::int64_t late = interval.late_energy_e4;
-  if (late == energy) return lack(kContradictedBelow, energy, interval.soc_e4);
+  if (late == energy) return deficit(kContradictedBelow, energy, interval.soc_e4);
   const bool turns = (late < 0) != (energy < 0);
   const std::int64_t least = (turns ? kToldAbove : kContradictedBelow) * late;
   return std::max<std::int64_t>((least - kPercent * interval.soc_e4) * energy, 0);
@@ -193,11 +193,11 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     beyond_delay.add(lacking != 0 ? energy : 0);  // intervals without evidence add no noise
     if (!flows) continue;
     ++flowing;
-    little.add(lack(kToldBelow, energy, interval.soc_e4));
-    much.add(-lack(kToldAbove, energy, interval.soc_e4));
+    little.add(deficit(kToldBelow, energy, interval.soc_e4));
+    much.add(-deficit(kToldAbove, energy, interval.soc_e4));
     far_too_little.add(lacking);
-    far_too_little_so_far.add(lack(kContradictedBelow, energy, interval.soc_e4));
-    far_too_much.add(-lack(kContradictedAbove, energy, interval.soc_e4));
+    far_too_little_so_far.add(deficit(kContradictedBelow, energy, interval.soc_e4));
+    far_too_much.add(-deficit(kContradictedAbove, energy, interval.soc_e4));
     explained += energy * energy;
     shown += energy * interval.soc_e4;
     const std::int64_t noise = kPercent * square_root(soc_variance * roughness.sum());
@@ -209,7 +209,8 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     if (flowing >= kIntervalsBeyondDelay && far_too_little_so_far.contradicts(noise)) {
       findings_.contradicts = true;
     }
-    if (flowing >= kIntervalsToTell && (little.tells(noise) || much.tells(noise))) {
+    if (flowing >= kIntervalsToTell &&
+        (little.is_significant(noise) || much.is_significant(noise))) {
       const std::int64_t percent = explained > 0 ? 100 * shown / explained : 0;
       // 0 means no finding.
       findings_.share_percent = static_cast<std::int16_t>(
@@ -243,14 +244,15 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
     unmeasured_e4 += missing_e4;
     drawn_ws -= std::int64_t{interval.power_w} * interval.seconds;
     const std::int64_t noise = square_root(2 * spells * soc_variance);
-    const bool is_unmeasured =
-        lost.tells(noise) || (gained.tells(noise) && !settings_.charges_by_itself);
-    const bool is_shown = resting >= kIntervalsOfShownRest && drawn.tells(0);
+    const bool is_unmeasured = lost.is_significant(noise) ||
+                               (gained.is_significant(noise) && !settings_.charges_by_itself);
+    const bool is_shown = resting >= kIntervalsOfShownRest && drawn.is_significant(0);
     if ((resting >= kIntervalsOfRest && is_unmeasured) || is_shown) {
       const std::int64_t hidden_ws = is_unmeasured ? unmeasured_e4 * capacity_ws / 10'000 : 0;
       findings_.rest_loss_w = static_cast<std::int32_t>((hidden_ws + drawn_ws) / seconds);
     }
-    if (lost_for_good.sum - lost_for_good.largest > kRestContradictedE4 && lost.tells(noise)) {
+    if (lost_for_good.sum - lost_for_good.largest > kRestContradictedE4 &&
+        lost.is_significant(noise)) {
       findings_.contradicts = true;
     }
   }

@@ -222,11 +222,11 @@ class EnergyBalance {
 //     direction: then they are one interval of EnergyBalance. If orders reverse more often, there
 //     is no result.
 
-class SeldomSoc {
+class SparseSocCheck {
  public:
   static constexpr std::int32_t kUsualRefreshS = 60;  ///< maximum age of a normal SoC
 
-  explicit SeldomSoc(const ResponseSettings& settings) : settings_(settings) {}
+  explicit SparseSocCheck(const ResponseSettings& settings) : settings_(settings) {}
 
   [[nodiscard]] bool is_seldom() const { return settings_.band.soc_refresh_s > kUsualRefreshS; }
 

@@ -30,12 +30,12 @@ class LostOrders {
   /// `follows_another`: no order of ours is in force, and the battery follows another one.
   void observe(const Response& now, bool follows_another) {
     if (lost_s_ != 0 && now.steady_s - lost_s_ > kForgottenAfterS) forget_old();
-    const Fate fate = follows_another ? Fate::kReplaced : fate_of(now);
+    const OrderOutcome outcome = follows_another ? OrderOutcome::kReplaced : outcome_of_order(now);
     if (is_lost(now.measurement)) lost_order_ = now.order_number;
-    was_lost_ = fate == Fate::kReplaced || fate == Fate::kEnded;
+    was_lost_ = outcome == OrderOutcome::kReplaced || outcome == OrderOutcome::kEnded;
     if (was_lost_) {
-      count_loss(now, fate);
-    } else if (fate == Fate::kHolds) {
+      count_loss(now, outcome);
+    } else if (outcome == OrderOutcome::kHolds) {
       count_.good();
       history_.note(false);
       if (++held_ >= kOrdersToSettle) settle();
@@ -84,7 +84,7 @@ class LostOrders {
   [[nodiscard]] std::int32_t ended() const { return ended_; }
 
  private:
-  enum class Fate : std::uint8_t { kNothingToSee, kHolds, kReplaced, kEnded };
+  enum class OrderOutcome : std::uint8_t { kNothingToSee, kHolds, kReplaced, kEnded };
 
   /// Distance from the ends of the ordered SoC range at which a battery may be done.
   static constexpr std::int32_t kDoneBelowCeilingE4 = 500;
@@ -94,14 +94,15 @@ class LostOrders {
 
   static bool is_lost(const BatteryMeasurement& m) { return m.order_replaced || m.order_ended; }
 
-  [[nodiscard]] Fate fate_of(const Response& now) const {
+  [[nodiscard]] OrderOutcome outcome_of_order(const Response& now) const {
     const BatteryMeasurement& m = now.measurement;
-    if (m.alarm || m.off_grid) return Fate::kNothingToSee;
+    if (m.alarm || m.off_grid) return OrderOutcome::kNothingToSee;
     const bool is_counted = is_lost(m) && now.order_number == lost_order_;
-    if (is_counted) return Fate::kNothingToSee;
-    if (m.order_replaced) return Fate::kReplaced;
-    if (m.order_ended) return is_done(now) ? Fate::kNothingToSee : Fate::kEnded;
-    return now.is_driven && moves(now.ordered_power_w) ? Fate::kHolds : Fate::kNothingToSee;
+    if (is_counted) return OrderOutcome::kNothingToSee;
+    if (m.order_replaced) return OrderOutcome::kReplaced;
+    if (m.order_ended) return is_done(now) ? OrderOutcome::kNothingToSee : OrderOutcome::kEnded;
+    return now.is_driven && moves(now.ordered_power_w) ? OrderOutcome::kHolds
+                                                       : OrderOutcome::kNothingToSee;
   }
 
   [[nodiscard]] bool moves(std::int32_t power_w) const {
@@ -124,15 +125,15 @@ class LostOrders {
     history_.is_found = false;
   }
 
-  void count_loss(const Response& now, Fate fate) {
+  void count_loss(const Response& now, OrderOutcome outcome) {
     count_.bad();
     history_.note(true);
     history_.is_found = history_.is_found || count_.is_found();
     held_ = 0;
     lost_s_ = now.steady_s;
     if (first_lost_s_ == 0) first_lost_s_ = now.steady_s;
-    was_replaced_ = was_replaced_ || fate == Fate::kReplaced;
-    std::int32_t& lost = fate == Fate::kReplaced ? replaced_ : ended_;
+    was_replaced_ = was_replaced_ || outcome == OrderOutcome::kReplaced;
+    std::int32_t& lost = outcome == OrderOutcome::kReplaced ? replaced_ : ended_;
     ++lost;
   }
 

@@ -40,25 +40,25 @@ SocMonitor::SocMonitor(const ResponseSettings& settings)
       balance_({.capacity_wh = settings.capacity_wh,
                 .noise_w = settings.noise_w(),
                 .charges_by_itself = settings.band.charges_by_itself}),
-      seldom_(settings) {}
+      sparse_soc_(settings) {}
 
 void SocMonitor::observe(const Response& now) {
   const BatteryMeasurement& m = now.measurement;
   capacity_wh_ = m.capacity_wh > 0 ? m.capacity_wh : settings_.capacity_wh;
   shown_step_e4_ = std::gcd(shown_step_e4_, m.soc_e4);
   const std::int64_t seconds = now.steady_s - before_.steady_s;
-  if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return begin_anew(now);
-  if (seldom_.is_seldom()) {
-    seldom_.note_power(now, flow_power_w_);
-    seldom_.observe(now);
+  if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return reset_from(now);
+  if (sparse_soc_.is_seldom()) {
+    sparse_soc_.note_power(now, flow_power_w_);
+    sparse_soc_.observe(now);
   }
   const Flow flow = flow_until(now);
   const std::int64_t change_e4 = m.soc_e4 - before_.measurement.soc_e4;
   const bool excused = is_excused(now, flow, change_e4);
-  if (!excused && judge_jump(now, flow, change_e4)) return begin_anew(now);
+  if (!excused && judge_jump(now, flow, change_e4)) return reset_from(now);
   if (unsettled_readings_ > 0) --unsettled_readings_;
-  if (seldom_.is_seldom()) {
-    judge_seldom(now, excused);
+  if (sparse_soc_.is_seldom()) {
+    check_sparse_soc(now, excused);
   } else {
     judge_standstill(now, flow, excused);
     EnergyInterval interval = interval_of(now, flow);
@@ -67,7 +67,7 @@ void SocMonitor::observe(const Response& now) {
   }
   before_ = now;
   note_power(now);
-  flowed_ws_ = late_ws_ = 0;
+  measured_energy_ws_ = late_ws_ = 0;
 }
 
 void SocMonitor::judge_balance(const EnergyInterval& interval) {
@@ -76,31 +76,31 @@ void SocMonitor::judge_balance(const EnergyInterval& interval) {
 }
 
 void SocMonitor::note_cut(const Response& now) {
-  if (seldom_.is_seldom()) seldom_.note_power(now, flow_power_w_);
+  if (sparse_soc_.is_seldom()) sparse_soc_.note_power(now, flow_power_w_);
   note_power(now);
 }
 
 void SocMonitor::note_power(const Response& now) {
-  flowed_ws_ += flowed_ws(now, 0);
+  measured_energy_ws_ += measured_energy_ws(now, 0);
   late_ws_ += late_ws(now);
   flow_s_ = now.steady_s;
   flow_power_w_ = now.measurement.power_w;
 }
 
-void SocMonitor::begin_anew(const Response& now) {
+void SocMonitor::reset_from(const Response& now) {
   has_before_ = true;
   before_ = now;
   flow_s_ = now.steady_s;
   flow_power_w_ = now.measurement.power_w;
-  flowed_ws_ = late_ws_ = 0;
+  measured_energy_ws_ = late_ws_ = 0;
   still_e4_ = still_least_e4_ = still_most_e4_ = still_total_e4_ = 0;
   still_readings_ = 0;
   balance_.interrupt();
-  seldom_.begin(now);
+  sparse_soc_.begin(now);
 }
 
 /// The reading's own power since its order, the previous reading's power until then.
-std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) const {
+std::int64_t SocMonitor::measured_energy_ws(const Response& now, std::int64_t delay_s) const {
   const std::int64_t seconds = std::max<std::int64_t>(now.steady_s - flow_s_, 0);
   const std::int64_t of_order_s = std::clamp<std::int64_t>(now.order_age_s - delay_s, 0, seconds);
   return std::int64_t{now.measurement.power_w} * of_order_s +
@@ -111,7 +111,7 @@ std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) co
 /// not reached its order is assumed to ramp all the time.
 std::int64_t SocMonitor::late_ws(const Response& now) const {
   const std::int64_t late_ws =
-      flowed_ws(now, settings_.band.settle_s + settings_.band.soc_refresh_s);
+      measured_energy_ws(now, settings_.band.settle_s + settings_.band.soc_refresh_s);
   const std::int32_t power_w = now.measurement.power_w;
   const std::int64_t apart_w = std::int64_t{power_w} - now.ordered_power_w;
   if (std::abs(apart_w) <= settings_.tolerance_w(now.ordered_power_w)) return late_ws;
@@ -125,9 +125,9 @@ std::int64_t SocMonitor::e4_of(std::int64_t energy_ws) const {
 }
 
 SocMonitor::Flow SocMonitor::flow_until(const Response& now) const {
-  const std::int64_t energy_e4 = e4_of(flowed_ws_ + flowed_ws(now, 0));
-  if (seldom_.is_seldom()) {
-    const EnergyRange change = seldom_.change();
+  const std::int64_t energy_e4 = e4_of(measured_energy_ws_ + measured_energy_ws(now, 0));
+  if (sparse_soc_.is_seldom()) {
+    const EnergyRange change = sparse_soc_.change();
     const std::int64_t least_e4 = e4_of(change.least_ws);
     const std::int64_t most_e4 = e4_of(change.most_ws);
     return {energy_e4, e4_of(change.surely_ws()), std::min(least_e4 * 3 / 5, least_e4 * 7 / 5),
@@ -155,7 +155,7 @@ std::int32_t SocMonitor::soc_step_e4() const {
 
 /// A sparse SoC lags by the energy since its refresh.
 std::int32_t SocMonitor::soc_span_e4() const {
-  const std::int64_t lag_s = settings_.band.soc_refresh_s - SeldomSoc::kUsualRefreshS;
+  const std::int64_t lag_s = settings_.band.soc_refresh_s - SparseSocCheck::kUsualRefreshS;
   const std::int64_t lag_ws = std::int64_t{settings_.power_w} * std::max<std::int64_t>(lag_s, 0);
   return soc_step_e4() + static_cast<std::int32_t>(e4_of(lag_ws));
 }
@@ -239,24 +239,25 @@ std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds)
 std::int64_t SocMonitor::must_show_e4() const { return soc_step_e4() * 6 / 5 + kStillSlackE4; }
 
 /// Judges readings once enough of them are combined.
-void SocMonitor::judge_seldom(const Response& now, bool excused) {
+void SocMonitor::check_sparse_soc(const Response& now, bool excused) {
   using Kind = EnergyInterval::Kind;
   const bool is_known = now.is_driven && before_.is_driven;
   if (!is_known || excused) {
-    seldom_.restart_interval();
-    seldom_.restart_standstill();
+    sparse_soc_.restart_interval();
+    sparse_soc_.restart_standstill();
     return judge_balance({});
   }
-  const std::int64_t error_e4 = e4_of(settings_.noise_w() * seldom_.still_s());
-  const std::int64_t moved_e4 = (std::abs(e4_of(seldom_.still_ws())) - error_e4) * 7 / 8;
-  if (seldom_.still_readings() >= kStillReadings && moved_e4 > must_show_e4()) contradicts_ = true;
+  const std::int64_t error_e4 = e4_of(settings_.noise_w() * sparse_soc_.still_s());
+  const std::int64_t moved_e4 = (std::abs(e4_of(sparse_soc_.still_ws())) - error_e4) * 7 / 8;
+  if (sparse_soc_.still_readings() >= kStillReadings && moved_e4 > must_show_e4())
+    contradicts_ = true;
   EnergyInterval interval = interval_of(now, flow_until(now));
   if (interval.kind == Kind::kResting && now.order_age_s >= settings_.band.soc_refresh_s) {
-    seldom_.restart_interval();
+    sparse_soc_.restart_interval();
     return judge_balance(interval);
   }
-  SeldomSoc::Interval together;
-  if (seldom_.take_interval(together)) {
+  SparseSocCheck::Interval together;
+  if (sparse_soc_.take_interval(together)) {
     return judge_balance({.kind = Kind::kFlowing,
                           .energy_e4 = to_int16(e4_of(together.energy_ws)),
                           .late_energy_e4 = to_int16(e4_of(together.surely_ws)),
@@ -264,8 +265,8 @@ void SocMonitor::judge_seldom(const Response& now, bool excused) {
                           .seconds = to_int16(together.seconds),
                           .power_w = now.measurement.power_w});
   }
-  if (!seldom_.is_too_long()) return;
-  seldom_.restart_interval();
+  if (!sparse_soc_.is_too_long()) return;
+  sparse_soc_.restart_interval();
   judge_balance({});
 }
 

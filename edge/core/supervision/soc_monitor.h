@@ -42,7 +42,7 @@ class SocMonitor {
   };
 
   [[nodiscard]] Flow flow_until(const Response& now) const;
-  [[nodiscard]] std::int64_t flowed_ws(const Response& now, std::int64_t delay_s) const;
+  [[nodiscard]] std::int64_t measured_energy_ws(const Response& now, std::int64_t delay_s) const;
   [[nodiscard]] std::int64_t late_ws(const Response& now) const;
   [[nodiscard]] EnergyInterval interval_of(const Response& now, const Flow& flow) const;
   [[nodiscard]] std::int64_t e4_of(std::int64_t energy_ws) const;
@@ -56,19 +56,20 @@ class SocMonitor {
   [[nodiscard]] std::int64_t must_show_e4() const;
   void note_power(const Response& now);
   void judge_balance(const EnergyInterval& interval);
-  void judge_seldom(const Response& now, bool excused);
+  void check_sparse_soc(const Response& now, bool excused);
   void judge_standstill(const Response& now, const Flow& flow, bool excused);
-  void begin_anew(const Response& now);
+  void reset_from(const Response& now);
 
   ResponseSettings settings_;
   EnergyBalance balance_;
-  SeldomSoc seldom_;  ///< instead of every reading, for a sparse SoC
+  SparseSocCheck sparse_soc_;  ///< instead of every reading, for a sparse SoC
   bool contradicts_ = false;
 
   bool has_before_ = false;
   Response before_;
   std::int64_t capacity_wh_ = 1;
-  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_s_`, with `flow_power_w_` at its end
+  std::int64_t measured_energy_ws_ =
+      0;  ///< from then until `flow_s_`, with `flow_power_w_` at its end
   std::int64_t late_ws_ = 0;
   std::int64_t flow_s_ = 0;
   std::int32_t flow_power_w_ = 0;

@@ -15,7 +15,7 @@
 #include "edge/core/base/status.h"
 #include "edge/device/battery/measurement_reader.h"
 #include "edge/device/battery/modbus_frame.h"
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -52,7 +52,7 @@ class BatteryBus {
         unit_(unit >= 0 ? unit : map.unit),
         link_(std::forward<LinkArguments>(link)...) {}
 
-  [[nodiscard]] const LivePoints& live() const { return live_; }
+  [[nodiscard]] const PointValues& live() const { return live_; }
   [[nodiscard]] const Time& time() const { return time_; }
   [[nodiscard]] Link& link() { return link_; }
   [[nodiscard]] const Link& link() const { return link_; }
@@ -129,7 +129,7 @@ class BatteryBus {
 
   /// Reads `points` into `out`; failed ones are marked there and do not stop the others. Of several
   /// failures a temporary one is returned.
-  Status read_placed(PlacedPoints& points, LivePoints& out) {
+  Status read_placed(PlacedPoints& points, PointValues& out) {
     ReadPlan plan;
     plan_reads(map_, points, refused_, plan);
     for (const PlacedPoint& point : points) out.failed[point.point] = true;
@@ -191,7 +191,7 @@ class BatteryBus {
  private:
   using ModelStarts = std::array<std::uint16_t, decltype(RegisterMap::models)::capacity()>;
 
-  Status read_into(const RegisterSpan& span, const PlacedPoints& points, LivePoints& out) {
+  Status read_into(const RegisterSpan& span, const PlacedPoints& points, PointValues& out) {
     std::uint16_t registers[kSpanRegistersMax] = {};
     const Status status = read_span(span, registers);
     if (status != Status::kOk) return status;
@@ -207,7 +207,7 @@ class BatteryBus {
   }
 
   /// A refused span may contain one missing register: the others still count.
-  Status read_apart(const RegisterSpan& span, const PlacedPoints& points, LivePoints& out) {
+  Status read_apart(const RegisterSpan& span, const PlacedPoints& points, PointValues& out) {
     Status worst = Status::kOk;
     for (const PlacedPoint& point : points) {
       if (offset_in(span, point) < 0) continue;
@@ -219,7 +219,7 @@ class BatteryBus {
 
   /// A point is absent if refused (by a gateway: for some seconds) or not implemented.
   Status decide(const RegisterSpan& span, const PlacedPoints& undecided) {
-    LivePoints now;
+    PointValues now;
     const Status status =
         retried(time_, kPresencePatienceNs, [&] { return read_into(span, undecided, now); });
     if (status != Status::kOk && !has_no_such_register()) return status;
@@ -312,7 +312,7 @@ class BatteryBus {
   Time time_;
   std::int32_t unit_;
   Link link_;
-  LivePoints live_;
+  PointValues live_;
   PlacedPoints refused_;              ///< optional points that no span may cover
   bool is_present_[kPointsMax] = {};  ///< optional points that were seen once
   std::int64_t read_ns_[kPointsMax] = {};

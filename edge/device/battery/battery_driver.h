@@ -44,11 +44,11 @@ class BatteryDriver {
       return status;
     }
     const Status came = read_registers();
-    const bool is_complete = came == Status::kOk || !reader_.lacks_essentials(bus_.live());
+    const bool is_complete = came == Status::kOk || !reader_.lacks_required_values(bus_.live());
     const Status status =
         is_complete ? reader_.translate(bus_.live(), bus_.time().now_ns(), measurement) : came;
     if (status != Status::kOk) {
-      measurement = {.lost_point = reader_.lost_essential(bus_.live())};
+      measurement = {.lost_point = reader_.lost_required_point(bus_.live())};
       return status;
     }
     note_order_in_force(measurement);
@@ -93,7 +93,7 @@ class BatteryDriver {
 
   /// 0: one order per cycle is sufficient for the watchdog.
   [[nodiscard]] std::int32_t refresh_interval_s() const {
-    const bool often = !ours_.lasts_for_ever() && map_.watchdog.refresh_s < kSecondsPerStep;
+    const bool often = !ours_.never_expires() && map_.watchdog.refresh_s < kSecondsPerStep;
     return often ? map_.watchdog.refresh_s : 0;
   }
 
@@ -174,7 +174,7 @@ class BatteryDriver {
   /// Closes the only connection; the next request opens it again.
   void close() { bus_.link().close(); }
   [[nodiscard]] Link& link() { return bus_.link(); }
-  [[nodiscard]] const LivePoints& live() const { return bus_.live(); }
+  [[nodiscard]] const PointValues& live() const { return bus_.live(); }
   /// Location of a point on this device.
   [[nodiscard]] PlacedPoint place_of(std::int8_t point) const {
     return bus_.placed(point, map_.points[point].read_function);
@@ -364,7 +364,7 @@ class BatteryDriver {
   /// The order before a refused one is no longer valid either: `refresh` must not keep it in force.
   /// Its timer ends it; without a timer it is released here.
   Status refuse(Status reason) {
-    const bool stays = ours_.is_in_force() && ours_.lasts_for_ever();
+    const bool stays = ours_.is_in_force() && ours_.never_expires();
     lose_order();
     if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}, 0));
     return reason;

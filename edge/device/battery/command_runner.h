@@ -62,8 +62,8 @@ class CommandRunner {
 
   [[nodiscard]] FlashBudget& budget() { return budget_; }
   [[nodiscard]] const FlashBudget& budget() const { return budget_; }
-  [[nodiscard]] const LivePoints& written() const { return written_; }
-  [[nodiscard]] LivePoints& saved() { return saved_; }
+  [[nodiscard]] const PointValues& written() const { return written_; }
+  [[nodiscard]] PointValues& saved() { return saved_; }
   void forget() { written_.forget(); }
 
   /// kOk, or why the map, its live values or the flash budget do not permit this command.
@@ -107,7 +107,7 @@ class CommandRunner {
       points.push_back(static_cast<std::int8_t>(point));
     });
     if (points.empty()) return Status::kOk;
-    LivePoints now;
+    PointValues now;
     const Status status = read_written(points, now);
     if (status != Status::kOk) return status;
     for_each_of_order(command, [&](const BlockWrite& write, int point) {
@@ -125,7 +125,7 @@ class CommandRunner {
 
   /// Reads from the device whether a condition holds.
   Status test(const Condition& condition, bool& holds_now) {
-    LivePoints now = bus_.live();
+    PointValues now = bus_.live();
     PlacedPoints points;
     const std::int8_t point = condition.point;
     points.push_back(bus_.placed(point, map_.points[point].read_function));
@@ -137,7 +137,7 @@ class CommandRunner {
   }
 
   /// Reads written registers by function 3 into `out`.
-  Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, LivePoints& out) {
+  Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, PointValues& out) {
     PlacedPoints points;
     for (const std::int8_t point : list) points.push_back(bus_.placed(point, 3));
     return bus_.read_placed(points, out);
@@ -202,7 +202,8 @@ class CommandRunner {
     return Status::kOk;
   }
 
-  bool holds(const LivePoints& registers, int point, const std::uint16_t* block, int offset) const {
+  bool holds(const PointValues& registers, int point, const std::uint16_t* block,
+             int offset) const {
     if (!registers.known[point]) return false;
     const int count = map_.points[point].register_count();
     return std::equal(registers.raw[point], registers.raw[point] + count, block + offset);
@@ -253,7 +254,7 @@ class CommandRunner {
            std::any_of(map_.simulator.at_expiry.begin(), map_.simulator.at_expiry.end(), is_this);
   }
 
-  [[nodiscard]] bool is_as_released(int point, const LivePoints& now) const {
+  [[nodiscard]] bool is_as_released(int point, const PointValues& now) const {
     for (const BlockWrite& write : map_.sequence(Command::kRelease).writes) {
       RegisterBlock block;
       if (encode(write, PowerOrder{}, block) != Status::kOk) continue;
@@ -273,7 +274,7 @@ class CommandRunner {
       wanted.push_back(value.point);
     });
     if (wanted.empty()) return Status::kOk;
-    LivePoints now;
+    PointValues now;
     Status status = read_written(wanted, now);
     for (int i = 0; i < sequence.writes.size() && status == Status::kOk; ++i) {
       status = compare(sequence, i, order, now);
@@ -282,7 +283,7 @@ class CommandRunner {
   }
 
   Status compare(const CommandSequence& sequence, int index, const PowerOrder& order,
-                 const LivePoints& now) {
+                 const PointValues& now) {
     const BlockWrite& write = sequence.writes[index];
     RegisterBlock block;
     if (write.read_back == ReadBack::kNone) return Status::kOk;
@@ -300,7 +301,7 @@ class CommandRunner {
   }
 
   bool is_close(const BlockWrite& write, int point, const std::uint16_t* wanted_raw, int offset,
-                const LivePoints& now) const {
+                const PointValues& now) const {
     if (holds(now, point, wanted_raw, offset)) return true;
     Scaling scaling;
     std::int64_t wanted = 0;
@@ -318,8 +319,8 @@ class CommandRunner {
   const RegisterMap& map_;
   BatteryBus<Link, Time>& bus_;
   FlashBudget budget_;
-  LivePoints written_;  ///< confirmed by read-back, or written where it is not possible
-  LivePoints saved_;    ///< registers as they were before the first order
+  PointValues written_;  ///< confirmed by read-back, or written where it is not possible
+  PointValues saved_;    ///< registers as they were before the first order
   std::int64_t heartbeat_ = 0;
 };
 

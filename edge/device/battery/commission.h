@@ -96,12 +96,12 @@ class SignCheck {
     return succeeded(status);
   }
 
-  struct Seen {
-    std::optional<AnswerCurve> small;
-    std::optional<AnswerCurve> large;
+  struct MeasuredSteps {
+    std::optional<StepResponse> small;
+    std::optional<StepResponse> large;
   };
   DirectionResult& direction(int sign) { return sign > 0 ? result_.charge : result_.discharge; }
-  Seen& seen(int sign) { return sign > 0 ? seen_charge_ : seen_discharge_; }
+  MeasuredSteps& seen(int sign) { return sign > 0 ? seen_charge_ : seen_discharge_; }
   [[nodiscard]] std::int32_t limit_w(int sign) const {
     return sign > 0 ? before_.charge_w_max : before_.discharge_w_max;
   }
@@ -110,7 +110,7 @@ class SignCheck {
   }
 
   bool rests(std::int32_t patience_s = 0) {
-    AnswerCurve ignored(1, 0);
+    StepResponse ignored(1, 0);
     // A meter may lag the battery by one to ten seconds.
     const std::int32_t meter_s = reads_meter() ? settings_.response.settle_s + 5 : 0;
     const std::int32_t rest_s = std::max(settings_.rest_s, meter_s);
@@ -128,8 +128,8 @@ class SignCheck {
 
   /// Drives in one direction and back to rest.
   void drives(int sign) {
-    AnswerCurve& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
-                                                  sign * last_power_w_);
+    StepResponse& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
+                                                   sign * last_power_w_);
     const bool is_watched =
         order_and_watch(sign * settings_.power_w, drive_s(sign), settings_.drive_s, curve);
     direction(sign) = {.is_tested = true,
@@ -137,7 +137,7 @@ class SignCheck {
                        .measured_power_w = result_.measured_power_w,
                        .came_ms = curve.came_ms()};
     if (is_watched) judge_drive(sign * result_.measured_power_w, curve);
-    if (passes()) rests_and_tells_of(direction(sign));
+    if (passes()) rest_and_report(direction(sign));
   }
   /// The first test lasts as long as an order must last without a refresh.
   std::int32_t drive_s(int sign) {
@@ -145,7 +145,7 @@ class SignCheck {
     was_unfed_ = was_unfed_ || is_long;
     return is_long ? std::max(settings_.drive_s, settings_.unfed_s) : settings_.drive_s;
   }
-  void rests_and_tells_of(const DirectionResult& driven) {
+  void rest_and_report(const DirectionResult& driven) {
     rests(kRestPatienceS);
     result_.ordered_power_w = driven.ordered_power_w;
     if (passes()) result_.measured_power_w = driven.measured_power_w;
@@ -169,7 +169,7 @@ class SignCheck {
     } else {
       return;
     }
-    if (passes()) rests_and_tells_of(direction(direction(-first).is_tested ? -first : first));
+    if (passes()) rest_and_report(direction(direction(-first).is_tested ? -first : first));
   }
   /// 0: not tested.
   [[nodiscard]] std::int32_t further_w(int sign) {
@@ -183,7 +183,7 @@ class SignCheck {
   }
   /// True if the power settled.
   bool drives_on(int sign, std::int32_t power_w) {
-    AnswerCurve curve(power_w, band_w(power_w), sign * last_power_w_);
+    StepResponse curve(power_w, band_w(power_w), sign * last_power_w_);
     const std::int32_t last_s = std::max(2 * settings_.drive_s, settings_.response.settle_s + 10);
     if (!order_and_watch(sign * power_w, kFurtherS, last_s - kFurtherS, curve)) return false;
     DirectionResult& driven = direction(sign);
@@ -197,7 +197,7 @@ class SignCheck {
 
   /// Orders, then reads and refreshes the watchdog until the time is over; false on failure.
   bool order_and_watch(std::int32_t power_w, std::int32_t seconds, std::int32_t patience_s,
-                       AnswerCurve& curve) {
+                       StepResponse& curve) {
     const PowerOrder order{.power_w = power_w,
                            .soc_min_e4 = settings_.soc_min_e4,
                            .soc_max_e4 = settings_.soc_max_e4,
@@ -226,13 +226,13 @@ class SignCheck {
     return true;
   }
 
-  static bool has_stayed(const AnswerCurve& curve, std::int64_t since_ns) {
+  static bool has_stayed(const StepResponse& curve, std::int64_t since_ns) {
     const std::int64_t stays_ms = std::max(kStaysMs, curve.came_ms() / 3);
     return curve.has_come() && since_ns / 1'000'000 - curve.came_ms() >= stays_ms;
   }
 
   /// One reading of battery and meter.
-  bool look(std::int32_t power_w, std::int64_t start_ns, std::int64_t end_ns, AnswerCurve& curve) {
+  bool look(std::int32_t power_w, std::int64_t start_ns, std::int64_t end_ns, StepResponse& curve) {
     BatteryMeasurement m;
     const std::int64_t begin_ns = clock_.now_utc_ns();
     if (!reads(m)) return false;
@@ -298,7 +298,7 @@ class SignCheck {
     return result_.measured_power_w > most_w || result_.measured_power_w < -most_w;
   }
 
-  void judge_drive(std::int32_t along_w, const AnswerCurve& curve) {
+  void judge_drive(std::int32_t along_w, const StepResponse& curve) {
     const std::int32_t least_w = settings_.power_w * (100 - settings_.tolerance_percent) / 100;
     if (along_w <= -std::max(least_w, 1)) {
       fail(CommissionVerdict::kWrongSign);
@@ -314,19 +314,19 @@ class SignCheck {
 
   /// A battery may be faster in one direction.
   void judge_speeds() {
-    const SpeedQuestion question{.response = settings_.response,
-                                 .rated_w = settings_.rated_w,
-                                 .step_w_max = settings_.step_w_max};
+    const StepResponseCriteria criteria{.response = settings_.response,
+                                        .rated_w = settings_.rated_w,
+                                        .step_w_max = settings_.step_w_max};
     if (!passes()) return;
     for (const int sign : {1, -1}) {
-      const Seen& of = seen(sign);
+      const MeasuredSteps& of = seen(sign);
       if (!of.small.has_value()) continue;
-      AnswerSpeed& speed = direction(sign).speed;
-      speed = judge_speed(*of.small, of.large.has_value() ? &*of.large : nullptr, question);
+      StepResponseResult& speed = direction(sign).speed;
+      speed = judge_speed(*of.small, of.large.has_value() ? &*of.large : nullptr, criteria);
       if (speed.is_slow) take_proposal(speed);
     }
   }
-  void take_proposal(const AnswerSpeed& speed) {
+  void take_proposal(const StepResponseResult& speed) {
     fail(CommissionVerdict::kSlow);
     result_.wanted_settle_s = std::max(result_.wanted_settle_s, speed.wanted_settle_s);
     const std::int32_t step_w = result_.wanted_ramp_w_max;
@@ -366,8 +366,8 @@ class SignCheck {
   Meter meter_;
   CommissionResult result_;
   BatteryMeasurement before_;
-  Seen seen_charge_;
-  Seen seen_discharge_;
+  MeasuredSteps seen_charge_;
+  MeasuredSteps seen_discharge_;
   bool is_further_ = false;
   bool was_unfed_ = false;
   MeterProof proof_;

@@ -19,7 +19,7 @@ namespace bess {
 //            seen to be late
 //   one      refused only if it was late itself: the time of a larger step is reported as a range
 
-struct SpeedQuestion {
+struct StepResponseCriteria {
   ResponseBand response{};       ///< from the map
   std::int32_t rated_w = 4'000;  ///< largest order
   std::int32_t step_w_max = 8'000;
@@ -30,7 +30,7 @@ struct SpeedQuestion {
   }
 };
 
-struct AnswerSpeed {
+struct StepResponseResult {
   bool has_two = false;      ///< steps of different size
   bool is_slow = false;      ///< certainly slower than [response] says
   bool is_doubtful = false;  ///< possibly slower
@@ -42,14 +42,14 @@ struct AnswerSpeed {
 };
 
 /// 0: no ramp detected.
-inline std::int32_t ramp_w_per_s(const AnswerSpeed& speed) {
+inline std::int32_t ramp_w_per_s(const StepResponseResult& speed) {
   const double ramp_s_per_w = speed.dynamics.ramp_s_per_w;
   return ramp_s_per_w > 0 ? static_cast<std::int32_t>(1 / ramp_s_per_w) : 0;
 }
 
 /// `large`: null if only the small step was possible.
-AnswerSpeed judge_speed(const AnswerCurve& small, const AnswerCurve* large,
-                        const SpeedQuestion& question);
+StepResponseResult judge_speed(const StepResponse& small, const StepResponse* large,
+                               const StepResponseCriteria& criteria);
 
 struct CommissionSettings {
   std::int32_t power_w = 500;
@@ -126,7 +126,7 @@ struct DirectionResult {
   std::int32_t further_w = 0;         ///< the larger order; 0: not possible
   std::int32_t further_measured_w = 0;
   bool is_held_back = false;  ///< less than that flows permanently
-  AnswerSpeed speed{};
+  StepResponseResult speed{};
 };
 
 struct CommissionResult {

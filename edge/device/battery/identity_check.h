@@ -43,7 +43,7 @@ Status check_identity_point(const RegisterMap& map, BatteryBus<Link, Time>& bus,
     if (bus.live().failed[point.scale_from < 0 ? point.percent_of : point.scale_from])
       return status;
   }
-  LivePoints now = bus.live();
+  PointValues now = bus.live();
   now.keep(map, check.point, raw);
   failure.is_known = live_value(map, now, check.point, failure.value);
   const bool is_right =

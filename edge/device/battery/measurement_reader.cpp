@@ -65,23 +65,23 @@ MeasurementReader::MeasurementReader(const RegisterMap& map)
       temperature_max_(find_point(map, "temperature_max")),
       alive_(map) {}
 
-bool MeasurementReader::lacks_essentials(const LivePoints& live) const {
+bool MeasurementReader::lacks_required_values(const PointValues& live) const {
   return std::any_of(map_.required.begin(), map_.required.end(),
                      [&](std::int8_t point) { return live.failed[point]; });
 }
 
-bool MeasurementReader::is_unknown(const LivePoints& live, std::int8_t point) const {
+bool MeasurementReader::is_unknown(const PointValues& live, std::int8_t point) const {
   std::int64_t value = 0;
   return !live.absent[point] && (live.failed[point] || !live_value(map_, live, point, value));
 }
 
-std::int16_t MeasurementReader::lost_essential(const LivePoints& live) const {
+std::int16_t MeasurementReader::lost_required_point(const PointValues& live) const {
   const auto* const lost = std::find_if(map_.required.begin(), map_.required.end(),
                                         [&](std::int8_t point) { return is_unknown(live, point); });
   return lost == map_.required.end() ? 0 : static_cast<std::int16_t>(*lost + 1);
 }
 
-void MeasurementReader::read_protective(const LivePoints& live, BatteryMeasurement& m) const {
+void MeasurementReader::read_protective(const PointValues& live, BatteryMeasurement& m) const {
   for (const std::int8_t point : map_.protective) {
     std::int64_t value = 0;
     if (is_unknown(live, point)) {
@@ -93,7 +93,7 @@ void MeasurementReader::read_protective(const LivePoints& live, BatteryMeasureme
   m.grid_unknown = map_.off_grid.point >= 0 && is_unknown(live, map_.off_grid.point);
 }
 
-Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
+Status MeasurementReader::translate(const PointValues& live, std::int64_t now_ns,
                                     BatteryMeasurement& m) {
   for (const std::int8_t point : map_.required) {
     std::int64_t value = 0;
@@ -122,7 +122,7 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
   return alive_.is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
 }
 
-void MeasurementReader::store(const LivePoints& live, int point, std::int64_t wide,
+void MeasurementReader::store(const PointValues& live, int point, std::int64_t wide,
                               BatteryMeasurement& m) const {
   const std::int32_t value = clamp_to_int32(wide);
   Scaling scaling;
@@ -137,7 +137,7 @@ void MeasurementReader::store(const LivePoints& live, int point, std::int64_t wi
   if (point == temperature_max_) m.temperature_max_deci_c = value;
 }
 
-bool MeasurementReader::is_true(const LivePoints& live, const Condition& condition) const {
+bool MeasurementReader::is_true(const PointValues& live, const Condition& condition) const {
   std::int64_t value = 0;
   return live_value(map_, live, condition.point, value) && condition.holds(value);
 }

@@ -8,7 +8,7 @@
 #include "edge/core/base/status.h"
 #include "edge/core/control/control_types.h"
 #include "edge/device/battery/modbus_link.h"
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "shared/scaled_clock.h"
 
@@ -16,14 +16,14 @@ namespace bess {
 
 // Alive watch: a stalled counter means frozen values; the map's `alive`.
 
-class AliveWatch {
+class HeartbeatCheck {
  public:
   /// `map` must outlive this object.
-  explicit AliveWatch(const RegisterMap& map) : map_(map) {}
+  explicit HeartbeatCheck(const RegisterMap& map) : map_(map) {}
 
   /// Must be called after each reading; true also if the map names no counter. `now_ns` is the
   /// device's time.
-  bool is_alive(const LivePoints& live, std::int64_t now_ns) {
+  bool is_alive(const PointValues& live, std::int64_t now_ns) {
     if (map_.alive.point < 0) return true;
     std::int64_t counter = 0;
     if (!live_value(map_, live, map_.alive.point, counter)) return false;
@@ -67,26 +67,26 @@ class MeasurementReader {
   explicit MeasurementReader(const RegisterMap& map);
 
   /// SoC, power or another required value was not received.
-  [[nodiscard]] bool lacks_essentials(const LivePoints& live) const;
+  [[nodiscard]] bool lacks_required_values(const PointValues& live) const;
   /// 1 + index of the first required value that is missing or implausible; 0 = none.
-  [[nodiscard]] std::int16_t lost_essential(const LivePoints& live) const;
+  [[nodiscard]] std::int16_t lost_required_point(const PointValues& live) const;
 
   /// Fills the measurement; kImplausible if a required value is implausible or the device's counter
   /// has stalled. An unknown protective value is reported in `m`. `now_ns` is the device's time.
-  Status translate(const LivePoints& live, std::int64_t now_ns, BatteryMeasurement& m);
+  Status translate(const PointValues& live, std::int64_t now_ns, BatteryMeasurement& m);
 
  private:
-  void store(const LivePoints& live, int point, std::int64_t wide, BatteryMeasurement& m) const;
+  void store(const PointValues& live, int point, std::int64_t wide, BatteryMeasurement& m) const;
   /// Required, and not received or implausible.
-  [[nodiscard]] bool is_unknown(const LivePoints& live, std::int8_t point) const;
-  void read_protective(const LivePoints& live, BatteryMeasurement& m) const;
+  [[nodiscard]] bool is_unknown(const PointValues& live, std::int8_t point) const;
+  void read_protective(const PointValues& live, BatteryMeasurement& m) const;
   /// False also while its register is unknown.
-  [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
+  [[nodiscard]] bool is_true(const PointValues& live, const Condition& condition) const;
 
   const RegisterMap& map_;
   // Points with a role in the controller, by name; -1 = not in this map.
   int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
-  AliveWatch alive_;
+  HeartbeatCheck alive_;
 };
 
 }  // namespace bess

@@ -9,7 +9,7 @@
 #include "edge/device/battery/identity_check.h"
 #include "edge/device/battery/measurement_reader.h"
 #include "edge/device/battery/modbus_link.h"
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -53,7 +53,7 @@ class GridMeter {
  private:
   const RegisterMap& map_;
   BatteryBus<Link, Time> bus_;
-  AliveWatch alive_;
+  HeartbeatCheck alive_;
   bool identified_ = false;
 };
 

@@ -97,8 +97,8 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
     if (status != Status::kTooLate) finish(request, status);
   }
   if (status != Status::kOk) ++counters_.failed_requests;
-  if (listener_.tell != nullptr && status != Status::kTooLate) {
-    tell(request, registers, status, asked_ns);
+  if (listener_.on_exchange != nullptr && status != Status::kTooLate) {
+    report_exchange(request, registers, status, asked_ns);
   }
   return status;
 }
@@ -190,8 +190,8 @@ void ModbusLink::recover(Status status) {
   close();
 }
 
-void ModbusLink::tell(const ModbusRequest& request, const std::uint16_t* registers, Status status,
-                      std::int64_t asked_ns) const {
+void ModbusLink::report_exchange(const ModbusRequest& request, const std::uint16_t* registers,
+                                 Status status, std::int64_t asked_ns) const {
   const std::int64_t begin_ns = std::max(asked_ns, sent_ns_);  // gap and connecting are not latency
   BusExchange exchange{.latency_us = (now() - begin_ns) / 1'000,
                        .unit = request.unit,
@@ -202,7 +202,7 @@ void ModbusLink::tell(const ModbusRequest& request, const std::uint16_t* registe
                        .count = static_cast<std::uint16_t>(request.count)};
   const std::uint16_t* const values = request.is_write() ? request.values : registers;
   std::copy_n(values, exchange.values().size(), exchange.registers.begin());
-  listener_.tell(listener_.owner, exchange);
+  listener_.on_exchange(listener_.owner, exchange);
 }
 
 /// Time of `bytes` on a serial line: 11 bits each with parity or a second stop bit.

@@ -52,7 +52,7 @@ struct LinkCounters {
 /// Observer of every request and its result, on the requesting thread: it must neither wait nor
 /// allocate. It takes the time of an exchange itself.
 struct ExchangeListener {
-  void (*tell)(void* owner, const BusExchange& exchange) = nullptr;
+  void (*on_exchange)(void* owner, const BusExchange& exchange) = nullptr;
   void* owner = nullptr;
 };
 
@@ -68,7 +68,7 @@ class ModbusLink {
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                const std::uint16_t* registers, int count, std::int64_t send_until_ns = INT64_MAX);
   void close();
-  void tell_exchanges(const ExchangeListener& listener) { listener_ = listener; }
+  void set_exchange_listener(const ExchangeListener& listener) { listener_ = listener; }
 
   /// Exception code of the last request, 0 without one: for register maps with vendor-specific
   /// codes.
@@ -85,8 +85,8 @@ class ModbusLink {
   Status ask(const ModbusRequest& request, std::uint16_t* registers, std::int64_t send_until_ns);
   Status receive_reply(const ModbusRequest& request, std::int64_t deadline_ns, ModbusFrame& reply);
   void finish(const ModbusRequest& request, Status status);
-  void tell(const ModbusRequest& request, const std::uint16_t* registers, Status status,
-            std::int64_t asked_ns) const;
+  void report_exchange(const ModbusRequest& request, const std::uint16_t* registers, Status status,
+                       std::int64_t asked_ns) const;
   void recover(Status status);
   [[nodiscard]] std::int64_t line_time_ns(int bytes) const;
 

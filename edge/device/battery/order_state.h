@@ -71,23 +71,23 @@ class OrderState {
 
   /// The device may still follow it.
   [[nodiscard]] bool may_last(std::int64_t now_ns) const {
-    return is_in_force() && (lasts_for_ever() || now_ns - fed_ns_ < duration_ns());
+    return is_in_force() && (never_expires() || now_ns - fed_ns_ < duration_ns());
   }
   /// Refreshed so recently that it cannot have expired; a tenth of its duration is margin for clock
   /// differences.
   [[nodiscard]] bool is_within_its_time(std::int64_t now_ns) const {
-    return lasts_for_ever() || now_ns - fed_ns_ < duration_ns() - duration_ns() / 10;
+    return never_expires() || now_ns - fed_ns_ < duration_ns() - duration_ns() / 10;
   }
   /// Refreshed at half the interval, so that one late refresh does no harm.
   [[nodiscard]] bool is_due(std::int64_t now_ns) const {
     const std::int64_t half_ns = watchdog_.refresh_s * kNanosecondsPerSecond / 2;
-    return is_in_force() && !lasts_for_ever() && (runs_out_ || now_ns - fed_ns_ >= half_ns);
+    return is_in_force() && !never_expires() && (runs_out_ || now_ns - fed_ns_ >= half_ns);
   }
   /// Some devices confirm an order before they show it.
   [[nodiscard]] bool has_settled(std::int64_t now_ns, std::int32_t settle_s) const {
     return now_ns - since_ns_ >= settle_s * kNanosecondsPerSecond;
   }
-  [[nodiscard]] bool lasts_for_ever() const { return watchdog_.kind == Watchdog::Kind::kNone; }
+  [[nodiscard]] bool never_expires() const { return watchdog_.kind == Watchdog::Kind::kNone; }
 
  private:
   enum class State : std::uint8_t { kNone, kEnabled, kInForce };

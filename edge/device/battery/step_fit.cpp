@@ -26,7 +26,7 @@ constexpr int kParameters = 3;
 
 }  // namespace
 
-double risen_w(const StepDynamics& d, double step_w, double seconds) {
+double step_response_w(const StepDynamics& d, double step_w, double seconds) {
   const double t = seconds - d.dead_time_s;
   if (t <= 0) return 0;
   const double ramp_s = step_w * d.ramp_s_per_w;
@@ -44,14 +44,14 @@ double seconds_until(const StepDynamics& d, double step_w, double left_w) {
   double high_s = low_s + step_w * d.ramp_s_per_w + 20 * d.time_constant_s;
   while (high_s - low_s > kFinestS) {
     const double middle_s = (low_s + high_s) / 2;
-    const bool is_too_early = risen_w(d, step_w, middle_s) < step_w - left_w;
+    const bool is_too_early = step_response_w(d, step_w, middle_s) < step_w - left_w;
     double& bound_s = is_too_early ? low_s : high_s;
     bound_s = middle_s;
   }
   return high_s;
 }
 
-StepFit::StepFit(std::span<const AnswerCurve* const> curves) : curves_(curves) {
+StepFit::StepFit(std::span<const StepResponse* const> curves) : curves_(curves) {
   double least = INFINITY;
   double least_without_ramp = INFINITY;
   profile([&](const StepDynamics& d, double misfit) {
@@ -62,7 +62,7 @@ StepFit::StepFit(std::span<const AnswerCurve* const> curves) : curves_(curves) {
   });
   refine(least);
   int readings = 0;
-  for (const AnswerCurve* curve : curves_) readings += curve->readings().size();
+  for (const StepResponse* curve : curves_) readings += curve->readings().size();
   const double variance = std::max(least / std::max(readings - kParameters, 1), 1.0);
   misfit_max_ = least + (curves_.size() > 1 ? kPossibleMisfit : kPossibleMisfitOfOne) * variance;
   has_ramp_ = least_without_ramp > misfit_max_;
@@ -143,17 +143,17 @@ void StepFit::descend(StepDynamics& from, bool looks_around, See see) const {
 /// Uses the best gain, with a prior near 1.
 double StepFit::misfit(const StepDynamics& dynamics) const {
   double sum = 0;
-  for (const AnswerCurve* curve : curves_) {
+  for (const StepResponse* curve : curves_) {
     const double step_w = curve->step_w();
     const double error_w = kErrorW + kErrorFrac * step_w;
     const double weight = 1 / (error_w * error_w);
     double both = 1 / (kGainErrorFrac * kGainErrorFrac);
     double model = both;
     double read = both;
-    for (const AnswerReading& r : curve->readings()) {
+    for (const StepReading& r : curve->readings()) {
       const double seconds = static_cast<double>(r.begin_ms + r.end_ms) / 2'000;
-      const double model_w = risen_w(dynamics, step_w, seconds);
-      const double read_w = curve->risen_w(r);
+      const double model_w = step_response_w(dynamics, step_w, seconds);
+      const double read_w = curve->step_response_w(r);
       both += weight * model_w * read_w;
       model += weight * model_w * model_w;
       read += weight * read_w * read_w;

@@ -21,23 +21,23 @@ namespace bess {
 // until which it had not. A reading takes time, and the program may be delayed within it; "slow"
 // must hold for any instant within the reading.
 
-struct AnswerReading {
+struct StepReading {
   std::int64_t begin_ms = 0;  ///< since the order came into force
   std::int64_t end_ms = 0;
   std::int32_t along_w = 0;  ///< positive: in the ordered direction
 };
 
-class AnswerCurve {
+class StepResponse {
  public:
-  using Readings = StaticVector<AnswerReading, 256>;
+  using Readings = StaticVector<StepReading, 256>;
 
   /// `ordered_w` above 0 and above the initial `from_w` (below 0: other direction); within `band_w`
   /// of it the power has settled.
-  AnswerCurve(std::int32_t ordered_w, std::int32_t band_w, std::int32_t from_w = 0)
+  StepResponse(std::int32_t ordered_w, std::int32_t band_w, std::int32_t from_w = 0)
       : ordered_w_(ordered_w), band_w_(band_w), from_w_(from_w) {}
 
   /// Readings beyond the capacity are dropped: the first ones show the shape.
-  void add(const AnswerReading& reading) {
+  void add(const StepReading& reading) {
     if (!is_within(reading.along_w)) {
       outside_until_ms_ = reading.begin_ms;
       came_ms_ = -1;
@@ -51,7 +51,9 @@ class AnswerCurve {
   [[nodiscard]] std::int32_t step_w() const { return ordered_w_ - from_w_; }
   [[nodiscard]] std::int32_t band_w() const { return band_w_; }
   /// Rise since the start of the step.
-  [[nodiscard]] std::int32_t risen_w(const AnswerReading& r) const { return r.along_w - from_w_; }
+  [[nodiscard]] std::int32_t step_response_w(const StepReading& r) const {
+    return r.along_w - from_w_;
+  }
   /// The last instant at which the power was certainly outside its band.
   [[nodiscard]] std::int64_t outside_until_ms() const { return outside_until_ms_; }
   [[nodiscard]] bool has_come() const { return came_ms_ >= 0; }
@@ -71,9 +73,9 @@ class AnswerCurve {
   /// Longest constant value during the rise: registers with a slow update.
   [[nodiscard]] std::int64_t stands_still_ms() const {
     std::int64_t longest_ms = 0;
-    const AnswerReading* first = nullptr;
-    for (const AnswerReading& r : readings_) {
-      const bool is_on_its_way = !is_within(r.along_w) && risen_w(r) * 10 >= step_w();
+    const StepReading* first = nullptr;
+    for (const StepReading& r : readings_) {
+      const bool is_on_its_way = !is_within(r.along_w) && step_response_w(r) * 10 >= step_w();
       if (!is_on_its_way || first == nullptr || first->along_w != r.along_w) first = &r;
       if (is_on_its_way) longest_ms = std::max(longest_ms, r.end_ms - first->begin_ms);
     }
@@ -81,7 +83,7 @@ class AnswerCurve {
   }
   [[nodiscard]] int readings_outside_after(std::int64_t ms) const {
     int count = 0;
-    for (const AnswerReading& r : readings_) {
+    for (const StepReading& r : readings_) {
       if (r.begin_ms > ms && !is_within(r.along_w)) ++count;
     }
     return count;
@@ -109,7 +111,7 @@ struct StepDynamics {
 };
 
 /// Rise of a step of `step_w` after `seconds`.
-double risen_w(const StepDynamics& dynamics, double step_w, double seconds);
+double step_response_w(const StepDynamics& dynamics, double step_w, double seconds);
 /// Time until at most `left_w` of it is missing.
 double seconds_until(const StepDynamics& dynamics, double step_w, double left_w);
 
@@ -122,7 +124,7 @@ struct SecondsOfStep {
 class StepFit {
  public:
   /// Curves of one battery, in any direction; at least one; they must outlive this object.
-  explicit StepFit(std::span<const AnswerCurve* const> curves);
+  explicit StepFit(std::span<const StepResponse* const> curves);
 
   [[nodiscard]] const StepDynamics& best() const { return best_; }
   /// The readings cannot be explained without a ramp.
@@ -137,7 +139,7 @@ class StepFit {
   void descend(StepDynamics& from, bool looks_around, See see) const;
   [[nodiscard]] double misfit(const StepDynamics& dynamics) const;
 
-  std::span<const AnswerCurve* const> curves_;
+  std::span<const StepResponse* const> curves_;
   StepDynamics best_;
   double misfit_max_ = 0;  ///< maximum misfit of a possible fit
   bool has_ramp_ = false;

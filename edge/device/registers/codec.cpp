@@ -56,7 +56,7 @@ std::int64_t fallback_of(const RegisterMap& map, int point) {
 }
 
 /// The register's raw words: restored exactly as found.
-Status append_saved(const RegisterMap& map, int point, const LivePoints& saved,
+Status append_saved(const RegisterMap& map, int point, const PointValues& saved,
                     RegisterBlock& out) {
   for (int i = 0; i < map.points[point].register_count(); ++i) {
     if (!out.try_push_back(saved.raw[point][i])) return Status::kTooLarge;
@@ -69,7 +69,7 @@ std::int64_t wrapped(const RegisterPoint& point, std::int64_t counter) {
   return point.value_min + counter % (point.value_max - point.value_min + 1);
 }
 
-Status clamp_to_live(const RegisterMap& map, const RegisterPoint& point, const LivePoints& live,
+Status clamp_to_live(const RegisterMap& map, const RegisterPoint& point, const PointValues& live,
                      std::int64_t& value) {
   std::int64_t limit = 0;
   if (!live_value(map, live, point.clamp_to, limit)) return Status::kImplausible;
@@ -79,7 +79,7 @@ Status clamp_to_live(const RegisterMap& map, const RegisterPoint& point, const L
 }
 
 Status encode_value(const RegisterMap& map, const WriteValue& write, const PowerOrder& order,
-                    const WriteContext& context, const LivePoints& live, RegisterBlock& out) {
+                    const WriteContext& context, const PointValues& live, RegisterBlock& out) {
   const RegisterPoint& point = map.points[write.point];
   if (write.argument == Argument::kSaved && context.saved != nullptr &&
       context.saved->known[write.point]) {
@@ -121,9 +121,9 @@ Command command_of(std::int32_t power_w) {
 Status encode_block(const RegisterMap& map, const BlockWrite& write, const PowerOrder& order,
                     RegisterBlock& out, const WriteContext& context) {
   out.clear();
-  LivePoints assumed;
+  PointValues assumed;
   if (context.live == nullptr) assumed = assumed_live_points(map, false);
-  const LivePoints& live = context.live == nullptr ? assumed : *context.live;
+  const PointValues& live = context.live == nullptr ? assumed : *context.live;
   for (const WriteValue& value : write.values) {
     const Status status = encode_value(map, value, order, context, live, out);
     if (status != Status::kOk) return status;
@@ -138,7 +138,7 @@ Status check_expressible(const RegisterMap& map, const PowerOrder& order) {
   const Command commands[] = {command_of(order.power_w), Command::kEnable, Command::kRefresh,
                               Command::kRelease};
   for (const bool high : {false, true}) {
-    const LivePoints live = assumed_live_points(map, high);
+    const PointValues live = assumed_live_points(map, high);
     for (const Command command : commands) {
       for (const BlockWrite& write : map.sequence(command).writes) {
         RegisterBlock block;

@@ -6,17 +6,17 @@
 
 #include "edge/core/base/status.h"
 #include "edge/core/control/power_order.h"
-#include "edge/device/registers/live_points.h"
 #include "edge/device/registers/point_codec.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 
 namespace bess {
 
 /// Inputs of a write in addition to the order.
 struct WriteContext {
-  const LivePoints* live = nullptr;   ///< null: the map's assumed scale factors, no live limits
-  bool clamp = true;                  ///< to live limits; not in proofs, which cover all values
-  const LivePoints* saved = nullptr;  ///< null or unknown: the map's fallback
+  const PointValues* live = nullptr;   ///< null: the map's assumed scale factors, no live limits
+  bool clamp = true;                   ///< to live limits; not in proofs, which cover all values
+  const PointValues* saved = nullptr;  ///< null or unknown: the map's fallback
   std::int64_t heartbeat = 0;
 };
 

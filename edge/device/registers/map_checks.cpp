@@ -237,8 +237,9 @@ void check_reserve(TomlTable& root, const RegisterMap& map) {
 /// Checks the duration sent with every order on its own, so that the error does not blame the
 /// power.
 void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
-  const std::string told = "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
-  const LivePoints assumed = assumed_live_points(map, false);
+  const std::string duration_text =
+      "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
+  const PointValues assumed = assumed_live_points(map, false);
   for (const CommandSequence& sequence : map.command) {
     for (const BlockWrite& write : sequence.writes) {
       for (const WriteValue& value : write.values) {
@@ -251,7 +252,7 @@ void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
         RegisterBlock block;
         if (!live_scaling(map, assumed, value.point, scaling)) continue;
         if (encode(p, time, Rounding::kNearest, block, scaling) == Status::kOk) continue;
-        root.fail("watchdog", told + std::to_string(time) + (in_minutes ? " min" : " s") +
+        root.fail("watchdog", duration_text + std::to_string(time) + (in_minutes ? " min" : " s") +
                                   ", which the point " + quoted(p.name.view()) +
                                   " cannot express (min, max, type)");
       }

@@ -47,7 +47,7 @@ struct PowerCase {
 };
 
 /// A device counter that must advance; otherwise values are frozen.
-struct AliveCounter {
+struct HeartbeatCounter {
   std::int8_t point = -1;
   std::int32_t max_age_s = 0;
 };
@@ -106,7 +106,7 @@ struct RegisterMap {
   StaticVector<Condition, 40> alarms;            ///< any of them is an alarm and stops the battery
   StaticVector<Condition, 40> warnings;          ///< any of them is reported and stops nothing
   Condition off_grid;
-  AliveCounter alive;
+  HeartbeatCounter alive;
   /// The first case that applies, among those whose points the device has.
   StaticVector<PowerCase, 4> measured_power;
   StaticVector<PowerCase, 4> order_power;

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "edge/prices/fetch/fetch.h"
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
@@ -18,7 +18,7 @@ constexpr std::string_view kHead =
 constexpr std::size_t kUtcBytes = 20;
 constexpr std::size_t kLineBytesMax = 2 * kUtcBytes + 12;
 constexpr std::size_t kFileBytesMax =
-    kHead.size() + DayAheadBook::kPricesMax * kLineBytesMax + sizeof "# crc32=01234567\n";
+    kHead.size() + DayAheadStore::kPricesMax * kLineBytesMax + sizeof "# crc32=01234567\n";
 
 /// Shared by reader and writer at different times: before the loop, and the fetching thread.
 char* file_text() {
@@ -41,10 +41,10 @@ bool parse_line(std::string_view line, KnownPrice& price) {
 
 }  // namespace
 
-bool keep_day_ahead(const char* path, const DayAheadBook& book) {
+bool keep_day_ahead(const char* path, const DayAheadStore& store) {
   char* const text = file_text();
   std::size_t size = kHead.copy(text, kHead.size());
-  for (const KnownPrice& price : book.prices()) {
+  for (const KnownPrice& price : store.prices()) {
     if (price.utc_s == 0 || price.is_assumed) continue;
     size += static_cast<std::size_t>(std::snprintf(
         text + size, kFileBytesMax - size, "%s %d %s\n", utc_text(price.utc_s).c_str(),
@@ -55,19 +55,19 @@ bool keep_day_ahead(const char* path, const DayAheadBook& book) {
   return replace_file_durably(path, {text, size});
 }
 
-int restore_day_ahead(const char* path, DayAheadBook& book) {
+int restore_day_ahead(const char* path, DayAheadStore& store) {
   char* const text = file_text();
-  const ssize_t size = read_beginning(path, {text, kFileBytesMax}, Links::kRefused);
+  const ssize_t size = read_beginning(path, {text, kFileBytesMax}, SymlinkPolicy::kRefused);
   if (size <= 0) return 0;
   std::string_view rest(text, static_cast<std::size_t>(size));
-  if (!rest.starts_with(kHead) || check_text(rest, kCommentChecksum) != TextState::kIntact)
+  if (!rest.starts_with(kHead) || check_text(rest, kCommentChecksum) != ChecksumState::kIntact)
     return 0;
   rest = without_checksum(rest, kCommentChecksum).substr(kHead.size());
   int prices = 0;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     KnownPrice price;
-    if (parse_line(rest.substr(0, end), price) && book.restore(price)) ++prices;
+    if (parse_line(rest.substr(0, end), price) && store.restore(price)) ++prices;
     rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
   }
   return prices;
@@ -132,7 +132,7 @@ DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days) {
   return {std::string_view(text, size)};
 }
 
-DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields) {
+DayAheadReply read_day_ahead(std::string_view answer, const PriceFields& fields) {
   DayAheadAnswer parsed = parse_day_ahead_json(
       answer,
       {.rows = fields.rows.view(), .time = fields.time.view(), .price = fields.price.view()});
@@ -149,7 +149,7 @@ DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields)
   return {.status = Status::kOk, .days = std::move(layout.days)};
 }
 
-DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
+DayAheadReply ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
                             const StopRequested& stop_requested) {
   if (settings.file.empty()) {
     const DayAheadUrl url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
@@ -160,25 +160,25 @@ DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_ut
   }
   constexpr std::size_t kAnswerBytesMax = 256 * 1024;
   std::string answer(kAnswerBytesMax, 0);
-  const ssize_t size = read_beginning(settings.file.c_str(), answer, Links::kFollowed);
+  const ssize_t size = read_beginning(settings.file.c_str(), answer, SymlinkPolicy::kFollowed);
   if (size < 0) return {.status = Status::kNotConnected};
   answer.resize(static_cast<std::size_t>(size));
   if (answer.size() == kAnswerBytesMax) return {.status = Status::kTooLarge};
   return read_day_ahead(answer, settings.fields);
 }
 
-std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+std::int64_t due_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
                        std::int64_t now_utc_s) {
   const OutlookDays days = outlook_days_around(now_utc_s);
-  if (!book.has_all(days.today_utc_s, days.tomorrow_utc_s, now_utc_s)) return now_utc_s;
-  const bool has_tomorrow = book.has_all(days.tomorrow_utc_s, days.end_utc_s, now_utc_s);
+  if (!store.has_all(days.today_utc_s, days.tomorrow_utc_s, now_utc_s)) return now_utc_s;
+  const bool has_tomorrow = store.has_all(days.tomorrow_utc_s, days.end_utc_s, now_utc_s);
   return settings.ask_offset_s - kBeforePublicationS +
          publication_utc_s(has_tomorrow ? days.tomorrow_utc_s : days.today_utc_s);
 }
 
-std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+std::int64_t next_ask_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
                             std::int64_t now_utc_s, std::int64_t last_utc_s, int tries) {
-  const std::int64_t due = due_utc_s(book, settings, now_utc_s);
+  const std::int64_t due = due_utc_s(store, settings, now_utc_s);
   const std::int64_t pause_s =
       std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax));
   // A clock step backwards must not block requests.
@@ -186,13 +186,13 @@ std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& set
   return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
 }
 
-bool DayAheadInquiry::take(const DayAheadAsked& asked, const OutlookSettings& settings,
-                           std::int64_t now_utc_s) {
-  const std::uint32_t changes_before = book.changes();
-  status = asked.status == Status::kOk ? book.take(asked.days, now_utc_s) : asked.status;
+bool DayAheadFetchState::take(const DayAheadReply& reply, const OutlookSettings& settings,
+                              std::int64_t now_utc_s) {
+  const std::uint32_t changes_before = store.changes();
+  status = reply.status == Status::kOk ? store.take(reply.days, now_utc_s) : reply.status;
   last_utc_s = now_utc_s;
-  tries = due_utc_s(book, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
-  return book.changes() != changes_before;
+  tries = due_utc_s(store, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
+  return store.changes() != changes_before;
 }
 
 }  // namespace bess

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edge/core/base/status.h"
-#include "edge/prices/fetch/day_ahead_book.h"
+#include "edge/prices/fetch/day_ahead_store.h"
 #include "edge/prices/record/price_settings.h"
 #include "shared/host/day_ahead_rows.h"
 #include "shared/host/http_client.h"
@@ -25,10 +25,10 @@ namespace bess {
 inline constexpr const char* kDayAheadFileName = "day_ahead";
 
 /// False with errno set.
-bool keep_day_ahead(const char* path, const DayAheadBook& book);
+bool keep_day_ahead(const char* path, const DayAheadStore& store);
 
 /// Number of restored prices; 0 without an intact file: they are fetched again.
-int restore_day_ahead(const char* path, DayAheadBook& book);
+int restore_day_ahead(const char* path, DayAheadStore& store);
 
 /// Meaning and remedy of a status of this feed.
 std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings);
@@ -37,36 +37,36 @@ using DayAheadUrl = FixedText<639>;
 DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days);
 
 /// Result of a request; `days` only for kOk.
-struct DayAheadAsked {
+struct DayAheadReply {
   Status status = Status::kNotConnected;
   std::string reason{};  ///< for other statuses: one line, if there is more to say
   std::vector<DayAheadDay> days{};
 };
-DayAheadAsked read_day_ahead(std::string_view answer, const PriceFields& fields);
+DayAheadReply read_day_ahead(std::string_view answer, const PriceFields& fields);
 /// Requests the days around now, within the time-out.
-DayAheadAsked ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
+DayAheadReply ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
                             const StopRequested& stop_requested);
 
 /// Time of the next useful request: now if part of today is missing, 12:50 local time for tomorrow.
-std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+std::int64_t due_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
                        std::int64_t now_utc_s);
 /// Time of the next request: when due; after an incomplete answer one minute, two, up to half an
 /// hour later. `last_utc_s`: 0 = no request yet; `tries`: incomplete requests so far.
-std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+std::int64_t next_ask_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
                             std::int64_t now_utc_s, std::int64_t last_utc_s, int tries);
 
 /// State of the requests.
-struct DayAheadInquiry {
-  DayAheadBook book{};
+struct DayAheadFetchState {
+  DayAheadStore store{};
   Status status = Status::kNoRow;  ///< of the last answer
   std::int64_t last_utc_s = 0;
   int tries = 0;
 
   [[nodiscard]] bool is_due(const OutlookSettings& settings, std::int64_t now_utc_s) const {
-    return next_ask_utc_s(book, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
+    return next_ask_utc_s(store, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
   }
   /// Takes an answer or its failure. True if the book has changed.
-  bool take(const DayAheadAsked& asked, const OutlookSettings& settings, std::int64_t now_utc_s);
+  bool take(const DayAheadReply& reply, const OutlookSettings& settings, std::int64_t now_utc_s);
 };
 
 }  // namespace bess

@@ -17,7 +17,7 @@
 #include "edge/prices/fetch/outlook_fetcher.h"
 #include "edge/prices/fetch/price_fetcher.h"
 #include "edge/prices/fetch/settled_fetch.h"
-#include "edge/prices/record/http_trust.h"
+#include "edge/prices/record/transport_security.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/host/command_line.h"
@@ -76,17 +76,17 @@ void check_day_ahead(const EdgeConfig& config) {
   const std::string source =
       outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const DayAheadAsked asked = ask_day_ahead(outlook, now_utc_s, [] { return false; });
-  DayAheadInquiry inquiry;
-  inquiry.take(asked, outlook, now_utc_s);
-  if (inquiry.status != Status::kOk) {
+  const DayAheadReply reply = ask_day_ahead(outlook, now_utc_s, [] { return false; });
+  DayAheadFetchState fetch_state;
+  fetch_state.take(reply, outlook, now_utc_s);
+  if (fetch_state.status != Status::kOk) {
     complain("day-ahead prices from " + source + ": " +
-             (asked.reason.empty() ? std::string(day_ahead_status_text(inquiry.status, outlook))
-                                   : asked.reason) +
+             (reply.reason.empty() ? std::string(day_ahead_status_text(fetch_state.status, outlook))
+                                   : reply.reason) +
              "; planning on usual prices");
     return;
   }
-  std::printf("day-ahead  %u quarter-hours from %s\n", inquiry.book.changes(), source.c_str());
+  std::printf("day-ahead  %u quarter-hours from %s\n", fetch_state.store.changes(), source.c_str());
 }
 
 int settle_now(const EdgeConfig& config, const SettledSource& source) {
@@ -125,8 +125,8 @@ void run_beside(const EdgeConfig& config, PricePublisher& publisher, const std::
                                        : config.price.level_start_centi_eur_per_mwh.value_or(0);
   OutlookFetcher outlook(config, *model, publisher, stop);
   outlook.start(level_centi);
-  const std::jthread planning([&] { outlook.plan_for_ever(); });
-  outlook.fetch_for_ever();
+  const std::jthread planning([&] { outlook.plan_until_stopped(); });
+  outlook.fetch_until_stopped();
 }
 
 /// True if another version was installed under the name of this program: systemd starts it when

@@ -20,49 +20,50 @@ constexpr std::int32_t kLevelMoveMaxCenti =
 static_assert(kLevelMoveMaxCenti < kPlannedLevelCenti, "two plans would not suffice");
 
 /// Describes the published prices from the tick's quarter-hour on.
-void describe(const OutlookDays& days, std::int64_t tick_utc_s, OutlookOffer& offer) {
+void describe(const OutlookDays& days, std::int64_t tick_utc_s, OutlookPlanRows& plan_rows) {
   const std::int64_t now = tick_utc_s - tick_utc_s % kSecondsPerQuarterHour;
-  offer.is_published = days.day_ahead_centi[days.index_of(now)] != kDayAheadUnknown;
-  offer.known_quarter_hours = 0;
-  offer.dearest = offer.cheapest = {};
+  plan_rows.is_published = days.day_ahead_centi[days.index_of(now)] != kDayAheadUnknown;
+  plan_rows.known_quarter_hours = 0;
+  plan_rows.dearest = plan_rows.cheapest = {};
   for (std::int64_t t = now; t < days.end_utc_s; t += kSecondsPerQuarterHour) {
     const std::int32_t centi = days.day_ahead_centi[days.index_of(t)];
     if (centi == kDayAheadUnknown) continue;
-    const bool is_first = offer.known_quarter_hours++ == 0;
-    if (is_first || centi > offer.dearest.centi_eur_per_mwh) offer.dearest = {t, centi};
-    if (is_first || centi < offer.cheapest.centi_eur_per_mwh) offer.cheapest = {t, centi};
+    const bool is_first = plan_rows.known_quarter_hours++ == 0;
+    if (is_first || centi > plan_rows.dearest.centi_eur_per_mwh) plan_rows.dearest = {t, centi};
+    if (is_first || centi < plan_rows.cheapest.centi_eur_per_mwh) plan_rows.cheapest = {t, centi};
   }
 }
 
 }  // namespace
 
-OutlookPlanner::OutlookPlanner(const OutlookModel& model, OutlookBoard& board)
-    : model_(model), board_(board) {
-  board.model = &model;
+OutlookPlanner::OutlookPlanner(const OutlookModel& model, OutlookExchange& exchange)
+    : model_(model), exchange_(exchange) {
+  exchange.model = &model;
 }
 
 /// An hour skipped by daylight saving time gets the row of the previous one.
 void OutlookPlanner::plan_usual_day(std::int64_t utc_s, std::int32_t level_centi) {
   const OutlookDays days = outlook_days_around(utc_s);
-  const Made& made = plan_of(days, planned_level_centi(level_centi), nullptr);
-  UsualDay& usual = board_.usual;
-  usual.level_centi = made.level_centi;
+  const CachedPlan& cached = plan_of(days, planned_level_centi(level_centi), nullptr);
+  UsualDay& usual = exchange_.usual;
+  usual.level_centi = cached.level_centi;
   int quarter_hour = 0;
   for (std::int64_t t = days.today_utc_s; t < days.tomorrow_utc_s; t += kSecondsPerQuarterHour) {
     const int now = local_minute_of(t).quarter_hour;
-    const BreakEvenRow& row = made.plan.row_at(t);
+    const BreakEvenRow& row = cached.plan.row_at(t);
     while (quarter_hour < now) usual.rows[quarter_hour++] = row;
     usual.rows[now] = row;
     quarter_hour = std::max(quarter_hour, now + 1);
   }
 }
 
-const OutlookPlanner::Made& OutlookPlanner::plan_of(const OutlookDays& days,
-                                                    std::int32_t level_centi, const Made* needed) {
-  for (const Made& made : made_) {
-    if (made.is_of(days, level_centi)) return made;
+const OutlookPlanner::CachedPlan& OutlookPlanner::plan_of(const OutlookDays& days,
+                                                          std::int32_t level_centi,
+                                                          const CachedPlan* needed) {
+  for (const CachedPlan& cached : cached_) {
+    if (cached.is_of(days, level_centi)) return cached;
   }
-  Made& place = &made_[0] == needed ? made_[1] : made_[0];
+  CachedPlan& place = &cached_[0] == needed ? cached_[1] : cached_[0];
   place.plan.make(model_, days, level_centi);
   place.days = days;
   place.level_centi = level_centi;
@@ -71,31 +72,31 @@ const OutlookPlanner::Made& OutlookPlanner::plan_of(const OutlookDays& days,
   return place;
 }
 
-int OutlookPlanner::plan(const Wanted& wanted, const OutlookDays& days) {
+int OutlookPlanner::plan(const PlanRequest& request, const OutlookDays& days) {
   const int made_before = plans_made_;
-  const std::int64_t tick_utc_s = wanted.tick_utc_s;
-  OutlookOffer& offer = board_.offers.draft();
-  offer.first_tick_utc_s = tick_utc_s;
-  offer.feed = wanted.feed;
+  const std::int64_t tick_utc_s = request.tick_utc_s;
+  OutlookPlanRows& plan_rows = exchange_.latest_rows.draft();
+  plan_rows.first_tick_utc_s = tick_utc_s;
+  plan_rows.feed = request.feed;
   const std::int64_t left = (days.tomorrow_utc_s - tick_utc_s) / kSecondsPerStep;
-  offer.ticks = static_cast<int>(std::min<std::int64_t>(left, OutlookOffer::kTicks));
-  const std::int32_t low_centi = planned_level_centi(wanted.level_centi - kLevelMoveMaxCenti);
-  const std::int32_t high_centi = planned_level_centi(wanted.level_centi + kLevelMoveMaxCenti);
-  const Made* needed = nullptr;
-  for (const Made& made : made_) {  // of two needed plans, neither may replace the other
-    if (made.is_of(days, high_centi)) needed = &made;
+  plan_rows.ticks = static_cast<int>(std::min<std::int64_t>(left, OutlookPlanRows::kTicks));
+  const std::int32_t low_centi = planned_level_centi(request.level_centi - kLevelMoveMaxCenti);
+  const std::int32_t high_centi = planned_level_centi(request.level_centi + kLevelMoveMaxCenti);
+  const CachedPlan* needed = nullptr;
+  for (const CachedPlan& cached : cached_) {  // of two needed plans, neither may replace the other
+    if (cached.is_of(days, high_centi)) needed = &cached;
   }
-  offer.levels = low_centi == high_centi ? 1 : 2;
-  for (int i = 0; i < offer.levels; ++i) {
-    const Made& made = plan_of(days, i == 0 ? low_centi : high_centi, needed);
-    needed = &made;
-    offer.level_centi[i] = made.level_centi;
-    for (int tick = 0; tick < offer.ticks; ++tick) {
-      offer.rows[i][tick] = made.plan.row_at(tick_utc_s + tick * kSecondsPerStep);
+  plan_rows.levels = low_centi == high_centi ? 1 : 2;
+  for (int i = 0; i < plan_rows.levels; ++i) {
+    const CachedPlan& cached = plan_of(days, i == 0 ? low_centi : high_centi, needed);
+    needed = &cached;
+    plan_rows.level_centi[i] = cached.level_centi;
+    for (int tick = 0; tick < plan_rows.ticks; ++tick) {
+      plan_rows.rows[i][tick] = cached.plan.row_at(tick_utc_s + tick * kSecondsPerStep);
     }
   }
-  describe(days, tick_utc_s, offer);
-  board_.offers.post();
+  describe(days, tick_utc_s, plan_rows);
+  exchange_.latest_rows.post();
   return plans_made_ - made_before;
 }
 
@@ -118,16 +119,16 @@ OutlookFetcher::OutlookFetcher(const EdgeConfig& config, const OutlookModel& mod
       publisher_(publisher),
       stop_(stop),
       kept_path_(state_file(config, kDayAheadFileName).view()),
-      planner_(model, board_) {}
+      planner_(model, exchange_) {}
 
 void OutlookFetcher::start(std::int32_t start_centi) {
   start_centi_ = start_centi;
   const std::int64_t now = now_utc_s();
-  const int kept = restore_day_ahead(kept_path_.c_str(), inquiry_.book);
+  const int kept = restore_day_ahead(kept_path_.c_str(), fetch_state_.store);
   fetch(now);
   say(JournalLevel::kNotice,
       std::to_string(kept) + " stored day-ahead prices; request for more: " +
-          std::string(day_ahead_status_text(inquiry_.status, config_.outlook)));
+          std::string(day_ahead_status_text(fetch_state_.status, config_.outlook)));
   const Decision decision = next_decision();
   planner_.plan_usual_day(now, decision.level_centi);
   plan(decision);
@@ -151,7 +152,7 @@ OutlookFetcher::Decision OutlookFetcher::next_decision() const {
   return next;
 }
 
-void OutlookFetcher::plan_for_ever() {
+void OutlookFetcher::plan_until_stopped() {
   constexpr std::int64_t kLookNs = kNanosecondsPerSecond / 2;
   Decision planned;
   std::uint64_t planned_answers = 0;
@@ -174,44 +175,44 @@ void OutlookFetcher::plan(const Decision& decision) {
   Status status = Status::kOk;
   {
     const std::lock_guard lock(mutex_);
-    days = inquiry_.book.days_at(decision.tick_utc_s);
-    status = inquiry_.status;
+    days = fetch_state_.store.days_at(decision.tick_utc_s);
+    status = fetch_state_.status;
   }
   planner_.plan(
       {.tick_utc_s = decision.tick_utc_s, .level_centi = decision.level_centi, .feed = status},
       days);
-  publisher_.publish_outlook(board_);
+  publisher_.publish_outlook(exchange_);
 }
 
 /// Checks often, because the clock may be stepped.
-void OutlookFetcher::fetch_for_ever() {
+void OutlookFetcher::fetch_until_stopped() {
   constexpr std::int64_t kLookNs = 10 * kNanosecondsPerSecond;
   while (!stop_.stop_requested()) {
     wait(kLookNs);
     const std::int64_t now = now_utc_s();
     // From here on only this thread writes the inquiry, so it reads without the lock.
-    if (!inquiry_.is_due(config_.outlook, now)) continue;
-    const Status before = inquiry_.status;
+    if (!fetch_state_.is_due(config_.outlook, now)) continue;
+    const Status before = fetch_state_.status;
     fetch(now);
-    if (inquiry_.status != before) {
-      say(inquiry_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
+    if (fetch_state_.status != before) {
+      say(fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
           "day-ahead prices: " +
-              std::string(day_ahead_status_text(inquiry_.status, config_.outlook)));
+              std::string(day_ahead_status_text(fetch_state_.status, config_.outlook)));
     }
   }
 }
 
 void OutlookFetcher::fetch(std::int64_t now_utc_s) {
-  const DayAheadAsked asked =
+  const DayAheadReply reply =
       ask_day_ahead(config_.outlook, now_utc_s, [this] { return stop_.stop_requested(); });
   {
     const std::lock_guard lock(mutex_);
-    const bool is_new = inquiry_.take(asked, config_.outlook, now_utc_s);
+    const bool is_new = fetch_state_.take(reply, config_.outlook, now_utc_s);
     is_kept_ = is_kept_ && !is_new;
     ++answers_;
   }
   if (is_kept_) return;
-  is_kept_ = keep_day_ahead(kept_path_.c_str(), inquiry_.book);
+  is_kept_ = keep_day_ahead(kept_path_.c_str(), fetch_state_.store);
   if (!is_kept_) say(JournalLevel::kWarning, kept_path_ + " cannot be written");
 }
 

@@ -1,6 +1,6 @@
 // Outlook threads of bess-prices, for a student by outlook: one fetches day-ahead prices, one plans
 // for the tick after the newest decision, whose level it reads from the decision log.
-//   server or file -> day_ahead_feed -> DayAheadBook -> OutlookPlanner -> the published record
+//   server or file -> day_ahead_feed -> DayAheadStore -> OutlookPlanner -> the published record
 //                                     stored on disk
 #pragma once
 
@@ -11,8 +11,8 @@
 
 #include "edge/app/settings/edge_config.h"
 #include "edge/core/control/outlook.h"
-#include "edge/prices/fetch/day_ahead_book.h"
 #include "edge/prices/fetch/day_ahead_feed.h"
+#include "edge/prices/fetch/day_ahead_store.h"
 #include "edge/prices/fetch/price_fetcher.h"
 
 namespace bess {
@@ -24,21 +24,21 @@ namespace bess {
 
 class OutlookPlanner {
  public:
-  OutlookPlanner(const OutlookModel& model, OutlookBoard& board);
+  OutlookPlanner(const OutlookModel& model, OutlookExchange& exchange);
 
   /// Plans the day without day-ahead prices, as fallback. Must run before the loop starts.
   void plan_usual_day(std::int64_t utc_s, std::int32_t level_centi);
-  struct Wanted {
+  struct PlanRequest {
     std::int64_t tick_utc_s = 0;
     std::int32_t level_centi = 0;  ///< level of the previous decision
     Status feed = Status::kOk;     ///< status of the last day-ahead request
   };
   /// Offers the rows from a tick on. `days`: prices known at that tick. Returns the number of new
   /// plans.
-  int plan(const Wanted& wanted, const OutlookDays& days);
+  int plan(const PlanRequest& request, const OutlookDays& days);
 
  private:
-  struct Made {
+  struct CachedPlan {
     OutlookPlan plan;
     OutlookDays days;
     std::int32_t level_centi = 0;
@@ -49,11 +49,12 @@ class OutlookPlanner {
   };
 
   /// The plan of a level; a plan that is not `needed` is replaced.
-  const Made& plan_of(const OutlookDays& days, std::int32_t level_centi, const Made* needed);
+  const CachedPlan& plan_of(const OutlookDays& days, std::int32_t level_centi,
+                            const CachedPlan* needed);
 
   const OutlookModel& model_;
-  OutlookBoard& board_;
-  Made made_[OutlookOffer::kLevels] = {};
+  OutlookExchange& exchange_;
+  CachedPlan cached_[OutlookPlanRows::kLevels] = {};
   int plans_made_ = 0;
 };
 
@@ -66,8 +67,8 @@ class OutlookFetcher {
   /// if the log has none.
   void start(std::int32_t start_centi);
   /// The two threads, until a stop request.
-  void fetch_for_ever();
-  void plan_for_ever();
+  void fetch_until_stopped();
+  void plan_until_stopped();
 
  private:
   struct Decision {
@@ -89,11 +90,11 @@ class OutlookFetcher {
   PricePublisher& publisher_;
   std::stop_token stop_;
   const std::string kept_path_;
-  OutlookBoard board_;
+  OutlookExchange exchange_;
   OutlookPlanner planner_;
   std::int32_t start_centi_ = 0;
   std::mutex mutex_;  ///< protects the inquiry between the two threads
-  DayAheadInquiry inquiry_;
+  DayAheadFetchState fetch_state_;
   std::uint64_t answers_ = 0;  ///< number of changes of the inquiry
   bool is_kept_ = true;        ///< false: the file is out of date, and is retried
 };

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "edge/prices/fetch/history_pages.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
 
-void PricePublisher::publish_outlook(OutlookBoard& board) {
+void PricePublisher::publish_outlook(OutlookExchange& exchange) {
   const std::lock_guard lock(mutex_);
   if (outlook_ == nullptr) outlook_ = std::make_unique<PublishedOutlook>();
-  outlook_->offer = board.offers.latest();
-  outlook_->usual = board.usual;
+  outlook_->plan_rows = exchange.latest_rows.latest();
+  outlook_->usual = exchange.usual;
   ++prices_.outlook_number;
   write();
 }
@@ -138,12 +138,12 @@ PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64
     const double pause_s = answer.wait_s > 0 ? answer.wait_s : kPauseOfTheBusyS;
     not_before_utc_s_ = source_.now_utc_s() + static_cast<std::int64_t>(pause_s) + 1;
   }
-  if (answer.status != told_) {
+  if (answer.status != reported_) {
     const bool is_well = answer.status == Status::kOk;
     write_journal_line(is_well ? JournalLevel::kNotice : JournalLevel::kWarning,
                        "bess-prices: prices: " +
                            (is_well ? std::string("ok") : text_of(answer.reason, answer.status)));
-    told_ = answer.status;
+    reported_ = answer.status;
   }
   publisher_.publish([&](PublishedPrices& prices) {
     ++prices.answers;

@@ -31,7 +31,7 @@ class PricePublisher {
     change(prices_);
     write();
   }
-  void publish_outlook(OutlookBoard& board);
+  void publish_outlook(OutlookExchange& exchange);
 
  private:
   void write();
@@ -100,7 +100,7 @@ class PriceFetcher {
   PriceSource source_;
   AskTiming timing_;
   UnitWatch unit_;
-  Status told_ = Status::kOk;          ///< status of the last line in the journal
+  Status reported_ = Status::kOk;      ///< status of the last line in the journal
   std::int64_t not_before_utc_s_ = 0;  ///< requested by the server
 };
 

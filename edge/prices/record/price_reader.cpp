@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -26,7 +26,7 @@ int ms_until(std::int64_t monotonic_ns, int most) {
 
 PriceReader::PriceReader(const Settings& settings, const ScaledClock& clock)
     : settings_(settings), clock_(clock), notices_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-  board_.model = settings.model;
+  exchange_.model = settings.model;
 }
 
 PriceReader::~PriceReader() {
@@ -83,10 +83,10 @@ PublishedHistory PriceReader::await_history(std::int64_t patience_ns) {
   return {.status = reading_ == Status::kOk ? Status::kTimeout : reading_};
 }
 
-OutlookBoard* PriceReader::await_outlook(std::int64_t patience_ns) {
+OutlookExchange* PriceReader::await_outlook(std::int64_t patience_ns) {
   if (settings_.model == nullptr) return nullptr;
   static_cast<void>(await(patience_ns, [&] { return taken_outlook_ > 0; }));
-  return &board_;
+  return &exchange_;
 }
 
 void PriceReader::await_change(std::int64_t until_monotonic_ns) {
@@ -106,7 +106,7 @@ void PriceReader::await_change(std::int64_t until_monotonic_ns) {
 }
 
 void PriceReader::read() {
-  const ssize_t size = read_beginning(settings_.path.c_str(), bytes_, Links::kRefused);
+  const ssize_t size = read_beginning(settings_.path.c_str(), bytes_, SymlinkPolicy::kRefused);
   if (size < 0) {
     reading_ = Status::kNoFetcher;
     return;
@@ -120,9 +120,9 @@ void PriceReader::read() {
                         published.outlook_number != taken_outlook_;
   if (!has_plan || decode_outlook(bytes, outlook_) != Status::kOk) return;
   taken_outlook_ = published.outlook_number;
-  board_.usual = outlook_.usual;
-  board_.offers.draft() = outlook_.offer;
-  board_.offers.post();
+  exchange_.usual = outlook_.usual;
+  exchange_.latest_rows.draft() = outlook_.plan_rows;
+  exchange_.latest_rows.post();
 }
 
 /// Rejects rows that a healthy bess-prices never publishes.

@@ -35,7 +35,7 @@ class PriceReader {
   /// Waits for the price level of the last hours.
   PublishedHistory await_history(std::int64_t patience_ns);
   /// Waits for a plan; null for other contexts of the student.
-  OutlookBoard* await_outlook(std::int64_t patience_ns);
+  OutlookExchange* await_outlook(std::int64_t patience_ns);
 
  private:
   void read();
@@ -48,7 +48,7 @@ class PriceReader {
   const Settings settings_;
   const ScaledClock clock_;
   NewestRow newest_;
-  OutlookBoard board_;
+  OutlookExchange exchange_;
   PublishedPrices published_;
   PublishedOutlook outlook_;
   Status reading_ = Status::kNoFetcher;  ///< kOk: there is a valid record

@@ -62,10 +62,10 @@ Status decode_outlook(std::span<const char> file, PublishedOutlook& outlook) {
   if (file.size() < kPublishedPricesBytes || !take(file.subspan(kPublishedPricesBytes), outlook)) {
     return Status::kMalformed;
   }
-  const OutlookOffer& offer = outlook.offer;
-  const bool is_sound = is_status(offer.feed) && offer.ticks >= 0 &&
-                        offer.ticks <= OutlookOffer::kTicks && offer.levels >= 0 &&
-                        offer.levels <= OutlookOffer::kLevels;
+  const OutlookPlanRows& plan_rows = outlook.plan_rows;
+  const bool is_sound = is_status(plan_rows.feed) && plan_rows.ticks >= 0 &&
+                        plan_rows.ticks <= OutlookPlanRows::kTicks && plan_rows.levels >= 0 &&
+                        plan_rows.levels <= OutlookPlanRows::kLevels;
   return is_sound ? Status::kOk : Status::kMalformed;
 }
 

@@ -42,7 +42,7 @@ struct PublishedPrices {
 
 /// For a student by outlook.
 struct PublishedOutlook {
-  OutlookOffer offer{};
+  OutlookPlanRows plan_rows{};
   UsualDay usual{};
 };
 

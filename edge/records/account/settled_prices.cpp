@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "edge/core/control/quarter_hour_energy.h"
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -100,7 +100,7 @@ std::string SettledPrices::text() const {
 
 bool SettledPrices::parse(std::string_view text) {
   quarters_.clear();
-  if (check_text(text, kCommentChecksum) != TextState::kIntact) return false;
+  if (check_text(text, kCommentChecksum) != ChecksumState::kIntact) return false;
   std::string_view rest = without_checksum(text, kCommentChecksum);
   if (take_line(rest) != kHeader) return false;
   quarters_.reserve(static_cast<std::size_t>(std::ranges::count(rest, '\n')));
@@ -121,7 +121,7 @@ std::string SettledPrices::read(const std::string& path) {
   constexpr std::size_t kLineBytesMax = 64, kQuarterHoursADay = 100;
   quarters_.clear();
   std::string text(kSettledDaysMax * kQuarterHoursADay * kLineBytesMax, '\0');
-  const ssize_t size = read_beginning(path.c_str(), text, Links::kFollowed);
+  const ssize_t size = read_beginning(path.c_str(), text, SymlinkPolicy::kFollowed);
   if (size < 0) return errno == ENOENT ? "" : path + ": cannot be read: " + std::strerror(errno);
   text.resize(static_cast<std::size_t>(size));
   if (parse(text)) return "";

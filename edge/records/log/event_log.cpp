@@ -158,7 +158,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   };
   open_run_ring();
   if (!may_go_on(open_ring(error)) || !may_go_on(open_csv(error))) return false;
-  tell_of_damage(ring_, settings_.ring.c_str());
+  report_damage(ring_, settings_.ring.c_str());
   totals_.log_number = newer_ring().newest_number();
   if (!may_go_on(publish_metrics(settings.metrics.c_str()))) {
     return fail_with_errno(settings.metrics.c_str(), "cannot write the metrics here", error);
@@ -167,8 +167,8 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
     return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
   }
   publish_in_memory();
-  tell_of_disk(totals_.disk_is_failing, nullptr);
-  tell_of_run_folder();
+  report_disk(totals_.disk_is_failing, nullptr);
+  report_run_folder();
   thread_.start<&EventLog::run>(this);
   return true;
 }
@@ -189,10 +189,10 @@ void EventLog::open_run_ring() {
     totals_.run_folder_is_failing = true;
     return;
   }
-  tell_of_damage(run_ring_, settings_.run_ring.c_str());
+  report_damage(run_ring_, settings_.run_ring.c_str());
 }
 
-void EventLog::tell_of_damage(const RingLog& ring, const char* path) const {
+void EventLog::report_damage(const RingLog& ring, const char* path) const {
   if (!ring.damage().is_any()) return;
   char text[1'024];
   TextBuffer line(text);
@@ -259,7 +259,7 @@ void EventLog::keep(const CycleRecord& record) {
   totals_.log_number = number;
   keep_in_memory(record, number);
   keep_on_disk(record, number);
-  tell_of_run_folder();
+  report_run_folder();
 }
 
 void EventLog::keep_in_memory(const CycleRecord& record, std::uint64_t number) {
@@ -274,11 +274,11 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
   if (!append_to_ring(record, number)) ++totals_.disk_failures;
-  tell_of_hold(record);
-  tell_of_readings(record);
-  tell_of_meter(record);
+  report_hold(record);
+  report_readings(record);
+  report_meter(record);
   write_journal_line(level_of(record), {line, size});
-  tell_of_trip(record);
+  report_trip(record);
   if (!append_to_csv(record)) ++totals_.disk_failures;
   if (!publish_metrics(settings_.metrics.c_str())) ++totals_.disk_failures;
   const bool was_failing = totals_.disk_is_failing;
@@ -288,11 +288,11 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
     totals_.disk_is_failing = true;
   }
   if (totals_.disk_is_failing || was_failing) publish_in_memory();
-  tell_of_disk(totals_.disk_is_failing, &record);
+  report_disk(totals_.disk_is_failing, &record);
 }
 
 /// Logs each trip and each clearance once.
-void EventLog::tell_of_trip(const CycleRecord& record) {
+void EventLog::report_trip(const CycleRecord& record) {
   if (record.is_tripped == was_tripped_) return;
   was_tripped_ = record.is_tripped;
   char line[160];
@@ -376,7 +376,7 @@ bool EventLog::append_to_csv(const CycleRecord& record) {
 }
 
 /// Adds what the controller does during the disk failure.
-void EventLog::add_what_goes_on(const CycleRecord* record, TextBuffer& line) const {
+void EventLog::add_present_state(const CycleRecord* record, TextBuffer& line) const {
   if (record == nullptr) {
     line.add("The next lines show whether the battery is controlled");
   } else if (record->is_tripped) {
@@ -391,7 +391,7 @@ void EventLog::add_what_goes_on(const CycleRecord* record, TextBuffer& line) con
 }
 
 /// Logs each begin and end of a disk failure once.
-void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
+void EventLog::report_disk(bool is_failing, const CycleRecord* record) {
   if (is_failing == was_failing_) return;
   was_failing_ = is_failing;
   char text[256];
@@ -399,14 +399,14 @@ void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
   if (is_failing) {
     line.add(
         "files of [state], [log] or [metrics] cannot be written: is the disk full or read-only? ");
-    add_what_goes_on(record, line);
+    add_present_state(record, line);
   } else {
     line.add("files of [state], [log] and [metrics] are written again");
   }
   write_journal_line(JournalLevel::kWarning, line.view());
 }
 
-void EventLog::tell_of_hold(const CycleRecord& record) {
+void EventLog::report_hold(const CycleRecord& record) {
   char text[256];
   TextBuffer line(text);
   if (!hold_lines_.add_line(record, identity_.control, line)) return;
@@ -414,7 +414,7 @@ void EventLog::tell_of_hold(const CycleRecord& record) {
                      line.view());
 }
 
-void EventLog::tell_of_readings(const CycleRecord& record) {
+void EventLog::report_readings(const CycleRecord& record) {
   char text[256];
   TextBuffer lost(text);
   if (reading_lines_.add_lost_line(record, identity_, lost)) {
@@ -427,7 +427,7 @@ void EventLog::tell_of_readings(const CycleRecord& record) {
   }
 }
 
-void EventLog::tell_of_meter(const CycleRecord& record) {
+void EventLog::report_meter(const CycleRecord& record) {
   char text[320];
   TextBuffer trust(text);
   if (meter_lines_.add_trust_line(record, trust)) {
@@ -441,7 +441,7 @@ void EventLog::tell_of_meter(const CycleRecord& record) {
   }
 }
 
-void EventLog::tell_of_run_folder() {
+void EventLog::report_run_folder() {
   if (totals_.run_folder_is_failing == was_run_failing_) return;
   was_run_failing_ = totals_.run_folder_is_failing;
   write_journal_line(JournalLevel::kWarning,

@@ -12,11 +12,11 @@
 
 #include "edge/core/control/control_types.h"
 #include "edge/core/memory/plain_thread.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/handover_queue.h"
 #include "edge/records/log/ring_log.h"
 #include "edge/records/log/run_status.h"
 #include "edge/records/log/text_buffer.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -104,7 +104,7 @@ class EventLog {
 
   bool open_ring(FileMessage& error);
   void open_run_ring();
-  void tell_of_damage(const RingLog& ring, const char* path) const;
+  void report_damage(const RingLog& ring, const char* path) const;
   [[nodiscard]] const RingLog& newer_ring() const {
     return run_ring_.newest_number() > ring_.newest_number() ? run_ring_ : ring_;
   }
@@ -112,7 +112,7 @@ class EventLog {
   bool head_csv();
   void run();
   void keep(const CycleRecord& record);
-  void tell_of_trip(const CycleRecord& record);
+  void report_trip(const CycleRecord& record);
   void keep_in_memory(const CycleRecord& record, std::uint64_t number);
   void keep_on_disk(const CycleRecord& record, std::uint64_t number);
   bool append_to_run_ring(const CycleRecord& record, std::uint64_t number);
@@ -123,12 +123,12 @@ class EventLog {
   void publish_in_memory();
   [[nodiscard]] bool publish_metrics(const char* path);
   [[nodiscard]] bool publish_status(const FixedText<511>& path);
-  void tell_of_disk(bool is_failing, const CycleRecord* record);
-  void add_what_goes_on(const CycleRecord* record, TextBuffer& line) const;
-  void tell_of_run_folder();
-  void tell_of_hold(const CycleRecord& record);
-  void tell_of_readings(const CycleRecord& record);
-  void tell_of_meter(const CycleRecord& record);
+  void report_disk(bool is_failing, const CycleRecord* record);
+  void add_present_state(const CycleRecord* record, TextBuffer& line) const;
+  void report_run_folder();
+  void report_hold(const CycleRecord& record);
+  void report_readings(const CycleRecord& record);
+  void report_meter(const CycleRecord& record);
 
   EventLogSettings settings_;
   StoredStatus stored_;

@@ -208,7 +208,7 @@ void check_cycle(const RunStatus& status, std::vector<std::string>& reasons) {
 }
 
 /// Of the state folder's device.
-void check_wear(const CardWear& wear, std::vector<std::string>& reasons) {
+void check_wear(const StorageWear& wear, std::vector<std::string>& reasons) {
   if (wear.used_life_percent > kUsedLifePercentMax) {
     reasons.push_back("WARN: storage has used up to " + std::to_string(wear.used_life_percent) +
                       " % of its life: replace it soon");

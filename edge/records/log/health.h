@@ -16,7 +16,7 @@ struct HealthInputs {
   bool is_of_this_run = false;        ///< written by that process
   std::int64_t age_ms = 0;            ///< of the status
   std::int64_t cycles_behind = 0;     ///< control cycles from the stored status to the log
-  CardWear wear{};                    ///< of the state folder's device
+  StorageWear wear{};                 ///< of the state folder's device
   bool disk_is_full = false;          ///< of the state folder, or it is read-only
   std::string_view unknown{};         ///< why the state of the running process is unknown, or empty
   std::string_view update_trouble{};  ///< error of the last upgrade, or empty

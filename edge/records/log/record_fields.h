@@ -23,7 +23,7 @@ consteval auto make_record_fields() {
   using H = HoldReport;
   using S = SiteReport;
   using O = LostOrderHistory;
-  using N = StandingPrice;
+  using N = UnchangedPrice;
   using F = ResponseFindings;
   using W = FollowedOrder;
   using M = MeterTrust;

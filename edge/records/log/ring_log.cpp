@@ -109,7 +109,7 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
   const bool is_sound = fd_ >= 0 && understand(capacity);
   if (fd_ >= 0 && !is_sound) set_aside(path);
   const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
-  if (takes_records) mend();
+  if (takes_records) repair();
   if (takes_records && capacity_ == capacity) return true;
   const std::int64_t capacity_before = std::exchange(capacity_, capacity);
   if (replace(path, error)) return true;
@@ -261,7 +261,7 @@ bool RingLog::fits(const Geometry& geometry) {
 }
 
 /// Restores headers and file size. On a disk error the next start tries again.
-void RingLog::mend() {
+void RingLog::repair() {
   const bool is_written = write_header(fd_);
   const bool is_long = damage_.missing_records == 0 || posix_fallocate(fd_, 0, file_bytes()) == 0;
   const bool is_kept = damage_.is_any() && is_written && is_long && fdatasync(fd_) == 0;

@@ -15,9 +15,9 @@
 #include <span>
 
 #include "edge/core/control/control_types.h"
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/record_codec.h"
 #include "edge/records/log/text_buffer.h"
-#include "edge/records/log/whole_file.h"
 
 namespace bess {
 
@@ -97,7 +97,7 @@ class RingLog {
   bool read_header(std::int64_t offset);
   bool find_geometry(std::int64_t likely_capacity);
   bool fits(const Geometry& geometry);
-  void mend();
+  void repair();
   bool write_header(int fd) const;
   bool write_newest(int fd) const;
   Scan find_newest();

@@ -6,8 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "edge/records/log/atomic_file.h"
 #include "edge/records/log/record_fields.h"
-#include "edge/records/log/whole_file.h"
 #include "shared/crc32.h"
 #include "shared/utc_text.h"
 
@@ -160,7 +160,7 @@ void add_model(const RunIdentity& id, const Metrics& text) {
 }
 
 /// Only values that the device reports.
-void add_wear(const CardWear& wear, const Metrics& text) {
+void add_wear(const StorageWear& wear, const Metrics& text) {
   if (wear.used_life_percent > 0) {
     add_value(text, "bess_card_used_life_ratio",
               "Share of its life that the state folder's card has used, as of the start.",
@@ -223,8 +223,8 @@ bool write_status(const char* path, StoredStatus& stored) {
 StatusFile read_status(const char* path, RunStatus& status) {
   static_assert(std::is_trivially_copyable_v<RunStatus>);
   StoredStatus stored;
-  const ssize_t size =
-      read_beginning(path, {reinterpret_cast<char*>(&stored), sizeof stored}, Links::kFollowed);
+  const ssize_t size = read_beginning(path, {reinterpret_cast<char*>(&stored), sizeof stored},
+                                      SymlinkPolicy::kFollowed);
   if (size < 0) return StatusFile::kAbsent;
   const bool is_ours =
       size == sizeof stored && stored.bytes == sizeof stored && stored.layout == kStatusLayout;

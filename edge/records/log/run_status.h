@@ -16,7 +16,7 @@
 namespace bess {
 
 /// Wear of the state folder's device and errors of its file system, read at the start.
-struct CardWear {
+struct StorageWear {
   int used_life_percent = 0;  ///< of an eMMC, rounded up to tenths; 0 = not reported
   int spare_level = 0;        ///< pre_eol_info: 1 normal, 2: 80 % of the spare blocks used,
                               ///< 3: 90 %; 0 = not reported
@@ -42,7 +42,7 @@ struct RunIdentity {
   pid_t pid = 0;
   std::int64_t start_utc_s = 0;
   std::int32_t cadence_ms = 120'000;  ///< wall time of a control cycle
-  CardWear wear;
+  StorageWear wear;
 };
 
 /// Totals since the start.
@@ -93,7 +93,7 @@ StatusFile read_status(const char* path, RunStatus& status);
 inline constexpr std::size_t kStatusBytes = 6'144;
 inline constexpr std::size_t kMetricsBytes = 24'576;
 
-/// Both end with a checksum of the preceding text (whole_file.h): last JSON member, comment.
+/// Both end with a checksum of the preceding text (atomic_file.h): last JSON member, comment.
 void format_status_json(const RunStatus& status, TextBuffer& json);
 void format_prometheus(const RunStatus& status, TextBuffer& text);
 

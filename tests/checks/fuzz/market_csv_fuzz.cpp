@@ -4,7 +4,7 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const char* format : {"yyyy-mm-dd", "dd/mm/yyyy"}) {
-    const bess::OwnForm own{"", "", {format, bess::WallClock::kLocal}};
+    const bess::CustomCsvFormat own{"", "", {format, bess::WallClock::kLocal}};
     bess::check_market_reader(
         [&own](std::string_view text, std::string_view name) {
           return bess::parse_market_csv(text, name, own);

@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kNow_utc_s = 1'749'639'480;  // 11 June 2025, 12:58 in Brussels
 
 /// Checks prices that may be used for planning.
-void check_known(const DayAheadBook& book) {
-  const OutlookDays days = book.days_at(kNow_utc_s);
+void check_known(const DayAheadStore& store) {
+  const OutlookDays days = store.days_at(kNow_utc_s);
   for (std::int64_t t = days.today_utc_s; t < days.end_utc_s; t += kSecondsPerQuarterHour) {
     const std::int32_t centi = days.day_ahead_centi[days.index_of(t)];
     if (centi == kDayAheadUnknown) continue;
@@ -23,24 +23,24 @@ void check_known(const DayAheadBook& book) {
 }
 
 void check_answer(std::string_view text, const PriceFields& fields) {
-  const DayAheadAsked asked = read_day_ahead(text, fields);
-  if (asked.status != Status::kOk) return;
-  DayAheadBook book;
-  const Status first = book.take(asked.days, kNow_utc_s);
-  check_known(book);
-  const std::uint32_t changes = book.changes();
+  const DayAheadReply reply = read_day_ahead(text, fields);
+  if (reply.status != Status::kOk) return;
+  DayAheadStore store;
+  const Status first = store.take(reply.days, kNow_utc_s);
+  check_known(store);
+  const std::uint32_t changes = store.changes();
   must(first != Status::kNoRow || changes == 0, "what is refused whole is not kept");
-  static_cast<void>(book.take(asked.days, kNow_utc_s + 60));
-  must(book.changes() == changes, "the same again is nothing new");
+  static_cast<void>(store.take(reply.days, kNow_utc_s + 60));
+  must(store.changes() == changes, "the same again is nothing new");
 }
 
 /// Without a valid checksum nothing is restored; with one, nothing that no run writes.
 void check_kept(std::string_view text) {
   static const ScratchFile file("day_ahead");
-  DayAheadBook book;
-  const int restored = restore_day_ahead(file.holding(text).c_str(), book);
-  must(restored >= 0 && restored <= DayAheadBook::kPricesMax, "no more than a book holds");
-  check_known(book);
+  DayAheadStore store;
+  const int restored = restore_day_ahead(file.holding(text).c_str(), store);
+  must(restored >= 0 && restored <= DayAheadStore::kPricesMax, "no more than a book holds");
+  check_known(store);
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ def figures(tree):
             (r"\b(\d+) faults of bus", "tools/simulators/battery_sim/battery_faults.cpp",
              r"^    \{Bat"),
             (r"\b(\d+) faults\b(?! of bus)", "tests/system/trial/trial_fault.cpp", r'^    \{"'),
-            (r"\b(\d+) honest (?:variants|batteries)", "tests/system/trial/battery_nature.cpp",
+            (r"\b(\d+) honest (?:variants|batteries)", "tests/system/trial/healthy_batteries.cpp",
              r'^    \{(?:\.name = )?"'),
             (r"\b(\d+) alerts, each", "tools/delivery/monitoring/bess_rules.yml", r"^ *- alert:")):
         rows = (tree / name).read_text(encoding="utf-8") if (tree / name).exists() else ""

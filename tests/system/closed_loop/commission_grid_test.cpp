@@ -180,8 +180,8 @@ struct Truth {
   bool is_beyond = false;
 };
 Truth truth_of(const Nature& nature, const CommissionSettings& settings) {
-  const SpeedQuestion question{.response = settings.response, .rated_w = settings.rated_w};
-  const double band_w = question.band_w(settings.step_w_max);
+  const StepResponseCriteria criteria{.response = settings.response, .rated_w = settings.rated_w};
+  const double band_w = criteria.band_w(settings.step_w_max);
   const double noise_w = 2 * (10 + nature.noise_frac * settings.step_w_max / 2);
   const double latest_s = seconds_of(nature, settings.step_w_max, band_w - noise_w);
   const double soonest_s = seconds_of(nature, settings.step_w_max, band_w + noise_w);

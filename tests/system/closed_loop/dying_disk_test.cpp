@@ -260,7 +260,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   start();  // on the dead disk
   await_cycles(2, "reason", "wrong_direction", 6);
   expect_all_agree(false);
-  const Said cleared = ask({"clear", "--yes"});
+  const ProgramOutput cleared = ask({"clear", "--yes"});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
   EXPECT_THAT(cleared.text, HasSubstr(site_.folder.file("run"))) << "the only copy";
   await_cycles(2, "mode", "running", 8);
@@ -327,7 +327,7 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
   EXPECT_THAT(said_, Not(HasSubstr("mode=running")));
   ASSERT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
   expect_all_agree(false);
-  const Said cleared = ask({"clear", "--yes"});
+  const ProgramOutput cleared = ask({"clear", "--yes"});
   EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
   EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
   end_run();
@@ -339,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
 /// Operator commands while the disk refuses writes.
 class DyingDiskWords : public DyingDisk {
  protected:
-  Said hold(std::vector<std::string> arguments) {
+  ProgramOutput hold(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "hold");
     return ask(std::move(arguments));
   }
@@ -360,7 +360,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne)
     const std::string limit_before = text_of_file(disk_.file("limit"));
     ASSERT_FALSE(hold_before.empty() || limit_before.empty());
     break_disk(is_full);
-    for (const Said& said : {hold({"2000", "--for", "1h"}), limit("1000")}) {
+    for (const ProgramOutput& said : {hold({"2000", "--for", "1h"}), limit("1000")}) {
       EXPECT_EQ(said.exit_code, 1) << said.text;
       EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
     }
@@ -378,12 +378,12 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
     ASSERT_EQ(hold({"-1000", "--for", "6h"}).exit_code, 0);
     ASSERT_NE(await_cycle("ordered_power_w", "-1000", 8), "") << said_;
     break_disk(is_full);
-    const Said other = hold({"-2000", "--for", "6h"});
+    const ProgramOutput other = hold({"-2000", "--for", "6h"});
     EXPECT_EQ(other.exit_code, 0) << other.text;
     EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
                                   HasSubstr(site_.folder.file("run/hold"))));
     EXPECT_NE(await_cycle("ordered_power_w", "-2000", 8), "") << said_;
-    const Said released = hold({"--release"});
+    const ProgramOutput released = hold({"--release"});
     EXPECT_EQ(released.exit_code, 0) << released.text;
     EXPECT_EQ(released.text.find(site_.folder.file("run/hold")) == std::string::npos, is_full)
         << "what goes needs no room: " << released.text;
@@ -439,7 +439,7 @@ TEST_F(DyingDisk, UnmountedDuringARunItContinuesInTheFolderBelow) {
   lose_folder(site_.folder.file("run"));  // and after a boot
   fs::remove(disk_.file("commissioned.toml"));
   fs::remove(disk_.file("commissioned.copy"));
-  const Said refused = ask({});
+  const ProgramOutput refused = ask({});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.text, Names("commissioned.toml [state] folder"));
 }

@@ -18,8 +18,8 @@ class EdgeCommands : public SiteTest {
  protected:
   EdgeCommands() : SiteTest(900) {}
   /// The words, with the configuration before or after them.
-  Said with_config(std::vector<std::string> words) {
-    const Said said = ask(words);
+  ProgramOutput with_config(std::vector<std::string> words) {
+    const ProgramOutput said = ask(words);
     words.insert(words.begin(), {"--config", config_});
     EXPECT_EQ(edge(words).exit_code, said.exit_code);
     return said;

@@ -129,7 +129,7 @@ double earned_eur(const MovingHouse::Habits& habits, bool judges) {
   constexpr int kDays = 6;
   const MovingHouse house(habits, kDayStartS, kDays + 1, 1);
   SiteSettings settings = metered({.import_w_max = 6'000, .export_w_max = 3'000});
-  settings.witness.judges = judges;
+  settings.meter_check.judges = judges;
   Trial trial(settings, house);
   double eur = 0;
   trial.clock.each_second = [&](std::int64_t now_s) {

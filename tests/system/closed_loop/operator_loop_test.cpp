@@ -18,7 +18,7 @@ struct Site : FakePlant {
         {.power_w = power_w, .until_utc_s = static_cast<std::uint32_t>(now_utc_s + seconds)});
   }
 
-  HoldMailbox holds;
+  LatestHold holds;
 };
 
 TEST(LoopWithAHold, AnUnreadableOneIsReportedAndNotFollowed) {

@@ -22,16 +22,16 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class People : public SiteTest {
+class OperatorProcesses : public SiteTest {
  protected:
-  People() : SiteTest(900) {}
+  OperatorProcesses() : SiteTest(900) {}
 };
 
-TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
+TEST_F(OperatorProcesses, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
   start_site(600);
   ChildProcess running = controller();
   ASSERT_NE(await_line(running, "mode=running"), "");
-  const Said hold = ask({"hold", "-1000", "--for", "6h"});
+  const ProgramOutput hold = ask({"hold", "-1000", "--for", "6h"});
   EXPECT_EQ(hold.exit_code, 0);
   EXPECT_THAT(hold.text, AllOf(Names("-1000 W"), HasSubstr(" 2023-03-26T")));
   EXPECT_THAT(await_line(running, "reason=held"), Names("ordered_power_w=-1000 written=1"));
@@ -45,29 +45,29 @@ TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
-TEST_F(People, AHoldOutlastsARestartAndNeedsNoPrice) {
+TEST_F(OperatorProcesses, AHoldOutlastsARestartAndNeedsNoPrice) {
   start_site(600);
   EXPECT_EQ(ask({"hold", "+1500", "--for", "6h"}).exit_code, 0);
   for (int run = 0; run < 2; ++run) {
     if (run == 1) site_.market->signal(SIGKILL);
-    const Said said = ask({"--cycles", "2"});
+    const ProgramOutput said = ask({"--cycles", "2"});
     EXPECT_EQ(said.exit_code, 0);
     EXPECT_THAT(said.text, Names("cycle=1 mode=running reason=held ordered_power_w=1500"));
   }
 }
 
 /// A lock that would block on opening shows the process that tries.
-TEST_F(People, StatusWithoutLockTouchesNone) {
+TEST_F(OperatorProcesses, StatusWithoutLockTouchesNone) {
   start_site(600);
   EXPECT_EQ(ask({"--cycles", "1"}).exit_code, 0);
   ASSERT_EQ(mkfifo(site_.folder.file("state/lock").c_str(), 0600), 0);
-  const Said said = ask({"status", "--no-lock"});
+  const ProgramOutput said = ask({"status", "--no-lock"});
   EXPECT_EQ(said.exit_code, 3) << said.text;
 }
 
 #ifdef BESS_NOTIFY_PROGRAM
 
-class Notify : public People {
+class Notify : public OperatorProcesses {
  protected:
   /// Adds [notify] to the controller's own file, with a mailer that is a script.
   void use_mail() {

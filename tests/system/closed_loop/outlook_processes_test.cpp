@@ -48,7 +48,7 @@ class OutlookSite : public SiteTest {
         << "/price?bzn=BE&start={today}&end={tomorrow}\"\n";
   }
   void run(int cycles) const {
-    const Said said = ask({"--cycles", std::to_string(cycles)});
+    const ProgramOutput said = ask({"--cycles", std::to_string(cycles)});
     EXPECT_EQ(said.exit_code, 0) << said.text;
   }
   [[nodiscard]] std::vector<CsvRow> cycles() const {

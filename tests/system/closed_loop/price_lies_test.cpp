@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "edge/app/program/take_over.h"
+#include "edge/app/program/restored_run.h"
 #include "tests/support/fake_plant.h"
 
 namespace bess {

@@ -115,7 +115,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   EXPECT_THAT(await_line(edge, "utc="), HasSubstr("mode=running")) << "undisturbed";
   edge.signal(SIGKILL);
   edge.wait();
-  const Said successor = bess::edge({"--config", other, "--cycles", "1"});
+  const ProgramOutput successor = bess::edge({"--config", other, "--cycles", "1"});
   EXPECT_THAT(successor.text, HasSubstr("mode=stopping"));
   EXPECT_EQ(successor.exit_code, 0);
 }
@@ -127,7 +127,7 @@ TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
   ASSERT_NE(await_line(edge, "utc="), "");
   const auto first_battery = std::move(site_.battery);
   site_.start_battery();
-  const Said second = bess::edge({"--config", site_.write_config()});
+  const ProgramOutput second = bess::edge({"--config", site_.write_config()});
   EXPECT_EQ(second.exit_code, 1);
   EXPECT_THAT(second.text, Names(site_.folder.file("state") + " " + std::to_string(edge.pid())));
 }
@@ -135,7 +135,7 @@ TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
 TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   start_site();
   const auto run = [&](const std::vector<std::string>& arguments, int expected_exit_code) {
-    const Said said = ask(arguments);
+    const ProgramOutput said = ask(arguments);
     EXPECT_EQ(said.exit_code, expected_exit_code) << said.text;
     return said.text;
   };
@@ -146,7 +146,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
     ChildProcess edge = controller();
     for (int i = 0; i < 15; ++i) await_line(edge, "utc=");
     // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both correct.
-    const Said status = ask({"status"});
+    const ProgramOutput status = ask({"status"});
     EXPECT_LE(status.exit_code, 1) << status.text;
     EXPECT_THAT(status.text, Names(std::to_string(edge.pid()) + " running alphaess block EUR/MWh"));
     EXPECT_THAT(status.text, HasSubstr(" 2023-03-26 0"));
@@ -203,10 +203,10 @@ TEST_F(Processes, SystemdIsNotifiedOfStartCyclesAndStop) {
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   site_.start_both();
   sleep_until_monotonic(site_.anchor_ns());
-  const Said early = edge({"--config", site_.write_config(), "--check"});
+  const ProgramOutput early = edge({"--config", site_.write_config(), "--check"});
   EXPECT_EQ(early.exit_code, 1);  // as the start would
   EXPECT_THAT(early.text, Names("state/commissioned.toml bess-edge commission"));
-  const Said checked = edge({"--config", site_.commission(), "--check"});
+  const ProgramOutput checked = edge({"--config", site_.commission(), "--check"});
   EXPECT_EQ(checked.exit_code, 0) << checked.text;
   EXPECT_THAT(checked.text, Names("-500 1500 127.0.0.1 8000"));
   EXPECT_THAT(checked.text, HasSubstr("0x0880:[1 0 28000 0 32000 2 255 0 300 255 0]"));
@@ -217,7 +217,7 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
 TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
   if (access("/etc/bess/edge.toml", R_OK) == 0) GTEST_SKIP() << "bess-edge is installed here";
   for (const char* command : {"status", "log", "--dry-run"}) {
-    const Said said = edge({command});
+    const ProgramOutput said = edge({command});
     EXPECT_EQ(said.exit_code, 2);
     EXPECT_THAT(said.text, Names("--config /etc/bess/edge.toml"));
   }
@@ -226,13 +226,13 @@ TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
 TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   site_.start_both();
   config_ = site_.write_config();
-  const Said refused = ask({});
+  const ProgramOutput refused = ask({});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.text, Names("bess-edge commission --config --yes"));
-  const Said hesitant = ask({"commission"});
+  const ProgramOutput hesitant = ask({"commission"});
   EXPECT_EQ(hesitant.exit_code, 2);
   EXPECT_THAT(hesitant.text, Names("500 W 30 --yes"));
-  const Said reader = ask({"--dry-run", "--cycles", "1"});
+  const ProgramOutput reader = ask({"--dry-run", "--cycles", "1"});
   EXPECT_EQ(reader.exit_code, 0);
   EXPECT_THAT(reader.text, Names("cycle=1 written=0"));
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
@@ -263,7 +263,7 @@ TEST_F(SlowProcesses, AHandOverKeepsThePowerAndARestartContinues) {
   before.signal(SIGHUP);
   EXPECT_THAT(before.read_all(), HasSubstr("reason=hand_over"));
   EXPECT_EQ(before.wait(), 0);
-  const Said after = ask({"--cycles", "3"});
+  const ProgramOutput after = ask({"--cycles", "3"});
   EXPECT_THAT(after.text, HasSubstr("reason=stop_requested"));
   EXPECT_EQ(after.exit_code, 0);
   int first_cycles = 0;
@@ -283,7 +283,7 @@ TEST_F(SlowProcesses, ReleaseEndsAnOrphanedOrder) {
   ASSERT_THAT(order, ::testing::StartsWith("utc="));
   edge.signal(SIGKILL);
   edge.wait();
-  const Said hesitant = ask({"release"});
+  const ProgramOutput hesitant = ask({"release"});
   EXPECT_THAT(hesitant.text, Names("--yes"));
   EXPECT_EQ(hesitant.exit_code, 2);
   EXPECT_EQ(ask({"release", "--yes"}).exit_code, 0);
@@ -302,7 +302,7 @@ TEST_F(SlowProcesses, ReleaseEndsAnOrphanedOrder) {
 TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
   site_.start_battery({"--capacity-wh", "12000"});
   site_.market_port = 1;
-  const Said said = edge({"--config", site_.write_config()});
+  const ProgramOutput said = edge({"--config", site_.write_config()});
   EXPECT_THAT(said.text, Names("capacity 281 12000"));
   EXPECT_EQ(said.exit_code, 1);
 }
@@ -320,7 +320,7 @@ TEST_F(Processes, ASinglePriceFarFromTheOthersIsNotActedOn) {
   site_.start_battery();
   site_.start_market({}, prices);
   config_ = site_.commission();
-  const Said said = ask({"--cycles", "60"});
+  const ProgramOutput said = ask({"--cycles", "60"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.text, Names("step_held=1 held_centi=900000"));
   int held = 0;
@@ -332,12 +332,14 @@ TEST_F(Processes, ASinglePriceFarFromTheOthersIsNotActedOn) {
   EXPECT_GT(held, 0);
 }
 
-Said self_test(const std::string& config) { return edge({"--config", config, "--self-test"}); }
+ProgramOutput self_test(const std::string& config) {
+  return edge({"--config", config, "--self-test"});
+}
 
 TEST(SelfTest, PassesWhereTheControllerCanWork) {
   SimulatedSite site(60);
   site.start_both();
-  const Said said = self_test(site.write_config());
+  const ProgramOutput said = self_test(site.write_config());
   EXPECT_EQ(said.exit_code, 0) << said.text;
   EXPECT_THAT(said.text, AllOf(ContainsRegex("student +ok +[0-9]+ of"),
                                ContainsRegex("signature +ok"), ContainsRegex("network +ok"),
@@ -346,13 +348,13 @@ TEST(SelfTest, PassesWhereTheControllerCanWork) {
 
 TEST(SelfTest, NamesWhatFails) {
   SimulatedSite site(60);
-  const Said missing = self_test(site.write_config());  // no server listens
+  const ProgramOutput missing = self_test(site.write_config());  // no server listens
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.text, AllOf(ContainsRegex("network +FAIL"),
                                   ContainsRegex("battery +FAIL +127[.]0[.]0[.]1:1 ")));
   EXPECT_THAT(missing.text, ContainsRegex("student +ok"));
   site.start_battery({"--capacity-wh", "20000"});
-  const Said another = self_test(site.write_config());
+  const ProgramOutput another = self_test(site.write_config());
   EXPECT_EQ(another.exit_code, 1);
   EXPECT_THAT(another.text,
               AllOf(ContainsRegex("battery +FAIL"), Names("capacity 20000 capacity_wh")));

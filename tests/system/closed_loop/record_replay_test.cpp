@@ -85,12 +85,12 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
                                std::filesystem::copy_options::overwrite_existing);
     const std::string config = site_.write_config({.battery_keys = battery_keys(), .state = state});
     std::filesystem::remove(site_.folder.file("edge.csv"));
-    const Said driven =
+    const ProgramOutput driven =
         edge(joined({"--config", config, "--cycles", std::to_string(kCycles)}, options));
     EXPECT_EQ(driven.exit_code, 0) << driven.text;
     return decisions(site_.folder.file("edge.csv"));
   }
-  Said check(const std::string& map) const {
+  ProgramOutput check(const std::string& map) const {
     std::vector<std::string> words = {"map", "check", "--against", recording_, "--map", map};
     const char* const variant = GetParam().map.variant;
     if (*variant != '\0') words.insert(words.end(), {"--variant", variant});
@@ -125,11 +125,11 @@ TEST_P(RecordReplay, DecidesTheSameAndTheMapFits) {
   EXPECT_TRUE(std::getline(said, rest) && said.peek() == EOF)
       << "it knew an answer to everything: " << said.str();
 
-  const Said fits = check(shipped_map(GetParam().map.map));
+  const ProgramOutput fits = check(shipped_map(GetParam().map.map));
   EXPECT_EQ(fits.exit_code, 0) << fits.text;
   for (const Mistake& mistake : GetParam().mistakes) {
     SCOPED_TRACE(std::string(mistake.point) + ": " + mistake.keys);
-    const Said wrong = check(map_with(mistake));
+    const ProgramOutput wrong = check(map_with(mistake));
     EXPECT_EQ(wrong.exit_code, 1);
     EXPECT_THAT(wrong.text,
                 ::testing::ContainsRegex(std::string(mistake.point) + " .*" + mistake.finding));
@@ -169,24 +169,26 @@ class RecordCommand : public SiteTest {
     site_.start_battery();
     config_ = site_.write_config();
   }
-  Said record(std::vector<std::string> options) const {
+  ProgramOutput record(std::vector<std::string> options) const {
     options.insert(options.begin(), "record");
     return ask(std::move(options));
   }
-  Said check(const std::string& path) const { return ask({"map", "check", "--against", path}); }
+  ProgramOutput check(const std::string& path) const {
+    return ask({"map", "check", "--against", path});
+  }
 
   std::string path_ = site_.folder.file("device.jsonl");
 };
 
 TEST_F(RecordCommand, ReadsWhatTheMapNamesAndWritesNothing) {
-  const Said recorded = record({"--for", "10m", "--every", "10s", "--out", path_});
+  const ProgramOutput recorded = record({"--for", "10m", "--every", "10s", "--out", path_});
   EXPECT_EQ(recorded.exit_code, 0) << recorded.text;
   EXPECT_THAT(recorded.text, Names("0 127.0.0.1:" + std::to_string(site_.battery_port)));
   const std::string text = text_of_file(path_);
   EXPECT_THAT(text, AllOf(HasSubstr("\"map\":\"alphaess\""), HasSubstr("{\"end\":"),
                           Not(HasSubstr("\"function\":16")), Not(HasSubstr("\"function\":6")),
                           Not(HasSubstr("127.0.0.1"))));
-  const Said fits = check(path_);
+  const ProgramOutput fits = check(path_);
   EXPECT_EQ(fits.exit_code, 0) << fits.text;
   EXPECT_THAT(fits.text, Names("sign scale")) << "which cannot be judged";
 }
@@ -222,7 +224,7 @@ TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
   SimulatedSite::stop(*simulator);
   EXPECT_THAT(text_of_file(path_), HasSubstr("\"transport\":\"rtu\""));
   simulator = serve({"--replay", path_});
-  const Said seen = ask({"--check"});
+  const ProgramOutput seen = ask({"--check"});
   EXPECT_THAT(seen.text, Names("85 43.0 0 W 8000 Wh"));
   EXPECT_EQ(SimulatedSite::stop(*simulator), 0);
 }
@@ -239,7 +241,7 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
   };
   for (const auto& [path, what] :
        {std::pair(cut, "cut.jsonl"), std::pair(damaged, "damaged.jsonl:2")}) {
-    for (const Said& outcome : {check(path), answer_of(replay(path))}) {
+    for (const ProgramOutput& outcome : {check(path), answer_of(replay(path))}) {
       EXPECT_EQ(outcome.exit_code, 1);
       EXPECT_THAT(outcome.text, Names(what));
       EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
@@ -264,9 +266,10 @@ TEST_F(RecordCommand, StepsOfACommissionShowDelayRampAndLag) {
                                         "time_constant_s = 3\nstandby_w = 35\n")});
   const std::string config = site.write_config(
       {.battery_keys = "map = \"" + shipped_map("simulator") + "\"\nstart_timeout_s = 2\n"});
-  const Said driven = edge({"commission", "--config", config, "--record", path_, "--yes"});
+  const ProgramOutput driven = edge({"commission", "--config", config, "--record", path_, "--yes"});
   ASSERT_EQ(driven.exit_code, 0) << driven.text;
-  const Said told = edge({"map", "check", "--against", path_, "--steps", "--config", config});
+  const ProgramOutput told =
+      edge({"map", "check", "--against", path_, "--steps", "--config", config});
   ASSERT_EQ(told.exit_code, 0) << told.text;
   EXPECT_NEAR(number_of("delay_s", told.text), 2, 0.2) << told.text;
   EXPECT_NEAR(number_of("ramp_w_per_s", told.text), 600, 60);

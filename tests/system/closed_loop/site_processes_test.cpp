@@ -84,7 +84,7 @@ TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   commission("[limits]\nfile = \"limit\"\n");
   const auto limit = [&](std::vector<std::string> options) {
     options.insert(options.begin(), "limit");
-    const Said said = ask(options);
+    const ProgramOutput said = ask(options);
     EXPECT_EQ(said.exit_code, 0) << said.text;
     return said.text;
   };
@@ -104,7 +104,7 @@ TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
   usleep(600'000);  // faults begin with simulated time
   for (const auto& [keys, code] : {std::pair{"", 1}, std::pair{"pv_w_max = 2000\n", 0}}) {
     configure(meter_section(keys));
-    const Said said = ask({"--check", "--dry-run"});
+    const ProgramOutput said = ask({"--check", "--dry-run"});
     EXPECT_THAT(said.text, Names("grid house -1500"));
     EXPECT_EQ(has_code(said.text, "pv_w_max"), code == 1);
     EXPECT_EQ(said.exit_code, code) << said.text;
@@ -126,7 +126,7 @@ TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
   start(own_meter("simulator", {"--meter-fault", "wrong-sign"}));
   usleep(600'000);  // faults begin with simulated time
   configure(meter_section(""));
-  const Said liar = ask({"commission", "--yes"});
+  const ProgramOutput liar = ask({"commission", "--yes"});
   EXPECT_THAT(liar.text, Names("meter -100 %"));
   EXPECT_EQ(liar.exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
@@ -140,11 +140,11 @@ TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsReportedAndLost) {
   ChildProcess edge = controller();
   EXPECT_THAT(await_line(edge, " reason=meter_mismatch "), Names("ordered_power_w=0 mode=running"));
   await_line(edge, " cycle=");
-  const Said status = ask({"status"});
+  const ProgramOutput status = ask({"status"});
   EXPECT_THAT(status.text, Names("WARN meter meter_mismatch"));
   EXPECT_EQ(status.exit_code, 1);
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
-  const Said again = ask({"--cycles", "1"});
+  const ProgramOutput again = ask({"--cycles", "1"});
   EXPECT_THAT(again.text, HasSubstr(" reason=meter_mismatch "));  // over a restart
   EXPECT_EQ(again.exit_code, 0);
 }

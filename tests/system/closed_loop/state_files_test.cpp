@@ -99,12 +99,12 @@ class StateFiles : public SiteTest {
     }
   }
   std::string run_controller() {
-    const Said said = ask({"--cycles", "2"});
+    const ProgramOutput said = ask({"--cycles", "2"});
     exit_code_ = said.exit_code;
     return said.text;
   }
   std::string notify() {
-    const Said said = answer_of({BESS_NOTIFY_PROGRAM, "--once", "--config", config_});
+    const ProgramOutput said = answer_of({BESS_NOTIFY_PROGRAM, "--once", "--config", config_});
     exit_code_ = said.exit_code;
     return said.text;
   }
@@ -139,13 +139,13 @@ class StateFiles : public SiteTest {
 
   /// Of a controller that has ended, with its newest control cycle: any program that reports it.
   void expect_status_is_true() {
-    const Said json = ask({"status", "--json"});
+    const ProgramOutput json = ask({"status", "--json"});
     EXPECT_EQ(json.exit_code, 3) << json.text;
     EXPECT_THAT(json.text, HasSubstr(newest_utc_));
-    const Said text = ask({"status"});
+    const ProgramOutput text = ask({"status"});
     EXPECT_EQ(text.exit_code, 3) << text.text;
     EXPECT_THAT(text.text, HasSubstr(newest_local_));
-    const Said metrics = ask({"status", "--prometheus"});
+    const ProgramOutput metrics = ask({"status", "--prometheus"});
     EXPECT_THAT(metrics.text, AllOf(ContainsRegex("bess_tripped[{].*[}] 0\n"),
                                     HasSubstr("bess_last_cycle_timestamp_seconds{")))
         << metrics.text;

@@ -194,7 +194,7 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   meter.meter = MeterSource::kMap;
   meter.connection = {.import_w_max = 4'500, .export_w_max = 2'000, .peak_w_max = 3'500};
   SupervisedSite site(GetParam(), settings, meter);
-  HoldMailbox holds;
+  LatestHold holds;
   site.loop->follow_holds(holds);
   std::mt19937_64 random(4);
   int held = 0, reserved = 0, filled = 0, cuts = 0;

@@ -10,7 +10,7 @@
 
 #include "tests/support/journal_fields.h"
 #include "tests/support/peer_programs.h"
-#include "tests/support/said.h"
+#include "tests/support/program_output.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
 
@@ -103,12 +103,12 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
   void begin_trouble() const { ASSERT_TRUE(site_.battery->signal(SIGUSR1)); }
   void end_trouble() const { ASSERT_TRUE(site_.battery->signal(SIGUSR2)); }
 
-  [[nodiscard]] Said run(std::vector<std::string> words) const {
+  [[nodiscard]] ProgramOutput run(std::vector<std::string> words) const {
     words.insert(words.begin(), edge_program());
     words.insert(words.end(), {"--config", config_});
     return answer_of(std::move(words));
   }
-  [[nodiscard]] Said commission() const { return run({"commission", "--yes"}); }
+  [[nodiscard]] ProgramOutput commission() const { return run({"commission", "--yes"}); }
 
   void start_edge() {
     edge_ = std::make_unique<ChildProcess>(
@@ -185,7 +185,7 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
   void start_and_commission(const Device& device) {
     start(device);
     if (HasFatalFailure()) return;
-    const Said check = commission();
+    const ProgramOutput check = commission();
     ASSERT_EQ(check.exit_code, 0) << check.text;
   }
   /// A healthy device is commissioned and driven for two cycles; then the trouble begins.
@@ -272,7 +272,7 @@ TEST_P(Field, ProtectionLostForGood) {
   EXPECT_EQ(record("power ").back().what, "power 0");
   for (const Cycle& c : all) EXPECT_EQ(c.reason, reason);
   EXPECT_EQ(all.front().mode, reason == "grid_unknown" ? "safe" : "holding");
-  const Said status = run({"status", "--prometheus"});
+  const ProgramOutput status = run({"status", "--prometheus"});
   EXPECT_THAT(status.text, HasSubstr(",reason=\"" + reason + "\""));
   EXPECT_EQ(run({"status"}).exit_code, 1);
   // Retries for 10 s, without parallel attempts.
@@ -298,7 +298,7 @@ TEST_P(Field, SunSpecBootsOrIsAnother) {
   begin_trouble();
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"--check"}, {"--self-test"}, {"commission", "--yes"}, {"release", "--yes"}}) {
-    const Said answer = run(words);
+    const ProgramOutput answer = run(words);
     EXPECT_EQ(answer.exit_code, 1) << words[0] << ": " << answer.text;
     EXPECT_THAT(answer.text, Not(HasSubstr("CHECK failed"))) << words[0];
   }
@@ -321,7 +321,7 @@ TEST_P(Field, SunSpecChainIsAnother) {
   const std::string missing = GetParam().index == 1 ? "124" : "103";
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"--check"}, {"--self-test"}, {"commission", "--yes"}, {"release", "--yes"}, {}}) {
-    const Said answer = run(words);
+    const ProgramOutput answer = run(words);
     const std::string name = words.empty() ? "run" : words[0];
     EXPECT_EQ(answer.exit_code, 1) << name << ": " << answer.text;
     EXPECT_THAT(answer.text, AllOf(HasSubstr(missing), HasSubstr("40000"))) << name;
@@ -402,7 +402,7 @@ TEST_P(Field, VictronSetPointEndsSooner) {
          .keys = victron_keys(),
          .firmware = "{\"timeout_s\": " + timeout_s + "}"});
   if (HasFatalFailure()) return;
-  const Said check = commission();
+  const ProgramOutput check = commission();
   if (check.exit_code != 0) {
     EXPECT_THAT(check.text, AllOf(HasSubstr("refresh_s"), Not(HasSubstr("settle_s"))));
     return;
@@ -513,7 +513,7 @@ TEST_P(Field, SmaObeysTheSetPointAlone) {
          .firmware =
              variant<std::string>(R"({"smart_energy": true})", R"({"smart_energy": true})", "{}")});
   if (HasFatalFailure()) return;
-  const Said check = commission();
+  const ProgramOutput check = commission();
   // Ignored limits are found before the first trade.
   EXPECT_EQ(check.exit_code, variant(0, 1, 0)) << check.text;
   if (check.exit_code != 0) return;

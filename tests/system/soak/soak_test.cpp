@@ -24,12 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr int kWarmCycles = 100;
 
-int wish(const char* name, int otherwise) {
+int setting_of(const char* name, int otherwise) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::atoi(text) : otherwise;
 }
 
-int long_run_cycles() { return std::max(wish("BESS_SOAK_CYCLES", 300), 2 * kWarmCycles); }
+int long_run_cycles() { return std::max(setting_of("BESS_SOAK_CYCLES", 300), 2 * kWarmCycles); }
 
 /// A resolvable name of this machine, so that names are really looked up.
 std::string resolvable_name() {
@@ -99,7 +99,7 @@ class Soak : public ::testing::Test {
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
   void let_ends_die(int cycle, int cycles);
 
-  SimulatedSite site_{wish("BESS_SOAK_SCALE", 2'000)};  // a control cycle is 60 ms
+  SimulatedSite site_{setting_of("BESS_SOAK_SCALE", 2'000)};  // a control cycle is 60 ms
   std::string name_ = resolvable_name();
   DatedCertificate ca_{"DNS:" + name_};
   std::string bundle_ = write_bundle();

@@ -9,7 +9,7 @@
 
 #include "edge/core/control/control_types.h"
 #include "edge/core/control/power_order.h"
-#include "tests/system/trial/battery_nature.h"
+#include "tests/system/trial/healthy_batteries.h"
 #include "tests/system/trial/trial_clock.h"
 #include "tests/system/trial/trial_fault.h"
 

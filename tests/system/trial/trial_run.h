@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "edge/app/program/take_over.h"
+#include "edge/app/program/restored_run.h"
 #include "edge/core/loop/control_loop.h"
 #include "shared/host/minute_file.h"
 #include "tests/system/trial/trial_battery.h"
@@ -72,7 +72,7 @@ class TrialSite {
   TrialClock clock;
   TrialBattery battery;
   TrialPrices prices;
-  HoldMailbox holds;
+  LatestHold holds;
 
   /// Killed between two control cycles, and restarted with the state in its newest record.
   void kill_and_restart();

@@ -158,7 +158,7 @@ TEST(RealBattery, ConservesEnergyAndStaysInside) {
 }
 
 /// The same by small steps of time.
-FollowedPower integrated(const PowerResponse& response, PowerState from, double wanted_w,
+ResponsePower integrated(const PowerResponse& response, PowerState from, double wanted_w,
                          double seconds) {
   constexpr double kStepS = 1e-4;
   double ramp_w = from.ramped_w, lag_w = from.flowing_w, sum = 0;
@@ -182,8 +182,8 @@ TEST(PowerResponse, MeanAndEndAreThoseOfTheCourse) {
         PowerState from{-4'000, -4'000};
         for (const double wanted_w :
              {3'000.0, 3'000.0, -500.0}) {  // from the state that each has reached
-          const FollowedPower exact = integrated(response, from, wanted_w, 30);
-          const FollowedPower closed = followed_power(response, from, wanted_w, 30);
+          const ResponsePower exact = integrated(response, from, wanted_w, 30);
+          const ResponsePower closed = response_power(response, from, wanted_w, 30);
           SCOPED_TRACE(testing::Message() << delay_s << ' ' << ramp_w_per_s << ' ' << tau_s);
           EXPECT_NEAR(closed.mean_w, exact.mean_w, 2);
           EXPECT_NEAR(closed.end.ramped_w, exact.end.ramped_w, 2);
@@ -198,9 +198,9 @@ TEST(PowerResponse, MeanAndEndAreThoseOfTheCourse) {
 
 TEST(PowerResponse, NothingHappensWithinTheDelayOrWithoutAStep) {
   const PowerState at{100, 90};
-  EXPECT_EQ(followed_power({.delay_s = 5}, at, 900, 4).mean_w, 90);
-  EXPECT_EQ(followed_power({.delay_s = 5}, at, 900, 4).end.ramped_w, 100);
-  EXPECT_EQ(followed_power({.time_constant_s = 5}, {700, 700}, 700, 60).mean_w, 700);
+  EXPECT_EQ(response_power({.delay_s = 5}, at, 900, 4).mean_w, 90);
+  EXPECT_EQ(response_power({.delay_s = 5}, at, 900, 4).end.ramped_w, 100);
+  EXPECT_EQ(response_power({.time_constant_s = 5}, {700, 700}, 700, 60).mean_w, 700);
   EXPECT_FALSE(PowerResponse{}.exists());
 }
 

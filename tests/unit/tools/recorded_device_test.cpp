@@ -42,7 +42,7 @@ class RecordedDeviceTest : public ::testing::Test {
                         .address = static_cast<std::uint16_t>(address),
                         .count = static_cast<std::uint16_t>(values.size())};
     std::copy(values.begin(), values.end(), request.registers.begin());
-    told_ = device_->answer(request);
+    reported_ = device_->answer(request);
     return request;
   }
   int value_at(double at_s, int address = 10) {
@@ -53,7 +53,7 @@ class RecordedDeviceTest : public ::testing::Test {
   TemporaryFolder folder_;
   std::string text_;
   int lines_ = 0;
-  std::string told_;
+  std::string reported_;
   std::unique_ptr<RecordedDevice> device_;
 };
 
@@ -62,7 +62,7 @@ TEST_F(RecordedDeviceTest, TheSameRequestsHaveTheSameAnswersALittleEarlierOrLate
   for (const double late_s : {-2.0, 0.0, 3.0}) {
     load();
     for (int i = 0; i < 10; ++i) EXPECT_EQ(value_at(120 * i + late_s), i) << late_s;
-    EXPECT_EQ(told_, "");
+    EXPECT_EQ(reported_, "");
   }
 }
 
@@ -99,7 +99,7 @@ TEST_F(RecordedDeviceTest, AnotherSpanOfRegistersIsPutTogether) {
   load();
   EXPECT_THAT(ask(30, 3, 11, {0, 0}).values(), ElementsAre(2, 3));
   EXPECT_THAT(ask(61, 3, 10, {0, 0, 0}).values(), ElementsAre(11, 12, 3));
-  EXPECT_EQ(told_, "");
+  EXPECT_EQ(reported_, "");
 }
 
 TEST_F(RecordedDeviceTest, WhatWasNeverRecordedIsExceptionTwoAndOneLine) {
@@ -108,12 +108,12 @@ TEST_F(RecordedDeviceTest, WhatWasNeverRecordedIsExceptionTwoAndOneLine) {
   BusExchange answer = ask(0, 3, 11, {0, 0});
   EXPECT_EQ(answer.outcome, BusOutcome::kException);
   EXPECT_EQ(answer.exception, 2);
-  EXPECT_THAT(told_, Names("2 11 unit 1 function 3"));
+  EXPECT_THAT(reported_, Names("2 11 unit 1 function 3"));
   answer = ask(0, 4, 10, {0});
   EXPECT_EQ(answer.exception, 2) << "an input register is another one";
   answer = ask(0, 6, 10, {5});
   EXPECT_EQ(answer.exception, 2);
-  EXPECT_THAT(told_, Names("10 unit 1 function 6"));
+  EXPECT_THAT(reported_, Names("10 unit 1 function 6"));
 }
 
 TEST_F(RecordedDeviceTest, FailuresAndRefusalsComeBackInTheirTime) {
@@ -132,9 +132,9 @@ TEST_F(RecordedDeviceTest, AWriteOfOtherValuesIsReported) {
   record(0, 16, 10, 2, "\"values\":[1,4000]");
   load();
   EXPECT_EQ(ask(0, 16, 10, {1, 4'000}).outcome, BusOutcome::kAnswered);
-  EXPECT_EQ(told_, "");
+  EXPECT_EQ(reported_, "");
   EXPECT_EQ(ask(1, 16, 10, {1, 3'000}).outcome, BusOutcome::kAnswered);
-  EXPECT_THAT(told_, Names("10 unit 1 function 16 [1 3000] 2023-03-26T00:00:00Z [1 4000]"));
+  EXPECT_THAT(reported_, Names("10 unit 1 function 16 [1 3000] 2023-03-26T00:00:00Z [1 4000]"));
 }
 
 TEST_F(RecordedDeviceTest, AnEmptyOrDamagedRecordingIsOneLine) {

@@ -82,7 +82,7 @@ TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
       const double wanted_w = random() % 4 == 0 ? 0 : trend * 4'000.0;
       simulated.start_dispatch(wanted_w, wanted_w > 0 ? 1.0 : 0.1, 300);
       simulated.advance(after_s(120.0 * (step + 1)));
-      const FollowedStep moved = followed_step(battery, soc_frac, power, wanted_w, 1.0 / 30);
+      const ResponseStep moved = response_step(battery, soc_frac, power, wanted_w, 1.0 / 30);
       soc_frac = moved.step.soc_frac;
       power = moved.power;
       modelled_wh.push_back(moved.step.power_w / 30);

@@ -1,4 +1,4 @@
-#include "tools/hil_runner/judge/bench.h"
+#include "tools/hil_runner/judge/judge_context.h"
 
 namespace bess {
 
@@ -25,26 +25,26 @@ bool fits(Expectation::Command wanted, const CommandInForce& c) {
   return false;
 }
 
-void judge_reasons(Bench& bench, const Expectation& expectation, const Window& span) {
+void judge_reasons(JudgeContext& judging, const Expectation& expectation, const Window& span) {
   bool was_seen = expectation.reason.empty();
   std::string last = "nothing logged";
-  for (const CycleRecord& cycle : bench.evidence.log) {
+  for (const CycleRecord& cycle : judging.evidence.log) {
     const std::int64_t ns = cycle.utc_s * kSecondNs;
     if (ns < span.from_ns || ns >= span.to_ns) continue;
     last = reason_name(cycle.reason);
     was_seen = was_seen || last == expectation.reason;
     if (!expectation.no_reason.empty() && last == expectation.no_reason) {
-      bench.find(ns, "another reason than " + expectation.no_reason, last);
+      judging.find(ns, "another reason than " + expectation.no_reason, last);
     }
   }
   if (!was_seen)
-    bench.find(span.from_ns, "the reason " + expectation.reason + " within its span", last);
+    judging.find(span.from_ns, "the reason " + expectation.reason + " within its span", last);
 }
 
 /// Requires at least one plan, and all plans as expected.
-void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
+void judge_plans(JudgeContext& judging, const Expectation& e, const Window& span) {
   bool is_any = false;
-  for (const CycleRecord& cycle : bench.evidence.log) {
+  for (const CycleRecord& cycle : judging.evidence.log) {
     const std::int64_t ns = cycle.utc_s * kSecondNs;
     const OutlookReport& seen = cycle.outlook;
     if (ns < span.from_ns || ns >= span.to_ns || seen.source == OutlookSource::kNone) continue;
@@ -52,56 +52,58 @@ void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
     const int known = seen.known_quarter_hours;
     if (e.outlook == seen.source && known >= e.quarter_hours_min && known <= e.quarter_hours_max)
       continue;
-    bench.find(ns, "the expected outlook",
-               fmt::format("{}, {} quarter-hours", outlook_source_name(seen.source), known));
+    judging.find(ns, "the expected outlook",
+                 fmt::format("{}, {} quarter-hours", outlook_source_name(seen.source), known));
   }
-  if (!is_any) bench.find(span.from_ns, "a planned decision", "none");
+  if (!is_any) judging.find(span.from_ns, "a planned decision", "none");
 }
 
 }  // namespace
 
-void judge_expectations(Bench& bench) {
+void judge_expectations(JudgeContext& judging) {
   constexpr const char* kNames[] = {"anything",        "charging",          "discharging",
                                     "0 W, held",       "no order in force", "an order in force",
                                     "no power ordered"};
   int number = 0;
-  for (const Expectation& expectation : bench.scenario.expectations) {
-    bench.rule = fmt::format("expect {}", ++number);
-    const std::int64_t from_ns = bench.scenario.utc_ns_at(expectation.span.from_min);
+  for (const Expectation& expectation : judging.scenario.expectations) {
+    judging.rule = fmt::format("expect {}", ++number);
+    const std::int64_t from_ns = judging.scenario.utc_ns_at(expectation.span.from_min);
     const std::int64_t to_ns = expectation.span.to_min == kNeverMin
-                                   ? bench.scenario.end_utc_ns()
-                                   : bench.scenario.utc_ns_at(expectation.span.to_min);
+                                   ? judging.scenario.end_utc_ns()
+                                   : judging.scenario.utc_ns_at(expectation.span.to_min);
     for (std::int64_t t = (from_ns + kStepNs - 1) / kStepNs * kStepNs; t < to_ns; t += kStepNs) {
-      const CommandInForce command = bench.commands.at(bench.settled_ns(t));
+      const CommandInForce command = judging.commands.at(judging.settled_ns(t));
       if (!fits(expectation.command, command)) {
-        bench.find(bench.settled_ns(t), kNames[static_cast<int>(expectation.command)],
-                   watts(command));
+        judging.find(judging.settled_ns(t), kNames[static_cast<int>(expectation.command)],
+                     watts(command));
       } else if (command.power_w < expectation.power_w_min ||
                  command.power_w > expectation.power_w_max) {
-        bench.find(bench.settled_ns(t),
-                   fmt::format("{:g} to {:g} W", expectation.power_w_min, expectation.power_w_max),
-                   watts(command));
+        judging.find(
+            judging.settled_ns(t),
+            fmt::format("{:g} to {:g} W", expectation.power_w_min, expectation.power_w_max),
+            watts(command));
       }
     }
-    judge_reasons(bench, expectation, {from_ns, to_ns});
+    judge_reasons(judging, expectation, {from_ns, to_ns});
     if (expectation.outlook != OutlookSource::kNone)
-      judge_plans(bench, expectation, {from_ns, to_ns});
+      judge_plans(judging, expectation, {from_ns, to_ns});
   }
 }
 
-void judge_end(Bench& bench) {
-  bench.rule = "end";
-  if (bench.evidence.edge_exit_code != bench.scenario.exit_code) {
-    bench.find(
-        bench.scenario.end_utc_ns(),
-        fmt::format("exit code {} of bess-edge", bench.scenario.exit_code),
-        fmt::format("{} ({})", bench.evidence.edge_exit_code, bench.evidence.edge_last_line));
+void judge_end(JudgeContext& judging) {
+  judging.rule = "end";
+  if (judging.evidence.edge_exit_code != judging.scenario.exit_code) {
+    judging.find(
+        judging.scenario.end_utc_ns(),
+        fmt::format("exit code {} of bess-edge", judging.scenario.exit_code),
+        fmt::format("{} ({})", judging.evidence.edge_exit_code, judging.evidence.edge_last_line));
   }
-  if (!bench.evidence.is_alive_at_end) {
-    bench.find(bench.scenario.end_utc_ns(), "simulators that run until the end",
-               "one ended earlier");
+  if (!judging.evidence.is_alive_at_end) {
+    judging.find(judging.scenario.end_utc_ns(), "simulators that run until the end",
+                 "one ended earlier");
   }
-  if (bench.evidence.log.empty()) bench.find(bench.scenario.end_utc_ns(), "a decision log", "none");
+  if (judging.evidence.log.empty())
+    judging.find(judging.scenario.end_utc_ns(), "a decision log", "none");
 }
 
 }  // namespace bess

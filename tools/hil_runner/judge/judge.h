@@ -21,7 +21,7 @@ struct Finding {
   std::string seen;
 };
 
-struct Trial {
+struct JudgedRun {
   const Scenario& scenario;
   const MinuteSeries& prices;
   const EdgeConfig& config;
@@ -29,6 +29,6 @@ struct Trial {
 };
 
 /// First finding of each violated rule and expectation, ascending in time.
-std::vector<Finding> judge(const Trial& trial);
+std::vector<Finding> judge(const JudgedRun& judged_run);
 
 }  // namespace bess

@@ -20,11 +20,11 @@ namespace bess {
 namespace {
 
 /// Events that act on other processes, or leave an order that no process ends.
-bool is_for_simulators(ScenarioEvent::Does does) {
-  using enum ScenarioEvent::Does;
-  return does == kBatteryPause || does == kBatteryContinue || does == kEdgeKill ||
-         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver ||
-         does == kStateLost || is_of_people(does);
+bool is_for_simulators(ScenarioEvent::EventKind kind) {
+  using enum ScenarioEvent::EventKind;
+  return kind == kBatteryPause || kind == kBatteryContinue || kind == kEdgeKill ||
+         kind == kEdgePause || kind == kEdgeContinue || kind == kEdgeHandOver ||
+         kind == kStateLost || is_operator_event(kind);
 }
 
 using Registers = std::vector<std::uint16_t>;
@@ -67,9 +67,9 @@ std::string why_not_real(const Scenario& scenario) {
     return fmt::format("only a simulated battery has the fault {}",
                        battery_faults()[static_cast<std::size_t>(kind) - 1].name);
   }
-  const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::does);
+  const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::kind);
   if (event != scenario.events.end()) {
-    return fmt::format("{} is for a simulated battery", event_name(event->does));
+    return fmt::format("{} is for a simulated battery", event_name(event->kind));
   }
   if (scenario.house.exists()) return "it needs a simulated house and its meter";
   if (scenario.battery.sets_state) return "it sets the battery's SoC, size or limits";

@@ -124,7 +124,7 @@ std::string order_text(const CycleRecord& cycle) {
 
 bool Agreement::holds() const {
   if (!not_compared.empty()) return not_compared.starts_with(kTooLate);
-  return std::ranges::none_of(otherwise, [](const OtherOrder& o) { return o.met.empty(); });
+  return std::ranges::none_of(otherwise, [](const OrderDifference& o) { return o.met.empty(); });
 }
 
 std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes) {
@@ -147,7 +147,7 @@ std::string agreement_table(const std::vector<Agreement>& agreements) {
   for (const Agreement& a : agreements) {
     const auto alike = a.cycles - std::ssize(a.otherwise);
     text += fmt::format("{:32} {:6} {:6}  {}\n", a.scenario, a.cycles, alike, a.not_compared);
-    for (const OtherOrder& o : a.otherwise) {
+    for (const OrderDifference& o : a.otherwise) {
       text += fmt::format("  minute {:3}: {}, in wall time {}: {}\n",
                           (o.in_virtual.utc_s - a.start_utc_s) / 60, order_text(o.in_virtual),
                           order_text(o.in_wall), o.met.empty() ? "EQUAL INPUTS" : o.met);
@@ -160,7 +160,7 @@ Json agreement_json(const std::vector<Agreement>& agreements) {
   Json all = Json::list();
   for (const Agreement& a : agreements) {
     Json otherwise = Json::list();
-    for (const OtherOrder& o : a.otherwise) {
+    for (const OrderDifference& o : a.otherwise) {
       otherwise.add(Json::object({{"utc", utc_text(o.in_virtual.utc_s).view()},
                                   {"virtual_w", o.in_virtual.ordered_power_w},
                                   {"wall_w", o.in_wall.ordered_power_w},

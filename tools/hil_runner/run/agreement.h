@@ -19,7 +19,7 @@ namespace bess {
 std::vector<Finding> judge_parts(const Outcome& outcome);
 
 /// A control cycle with different orders in the two times.
-struct OtherOrder {
+struct OrderDifference {
   CycleRecord in_virtual;
   CycleRecord in_wall;
   /// Different input: "link", "price", "words", "meter", "battery", "before"; empty: equal inputs,
@@ -31,7 +31,7 @@ struct Agreement {
   std::string scenario;
   std::int64_t start_utc_s = 0;
   int cycles = 0;  ///< logged in both times
-  std::vector<OtherOrder> otherwise{};
+  std::vector<OrderDifference> otherwise{};
   std::string not_compared{};  ///< reason without a comparison; empty: compared
 
   /// All orders are equal or have different inputs; also true if this machine was too late.

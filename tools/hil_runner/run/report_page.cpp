@@ -81,7 +81,7 @@ void for_each_mark(const Scenario& scenario, const Add& add) {
     add("prices", "prices: missing", gap.from_min, gap.to_min);
   }
   for (const ScenarioEvent& event : scenario.events) {
-    add("event", std::string(event_name(event.does)), event.at_min, event.at_min);
+    add("event", std::string(event_name(event.kind)), event.at_min, event.at_min);
   }
 }
 

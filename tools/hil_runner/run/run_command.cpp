@@ -35,11 +35,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Times : std::uint8_t { kVirtual, kWall, kBoth };
+enum class TimeModes : std::uint8_t { kVirtual, kWall, kBoth };
 
 struct RunOptions {
   std::vector<std::string> places;
-  Times times = Times::kVirtual;
+  TimeModes times = TimeModes::kVirtual;
   int jobs = 8;
   bool list = false;
   bool list_invariants = false;
@@ -150,12 +150,12 @@ class Runner {
       run_on_real_battery();
       return std::move(outcomes_);
     }
-    const Times times = options_.agree ? Times::kBoth : options_.times;
-    if (times != Times::kWall) {
+    const TimeModes times = options_.agree ? TimeModes::kBoth : options_.times;
+    if (times != TimeModes::kWall) {
       for (const Scenario& scenario : scenarios_) take(run_virtually(scenario));
       if (pinned_) pinned_->write();
     }
-    if (times != Times::kVirtual) run_in_wall_time();
+    if (times != TimeModes::kVirtual) run_in_wall_time();
     return std::move(outcomes_);
   }
 
@@ -269,7 +269,7 @@ void list_scenarios(const std::vector<Scenario>& scenarios, bool as_json) {
 }
 
 /// Agreement of the two times, independent of the judge.
-void tell_agreement(const RunOptions& options, const std::vector<Outcome>& outcomes) {
+void report_agreement(const RunOptions& options, const std::vector<Outcome>& outcomes) {
   const std::vector<Agreement> agreements = agreements_of(outcomes);
   if (agreements.empty()) fail("no scenario among these runs in both times");
   if (options.json) {
@@ -294,7 +294,7 @@ void run(const RunOptions& options) {
   Runner runner(options);
   if (options.list) return list_scenarios(runner.scenarios(), options.json);
   const std::vector<Outcome> outcomes = runner.run();
-  if (options.agree) return tell_agreement(options, outcomes);
+  if (options.agree) return report_agreement(options, outcomes);
   const auto failed = std::ranges::count_if(outcomes, [](const Outcome& o) { return o.failed(); });
   const auto late = std::ranges::count_if(outcomes, [](const Outcome& o) { return o.is_late; });
   const auto skipped =
@@ -342,9 +342,9 @@ void add_run_command(ProgramCommand& app) {
       "Exit codes: 0 all passed, 1 a run failed or bad file, 2 bad command line, 3 interrupted.");
   command.option("scenarios", options->places, "Scenario files, or folders with scenarios")
       .value_name("SCENARIO...");
-  command.choice<Times>(
+  command.choice<TimeModes>(
       "--time", options->times,
-      {{"virtual", Times::kVirtual}, {"wall", Times::kWall}, {"both", Times::kBoth}},
+      {{"virtual", TimeModes::kVirtual}, {"wall", TimeModes::kWall}, {"both", TimeModes::kBoth}},
       "virtual (default): computed time, with the edge's code; wall: scaled time, with the real "
       "programs");
   command.option("--jobs", options->jobs, "Parallel scenarios in wall time")

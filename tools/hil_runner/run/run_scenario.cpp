@@ -64,7 +64,7 @@ Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallS
   WorkFolder folder;
   try {
     run_and_judge(outcome.scenario, site, outcome, folder);
-  } catch (const MachineTooLate& late) {
+  } catch (const HostTooSlow& late) {
     outcome.error = late.what();
     outcome.is_late = true;
   } catch (const std::exception& error) {

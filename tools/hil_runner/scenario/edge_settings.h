@@ -30,7 +30,8 @@ inline std::string limit_line(const ScenarioEvent& event, std::int64_t now_utc_s
   const std::string line =
       fmt::format("{} {} {}\n", limit_power_text(event.charge_w),
                   limit_power_text(event.discharge_w), utc_text(now_utc_s + event.for_s).view());
-  return event.does == ScenarioEvent::Does::kLimitTorn ? line.substr(0, line.size() / 2) : line;
+  return event.kind == ScenarioEvent::EventKind::kLimitTorn ? line.substr(0, line.size() / 2)
+                                                            : line;
 }
 
 /// Addresses of battery and market, and the clock; the defaults are for virtual time.

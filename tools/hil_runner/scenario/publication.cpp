@@ -71,9 +71,9 @@ Publication::Publication(const Scenario& scenario, const MinuteSeries& prices)
   if (is_dumb && fault.every == 1) silent_.push_back(fault.span);
   double from_min = -1;
   for (const ScenarioEvent& event : scenario.events) {
-    using enum ScenarioEvent::Does;
-    if (event.does == kMarketPause || event.does == kMarketKill) from_min = event.at_min;
-    if ((event.does == kMarketContinue || event.does == kMarketStart) && from_min >= 0) {
+    using enum ScenarioEvent::EventKind;
+    if (event.kind == kMarketPause || event.kind == kMarketKill) from_min = event.at_min;
+    if ((event.kind == kMarketContinue || event.kind == kMarketStart) && from_min >= 0) {
       silent_.push_back({.from_min = from_min, .to_min = event.at_min});
       from_min = -1;
     }

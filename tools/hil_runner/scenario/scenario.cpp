@@ -80,19 +80,19 @@ void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
 /// Keys of a fault that none of its kinds uses, and contradictions.
 void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
   using enum BatteryFault;
-  struct OfKinds {
+  struct FaultOption {
     const char* key;
     std::vector<BatteryFault> kinds;
     const char* names;
   };
-  const OfKinds keys[] = {{"late_ms", {kLate, kByteGap}, "late, byte-gap"},
-                          {"drip_ms", {kDrip}, "drip"},
-                          {"exception_code", {kException}, "exception"},
-                          {"period_s",
-                           {kOtherMaster, kMasterStops, kMasterMode, kEndsOrders},
-                           "other-master, master-stops, master-mode, ends-orders"}};
+  const FaultOption keys[] = {{"late_ms", {kLate, kByteGap}, "late, byte-gap"},
+                              {"drip_ms", {kDrip}, "drip"},
+                              {"exception_code", {kException}, "exception"},
+                              {"period_s",
+                               {kOtherMaster, kMasterStops, kMasterMode, kEndsOrders},
+                               "other-master, master-stops, master-mode, ends-orders"}};
   const auto& faults = schedule.faults;
-  for (const OfKinds& key : keys) {
+  for (const FaultOption& key : keys) {
     if (table.has(key.key) && std::ranges::find_first_of(faults, key.kinds) == faults.end()) {
       table.fail(key.key, fmt::format("is only for {}", key.names));
     }
@@ -266,9 +266,9 @@ std::string map_path(const std::string& name, const fs::path& folder) {
 }
 
 bool Scenario::has_limits() const {
-  using enum ScenarioEvent::Does;
+  using enum ScenarioEvent::EventKind;
   const auto limits = [](const ScenarioEvent& e) {
-    return e.does == kLimit || e.does == kLimitTorn;
+    return e.kind == kLimit || e.kind == kLimitTorn;
   };
   return !edge_limits.empty() || std::ranges::any_of(events, limits);
 }

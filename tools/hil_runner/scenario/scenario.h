@@ -100,7 +100,7 @@ struct PriceFaultWindow {
 
 /// Event of a process, its clock or its disk, or a command of people and other programs.
 struct ScenarioEvent {
-  enum class Does : std::uint8_t {
+  enum class EventKind : std::uint8_t {
     kEdgeKill,         ///< SIGKILL
     kEdgeStop,         ///< SIGTERM
     kEdgeHandOver,     ///< SIGHUP
@@ -126,7 +126,7 @@ struct ScenarioEvent {
     kDiskFull,    ///< of the edge's state folder
   };
   double at_min = 0;
-  Does does = Does::kEdgeStop;
+  EventKind kind = EventKind::kEdgeStop;
   double seconds = 0;                  ///< of a step of the clock
   std::int32_t power_w = 0;            ///< of a hold
   std::int64_t for_s = 0;              ///< of a hold, or a limit
@@ -135,10 +135,10 @@ struct ScenarioEvent {
   int line = 0;  ///< in its file
 };
 /// Command to the edge, not an event of its process.
-constexpr bool is_of_people(ScenarioEvent::Does does) {
-  return does >= ScenarioEvent::Does::kHold && does <= ScenarioEvent::Does::kClear;
+constexpr bool is_operator_event(ScenarioEvent::EventKind kind) {
+  return kind >= ScenarioEvent::EventKind::kHold && kind <= ScenarioEvent::EventKind::kClear;
 }
-std::string_view event_name(ScenarioEvent::Does does);
+std::string_view event_name(ScenarioEvent::EventKind kind);
 
 struct Expectation {
   enum class Command : std::uint8_t {

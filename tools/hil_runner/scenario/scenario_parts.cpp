@@ -156,18 +156,18 @@ void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
 }
 
 /// Keys for one kind of event only.
-void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
-  using enum ScenarioEvent::Does;
+void read_event_values(TomlTable& table, ScenarioEvent& event) {
+  using enum ScenarioEvent::EventKind;
   constexpr std::int64_t kPowerWMax = 100'000'000;
-  if (event.does == kClockStep) {
+  if (event.kind == kClockStep) {
     table.require("seconds");
     read_decimal(table, "seconds", event.seconds, -kSecondsPerDay, kSecondsPerDay);
     if (table.ok() && event.seconds == 0) table.fail("seconds", "must not be 0");
-  } else if (event.does == kHold) {
+  } else if (event.kind == kHold) {
     table.require("power_w");
     table.integer("power_w", event.power_w, -kPowerWMax, kPowerWMax);
     read_for_min(table, kHoldSecondsMin / 60.0, event.for_s);
-  } else if (event.does == kLimit || event.does == kLimitTorn) {
+  } else if (event.kind == kLimit || event.kind == kLimitTorn) {
     if (!table.has("charge_w") && !table.has("discharge_w")) table.require("charge_w");
     table.integer("charge_w", event.charge_w, 0, kPowerWMax);
     table.integer("discharge_w", event.discharge_w, 0, kPowerWMax);
@@ -177,8 +177,8 @@ void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
 
 /// Refuses events without effect, such as an end without a begin.
 void check_order_of_events(TomlTable& table, const Scenario& scenario) {
-  using enum ScenarioEvent::Does;
-  enum Thing : std::uint8_t {
+  using enum ScenarioEvent::EventKind;
+  enum ToggledState : std::uint8_t {
     kEdgeRuns,
     kEdgeStands,
     kBatteryStands,
@@ -187,62 +187,63 @@ void check_order_of_events(TomlTable& table, const Scenario& scenario) {
     kClockIsLost,
     kIsHeld,
     kIsLimited,
-    kThingCount
+    kToggledStateCount
   };
-  struct Turn {
-    ScenarioEvent::Does does;
-    Thing thing;
-    bool turns_to;
-    const char* in_vain;  ///< reason without effect; null: allowed
+  struct StateChange {
+    ScenarioEvent::EventKind kind;
+    ToggledState state;
+    bool becomes;
+    const char* already;  ///< reason without effect; null: allowed
   };
-  constexpr Turn kTurns[] = {{kEdgeKill, kEdgeRuns, false, "the edge does not run"},
-                             {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
-                             {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
-                             {kEdgeStart, kEdgeRuns, true, "the edge runs"},
-                             {kStateLost, kEdgeRuns, true, "the edge runs and uses its state"},
-                             {kEdgePause, kEdgeStands, true, "the edge is paused"},
-                             {kEdgeContinue, kEdgeStands, false, "the edge is not paused"},
-                             {kBatteryPause, kBatteryStands, true, "the battery is paused"},
-                             {kBatteryContinue, kBatteryStands, false, "the battery is not paused"},
-                             {kMarketPause, kMarketStands, true, "the market is paused"},
-                             {kMarketContinue, kMarketStands, false, "the market is not paused"},
-                             {kMarketKill, kMarketIsDead, true, "the market does not run"},
-                             {kMarketStart, kMarketIsDead, false, "the market runs"},
-                             {kClockUnsynchronised, kClockIsLost, true, "the clock is lost"},
-                             {kClockSynchronised, kClockIsLost, false, "the clock is not lost"},
-                             {kHold, kIsHeld, true, nullptr},
-                             {kHoldRelease, kIsHeld, false, "no hold is active"},
-                             {kLimit, kIsLimited, true, nullptr},
-                             {kLimitTorn, kIsLimited, true, nullptr},
-                             {kLimitClear, kIsLimited, false, "no limit is active"}};
-  bool is[kThingCount] = {};
+  constexpr StateChange kStateChanges[] = {
+      {kEdgeKill, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
+      {kEdgeStart, kEdgeRuns, true, "the edge runs"},
+      {kStateLost, kEdgeRuns, true, "the edge runs and uses its state"},
+      {kEdgePause, kEdgeStands, true, "the edge is paused"},
+      {kEdgeContinue, kEdgeStands, false, "the edge is not paused"},
+      {kBatteryPause, kBatteryStands, true, "the battery is paused"},
+      {kBatteryContinue, kBatteryStands, false, "the battery is not paused"},
+      {kMarketPause, kMarketStands, true, "the market is paused"},
+      {kMarketContinue, kMarketStands, false, "the market is not paused"},
+      {kMarketKill, kMarketIsDead, true, "the market does not run"},
+      {kMarketStart, kMarketIsDead, false, "the market runs"},
+      {kClockUnsynchronised, kClockIsLost, true, "the clock is lost"},
+      {kClockSynchronised, kClockIsLost, false, "the clock is not lost"},
+      {kHold, kIsHeld, true, nullptr},
+      {kHoldRelease, kIsHeld, false, "no hold is active"},
+      {kLimit, kIsLimited, true, nullptr},
+      {kLimitTorn, kIsLimited, true, nullptr},
+      {kLimitClear, kIsLimited, false, "no limit is active"}};
+  bool is[kToggledStateCount] = {};
   is[kEdgeRuns] = true;
   for (const ScenarioEvent& event : scenario.events) {
-    const auto* const turn = std::ranges::find(kTurns, event.does, &Turn::does);
-    if (turn == std::end(kTurns)) continue;
-    if (is[turn->thing] == turn->turns_to && turn->in_vain != nullptr && table.ok()) {
+    const auto* const change = std::ranges::find(kStateChanges, event.kind, &StateChange::kind);
+    if (change == std::end(kStateChanges)) continue;
+    if (is[change->state] == change->becomes && change->already != nullptr && table.ok()) {
       table.error() =
           fmt::format("{}:{}: [[event]] {} at minute {:g} has no effect: {}", table.file(),
-                      event.line, event_name(event.does), event.at_min, turn->in_vain);
+                      event.line, event_name(event.kind), event.at_min, change->already);
     }
-    if (event.does != kStateLost) is[turn->thing] = turn->turns_to;
+    if (event.kind != kStateLost) is[change->state] = change->becomes;
   }
 }
 
 /// Events for one of the two times only, and values that the edge refuses.
 void check_times(TomlTable& table, const Scenario& scenario) {
-  using enum ScenarioEvent::Does;
+  using enum ScenarioEvent::EventKind;
   for (const ScenarioEvent& event : scenario.events) {
     if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
       table.fail("event", fmt::format("hold: {} W exceeds the {:g} W of the battery", event.power_w,
                                       scenario.battery.physics.power_w_max));
     }
-    const bool of_clock = event.does == kClockStep || event.does == kClockUnsynchronised ||
-                          event.does == kClockSynchronised;
+    const bool of_clock = event.kind == kClockStep || event.kind == kClockUnsynchronised ||
+                          event.kind == kClockSynchronised;
     if (of_clock && scenario.runs_wall) {
       table.fail("time", "must be \"virtual\": wall time cannot step the clock");
     }
-    if (event.does == kDiskFull && scenario.runs_virtual) {
+    if (event.kind == kDiskFull && scenario.runs_virtual) {
       table.fail("time", "must be \"wall\": virtual time has no disk");
     }
   }
@@ -250,8 +251,8 @@ void check_times(TomlTable& table, const Scenario& scenario) {
 
 }  // namespace
 
-std::string_view event_name(ScenarioEvent::Does does) {
-  return kEventNames[static_cast<std::size_t>(does)];
+std::string_view event_name(ScenarioEvent::EventKind kind) {
+  return kEventNames[static_cast<std::size_t>(kind)];
 }
 
 void read_event(TomlTable table, Scenario& scenario) {
@@ -263,15 +264,15 @@ void read_event(TomlTable table, Scenario& scenario) {
   }
   if (table.value() != nullptr) event.line = table.value()->line;
   table.require("does");
-  const std::string* const does = table.text("does");
-  const auto* const found = std::ranges::find(kEventNames, does == nullptr ? "" : *does);
+  const std::string* const kind = table.text("does");
+  const auto* const found = std::ranges::find(kEventNames, kind == nullptr ? "" : *kind);
   if (table.ok() && found == std::end(kEventNames)) {
     std::string names;
     for (const std::string_view name : kEventNames) names += ' ' + std::string(name);
     return table.fail("does", "must be one of:" + names);
   }
-  event.does = static_cast<ScenarioEvent::Does>(found - std::begin(kEventNames));
-  read_what_is_said(table, event);
+  event.kind = static_cast<ScenarioEvent::EventKind>(found - std::begin(kEventNames));
+  read_event_values(table, event);
   table.finish();
   scenario.events.push_back(event);
 }

@@ -164,11 +164,11 @@ void VirtualBus::answer(const Pending& pending) {
   }
   const Bytes bytes = device_.answer(pending.request, pending.fault, due_utc_ns);
   if (!is_heard) return;
-  if (witness_ && pending.fault == BatteryFault::kNone) {
+  if (listener_ && pending.fault == BatteryFault::kNone) {
     const auto header = static_cast<std::size_t>(pending.request.header);
     const auto size = static_cast<std::size_t>(pending.request.size);
-    witness_({pending.request.bytes + header, size - header}, std::span(bytes).subspan(header),
-             due_utc_ns);
+    listener_({pending.request.bytes + header, size - header}, std::span(bytes).subspan(header),
+              due_utc_ns);
   }
   if (pending.fault == BatteryFault::kDrip) {
     return put(bytes, pending.due_ns, window_of(pending).drip_ms * kMillisecondNs);
@@ -188,7 +188,7 @@ void VirtualBus::put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap
     arrives_ns += gap_ns;
   }
   // A later answer may overtake dripping bytes.
-  if (last_ns > first_ns) std::ranges::stable_sort(input_, {}, &ByteOnTheWay::arrives_ns);
+  if (last_ns > first_ns) std::ranges::stable_sort(input_, {}, &ByteInTransit::arrives_ns);
 }
 
 /// Transmission time on a serial line, 10 bits per byte.

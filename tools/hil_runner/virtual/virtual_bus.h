@@ -55,12 +55,13 @@ class VirtualBus {
   [[nodiscard]] std::uint64_t sent() const { return sent_.value(); }
 
   /// Called with each request and its correct answer, both from the unit byte on.
-  using Witness = std::function<void(std::span<const std::uint8_t> request,
-                                     std::span<const std::uint8_t> answer, std::int64_t utc_ns)>;
-  void show_to(Witness witness) { witness_ = std::move(witness); }
+  using WireListener =
+      std::function<void(std::span<const std::uint8_t> request,
+                         std::span<const std::uint8_t> answer, std::int64_t utc_ns)>;
+  void show_to(WireListener listener) { listener_ = std::move(listener); }
 
  private:
-  struct FreeContext {
+  struct ContextDeleter {
     void operator()(modbus_t* context) const { modbus_free(context); }
   };
   /// Request in processing.
@@ -71,7 +72,7 @@ class VirtualBus {
     std::size_t window;       ///< index of the fault window
     std::int64_t connection;  ///< of the request; a closed one gets no answer
   };
-  struct ByteOnTheWay {
+  struct ByteInTransit {
     std::int64_t arrives_ns;
     std::uint8_t byte;
   };
@@ -84,11 +85,11 @@ class VirtualBus {
   VirtualBusSettings settings_;
   VirtualTime& time_;
   std::int32_t baud_;
-  std::unique_ptr<modbus_t, FreeContext> context_;
+  std::unique_ptr<modbus_t, ContextDeleter> context_;
   FaultyDevice device_;
   std::deque<Pending> pending_;
-  std::deque<ByteOnTheWay> input_;
-  Witness witness_;
+  std::deque<ByteInTransit> input_;
+  WireListener listener_;
   Signature sent_;
   std::int64_t connection_ = 0;
   bool is_cut_ = false;        ///< by the device

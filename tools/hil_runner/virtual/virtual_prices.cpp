@@ -16,29 +16,29 @@ VirtualOutlook::VirtualOutlook(const Scenario& scenario, const OutlookSettings& 
       time_(time),
       auction_(day_ahead_rows(scenario), scenario.day_ahead.value_or(AuctionSettings{})) {}
 
-OutlookBoard* VirtualOutlook::start(std::int32_t level_centi) {
+OutlookExchange* VirtualOutlook::start(std::int32_t level_centi) {
   process_ = std::make_unique<Process>(model_);
-  process_->inquiry.book = kept_;
+  process_->fetch_state.store = kept_;
   const std::int64_t now = edge_utc_s();
   fetch(now);
   process_->planner.plan_usual_day(now, level_centi);
   plan((now + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep, level_centi);
-  return &process_->board;
+  return &process_->exchange;
 }
 
 void VirtualOutlook::cycle_done(const CycleRecord& record) {
   const std::int64_t now = edge_utc_s();
-  if (process_->inquiry.is_due(settings_, now)) fetch(now);
+  if (process_->fetch_state.is_due(settings_, now)) fetch(now);
   plan(record.utc_s + kSecondsPerStep, record.price_level.centi_eur_per_mwh());
 }
 
 void VirtualOutlook::fetch(std::int64_t now_utc_s) {
-  DayAheadInquiry& inquiry = process_->inquiry;
-  if (inquiry.take(ask(now_utc_s), settings_, now_utc_s)) kept_ = inquiry.book;
+  DayAheadFetchState& fetch_state = process_->fetch_state;
+  if (fetch_state.take(ask(now_utc_s), settings_, now_utc_s)) kept_ = fetch_state.store;
 }
 
 /// The server uses the true time; the requested days depend on the edge's clock.
-DayAheadAsked VirtualOutlook::ask(std::int64_t now_utc_s) const {
+DayAheadReply VirtualOutlook::ask(std::int64_t now_utc_s) const {
   if (time_.market() == VirtualTime::Market::kPaused) return {.status = Status::kTimeout};
   if (time_.market() == VirtualTime::Market::kDead) return {.status = Status::kNotConnected};
   const OutlookDays days = outlook_days_around(now_utc_s);
@@ -53,8 +53,8 @@ DayAheadAsked VirtualOutlook::ask(std::int64_t now_utc_s) const {
 
 void VirtualOutlook::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
   process_->planner.plan(
-      {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->inquiry.status},
-      process_->inquiry.book.days_at(tick_utc_s));
+      {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->fetch_state.status},
+      process_->fetch_state.store.days_at(tick_utc_s));
 }
 
 std::int64_t VirtualOutlook::edge_utc_s() const {

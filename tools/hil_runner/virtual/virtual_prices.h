@@ -30,7 +30,7 @@ class VirtualOutlook {
                  const OutlookModel& model, VirtualTime& time);
 
   /// Start of an edge: stored prices, and one request.
-  OutlookBoard* start(std::int32_t level_centi);
+  OutlookExchange* start(std::int32_t level_centi);
   /// After a control cycle: requests if due, and plans for the next tick.
   void cycle_done(const CycleRecord& record);
   /// Loses the stored prices.
@@ -39,13 +39,13 @@ class VirtualOutlook {
  private:
   /// State that ends with a process.
   struct Process {
-    explicit Process(const OutlookModel& model) : planner(model, board) {}
-    OutlookBoard board;
+    explicit Process(const OutlookModel& model) : planner(model, exchange) {}
+    OutlookExchange exchange;
     OutlookPlanner planner;
-    DayAheadInquiry inquiry;
+    DayAheadFetchState fetch_state;
   };
   void fetch(std::int64_t now_utc_s);
-  [[nodiscard]] DayAheadAsked ask(std::int64_t now_utc_s) const;
+  [[nodiscard]] DayAheadReply ask(std::int64_t now_utc_s) const;
   void plan(std::int64_t tick_utc_s, std::int32_t level_centi);
   [[nodiscard]] std::int64_t edge_utc_s() const;
 
@@ -53,7 +53,7 @@ class VirtualOutlook {
   const OutlookModel& model_;
   VirtualTime& time_;
   AuctionView auction_;
-  DayAheadBook kept_;  ///< file of the edge
+  DayAheadStore kept_;  ///< file of the edge
   std::unique_ptr<Process> process_;
 };
 

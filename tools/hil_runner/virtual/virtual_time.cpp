@@ -27,7 +27,7 @@ VirtualTime::VirtualTime(const Scenario& scenario)
   constexpr std::int64_t kLeadNs = 60 * kNanosecondsPerSecond;
   now_ns_ = base_ns_ = kLeadNs;  // not 0, which often means "never"
   start_utc_ns_ -= 2 * kLeadNs;
-  const ScenarioEvent end{.at_min = scenario.minutes, .does = ScenarioEvent::Does::kEdgeStop};
+  const ScenarioEvent end{.at_min = scenario.minutes, .kind = ScenarioEvent::EventKind::kEdgeStop};
   events_.push_back(end);
   std::ranges::stable_sort(events_, {}, &ScenarioEvent::at_min);
   next_event_ns_ = time_of(events_[0]);
@@ -61,8 +61,8 @@ void VirtualTime::advance_to(std::int64_t monotonic_ns) {
 }
 
 void VirtualTime::apply(const ScenarioEvent& event) {
-  using enum ScenarioEvent::Does;
-  switch (event.does) {
+  using enum ScenarioEvent::EventKind;
+  switch (event.kind) {
     case kEdgeKill:
       if (edge_runs_) throw EdgeKilled{};
       break;
@@ -77,11 +77,11 @@ void VirtualTime::apply(const ScenarioEvent& event) {
       break;
     case kEdgePause:
     case kEdgeContinue:
-      edge_is_paused_ = event.does == kEdgePause;
+      edge_is_paused_ = event.kind == kEdgePause;
       break;
     case kBatteryPause:
     case kBatteryContinue:
-      battery_is_paused_ = event.does == kBatteryPause;
+      battery_is_paused_ = event.kind == kBatteryPause;
       break;
     case kMarketPause:
       market_ = Market::kPaused;
@@ -98,7 +98,7 @@ void VirtualTime::apply(const ScenarioEvent& event) {
       break;
     case kClockUnsynchronised:
     case kClockSynchronised:
-      synchronised_ = event.does == kClockSynchronised;
+      synchronised_ = event.kind == kClockSynchronised;
       break;
     case kHold:
     case kHoldRelease:
@@ -107,7 +107,7 @@ void VirtualTime::apply(const ScenarioEvent& event) {
     case kLimitTorn:
     case kClear:
     case kStateLost:
-      on_people_(event);
+      on_operator_(event);
       break;
     case kDiskFull:
       break;  // refused by the reader: no disk in virtual time

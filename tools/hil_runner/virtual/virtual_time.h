@@ -36,8 +36,8 @@ class VirtualTime {
   [[nodiscard]] bool is_synchronised() const { return synchronised_; }
   [[nodiscard]] bool battery_is_paused() const { return battery_is_paused_; }
   /// Listener for commands of people or other programs.
-  void on_people(std::function<void(const ScenarioEvent&)> listener) {
-    on_people_ = std::move(listener);
+  void on_operator(std::function<void(const ScenarioEvent&)> listener) {
+    on_operator_ = std::move(listener);
   }
   enum class Market : std::uint8_t { kServes, kPaused, kDead };
   [[nodiscard]] Market market() const { return market_; }
@@ -69,7 +69,7 @@ class VirtualTime {
   bool synchronised_ = true;
   bool battery_is_paused_ = false;
   Market market_ = Market::kServes;
-  std::function<void(const ScenarioEvent&)> on_people_ = [](const ScenarioEvent&) {};
+  std::function<void(const ScenarioEvent&)> on_operator_ = [](const ScenarioEvent&) {};
 };
 
 }  // namespace bess

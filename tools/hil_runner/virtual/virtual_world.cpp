@@ -15,14 +15,14 @@
 #include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/virtual/virtual_bus.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
-#include "tools/hil_runner/witness/maker_table.h"
+#include "tools/hil_runner/witness/manufacturer_table.h"
 
 namespace bess {
 
 void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s,
                           const std::optional<Trip>& trip) {
-  using enum ScenarioEvent::Does;
-  switch (event.does) {
+  using enum ScenarioEvent::EventKind;
+  switch (event.kind) {
     case kHold:
       return holds_.publish({.power_w = event.power_w,
                              .until_utc_s = static_cast<std::uint32_t>(now_utc_s + event.for_s)});
@@ -54,22 +54,22 @@ Status VirtualOperator::read(OutsideLimit& limit, bool& is_set) const {
 namespace {
 
 /// Restores the signal mask, because EdgeClock blocks signals that end a program.
-class KeptSignalMask {
+class SavedSignalMask {
  public:
-  KeptSignalMask() { pthread_sigmask(SIG_SETMASK, nullptr, &mask_); }
-  KeptSignalMask(const KeptSignalMask&) = delete;
-  KeptSignalMask& operator=(const KeptSignalMask&) = delete;
-  ~KeptSignalMask() { pthread_sigmask(SIG_SETMASK, &mask_, nullptr); }
+  SavedSignalMask() { pthread_sigmask(SIG_SETMASK, nullptr, &mask_); }
+  SavedSignalMask(const SavedSignalMask&) = delete;
+  SavedSignalMask& operator=(const SavedSignalMask&) = delete;
+  ~SavedSignalMask() { pthread_sigmask(SIG_SETMASK, &mask_, nullptr); }
 
  private:
   sigset_t mask_{};
 };
 
 /// Decoder of the wire with the manufacturer's table only.
-class Witness {
+class WireDecoder {
  public:
-  Witness(const RegisterMap& map, std::vector<WireReading>& readings)
-      : table_(maker_table(map.name.view(), map.variant.view())), readings_(readings) {
+  WireDecoder(const RegisterMap& map, std::vector<WireReading>& readings)
+      : table_(manufacturer_table(map.name.view(), map.variant.view())), readings_(readings) {
     if (table_ == nullptr) {
       fail("witness: no manufacturer table for the map \"{}\"", map.name.view());
     }
@@ -86,7 +86,7 @@ class Witness {
   }
 
  private:
-  const MakerTable* table_;
+  const ManufacturerTable* table_;
   WireMemory wire_;
   std::vector<WireReading>& readings_;
 };
@@ -102,8 +102,8 @@ int run_edge(const EdgeConfig& config, VirtualWorld& world) {
 }  // namespace
 
 Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
-                     Weather weather) {
-  const KeptSignalMask mask;
+                     PowerDerating derating) {
+  const SavedSignalMask mask;
   VirtualTime time(scenario);
   SimulatedBattery battery(scenario.battery.physics, scenario.battery.soc_frac, time.utc_ns());
   std::optional<MeteredHouse> house;
@@ -128,34 +128,34 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .from_s = 60 * scenario.price_fault.span.from_min,
                           .to_s = 60 * scenario.price_fault.span.to_min});
   Evidence evidence;
-  std::optional<Witness> witness;
+  std::optional<WireDecoder> decoder;
   if (scenario.witness) {
-    witness.emplace(config.battery.map, evidence.wire);
+    decoder.emplace(config.battery.map, evidence.wire);
     bus.show_to([&](auto request, auto answer, std::int64_t utc_ns) {
-      witness->see(request, answer, utc_ns);
+      decoder->see(request, answer, utc_ns);
     });
   }
   EdgeState state;
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
-  VirtualOperator people;
+  VirtualOperator site_operator;
   std::optional<VirtualOutlook> outlook;
   if (const OutlookModel* const model = student_outlook())
     outlook.emplace(scenario, config.outlook, *model, time);
-  time.on_people([&](const ScenarioEvent& event) {
-    if (event.does == ScenarioEvent::Does::kStateLost) {
+  time.on_operator([&](const ScenarioEvent& event) {
+    if (event.kind == ScenarioEvent::EventKind::kStateLost) {
       if (outlook) outlook->lose();
       return state.lose();
     }
-    people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
+    site_operator.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
   });
   do {
     try {
       VirtualWorld world(config, VirtualPrices(config.price.feed, market, faults, scenario, time),
                          {.time = time,
                           .physics = battery,
-                          .weather = weather,
+                          .derating = derating,
                           .state = state,
-                          .people = people,
+                          .site_operator = site_operator,
                           .outlook = outlook ? &*outlook : nullptr});
       evidence.edge_exit_code = run_edge(config, world);
     } catch (const EdgeKilled&) {
@@ -192,28 +192,29 @@ std::optional<Trip> EdgeState::trip() const {
 }
 
 VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
-                           const Surroundings& around)
-    : around_(around),
+                           const VirtualEnvironment& environment)
+    : environment_(environment),
       price_(config.price),
       clock_(config.clock),
       battery_(config.battery.link, config.battery.map, config.clock),
       meter_(config.site.link, config.site.map, config.clock),
       prices_(prices) {}
 
-Recall VirtualWorld::recall() const {
-  Recall recalled;
-  static_cast<void>(around_.state.read_back(0, recalled.before));
-  const std::optional<Trip> trip = around_.state.trip();
-  if (trip && !around_.people.is_cleared(trip->utc_s)) recalled.trip = trip;
-  if (!around_.state.is_lost()) return recalled;
-  recalled.unknown = "the scenario has deleted it";
-  recalled.trip = trip_without_state(recalled, around_.time.edge_utc_ns() / kNanosecondsPerSecond);
-  return recalled;
+RestoredState VirtualWorld::restore_state() const {
+  RestoredState restored;
+  static_cast<void>(environment_.state.read_back(0, restored.before));
+  const std::optional<Trip> trip = environment_.state.trip();
+  if (trip && !environment_.site_operator.is_cleared(trip->utc_s)) restored.trip = trip;
+  if (!environment_.state.is_lost()) return restored;
+  restored.unknown = "the scenario has deleted it";
+  restored.trip =
+      trip_without_state(restored, environment_.time.edge_utc_ns() / kNanosecondsPerSecond);
+  return restored;
 }
 
 PublishedHistory VirtualWorld::find_history() {
   const auto history = std::make_unique<PriceHistory>(
-      price_.history.hours, around_.time.edge_utc_ns() / kNanosecondsPerSecond);
+      price_.history.hours, environment_.time.edge_utc_ns() / kNanosecondsPerSecond);
   const Status status = fetch_history(prices_, price_.feed, price_.history, clock_, *history);
   return {.is_done = true,
           .hours = history->hours_covered(),
@@ -223,9 +224,9 @@ PublishedHistory VirtualWorld::find_history() {
 }
 
 void VirtualWorld::cycle_done(const CycleRecord&) {
-  if (around_.weather == nullptr) return;
-  const std::int64_t now_utc_s = around_.time.utc_ns() / kNanosecondsPerSecond;
-  around_.physics.set_derating(around_.weather(now_utc_s));
+  if (environment_.derating == nullptr) return;
+  const std::int64_t now_utc_s = environment_.time.utc_ns() / kNanosecondsPerSecond;
+  environment_.physics.set_derating(environment_.derating(now_utc_s));
 }
 
 }  // namespace bess

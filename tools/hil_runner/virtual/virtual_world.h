@@ -10,7 +10,7 @@
 
 #include "edge/app/program/controller.h"
 #include "edge/app/settings/edge_config.h"
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/site/connection_guard.h"
 #include "edge/device/battery/modbus_battery.h"
@@ -30,13 +30,13 @@ class VirtualOperator {
   /// `now_utc_s` by the edge's clock; `trip` is the one in force, if any.
   void act(const ScenarioEvent& event, std::int64_t now_utc_s, const std::optional<Trip>& trip);
 
-  [[nodiscard]] const HoldMailbox& holds() const { return holds_; }
+  [[nodiscard]] const LatestHold& holds() const { return holds_; }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const { return cleared_.has(trip_utc_s); }
   /// Limit in the limit file.
   Status read(OutsideLimit& limit, bool& is_set) const;
 
  private:
-  HoldMailbox holds_;
+  LatestHold holds_;
   ClearedTrips cleared_;
   std::string limit_;  ///< text of the file; empty: no file
 };
@@ -45,10 +45,10 @@ class VirtualOperator {
 // market, at the speed of the machine; byte-identical for every run.
 
 /// Share of the battery's power available at an instant, by temperature; null: all.
-using Weather = double (*)(std::int64_t utc_s);
+using PowerDerating = double (*)(std::int64_t utc_s);
 
 Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
-                     Weather weather = nullptr);
+                     PowerDerating derating = nullptr);
 
 /// Persistent state of bess-edge: its ring.
 class EdgeState {
@@ -84,42 +84,43 @@ class VirtualWorld {
   };
 
   /// Parts that continue without the edge. All must outlive this object.
-  struct Surroundings {
+  struct VirtualEnvironment {
     VirtualTime& time;
     SimulatedBattery& physics;
-    Weather weather;
+    PowerDerating derating;
     EdgeState& state;
-    VirtualOperator& people;
+    VirtualOperator& site_operator;
     VirtualOutlook* outlook = nullptr;  ///< null unless the student's context is the outlook
   };
-  VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
+  VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
+               const VirtualEnvironment& environment);
 
   EdgeClock& clock() { return clock_; }
   ModbusBattery& battery() { return battery_; }
   VirtualPrices& prices() { return prices_; }
   ModbusMeter& meter() { return meter_; }
-  VirtualOperator& limits() { return around_.people; }
+  VirtualOperator& limits() { return environment_.site_operator; }
 
   static bool open() { return true; }
-  [[nodiscard]] Recall recall() const;
+  [[nodiscard]] RestoredState restore_state() const;
   bool read_back(std::int64_t records, CycleRecord& record) const {
-    return around_.state.read_back(records, record);
+    return environment_.state.read_back(records, record);
   }
   void keep(const CycleRecord& record) {
-    around_.state.add(record);
-    if (around_.outlook != nullptr) around_.outlook->cycle_done(record);
+    environment_.state.add(record);
+    if (environment_.outlook != nullptr) environment_.outlook->cycle_done(record);
   }
-  Status greet_prices() {
+  Status check_price_server() {
     PriceRow row;
     return prices_.fetch_once(row);
   }
   PublishedHistory find_history();
-  const HoldMailbox& listen() { return around_.people.holds(); }
-  OutlookBoard* look_out(std::int32_t level_centi) {
-    return around_.outlook == nullptr ? nullptr : around_.outlook->start(level_centi);
+  const LatestHold& listen() { return environment_.site_operator.holds(); }
+  OutlookExchange* await_outlook(std::int32_t level_centi) {
+    return environment_.outlook == nullptr ? nullptr : environment_.outlook->start(level_centi);
   }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
-    return around_.people.is_cleared(trip_utc_s);
+    return environment_.site_operator.is_cleared(trip_utc_s);
   }
 
   static void needs_time(std::int64_t) {}
@@ -132,7 +133,7 @@ class VirtualWorld {
   static void has_stopped(const CycleRecord&, bool, bool) {}
 
  private:
-  Surroundings around_;
+  VirtualEnvironment environment_;
   const PriceConfig& price_;
   EdgeClock clock_;
   ModbusBattery battery_;

@@ -138,23 +138,23 @@ std::vector<std::string> market_options(const Scenario& scenario, const std::str
   return options.take();
 }
 
-void RealVisit::heed_stop() const {
+void RealDeviceRun::check_stop_request() const {
   if (key_.is_pressed()) request_stop();
   throw_if_stopped();
 }
 
-void RealVisit::commission() {
+void RealDeviceRun::commission() {
   constexpr useconds_t kLookUs = 50'000;
   edge_.start_command({"commission", "--yes"});
   while (edge_.runs()) {
-    heed_stop();
+    check_stop_request();
     usleep(kLookUs);
   }
   if (edge_.wait() != 0) fail("{}", edge_.last_line());
 }
 
-void RealVisit::look() {
-  heed_stop();
+void RealDeviceRun::look() {
+  check_stop_request();
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
   CycleRecord cycle;
   if (now_ns < next_look_ns_) return;
@@ -165,7 +165,7 @@ void RealVisit::look() {
   if (!broken.empty()) fail("stopped: {} exceeds the limits of --real", broken);
 }
 
-void RealVisit::show(const CycleRecord& cycle) const {
+void RealDeviceRun::show(const CycleRecord& cycle) const {
   if (isatty(STDERR_FILENO) == 0) return;
   fmt::print(stderr,
              "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q stops  ",
@@ -173,12 +173,12 @@ void RealVisit::show(const CycleRecord& cycle) const {
              cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
 }
 
-std::string RealVisit::next_recording() {
+std::string RealDeviceRun::next_recording() {
   recordings_.push_back(folder_.file(fmt::format("bus-{}.jsonl", recordings_.size() + 1)));
   return recordings_.back();
 }
 
-void RealVisit::give_back() {
+void RealDeviceRun::give_back() {
   edge_.end(SIGTERM);
   CycleRecord last;
   if (edge_.newest(last) && last.mode == Mode::kStopping && last.battery_status == Status::kOk) {
@@ -190,7 +190,7 @@ void RealVisit::give_back() {
   if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, check the battery\n", scenario_.name);
 }
 
-void RealVisit::tell(Evidence& evidence) const {
+void RealDeviceRun::report_to(Evidence& evidence) const {
   evidence.orders =
       orders_on_the_bus(recordings_, edge_.config().battery.map, scenario_.end_utc_ns());
   evidence.minutes = measured_minutes(evidence.log);
@@ -202,13 +202,13 @@ constexpr double kStartUpS = 1.2;  ///< wall time until all processes run
 
 bool fills_a_disk(const Scenario& scenario) {
   return std::ranges::any_of(scenario.events, [](const ScenarioEvent& event) {
-    return event.does == ScenarioEvent::Does::kDiskFull;
+    return event.kind == ScenarioEvent::EventKind::kDiskFull;
   });
 }
 
 std::string seconds_text(const ScenarioEvent& event) { return std::to_string(event.for_s) + "s"; }
 
-/// Tolerance for the wake-up latency of this machine, simulated s. Throws MachineTooLate if orders
+/// Tolerance for the wake-up latency of this machine, simulated s. Throws HostTooSlow if orders
 /// could overlap with the next control cycle.
 double slack_s(const Lateness& lateness, std::int32_t time_scale) {
   constexpr double kLateS = 0.15;  // wall time of an order
@@ -216,7 +216,7 @@ double slack_s(const Lateness& lateness, std::int32_t time_scale) {
   constexpr double kSlackMaxS = 60;
   const double slack_s = 2 + (kLateS + kLateFactor * lateness.worst_s()) * time_scale;
   if (slack_s <= kSlackMaxS) return slack_s;
-  throw MachineTooLate(
+  throw HostTooSlow(
       fmt::format("{} by {:.2f} s, which is too much at time scale {}; use fewer --jobs "
                   "or a smaller time_scale",
                   kTooLate, lateness.worst_s(), time_scale));
@@ -233,7 +233,7 @@ class WallRun {
         edge_(site.edge, folder) {
     if (fills_a_disk(scenario)) disk_.emplace(folder.file("state"));
     if (site.battery) {
-      visit_.emplace(scenario, *site.battery, folder, edge_);
+      real_run_.emplace(scenario, *site.battery, folder, edge_);
       battery_link_ = link_keys(*site.battery);
     }
   }
@@ -242,7 +242,7 @@ class WallRun {
     write_minute_file(folder_.file("minutes.csv"), prices_, "");
     programs_.clock = {.start_utc_s = scenario_.start_utc_s, .time_scale = scenario_.time_scale};
     programs_.start_clock(kStartUpS);
-    if (visit_) return run_on_real_battery();
+    if (real_run_) return run_on_real_battery();
     if (scenario_.battery.rtu) line_.emplace();
     programs_.start_battery(battery_options(scenario_, line_ ? line_->device(0) : "", folder_));
     return run_edge();
@@ -252,11 +252,11 @@ class WallRun {
   Evidence run_on_real_battery() {
     try {
       edge_.set_up(scenario_, settings());
-      visit_->commission();
+      real_run_->commission();
       programs_.start_clock(kStartUpS);
       return run_edge();
     } catch (...) {
-      if (visit_->has_begun()) visit_->give_back();
+      if (real_run_->has_begun()) real_run_->give_back();
       throw;
     }
   }
@@ -264,7 +264,7 @@ class WallRun {
   Evidence run_edge() {
     start_market();
     edge_.set_up(scenario_, settings());
-    if (!visit_) pretend_commissioned();
+    if (!real_run_) pretend_commissioned();
     start_edge();
     for (const ScenarioEvent& event : scenario_.events) {
       sleep_until_minute(event.at_min);
@@ -303,21 +303,21 @@ class WallRun {
     programs_.start_market(options);
     market_is_dead_ = false;
   }
-  void start_edge() { edge_.start(visit_ ? visit_->next_recording() : ""); }
+  void start_edge() { edge_.start(real_run_ ? real_run_->next_recording() : ""); }
 
   void sleep_until_minute(double minute) {
     constexpr std::int64_t kLookNs = 50'000'000;
     const auto wall_ns = static_cast<std::int64_t>(minute * 60e9 / scenario_.time_scale);
     const std::int64_t until_ns = programs_.clock.anchor_monotonic_ns + wall_ns;
     for (std::int64_t now_ns = 0; (now_ns = clock_ns(CLOCK_MONOTONIC)) < until_ns;) {
-      visit_ ? visit_->look() : throw_if_stopped();
+      real_run_ ? real_run_->look() : throw_if_stopped();
       sleep_until_monotonic(std::min(until_ns, now_ns + kLookNs));
     }
   }
 
   void apply(const ScenarioEvent& event) {
-    using enum ScenarioEvent::Does;
-    switch (event.does) {
+    using enum ScenarioEvent::EventKind;
+    switch (event.kind) {
       case kEdgeKill:
         return edge_.end(SIGKILL);
       case kEdgeStop:
@@ -366,21 +366,21 @@ class WallRun {
   }
 
   void apply_to_simulators(const ScenarioEvent& event) {
-    using enum ScenarioEvent::Does;
-    const bool is_battery = event.does == kBatteryPause || event.does == kBatteryContinue;
+    using enum ScenarioEvent::EventKind;
+    const bool is_battery = event.kind == kBatteryPause || event.kind == kBatteryContinue;
     const auto& process = is_battery ? programs_.battery : programs_.market;
-    if (event.does == kMarketStart) return start_market();
+    if (event.kind == kMarketStart) return start_market();
     if (process == nullptr) return;
-    const bool is_pause = event.does == kBatteryPause || event.does == kMarketPause;
-    process->signal(event.does == kMarketKill ? SIGKILL : is_pause ? SIGSTOP : SIGCONT);
-    if (event.does != kMarketKill) return;
+    const bool is_pause = event.kind == kBatteryPause || event.kind == kMarketPause;
+    process->signal(event.kind == kMarketKill ? SIGKILL : is_pause ? SIGSTOP : SIGCONT);
+    if (event.kind != kMarketKill) return;
     process->wait();
     market_is_dead_ = true;
   }
 
   void say(const ScenarioEvent& event) const {
-    using enum ScenarioEvent::Does;
-    switch (event.does) {
+    using enum ScenarioEvent::EventKind;
+    switch (event.kind) {
       case kHold:
         return edge_.say({"hold", std::to_string(event.power_w), "--for", seconds_text(event)});
       case kHoldRelease:
@@ -399,15 +399,15 @@ class WallRun {
   }
 
   Evidence end() {
-    visit_ ? visit_->give_back() : edge_.end(SIGTERM);
+    real_run_ ? real_run_->give_back() : edge_.end(SIGTERM);
     Evidence evidence;
     evidence.edge_exit_code = edge_.exit_code();
     evidence.edge_last_line = edge_.last_line();
     evidence.is_alive_at_end = end_simulators();
     evidence.slack_s = slack_s(lateness_, scenario_.time_scale);
     evidence.log = edge_.records();
-    if (visit_) {
-      visit_->tell(evidence);
+    if (real_run_) {
+      real_run_->report_to(evidence);
     } else {
       evidence.orders = read_dispatch_events(folder_.file("orders.csv"));
       evidence.minutes = read_battery_record(folder_.file("battery.csv"));
@@ -417,7 +417,7 @@ class WallRun {
 
   /// True if they ran until now and ended normally.
   bool end_simulators() {
-    const bool has_battery = visit_ || SitePrograms::stop(*programs_.battery) == 0;
+    const bool has_battery = real_run_ || SitePrograms::stop(*programs_.battery) == 0;
     return (market_is_dead_ || SitePrograms::stop(*programs_.market) == 0) && has_battery;
   }
 
@@ -430,7 +430,7 @@ class WallRun {
   SitePrograms programs_;
   bool market_is_dead_ = false;
   EdgeProcess edge_;
-  std::optional<RealVisit> visit_;
+  std::optional<RealDeviceRun> real_run_;
   std::string battery_link_;  ///< TOML for the link of a real one
 };
 

@@ -65,11 +65,11 @@ class Lateness {
 
 // Real battery in a run: commissioned first, checked every second, and released at every end.
 
-class RealVisit {
+class RealDeviceRun {
  public:
   /// All must outlive this object.
-  RealVisit(const Scenario& scenario, const RealBattery& battery, const WorkFolder& folder,
-            EdgeProcess& edge)
+  RealDeviceRun(const Scenario& scenario, const RealBattery& battery, const WorkFolder& folder,
+                EdgeProcess& edge)
       : scenario_(scenario), battery_(battery), folder_(folder), edge_(edge) {}
 
   /// Commissioning by the edge: half a minute of a small order.
@@ -82,10 +82,10 @@ class RealVisit {
   /// Stops the edge, which releases the battery; if not, releases it by a command and reports.
   void give_back();
   /// Adds orders from its bus traffic, and its measurements.
-  void tell(Evidence& evidence) const;
+  void report_to(Evidence& evidence) const;
 
  private:
-  void heed_stop() const;
+  void check_stop_request() const;
   void show(const CycleRecord& cycle) const;
 
   const Scenario& scenario_;
@@ -108,12 +108,12 @@ struct WallSite {
 };
 
 /// The run cannot be judged: the wake-up latency is too large for its time scale.
-class MachineTooLate : public UserError {
+class HostTooSlow : public UserError {
  public:
   using UserError::UserError;
 };
 
-/// Throws MachineTooLate; UserError if a program fails or a real battery exceeds its limits;
+/// Throws HostTooSlow; UserError if a program fails or a real battery exceeds its limits;
 /// Interrupted on a stop request. A real battery is released in all cases.
 Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
                   const WorkFolder& folder);

@@ -61,9 +61,10 @@ BusExchange ReplayedBus::answer(const BusRequest& request) {
     exchange.exception = kIllegalFunction;
     return exchange;
   }
-  const std::string told = device_.answer(exchange);
-  if (!told.empty()) {
-    std::printf("%s %s\n", utc_text(exchange.utc_ns / kNanosecondsPerSecond).c_str(), told.c_str());
+  const std::string reported = device_.answer(exchange);
+  if (!reported.empty()) {
+    std::printf("%s %s\n", utc_text(exchange.utc_ns / kNanosecondsPerSecond).c_str(),
+                reported.c_str());
     std::fflush(stdout);
   }
   return exchange;

@@ -89,7 +89,7 @@ class BatteryServer {
   void run(int stop_fd);
 
  private:
-  struct FreeContext {
+  struct ContextDeleter {
     void operator()(modbus_t* context) const { modbus_free(context); }
   };
   struct Client {
@@ -113,7 +113,7 @@ class BatteryServer {
   const RegisterMap& map_;
   ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
   ScaledClock clock_;
-  std::unique_ptr<modbus_t, FreeContext> context_;
+  std::unique_ptr<modbus_t, ContextDeleter> context_;
   std::optional<FaultyDevice> device_;
   std::vector<Client> clients_;
   int listen_fd_ = -1;

@@ -46,8 +46,8 @@ void RecordedDevice::add(const BusExchange& exchange) {
   const std::span<const std::uint16_t> values = exchange.values();
   if (entries_.empty()) first_utc_ns_ = exchange.utc_ns;
   last_utc_ns_ = exchange.utc_ns;
-  courses_[{exchange.unit, exchange.function, exchange.address, exchange.count}].entries.push_back(
-      entries_.size());
+  histories_[{exchange.unit, exchange.function, exchange.address, exchange.count}]
+      .entries.push_back(entries_.size());
   entries_.push_back({.utc_ns = exchange.utc_ns,
                       .latency_us = exchange.latency_us,
                       .outcome = exchange.outcome,
@@ -64,18 +64,18 @@ void RecordedDevice::add(const BusExchange& exchange) {
 }
 
 bool RecordedDevice::has_unit(std::int32_t unit) const {
-  return std::any_of(courses_.begin(), courses_.end(),
-                     [unit](const auto& course) { return std::get<0>(course.first) == unit; });
+  return std::any_of(histories_.begin(), histories_.end(),
+                     [unit](const auto& history) { return std::get<0>(history.first) == unit; });
 }
 
 std::string RecordedDevice::answer(BusExchange& request) {
-  const auto course =
-      courses_.find({request.unit, request.function, request.address, request.count});
-  if (course != courses_.end()) {
-    const Entry& entry = now_in(course->second, request.utc_ns);
-    std::string told = difference(entry, request);
+  const auto history =
+      histories_.find({request.unit, request.function, request.address, request.count});
+  if (history != histories_.end()) {
+    const Entry& entry = now_in(history->second, request.utc_ns);
+    std::string reported = difference(entry, request);
     give(entry, request);
-    return told;
+    return reported;
   }
   if (!request.is_write() && assemble(request)) return "";
   request.outcome = BusOutcome::kException;
@@ -85,16 +85,17 @@ std::string RecordedDevice::answer(BusExchange& request) {
 
 /// Next answer of this request, or the previous one until its time. The first one is valid at any
 /// time.
-const RecordedDevice::Entry& RecordedDevice::now_in(Course& course, std::int64_t utc_ns) const {
-  const auto entry = [&](std::size_t i) -> const Entry& { return entries_[course.entries[i]]; };
-  const std::size_t count = course.entries.size();
+const RecordedDevice::Entry& RecordedDevice::now_in(RequestHistory& history,
+                                                    std::int64_t utc_ns) const {
+  const auto entry = [&](std::size_t i) -> const Entry& { return entries_[history.entries[i]]; };
+  const std::size_t count = history.entries.size();
   // Skip answers that a later one has replaced.
-  while (course.next + 1 < count && entry(course.next + 1).utc_ns <= utc_ns - kSlackNs) {
-    ++course.next;
+  while (history.next + 1 < count && entry(history.next + 1).utc_ns <= utc_ns - kSlackNs) {
+    ++history.next;
   }
-  const bool has_come = course.next < count && entry(course.next).utc_ns <= utc_ns + kSlackNs;
-  if (has_come || course.next == 0) ++course.next;
-  return entry(course.next - 1);
+  const bool has_come = history.next < count && entry(history.next).utc_ns <= utc_ns + kSlackNs;
+  if (has_come || history.next == 0) ++history.next;
+  return entry(history.next - 1);
 }
 
 void RecordedDevice::give(const Entry& entry, BusExchange& request) const {

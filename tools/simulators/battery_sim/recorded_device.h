@@ -42,7 +42,7 @@ class RecordedDevice {
     std::size_t first_value = 0;  ///< in values_
     std::size_t value_count = 0;
   };
-  struct Course {
+  struct RequestHistory {
     std::vector<std::size_t> entries;  ///< in the order of time
     std::size_t next = 0;
   };
@@ -53,7 +53,7 @@ class RecordedDevice {
   using Place = std::tuple<std::int32_t, bool, int>;  ///< unit, input register, address
 
   void add(const BusExchange& exchange);
-  [[nodiscard]] const Entry& now_in(Course& course, std::int64_t utc_ns) const;
+  [[nodiscard]] const Entry& now_in(RequestHistory& history, std::int64_t utc_ns) const;
   void give(const Entry& entry, BusExchange& request) const;
   [[nodiscard]] std::string difference(const Entry& entry, const BusExchange& request) const;
   [[nodiscard]] bool assemble(BusExchange& request) const;
@@ -62,7 +62,7 @@ class RecordedDevice {
   std::int64_t first_utc_ns_ = 0, last_utc_ns_ = 0;
   std::vector<Entry> entries_;
   std::vector<std::uint16_t> values_;
-  std::map<Key, Course> courses_;
+  std::map<Key, RequestHistory> histories_;
   std::map<Place, std::vector<Reading>> readings_;
 };
 

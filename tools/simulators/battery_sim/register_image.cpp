@@ -215,7 +215,7 @@ void RegisterImage::show_expiry() {
 
 void RegisterImage::apply_write(int address, int count) {
   if (map_.is_meter) return;  // keeps the written values, without effect
-  const LivePoints registers = snapshot();
+  const PointValues registers = snapshot();
   if (!active_.empty() && !live_all(map_, active_, registers)) {
     battery_.stop_dispatch();
     is_running_ = false;
@@ -236,7 +236,7 @@ void RegisterImage::write_from_outside(Command command, std::int32_t power_w) {
   const PowerOrder order{.power_w = power_w, .duration_s = map_.watchdog.duration_s};
   for (const BlockWrite& write : map_.sequence(command).writes) {
     RegisterBlock block;
-    const LivePoints live = snapshot();
+    const PointValues live = snapshot();
     if (encode_block(map_, write, order, block, {.live = &live}) != Status::kOk) continue;
     const int address = address_of(write.values[0].point);
     std::copy(block.begin(), block.end(), holding_.begin() + address);
@@ -262,7 +262,7 @@ bool RegisterImage::is_order_ignored(int address, int count) const {
   });
 }
 
-void RegisterImage::start(const LivePoints& registers) {
+void RegisterImage::start(const PointValues& registers) {
   std::int64_t power_w = 0;
   if (!live_power(map_, order_power_, registers, power_w)) power_w = 0;
   const std::int64_t seconds = duration_s();
@@ -291,8 +291,8 @@ int RegisterImage::address_of(int point) const {
   return p.address + (p.model < 0 ? 0 : model_start_[p.model]);
 }
 
-LivePoints RegisterImage::snapshot() const {
-  LivePoints live;
+PointValues RegisterImage::snapshot() const {
+  PointValues live;
   for (int i = 0; i < map_.points.size(); ++i) {
     const RegisterPoint& p = map_.points[i];
     live.keep(map_, i, &(p.read_function == 4 ? input_ : holding_)[address_of(i)]);

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "edge/device/registers/live_points.h"
+#include "edge/device/registers/point_values.h"
 #include "edge/device/registers/register_map.h"
 #include "tools/simulators/battery_sim/house_load.h"
 #include "tools/simulators/battery_sim/simulated_battery.h"
@@ -71,7 +71,7 @@ class RegisterImage {
   void lay_out_models();
   void find_arguments();
   void identify(const IdentityCheck& check);
-  [[nodiscard]] LivePoints snapshot() const;
+  [[nodiscard]] PointValues snapshot() const;
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
@@ -90,7 +90,7 @@ class RegisterImage {
   void write_from_outside(Command command, std::int32_t power_w);
   [[nodiscard]] std::int64_t duration_s() const;
   [[nodiscard]] double soc_limit_frac(std::int64_t power_w) const;
-  void start(const LivePoints& registers);
+  void start(const PointValues& registers);
   void show_expiry();
 
   const RegisterMap& map_;

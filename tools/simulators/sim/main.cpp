@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "shared/host/made/build_info.h"
+#include "shared/host/embed/build_info.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "shared/host/user_error.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
 #include "workstation/correction/distillation/lattice_rows.h"
 #include "workstation/policy/rl/transition.h"
@@ -29,9 +29,9 @@ struct Pass {
   double shift_eur_per_mwh;
 };
 
-class LessonBook {
+class TrainingSet {
  public:
-  LessonBook(const Teacher& teacher, const BatteryParameters& battery)
+  TrainingSet(const Teacher& teacher, const BatteryParameters& battery)
       : teacher_(teacher), per_eur_(learned_per_eur(battery)), x_(kNetworkInputs, 1) {}
 
   /// Adds a training state; returns the teacher's action.
@@ -39,7 +39,7 @@ class LessonBook {
              OutlookProgram::Plan& plan) {
     auto worth_eur = teacher_.outlook->action_values(step, soc_frac, plan);
     if (teacher_.is_residual()) teacher_.add_network(step, soc_frac, x_, tile_, worth_eur);
-    const std::int32_t break_even_centi = teacher_.book->break_even_centi(step, soc_frac);
+    const std::int32_t break_even_centi = teacher_.plan_cache->break_even_centi(step, soc_frac);
     const std::int16_t context_class =
         teacher_.context.class_of(step.month, break_even_centi + price_centi_of(shift_eur_per_mwh));
     float x[kRows];
@@ -52,7 +52,7 @@ class LessonBook {
     all_.insert(all_.end(), x, x + kRows);
     return argmax_action(worth_eur.data());
   }
-  [[nodiscard]] Eigen::Map<const Matrix> lessons() const {
+  [[nodiscard]] Eigen::Map<const Matrix> training_states() const {
     return {all_.data(), kRows, static_cast<Eigen::Index>(all_.size() / kRows)};
   }
 
@@ -97,14 +97,14 @@ void trade_day(std::span<const MarketStep> steps, const BatteryParameters& batte
   }
 }
 
-Matrix joined(const std::vector<LessonBook>& books) {
+Matrix joined(const std::vector<TrainingSet>& sets) {
   Eigen::Index count = 0;
-  for (const LessonBook& book : books) count += book.lessons().cols();
+  for (const TrainingSet& set : sets) count += set.training_states().cols();
   Matrix all(kRows, count);
   Eigen::Index at = 0;
-  for (const LessonBook& book : books) {
-    all.middleCols(at, book.lessons().cols()) = book.lessons();
-    at += book.lessons().cols();
+  for (const TrainingSet& set : sets) {
+    all.middleCols(at, set.training_states().cols()) = set.training_states();
+    at += set.training_states().cols();
   }
   return all;
 }
@@ -127,15 +127,15 @@ Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
     draws.push_back(random);
     trade(d, random, [](const MarketStep&, double, double) { return Action::kIdle; });
   }
-  std::vector<LessonBook> books(days.size(), LessonBook(teacher, battery));
-  in_parallel(days.size(), options.threads, [&](std::size_t d) {
+  std::vector<TrainingSet> sets(days.size(), TrainingSet(teacher, battery));
+  parallel_for(days.size(), options.threads, [&](std::size_t d) {
     OutlookProgram::Plan plan;
     trade(d, draws[d], [&](const MarketStep& step, double soc_frac, double shift_eur_per_mwh) {
       if (!plan.serves(step)) plan = teacher.outlook->plan_of(step);
-      return books[d].add(step, soc_frac, shift_eur_per_mwh, plan);
+      return sets[d].add(step, soc_frac, shift_eur_per_mwh, plan);
     });
   });
-  return joined(books);
+  return joined(sets);
 }
 
 Eigen::MatrixXd log_softmax(const Eigen::MatrixXd& logits) {

@@ -91,33 +91,34 @@ int class_at(std::int32_t classes, std::size_t k) {
 
 }  // namespace
 
-RuleLessons::RuleLessons(const RuleSet& rules, ContextKind kind)
+RuleSamples::RuleSamples(const RuleSet& rules, ContextKind kind)
     : kind_(kind), implied_(rules, kind) {
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const Rule& rule = rules.rules[r];
     if (!binds_student(rule, kind) || !rule.restricts_actions()) continue;
-    asked_.push_back({r, rule, lattice_box_of(rule.box, kind), !rule.has_gap()});
+    bound_rules_.push_back({r, rule, lattice_box_of(rule.box, kind), !rule.has_gap()});
   }
 }
 
-bool RuleLessons::holds(const Asked& asked, const LatticeState& context) const {
-  return holds_in_context(asked.rule.box, kind_, context.quarter_hour, context.context_class);
+bool RuleSamples::holds(const BoundRule& bound_rule, const LatticeState& context) const {
+  return holds_in_context(bound_rule.rule.box, kind_, context.quarter_hour, context.context_class);
 }
 
 /// The tightest state of "at least" is at the highest price and SoC, of "at most" at the lowest.
-HardState RuleLessons::corner(const Asked& asked, LatticeState context, bool at_least) {
-  const LatticeBox& box = asked.box;
+ConstraintState RuleSamples::corner(const BoundRule& bound_rule, LatticeState context,
+                                    bool at_least) {
+  const LatticeBox& box = bound_rule.box;
   context.soc_index = static_cast<std::int16_t>(at_least ? box.soc_last : box.soc_first);
   context.price_eur_per_mwh = static_cast<std::int16_t>(
       kLatticePriceMinEurPerMwh + (at_least ? box.price_last : box.price_first));
-  return {context, asked.rule.actions(), asked.index};
+  return {context, bound_rule.rule.actions(), bound_rule.index};
 }
 
 /// An operator's rule draws its hour before the minute, a built-in one after it: students in use
 /// were made this way and must be reproducible from their seed.
-LatticeState RuleLessons::draw_context(const Asked& asked, Random& random) const {
-  const RuleBox& box = asked.rule.box;
-  const bool hour_first = asked.rule.property == 0;
+LatticeState RuleSamples::draw_context(const BoundRule& bound_rule, Random& random) const {
+  const RuleBox& box = bound_rule.rule.box;
+  const bool hour_first = bound_rule.rule.property == 0;
   const auto draw_hour = [&] {
     return static_cast<int>(random.index(static_cast<std::size_t>(box.quarter_hour_count)));
   };
@@ -128,44 +129,48 @@ LatticeState RuleLessons::draw_context(const Asked& asked, Random& random) const
   if (!hour_first) since = draw_hour();
   context.quarter_hour =
       static_cast<std::int16_t>((box.quarter_hour_first + since) % kQuarterHourCount);
-  const auto classes = std::popcount(static_cast<unsigned>(asked.box.classes));
+  const auto classes = std::popcount(static_cast<unsigned>(bound_rule.box.classes));
   context.context_class = static_cast<std::int16_t>(
-      class_at(asked.box.classes, random.index(static_cast<std::size_t>(classes))));
+      class_at(bound_rule.box.classes, random.index(static_cast<std::size_t>(classes))));
   return context;
 }
 
-HardState RuleLessons::draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
-                            Random& random) const {
-  const Asked& asked = asked_[index];
+ConstraintState RuleSamples::draw(std::size_t index,
+                                  const std::vector<LatticeState>& counterexamples,
+                                  Random& random) const {
+  const BoundRule& bound_rule = bound_rules_[index];
   LatticeState context{};
   const bool wants_known = !counterexamples.empty() && random.uniform() < 0.5;
   if (wants_known) context = counterexamples[random.index(counterexamples.size())];
-  if (!wants_known || !holds(asked, context)) context = draw_context(asked, random);
-  if (!asked.has_corners) {
+  if (!wants_known || !holds(bound_rule, context)) context = draw_context(bound_rule, random);
+  if (!bound_rule.has_corners) {
     const auto between = [&random](int first, int last) {
       return first + static_cast<int>(random.index(static_cast<std::size_t>(last - first) + 1));
     };
-    context.soc_index = static_cast<std::int16_t>(between(asked.box.soc_first, asked.box.soc_last));
+    context.soc_index =
+        static_cast<std::int16_t>(between(bound_rule.box.soc_first, bound_rule.box.soc_last));
     context.price_eur_per_mwh = static_cast<std::int16_t>(
-        kLatticePriceMinEurPerMwh + between(asked.box.price_first, asked.box.price_last));
-    return {context, asked.rule.actions(), asked.index};
+        kLatticePriceMinEurPerMwh + between(bound_rule.box.price_first, bound_rule.box.price_last));
+    return {context, bound_rule.rule.actions(), bound_rule.index};
   }
-  const bool has_lower = asked.rule.lowest() > Action::kDischarge;
-  const bool has_upper = asked.rule.highest() < Action::kCharge;
+  const bool has_lower = bound_rule.rule.lowest() > Action::kDischarge;
+  const bool has_upper = bound_rule.rule.highest() < Action::kCharge;
   const bool at_least = has_lower && (!has_upper || random.uniform() < 0.5);
-  return corner(asked, context, at_least);
+  return corner(bound_rule, context, at_least);
 }
 
-void RuleLessons::corners(const LatticeState& context, std::vector<HardState>& states) const {
+void RuleSamples::corners(const LatticeState& context, std::vector<ConstraintState>& states) const {
   states.clear();
-  for (const Asked& asked : asked_) {
-    if (!asked.has_corners || !holds(asked, context)) continue;
-    if (asked.rule.lowest() > Action::kDischarge) states.push_back(corner(asked, context, true));
-    if (asked.rule.highest() < Action::kCharge) states.push_back(corner(asked, context, false));
+  for (const BoundRule& bound_rule : bound_rules_) {
+    if (!bound_rule.has_corners || !holds(bound_rule, context)) continue;
+    if (bound_rule.rule.lowest() > Action::kDischarge)
+      states.push_back(corner(bound_rule, context, true));
+    if (bound_rule.rule.highest() < Action::kCharge)
+      states.push_back(corner(bound_rule, context, false));
   }
 }
 
-ActionSet RuleLessons::actions_at(const float* x, const PriceMap& price_map) const {
+ActionSet RuleSamples::actions_at(const float* x, const PriceMap& price_map) const {
   const int price = std::clamp(static_cast<int>(std::lround(price_map.price_of(x[4]))),
                                kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
   return implied_
@@ -192,9 +197,9 @@ void mask_gradient(const Matrix& sum, Matrix& gradient) {
 }
 
 /// Restricts the teacher's choice to the allowed actions.
-void obey(ActionSet allowed, Eigen::Index column, LessonStates& lessons) {
+void obey(ActionSet allowed, Eigen::Index column, TrainingBatch& batch) {
   if (allowed == kAllActions) return;
-  const Eigen::Vector3f regret = lessons.regret.col(column);
+  const Eigen::Vector3f regret = batch.regret.col(column);
   float least = std::numeric_limits<float>::max();
   for (int a = 0; a < kActionCount; ++a) {
     if (allows(allowed, static_cast<Action>(a))) least = std::min(least, regret[a]);
@@ -203,10 +208,10 @@ void obey(ActionSet allowed, Eigen::Index column, LessonStates& lessons) {
   for (int a = 0; a < kActionCount; ++a) {
     const bool is_allowed = allows(allowed, static_cast<Action>(a));
     const float lost = regret[a] - least;
-    lessons.regret(a, column) = is_allowed ? lost : std::max(lost, kForbiddenRegret);
-    sum += lessons.teacher_frac(a, column) = is_allowed ? std::exp(-lost) : 0.0F;
+    batch.regret(a, column) = is_allowed ? lost : std::max(lost, kForbiddenRegret);
+    sum += batch.teacher_frac(a, column) = is_allowed ? std::exp(-lost) : 0.0F;
   }
-  lessons.teacher_frac.col(column) /= sum;
+  batch.teacher_frac.col(column) /= sum;
 }
 
 void saturate(const Matrix& sum, Matrix& activation) {
@@ -215,14 +220,14 @@ void saturate(const Matrix& sum, Matrix& activation) {
 
 }  // namespace
 
-LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
-                          const DistilOptions& options) {
+TrainingBatch make_training_states(const Teacher& teacher, const Matrix& visited,
+                                   const DistilOptions& options) {
   Random random(derive_seed(options.seed, kSeedLessons));
   // Outlook: part of the visited ones, since the five inputs do not determine the action.
   const double anywhere_share = teacher.outlook ? 0 : kRandomShare;
   const auto anywhere =
       static_cast<Eigen::Index>(anywhere_share * static_cast<double>(visited.cols()));
-  LessonStates lessons;
+  TrainingBatch batch;
   Matrix seen(visited.rows(), visited.cols() + anywhere);
   seen.leftCols(visited.cols()) = visited;
   for (Eigen::Index i = 0; i < anywhere; ++i) {
@@ -238,33 +243,33 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
     write_input(network_context(minute, quarter_hour, context_class, mapped), 0, x);
     x[3] = scaled_input(static_cast<int>(random.index(kSocCount)), kSocScale);
   }
-  lessons.inputs = seen.topRows(kNetworkInputs);
+  batch.inputs = seen.topRows(kNetworkInputs);
   MlpTile tile;
   constexpr Eigen::Index kTile = 1024;
-  lessons.teacher_frac.resize(kActionCount, lessons.inputs.cols());
-  lessons.regret.resize(kActionCount, lessons.inputs.cols());
-  for (Eigen::Index at = 0; at < lessons.inputs.cols(); at += kTile) {
-    const Eigen::Index count = std::min(kTile, lessons.inputs.cols() - at);
+  batch.teacher_frac.resize(kActionCount, batch.inputs.cols());
+  batch.regret.resize(kActionCount, batch.inputs.cols());
+  for (Eigen::Index at = 0; at < batch.inputs.cols(); at += kTile) {
+    const Eigen::Index count = std::min(kTile, batch.inputs.cols() - at);
     const Eigen::MatrixXd values =
         teacher_logits(teacher, options, seen.middleCols(at, count), tile);
-    lessons.teacher_frac.middleCols(at, count) = log_softmax(values).array().exp().cast<float>();
+    batch.teacher_frac.middleCols(at, count) = log_softmax(values).array().exp().cast<float>();
     for (Eigen::Index c = 0; c < count; ++c) {
-      lessons.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();
+      batch.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();
     }
   }
-  const RuleLessons rules(options.rules, teacher.context.kind);
+  const RuleSamples rules(options.rules, teacher.context.kind);
   if (options.correct && !rules.empty()) {
-    for (Eigen::Index c = 0; c < lessons.inputs.cols(); ++c) {
-      obey(rules.actions_at(lessons.inputs.col(c).data(), teacher.price_map), c, lessons);
+    for (Eigen::Index c = 0; c < batch.inputs.cols(); ++c) {
+      obey(rules.actions_at(batch.inputs.col(c).data(), teacher.price_map), c, batch);
     }
   }
-  return lessons;
+  return batch;
 }
 
-MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
+MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const TrainingBatch& batch,
                                      const DistilOptions& options)
     : teacher_(teacher),
-      lessons_(lessons),
+      batch_(batch),
       options_(options),
       random_(derive_seed(options.seed, kSeedBatches)),
       rules_(with_built_in(options.correction.thresholds, options.rules), teacher.context.kind),
@@ -284,11 +289,11 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates&
 /// deviation 1/2: the kinks are then where the states are.
 void MonotoneDistiller::spread_activations() {
   Worker& worker = workers_.front();
-  const Eigen::Index count = std::min<Eigen::Index>(4096, lessons_.inputs.cols());
+  const Eigen::Index count = std::min<Eigen::Index>(4096, batch_.inputs.cols());
   worker.x.resize(kNetworkInputs, count);
   for (Eigen::Index c = 0; c < count; ++c) {
-    worker.x.col(c) = lessons_.inputs.col(static_cast<Eigen::Index>(
-        random_.index(static_cast<std::uint64_t>(lessons_.inputs.cols()))));
+    worker.x.col(c) = batch_.inputs.col(
+        static_cast<Eigen::Index>(random_.index(static_cast<std::uint64_t>(batch_.inputs.cols()))));
   }
   MutableMlp net(kStudentShape, student_.data());
   const auto spread = [count](const Matrix& sum, auto& weight, auto& bias) {
@@ -332,22 +337,22 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
   w.target.resize(kActionCount, w.learnt);
   w.regret.resize(kActionCount, w.learnt);
   for (Eigen::Index c = 0; c < w.learnt; ++c) {
-    const auto from = static_cast<Eigen::Index>(
-        random_.index(static_cast<std::uint64_t>(lessons_.inputs.cols())));
-    w.x.col(c) = lessons_.inputs.col(from);
-    w.target.col(c) = lessons_.teacher_frac.col(from);
-    w.regret.col(c) = lessons_.regret.col(from);
+    const auto from =
+        static_cast<Eigen::Index>(random_.index(static_cast<std::uint64_t>(batch_.inputs.cols())));
+    w.x.col(c) = batch_.inputs.col(from);
+    w.target.col(c) = batch_.teacher_frac.col(from);
+    w.regret.col(c) = batch_.regret.col(from);
   }
   w.allowed.clear();
   for (std::size_t n = 0; n < hinged; ++n) {
-    const HardState hard = rules_.draw(n / kRuleStates, counterexamples, random_);
+    const ConstraintState drawn = rules_.draw(n / kRuleStates, counterexamples, random_);
     float* x = w.x.col(w.learnt + static_cast<Eigen::Index>(n)).data();
-    write_input(
-        network_context(hard.state.minute_of_quarter_hour, hard.state.quarter_hour,
-                        hard.state.context_class, teacher_.price_map(hard.state.price_eur_per_mwh)),
-        0, x);
-    x[3] = scaled_input(hard.state.soc_index, kSocScale);
-    w.allowed.push_back(hard.actions);
+    write_input(network_context(drawn.state.minute_of_quarter_hour, drawn.state.quarter_hour,
+                                drawn.state.context_class,
+                                teacher_.price_map(drawn.state.price_eur_per_mwh)),
+                0, x);
+    x[3] = scaled_input(drawn.state.soc_index, kSocScale);
+    w.allowed.push_back(drawn.actions);
   }
 }
 

@@ -68,7 +68,7 @@ class SignBounds {
 // context.
 
 /// State that decides a rule in its context, with the allowed actions.
-struct HardState {
+struct ConstraintState {
   LatticeState state;
   ActionSet actions;
   std::size_t rule = 0;  ///< index in the set
@@ -76,37 +76,37 @@ struct HardState {
 
 /// Deciding states of the rules, for the hinge losses and for a quick check before a proof. Rules
 /// that do not bind the student's states are omitted; directions are left to the sign bounds.
-class RuleLessons {
+class RuleSamples {
  public:
-  RuleLessons(const RuleSet& rules, ContextKind kind);
+  RuleSamples(const RuleSet& rules, ContextKind kind);
 
-  [[nodiscard]] bool empty() const { return asked_.empty(); }
-  [[nodiscard]] std::size_t count() const { return asked_.size(); }
+  [[nodiscard]] bool empty() const { return bound_rules_.empty(); }
+  [[nodiscard]] std::size_t count() const { return bound_rules_.size(); }
 
   /// A deciding state of rule `index` < count(), in a context of its box; half of them in a context
   /// of `counterexamples`, if any.
-  HardState draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
-                 Random& random) const;
+  ConstraintState draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
+                       Random& random) const;
 
   /// Deciding states of a monotone student in this context; rules without corners are omitted.
-  void corners(const LatticeState& context, std::vector<HardState>& states) const;
+  void corners(const LatticeState& context, std::vector<ConstraintState>& states) const;
 
   /// Actions that the operator's rules allow at a network input.
   [[nodiscard]] ActionSet actions_at(const float* x, const PriceMap& price_map) const;
 
  private:
-  struct Asked {
+  struct BoundRule {
     std::size_t index;  ///< in the set
     Rule rule;
     LatticeBox box;
     bool has_corners;  ///< false: any state of the box may be the worst
   };
-  [[nodiscard]] bool holds(const Asked& asked, const LatticeState& context) const;
-  [[nodiscard]] LatticeState draw_context(const Asked& asked, Random& random) const;
-  static HardState corner(const Asked& asked, LatticeState context, bool at_least);
+  [[nodiscard]] bool holds(const BoundRule& bound_rule, const LatticeState& context) const;
+  [[nodiscard]] LatticeState draw_context(const BoundRule& bound_rule, Random& random) const;
+  static ConstraintState corner(const BoundRule& bound_rule, LatticeState context, bool at_least);
 
   ContextKind kind_;
-  std::vector<Asked> asked_;
+  std::vector<BoundRule> bound_rules_;
   ImpliedRanges implied_;
 };
 
@@ -114,7 +114,7 @@ class RuleLessons {
 inline constexpr double kSaturation = 1;
 
 /// Training states with the teacher's values.
-struct LessonStates {
+struct TrainingBatch {
   Matrix inputs;        ///< [5 x states]
   Matrix teacher_frac;  ///< [3 x states] softmax of the teacher's values
   Matrix regret;        ///< [3 x states] loss against the best action, over the temperature
@@ -122,14 +122,14 @@ struct LessonStates {
 
 /// Visited states and random states of the lattice. Where the teacher would violate one of the
 /// options' rules, its best allowed action replaces its choice.
-LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
-                          const DistilOptions& options);
+TrainingBatch make_training_states(const Teacher& teacher, const Matrix& visited,
+                                   const DistilOptions& options);
 
 class MonotoneDistiller {
  public:
-  /// Keeps a reference: `lessons` must outlive it. `options.correct` false: the same student and
+  /// Keeps a reference: `batch` must outlive it. `options.correct` false: the same student and
   /// training without bounds, for comparison.
-  MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
+  MonotoneDistiller(const Teacher& teacher, const TrainingBatch& batch,
                     const DistilOptions& options);
 
   /// Trains for `epochs`; the rules are also trained in the states `counterexamples`. Calls `look`
@@ -155,10 +155,10 @@ class MonotoneDistiller {
   void learn(Worker& worker, double scale) const;
 
   const Teacher& teacher_;
-  const LessonStates& lessons_;
+  const TrainingBatch& batch_;
   DistilOptions options_;
   Random random_;
-  RuleLessons rules_;
+  RuleSamples rules_;
   SignBounds bounds_;
   Parameters student_;
   Parameters average_;  ///< running mean of the student's parameters, inside the bounds

@@ -118,16 +118,16 @@ ActionSet ActionRange::set() const {
   return actions;
 }
 
-void ImpliedRanges::add_claim(const Rule& rule, std::size_t index, Side side, Action action,
+void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Action action,
                               const std::vector<Direction>& directions, ContextKind kind) {
-  Claim claim{side, action, index, lattice_box_of(rule.box, kind), {}};
+  ImpliedBound bound{side, action, index, lattice_box_of(rule.box, kind), {}};
   for (int q = 0; q < kQuarterHourCount; ++q) {
-    claim.quarter_hours.push_back(rule.box.holds_at_hour(q));
+    bound.quarter_hours.push_back(rule.box.holds_at_hour(q));
   }
   for (const Direction& direction : directions) {
     if (side == Side::kNotIdle) break;  // implies nothing for other states
     const bool at_least = side == Side::kAtLeast;
-    LatticeBox& box = claim.box;
+    LatticeBox& box = bound.box;
     if (direction.input == RuleInput::kPrice) {
       reach(direction.sign, at_least, box.price_first, box.price_last, 0, kPriceCount - 1);
     } else if (direction.input == RuleInput::kSoc) {
@@ -140,7 +140,7 @@ void ImpliedRanges::add_claim(const Rule& rule, std::size_t index, Side side, Ac
         box.classes |= 1 << c;
       }
     } else if (direction.input == RuleInput::kQuarterHour) {
-      auto& held = claim.quarter_hours;
+      auto& held = bound.quarter_hours;
       const auto first = std::ranges::find(held, true) - held.begin();
       const auto last =
           kQuarterHourCount - 1 - (std::find(held.rbegin(), held.rend(), true) - held.rbegin());
@@ -150,7 +150,7 @@ void ImpliedRanges::add_claim(const Rule& rule, std::size_t index, Side side, Ac
       }
     }
   }
-  claims_.push_back(std::move(claim));
+  bounds_.push_back(std::move(bound));
 }
 
 ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
@@ -158,12 +158,12 @@ ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
   for (std::size_t i = 0; i < rules.rules.size(); ++i) {
     const Rule& rule = rules.rules[i];
     if (!binds_student(rule, kind)) continue;
-    if (rule.has_gap()) add_claim(rule, i, Side::kNotIdle, Action::kIdle, directions, kind);
+    if (rule.has_gap()) add_bound(rule, i, Side::kNotIdle, Action::kIdle, directions, kind);
     if (rule.lowest() > Action::kDischarge) {
-      add_claim(rule, i, Side::kAtLeast, rule.lowest(), directions, kind);
+      add_bound(rule, i, Side::kAtLeast, rule.lowest(), directions, kind);
     }
     if (rule.highest() < Action::kCharge) {
-      add_claim(rule, i, Side::kAtMost, rule.highest(), directions, kind);
+      add_bound(rule, i, Side::kAtMost, rule.highest(), directions, kind);
     }
   }
 }
@@ -172,19 +172,19 @@ ActionRange ImpliedRanges::at(int quarter_hour, int context_class, int soc_index
                               int price_eur_per_mwh) const {
   const int price = price_eur_per_mwh - kLatticePriceMinEurPerMwh;
   ActionRange range;
-  for (const Claim& claim : claims_) {
-    const LatticeBox& box = claim.box;
+  for (const ImpliedBound& bound : bounds_) {
+    const LatticeBox& box = bound.box;
     if (price < box.price_first || price > box.price_last || soc_index < box.soc_first ||
         soc_index > box.soc_last || (box.classes >> (context_class - 1) & 1) == 0 ||
-        !claim.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
+        !bound.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
       continue;
     }
-    switch (claim.side) {
+    switch (bound.side) {
       case Side::kAtLeast:
-        range.lowest = std::max(range.lowest, claim.action);
+        range.lowest = std::max(range.lowest, bound.action);
         break;
       case Side::kAtMost:
-        range.highest = std::min(range.highest, claim.action);
+        range.highest = std::min(range.highest, bound.action);
         break;
       case Side::kNotIdle:
         range.has_gap = true;
@@ -211,21 +211,22 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   }
   const RuleSet all = with_thresholds(rules, thresholds);
   const ImpliedRanges implied(all, kind);
-  using Claim = ImpliedRanges::Claim;
+  using ImpliedBound = ImpliedRanges::ImpliedBound;
   using Side = ImpliedRanges::Side;
   // Corner of the common states of the bounds; each such set is a box, or hours and classes of
   // boxes.
-  const auto meet = [kind](std::initializer_list<const Claim*> claims, std::string& state) {
+  const auto meet = [kind](std::initializer_list<const ImpliedBound*> bounds, std::string& state) {
     LatticeBox common{0, kPriceCount - 1, 0, kSocCount - 1, kAllTwelve};
-    for (const Claim* claim : claims) {
-      common.price_first = std::max(common.price_first, claim->box.price_first);
-      common.price_last = std::min(common.price_last, claim->box.price_last);
-      common.soc_first = std::max(common.soc_first, claim->box.soc_first);
-      common.soc_last = std::min(common.soc_last, claim->box.soc_last);
-      common.classes &= claim->box.classes;
+    for (const ImpliedBound* bound : bounds) {
+      common.price_first = std::max(common.price_first, bound->box.price_first);
+      common.price_last = std::min(common.price_last, bound->box.price_last);
+      common.soc_first = std::max(common.soc_first, bound->box.soc_first);
+      common.soc_last = std::min(common.soc_last, bound->box.soc_last);
+      common.classes &= bound->box.classes;
     }
     int quarter_hour = 0;
-    while (quarter_hour < kQuarterHourCount && !std::ranges::all_of(claims, [&](const Claim* c) {
+    while (quarter_hour < kQuarterHourCount &&
+           !std::ranges::all_of(bounds, [&](const ImpliedBound* c) {
              return bool{c->quarter_hours[static_cast<std::size_t>(quarter_hour)]};
            })) {
       ++quarter_hour;
@@ -239,15 +240,15 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
     return true;
   };
   std::string state;
-  for (const Claim& least : implied.claims_) {
+  for (const ImpliedBound& least : implied.bounds_) {
     if (least.side != Side::kAtLeast) continue;
-    for (const Claim& most : implied.claims_) {
+    for (const ImpliedBound& most : implied.bounds_) {
       if (most.side != Side::kAtMost) continue;
       const Rule& a = all.rules[least.rule];
       const Rule& b = all.rules[most.rule];
       if (least.action > most.action && meet({&least, &most}, state)) clash(a, b, state);
       if (least.action != Action::kIdle || most.action != Action::kIdle) continue;
-      for (const Claim& gap : implied.claims_) {
+      for (const ImpliedBound& gap : implied.bounds_) {
         if (gap.side != Side::kNotIdle || !meet({&least, &most, &gap}, state)) continue;
         clash(all.rules[gap.rule], least.rule == most.rule ? a : b, state);
       }
@@ -259,13 +260,13 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
                                          ContextKind kind, const Rule& rule) {
   const RuleSet all = with_thresholds(rules, thresholds);
   const ImpliedRanges implied(all, kind);
-  using Claim = ImpliedRanges::Claim;
+  using ImpliedBound = ImpliedRanges::ImpliedBound;
   using Side = ImpliedRanges::Side;
-  const auto is_asked = [&](const Claim& claim) {
-    const Rule& other = all.rules[claim.rule];
+  const auto is_asked = [&](const ImpliedBound& bound) {
+    const Rule& other = all.rules[bound.rule];
     return other.box == rule.box && other.actions() == rule.actions();
   };
-  const auto meet_in_time = [](const Claim& a, const Claim& b) {
+  const auto meet_in_time = [](const ImpliedBound& a, const ImpliedBound& b) {
     if ((a.box.classes & b.box.classes) == 0) return false;
     for (std::size_t q = 0; q < a.quarter_hours.size(); ++q) {
       if (a.quarter_hours[q] && b.quarter_hours[q]) return true;
@@ -273,8 +274,8 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
     return false;
   };
   std::optional<Opposite> nearest;
-  for (const Claim& least : implied.claims_) {
-    for (const Claim& most : implied.claims_) {
+  for (const ImpliedBound& least : implied.bounds_) {
+    for (const ImpliedBound& most : implied.bounds_) {
       if (least.side != Side::kAtLeast || most.side != Side::kAtMost ||
           least.action <= most.action || is_asked(least) == is_asked(most) ||
           !meet_in_time(least, most)) {

@@ -44,7 +44,7 @@ class ImpliedRanges {
   ImpliedRanges(const RuleSet& rules, ContextKind kind);
   [[nodiscard]] ActionRange at(int quarter_hour, int context_class, int soc_index,
                                int price_eur_per_mwh) const;
-  [[nodiscard]] bool empty() const { return claims_.empty(); }
+  [[nodiscard]] bool empty() const { return bounds_.empty(); }
 
  private:
   friend void require_consistent(const RuleSet&, const PriceThresholds&, ContextKind);
@@ -53,17 +53,17 @@ class ImpliedRanges {
 
   enum class Side : std::uint8_t { kAtLeast, kAtMost, kNotIdle };
   /// One side of a demand with all states for which it implies a bound.
-  struct Claim {
+  struct ImpliedBound {
     Side side;
     Action action;
     std::size_t rule;  ///< index
     LatticeBox box;
     std::vector<bool> quarter_hours;
   };
-  void add_claim(const Rule& rule, std::size_t index, Side side, Action action,
+  void add_bound(const Rule& rule, std::size_t index, Side side, Action action,
                  const std::vector<Direction>& directions, ContextKind kind);
 
-  std::vector<Claim> claims_;
+  std::vector<ImpliedBound> bounds_;
 };
 
 }  // namespace bess

@@ -14,8 +14,9 @@ RuleWatch::RuleWatch(std::shared_ptr<Policy> policy, const RuleSet& rules,
       random_(seed),
       counts_(rules.rules.size()) {}
 
-RuleWatch::Look RuleWatch::look(const Rule& rule, Action action, const MarketStep& step,
-                                std::size_t index, double soc_frac) const {
+RuleWatch::RuleCheckResult RuleWatch::check_rule(const Rule& rule, Action action,
+                                                 const MarketStep& step, std::size_t index,
+                                                 double soc_frac) const {
   const Demand& demand = *rule.demand;
   if (!demand.binds_student()) return {false, false};
   const std::optional<RuleInput> along = demand.pairs_along();
@@ -40,7 +41,7 @@ Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_f
   const Action action = policy_->decide(step, index, soc_frac);
   ++decisions_;
   for (std::size_t r = 0; r < counts_.size(); ++r) {
-    const Look found = look(rules_.rules[r], action, step, index, soc_frac);
+    const RuleCheckResult found = check_rule(rules_.rules[r], action, step, index, soc_frac);
     if (!found.applies) continue;
     ++counts_[r].visited;
     counts_[r].visited_broken += found.breaks ? 1 : 0;
@@ -49,7 +50,7 @@ Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_f
     const double drawn_soc_frac = random_.uniform();
     const Action drawn = policy_->decide(step, index, drawn_soc_frac);
     for (std::size_t r = 0; r < counts_.size(); ++r) {
-      const Look found = look(rules_.rules[r], drawn, step, index, drawn_soc_frac);
+      const RuleCheckResult found = check_rule(rules_.rules[r], drawn, step, index, drawn_soc_frac);
       if (!found.applies) continue;
       ++counts_[r].drawn;
       counts_[r].drawn_broken += found.breaks ? 1 : 0;

@@ -44,11 +44,11 @@ class RuleWatch final : public Policy {
 
  private:
   /// Whether the rule can be checked here, and whether `action` violates it.
-  struct Look {
+  struct RuleCheckResult {
     bool applies, breaks;
   };
-  [[nodiscard]] Look look(const Rule& rule, Action action, const MarketStep& step,
-                          std::size_t index, double soc_frac) const;
+  [[nodiscard]] RuleCheckResult check_rule(const Rule& rule, Action action, const MarketStep& step,
+                                           std::size_t index, double soc_frac) const;
 
   std::shared_ptr<Policy> policy_;
   RuleSet rules_;

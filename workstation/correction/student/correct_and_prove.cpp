@@ -44,15 +44,15 @@ Verdict judge(StudentFile student, const DistilOptions& options) {
 /// A student during training and its validation result.
 struct Candidate {
   StudentNet net;
-  ValidationTrial trial;
+  ValidationResult validation;
   int epoch;
-  [[nodiscard]] double score() const { return trial.profit; }
+  [[nodiscard]] double score() const { return validation.profit; }
 };
 
 /// Rounded as in the file, so that an exported header is reproducible.
-void note_cycles(const ValidationTrial& trial, StudentFile& student) {
-  if (!std::isfinite(trial.cycles_per_day)) return;  // no validation day
-  student.cycles_per_day = std::round(trial.cycles_per_day * 100) / 100;
+void note_cycles(const ValidationResult& validation, StudentFile& student) {
+  if (!std::isfinite(validation.cycles_per_day)) return;  // no validation day
+  student.cycles_per_day = std::round(validation.cycles_per_day * 100) / 100;
 }
 
 /// Appends the candidates of a round (ordered by score) in order of time; those before `chosen`
@@ -72,38 +72,38 @@ void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chos
 }
 
 /// Check of the states that decide a monotone student.
-struct Look {
+struct CornerCheck {
   std::vector<LatticeState> states;  ///< with a violation
   ProofRound round;                  ///< number by demand
 };
 
 /// Contexts in which a monotone student violates a rule, checked at the corners of its box; for a
 /// threshold at its price. Fast, where a proof takes seconds.
-Look look_at_corners(const StudentNet& net, const DistilOptions& options,
-                     const RuleLessons& rules) {
+CornerCheck check_corners(const StudentNet& net, const DistilOptions& options,
+                          const RuleSamples& rules) {
   Certificate found{.thresholds = options.correction.thresholds, .rules = options.rules};
   for (const Rule& rule : found.demands().rules) {
     found.counts.push_back({binds_student(rule, net.context.kind)});
   }
-  Look look;
-  std::vector<HardState> corners;
+  CornerCheck corners_found;
+  std::vector<ConstraintState> corners;
   for (int c = 0; c < kContextCount; ++c) {
     rules.corners(context_at(c), corners);
-    for (const HardState& corner : corners) {
+    for (const ConstraintState& corner : corners) {
       if (allows(corner.actions, net.decide(corner.state))) continue;
-      look.states.push_back(corner.state);
+      corners_found.states.push_back(corner.state);
       ++found.counts[corner.rule].violations;
     }
   }
-  look.round = round_of(found);
-  look.round.is_whole = false;
-  return look;
+  corners_found.round = round_of(found);
+  corners_found.round.is_whole = false;
+  return corners_found;
 }
 
 /// Reports each round with an estimate of the remaining time.
-class RoundTeller {
+class RoundReporter {
  public:
-  RoundTeller(const DistilOptions& options, const RoundWatch& watch)
+  RoundReporter(const DistilOptions& options, const RoundWatch& watch)
       : watch_(watch),
         most_(options.correct ? 1 + static_cast<std::size_t>(options.repair_rounds) : 1),
         repair_share_(std::min(
@@ -135,16 +135,16 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
                                      StudentFile student) {
   constexpr double kFirstLook = 0.5;  ///< share of the epochs before the first check
   constexpr int kLooks = 16;
-  const LessonStates lessons = make_lessons(teacher, visited, options);
-  MonotoneDistiller distiller(teacher, lessons, options);
-  const RuleLessons rules(with_built_in(options.correction.thresholds, options.rules),
+  const TrainingBatch batch = make_training_states(teacher, visited, options);
+  MonotoneDistiller distiller(teacher, batch, options);
+  const RuleSamples rules(with_built_in(options.correction.thresholds, options.rules),
                           teacher.context.kind);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   int epochs_before = 0;
   std::vector<LatticeState> counterexamples;
-  RoundTeller teller(options, watch);
+  RoundReporter reporter(options, watch);
   const bool chooses = score && options.correct;
-  for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
+  for (std::size_t round = 0; round < reporter.most() && !interrupted; ++round) {
     std::vector<Candidate> candidates;
     double next_look = kFirstLook;
     const int epochs = round == 0 ? options.epochs : options.repair_epochs;
@@ -154,32 +154,32 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
       StudentNet net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
       net.context = teacher.context;
       student.net = net;
-      candidates.push_back({net, chooses ? score(student) : ValidationTrial{},
+      candidates.push_back({net, chooses ? score(student) : ValidationResult{},
                             epochs_before + static_cast<int>(std::lround(done * epochs))});
     });
     epochs_before += epochs;
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted
     const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-      return look_at_corners(candidate.net, options, rules).states.empty();
+      return check_corners(candidate.net, options, rules).states.empty();
     });
-    const bool is_last = round + 1 == teller.most();
+    const bool is_last = round + 1 == reporter.most();
     if (chooses) {
       note_checkpoints(candidates, static_cast<std::size_t>(obedient - candidates.begin()),
                        static_cast<int>(round) + 1, result.checkpoints);
     }
     if (obedient == candidates.end() && !is_last) {
-      Look look = look_at_corners(candidates.front().net, options, rules);
-      counterexamples = std::move(look.states);
-      teller.add(std::move(look.round), result.rounds);
+      CornerCheck corners_found = check_corners(candidates.front().net, options, rules);
+      counterexamples = std::move(corners_found.states);
+      reporter.add(std::move(corners_found.round), result.rounds);
       continue;
     }
     const Candidate& taken = obedient == candidates.end() ? candidates.front() : *obedient;
     student.net = taken.net;
-    if (chooses) note_cycles(taken.trial, student);
+    if (chooses) note_cycles(taken.validation, student);
     result.verdict = judge(student, options);
     counterexamples = student_of(result.verdict).certificate.counterexamples;
-    teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
+    reporter.add(round_of(student_of(result.verdict).certificate), result.rounds);
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
   }
   result.curve = distiller.curve();
@@ -192,9 +192,9 @@ StudentScore validation_score(const MarketSteps& market, const BatteryParameters
                               double initial_soc_frac) {
   return [&market, &battery, initial_soc_frac](const StudentFile& student) {
     StudentPolicy policy(student.net, student.outlook);
-    const Evaluation trial = evaluate(market, market.days_of(Split::kValidation), policy,
-                                      {battery, initial_soc_frac, true});
-    return ValidationTrial{trial.profit_eur_per_day_per_mwh(), trial.cycles_per_day()};
+    const Evaluation validation = evaluate(market, market.days_of(Split::kValidation), policy,
+                                           {battery, initial_soc_frac, true});
+    return ValidationResult{validation.profit_eur_per_day_per_mwh(), validation.cycles_per_day()};
   };
 }
 
@@ -215,15 +215,15 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
   student.provenance = provenance_of(teacher, options);
   student.learnt_for = teacher.learnt_for;
   if (options.method == CorrectionMethod::kConstruction) {
-    student.outlook = teacher.book;
+    student.outlook = teacher.plan_cache;
     return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
   }
   Distiller distiller(teacher, visited, options);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   double margin_scale = 1;
   int epochs_done = 0;
-  RoundTeller teller(options, watch);
-  for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
+  RoundReporter reporter(options, watch);
+  for (std::size_t round = 0; round < reporter.most() && !interrupted; ++round) {
     const int epochs = round == 0 ? options.epochs : options.repair_epochs;
     distiller.run(epochs, student_of(result.verdict).certificate.counterexamples, margin_scale,
                   interrupted);
@@ -231,16 +231,16 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.net.context = teacher.context;
     epochs_done += epochs;
     const bool is_tried = score && options.correct;  // the last one is taken regardless of profit
-    const ValidationTrial trial = is_tried ? score(student) : ValidationTrial{};
-    if (is_tried) note_cycles(trial, student);
+    const ValidationResult validation = is_tried ? score(student) : ValidationResult{};
+    if (is_tried) note_cycles(validation, student);
     result.verdict = judge(student, options);
     if (is_tried) {
       const bool is_proved = std::holds_alternative<ProvedStudent>(result.verdict);
       result.checkpoints.push_back(
-          {static_cast<int>(round) + 1, epochs_done, trial.profit,
+          {static_cast<int>(round) + 1, epochs_done, validation.profit,
            is_proved ? CheckpointState::kChosen : CheckpointState::kDisobeys});
     }
-    teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
+    reporter.add(round_of(student_of(result.verdict).certificate), result.rounds);
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
     margin_scale *= kMarginGrowth;
   }

@@ -22,10 +22,10 @@ struct CorrectionResult {
 };
 
 /// Validation result of a student: profit, EUR per day per MWh, and full cycles per day.
-struct ValidationTrial {
+struct ValidationResult {
   double profit, cycles_per_day;
 };
-using StudentScore = std::function<ValidationTrial(const StudentFile&)>;
+using StudentScore = std::function<ValidationResult(const StudentFile&)>;
 
 /// A failed proof does not throw: see the verdict. With options.correct false there is one round
 /// without repair and proof: violations are counted in a sample of the contexts. Method

@@ -274,9 +274,9 @@ std::string outlook_section(const OutlookModel& model) {
 }
 
 /// Normal operation of the edge's guard: thresholds, rules and SoC limits only.
-class UndisturbedGuard final : public ReplayedDecider {
+class GuardWithoutLimits final : public ReplayedDecider {
  public:
-  UndisturbedGuard(const StudentNet& net, const std::vector<GuardRule>& rules)
+  GuardWithoutLimits(const StudentNet& net, const std::vector<GuardRule>& rules)
       : net_(net), rules_(rules) {}
 
   std::int32_t power_w(const ReplayedMoment& m) override {
@@ -285,12 +285,12 @@ class UndisturbedGuard final : public ReplayedDecider {
     const std::int16_t context_class = net_.context.class_of(now.month, m.context_centi);
     const LatticeState state =
         make_lattice_state(now, context_class, m.soc_e4, m.price_centi_eur_per_mwh);
-    Action wish = PriceThresholds{}.action_beyond(m.price_centi_eur_per_mwh);
-    if (wish == Action::kIdle) wish = net_.decide(state);
+    Action requested = PriceThresholds{}.action_beyond(m.price_centi_eur_per_mwh);
+    if (requested == Action::kIdle) requested = net_.decide(state);
     const RuleLimits limits =
         rule_limits_at(rules_, rule_point(now, state, m.price_centi_eur_per_mwh));
     const std::int32_t power_w =
-        ruled_power_w(limits, power_sign(wish) * kReplayedPowerW, kReplayedPowerW);
+        ruled_power_w(limits, power_sign(requested) * kReplayedPowerW, kReplayedPowerW);
     const bool is_closed = power_w > 0 ? soc_.is_full : soc_.is_empty;
     return is_closed ? 0 : power_w;
   }
@@ -341,7 +341,7 @@ std::string format_weight_header(const ProvedStudent& student) {
 std::string decision_signature_line(const StudentFile& student) {
   const std::vector<GuardRule> rules = student.certificate.rules.guard_rules();
   const OutlookModel* const outlook = student.outlook ? &student.outlook->model() : nullptr;
-  UndisturbedGuard guard(student.net, rules);
+  GuardWithoutLimits guard(student.net, rules);
   const std::uint32_t hash = hash_by_outlook(ruled_hash(student_weights_hash(student.net), rules),
                                              outlook != nullptr ? outlook->hash() : 0);
   return signature_line(hash, replay_recorded_days(guard, outlook)).c_str();

@@ -272,7 +272,7 @@ Json outlook_json(const OutlookModel& model) {
   return json;
 }
 
-std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std::string& name) {
+std::shared_ptr<const PlanCache> parse_outlook(const JsonReader& in, const std::string& name) {
   OutlookModel model;
   OutlookModel::visit(model, [&in](const char* key, std::int32_t* values, int count) {
     in.wholes(key, std::span(values, static_cast<std::size_t>(count)));
@@ -283,7 +283,7 @@ std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std
         "again or distil again",
         name);
   }
-  return OutlookBook::of(model);
+  return PlanCache::of(model);
 }
 
 Json learnt_for_json(const Entries& learnt_for) {
@@ -425,7 +425,7 @@ StudentFile compiled_student() {
                          .states_evaluated = BESS_STUDENT_STATES_EVALUATED};
   student.provenance = BESS_STUDENT_PROVENANCE;
   if (const OutlookModel* const outlook = exported_outlook()) {
-    student.outlook = OutlookBook::of(*outlook);
+    student.outlook = PlanCache::of(*outlook);
   }
 #ifdef BESS_STUDENT_RULES
   student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");

@@ -12,7 +12,7 @@
 #include "shared/nn/student_net.h"
 #include "workstation/base/answer.h"
 #include "workstation/correction/student/certificate.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 #include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/rl/price_map.h"
 
@@ -35,7 +35,7 @@ struct StudentFile {
   std::string provenance;   ///< one line: prices, teacher, seed, options
   Entries learnt_for{};     ///< training scope of the teacher; empty: unknown
   /// With the outlook context: the plans that give the net its context class.
-  std::shared_ptr<const OutlookBook> outlook = nullptr;
+  std::shared_ptr<const PlanCache> outlook = nullptr;
   std::optional<double> cycles_per_day{};  ///< full cycles on validation days
 };
 

@@ -6,19 +6,20 @@
 #include <utility>
 
 #include "shared/nn/student_net.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 #include "workstation/data/env/policy.h"
 
 namespace bess {
 
 class StudentPolicy final : public Policy {
  public:
-  /// Keeps a reference to the net. `book`: plans for the outlook context.
-  explicit StudentPolicy(const StudentNet& net, std::shared_ptr<const OutlookBook> book = nullptr)
-      : net_(net), book_(std::move(book)) {}
+  /// Keeps a reference to the net. `plan_cache`: plans for the outlook context.
+  explicit StudentPolicy(const StudentNet& net,
+                         std::shared_ptr<const PlanCache> plan_cache = nullptr)
+      : net_(net), plan_cache_(std::move(plan_cache)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
     const std::int32_t price_centi =
-        book_ ? book_->break_even_centi(step, soc_frac) : step.level_centi_eur_per_mwh;
+        plan_cache_ ? plan_cache_->break_even_centi(step, soc_frac) : step.level_centi_eur_per_mwh;
     const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
     return net_.decide(
         {.minute_of_quarter_hour = step.minute_of_quarter_hour,
@@ -30,7 +31,7 @@ class StudentPolicy final : public Policy {
 
  private:
   const StudentNet& net_;
-  std::shared_ptr<const OutlookBook> book_;
+  std::shared_ptr<const PlanCache> plan_cache_;
 };
 
 }  // namespace bess

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
 
 namespace bess {
@@ -276,7 +276,7 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
   std::vector<Certificate> parts(static_cast<std::size_t>(options.threads));
   std::atomic<int> done{0};
   Progress progress("verify", "contexts", contexts);
-  in_parallel(parts.size(), options.threads, [&](std::size_t w) {
+  parallel_for(parts.size(), options.threads, [&](std::size_t w) {
     const auto worker = static_cast<int>(w);
     Certificate& part = parts[w];
     GridFiller filler(net, bounds);

@@ -79,15 +79,15 @@ std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
 
 /// Missing share of full power ordered at mid SoC: power that did not flow, or the cut of the order
 /// that the battery reported.
-struct Missing {
+struct MissingPower {
   int quarter_hour;
   double share;
 };
 
-std::vector<Missing> missing_of(const std::vector<Interval>& intervals,
-                                const BatteryParameters& nameplate, double standby_w) {
+std::vector<MissingPower> missing_of(const std::vector<Interval>& intervals,
+                                     const BatteryParameters& nameplate, double standby_w) {
   const double room_frac = kColdRoomFrac * (nameplate.soc_max_frac - nameplate.soc_min_frac);
-  std::vector<Missing> missing;
+  std::vector<MissingPower> missing;
   for (const Interval& i : intervals) {
     const double ordered_w = i.begin.ordered_w;
     const bool is_full = std::fabs(ordered_w) == nameplate.power_w_max || i.begin.is_cut;
@@ -104,10 +104,10 @@ std::vector<Missing> missing_of(const std::vector<Interval>& intervals,
 
 /// Fits one daily time range with a constant missing share: the range that explains most squares.
 /// Its uncertainty covers the ranges that explain equally much.
-void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
+void fit_cold(const std::vector<MissingPower>& missing, BatteryFit& fit) {
   std::array<double, 2 * kQuarterHourCount + 1> sum{}, count{};  // cumulative, over two days
   double squares = 0;
-  for (const Missing& m : missing) {
+  for (const MissingPower& m : missing) {
     squares += m.share * m.share;
     for (const int day : {0, kQuarterHourCount}) {
       sum[static_cast<std::size_t>(m.quarter_hour + day + 1)] += m.share;
@@ -116,11 +116,11 @@ void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
   }
   std::partial_sum(sum.begin(), sum.end(), sum.begin());
   std::partial_sum(count.begin(), count.end(), count.begin());
-  struct Stretch {
+  struct HourRange {
     int from = 0, to = 0;
     double share = 0, count = 0, explained = 0;
   };
-  std::vector<Stretch> stretches;
+  std::vector<HourRange> hour_ranges;
   for (int from = 0; from < kQuarterHourCount; ++from) {
     for (int to = from + 1; to <= from + kColdQuarterHoursMax; ++to) {
       const double inside =
@@ -128,17 +128,17 @@ void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
       if (inside < kTaperedMin) continue;
       const double mean =
           (sum[static_cast<std::size_t>(to)] - sum[static_cast<std::size_t>(from)]) / inside;
-      stretches.push_back({from, to, mean, inside, inside * mean * mean});
+      hour_ranges.push_back({from, to, mean, inside, inside * mean * mean});
     }
   }
-  if (stretches.empty()) return;
-  const Stretch best = *std::ranges::max_element(stretches, {}, &Stretch::explained);
+  if (hour_ranges.empty()) return;
+  const HourRange best = *std::ranges::max_element(hour_ranges, {}, &HourRange::explained);
   const double variance = std::max(squares - best.explained, 1e-9) /
                           static_cast<double>(std::max<std::size_t>(missing.size(), 2) - 1);
   const double error = std::sqrt(variance / best.count);
   if (best.share < kColdShown || best.share < kSure * error) return;
   double from_error = 0, to_error = 0;
-  for (const Stretch& s : stretches) {
+  for (const HourRange& s : hour_ranges) {
     if (s.explained < best.explained - variance) continue;
     from_error = std::max(from_error, std::abs(s.from - best.from) / 4.0);
     to_error = std::max(to_error, std::abs(s.to - best.to) / 4.0);
@@ -152,7 +152,7 @@ void fit_cold(const std::vector<Missing>& missing, BatteryFit& fit) {
 }
 
 /// Reading at full power: distance from the bound and share delivered.
-struct Reach {
+struct TaperPoint {
   double room_frac;
   double share;
 };
@@ -163,22 +163,22 @@ struct TaperFit {
 
 /// Shares fall by `1 - room / width` times the share missing at the bound. This is linear for each
 /// width; the best width is found by search.
-std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
-  struct Trial {
+std::optional<TaperFit> fit_taper(const std::vector<TaperPoint>& taper_points) {
+  struct WidthFit {
     double width = 0, missing = 0, misfit = INFINITY, weight = 0;
     int inside = 0;
   };
   const auto try_width = [&](double width) {
-    Trial t{.width = width, .misfit = 0};
+    WidthFit t{.width = width, .misfit = 0};
     double products = 0;
-    for (const Reach& r : reaches) {
+    for (const TaperPoint& r : taper_points) {
       const double depth = std::max(1 - r.room_frac / width, 0.0);
       t.weight += depth * depth;
       products += depth * (1 - r.share);
       t.inside += depth > 0 ? 1 : 0;
     }
     t.missing = t.weight > 0 ? products / t.weight : 0;
-    for (const Reach& r : reaches) {
+    for (const TaperPoint& r : taper_points) {
       const double depth = std::max(1 - r.room_frac / width, 0.0);
       t.misfit += std::pow(1 - r.share - depth * t.missing, 2);
     }
@@ -186,14 +186,14 @@ std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
   };
   constexpr double kWidthMin = 0.01, kWidthStep = 0.0005;
   constexpr int kWidths = 1'200;  // to 0.61
-  std::vector<Trial> trials;
-  for (int i = 0; i < kWidths; ++i) trials.push_back(try_width(kWidthMin + kWidthStep * i));
-  const Trial& best = *std::ranges::min_element(trials, {}, &Trial::misfit);
+  std::vector<WidthFit> fits;
+  for (int i = 0; i < kWidths; ++i) fits.push_back(try_width(kWidthMin + kWidthStep * i));
+  const WidthFit& best = *std::ranges::min_element(fits, {}, &WidthFit::misfit);
   if (best.inside < kTaperedMin || best.missing < kTaperShown) return std::nullopt;
-  const auto count = static_cast<int>(reaches.size());
+  const auto count = static_cast<int>(taper_points.size());
   const double variance = std::max(best.misfit, 1e-12) / std::max(count - 2, 1);
   double low = best.width, high = best.width;  // widths within one standard error of the best
-  for (const Trial& t : trials) {
+  for (const WidthFit& t : fits) {
     if (t.misfit > best.misfit + variance) continue;
     low = std::min(low, t.width);
     high = std::max(high, t.width);
@@ -205,7 +205,7 @@ std::optional<TaperFit> fit_taper(const std::vector<Reach>& reaches) {
 std::optional<TaperFit> taper_of(const std::vector<Interval>& intervals,
                                  const BatteryParameters& nameplate, double standby_w, int sign,
                                  const ColdHours& cold) {
-  std::vector<Reach> reaches;
+  std::vector<TaperPoint> taper_points;
   for (const Interval& i : intervals) {
     const double full_w = sign * nameplate.power_w_max;
     if (i.before_w != full_w || i.begin.ordered_w != full_w) continue;
@@ -213,9 +213,9 @@ std::optional<TaperFit> taper_of(const std::vector<Interval>& intervals,
     const double room_frac = sign > 0 ? nameplate.soc_max_frac - i.end.soc_frac
                                       : i.end.soc_frac - nameplate.soc_min_frac;
     if (room_frac <= 0.001) continue;  // idle at the bound
-    reaches.push_back({room_frac, (i.end.power_w - standby_w) / full_w});
+    taper_points.push_back({room_frac, (i.end.power_w - standby_w) / full_w});
   }
-  return reaches.empty() ? std::nullopt : fit_taper(reaches);
+  return taper_points.empty() ? std::nullopt : fit_taper(taper_points);
 }
 
 /// Consecutive cycles in one direction: grid-side energy, its square, and energy into the cells.

@@ -53,18 +53,19 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) 
   return classes;
 }
 
-ContextClasses fit_outlook_classes(const MarketSteps& market, const OutlookBook& book) {
+ContextClasses fit_outlook_classes(const MarketSteps& market, const PlanCache& plan_cache) {
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
-  const double low_frac = static_cast<double>(book.model().soc_min_e4) / kSocFullE4;
-  const double width_frac = static_cast<double>(book.model().soc_max_e4) / kSocFullE4 - low_frac;
+  const double low_frac = static_cast<double>(plan_cache.model().soc_min_e4) / kSocFullE4;
+  const double width_frac =
+      static_cast<double>(plan_cache.model().soc_max_e4) / kSocFullE4 - low_frac;
   std::vector<std::int32_t> prices_centi;
   std::size_t drawn = 0;
   for (const MarketDay& day : training) {
     for (const MarketStep& step : market.of(day)) {
       constexpr std::size_t kStride = 37;  // coprime: every SoC with every hour
       const auto soc = static_cast<double>(drawn++ * kStride % kSocCount) / (kSocCount - 1);
-      prices_centi.push_back(book.break_even_centi(step, low_frac + soc * width_frac));
+      prices_centi.push_back(plan_cache.break_even_centi(step, low_frac + soc * width_frac));
     }
   }
   std::ranges::sort(prices_centi);

@@ -7,7 +7,7 @@
 
 #include "shared/context_classes.h"
 #include "workstation/data/env/market_steps.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 
 namespace bess {
 
@@ -20,7 +20,7 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind);
 
 /// Outlook: each class has the same number of the training days' break-even prices, at SoCs of the
 /// whole window.
-ContextClasses fit_outlook_classes(const MarketSteps& market, const OutlookBook& book);
+ContextClasses fit_outlook_classes(const MarketSteps& market, const PlanCache& plan_cache);
 
 /// Representative level of a class, EUR/MWh: its middle; for the open classes as far out as in
 /// their neighbours.

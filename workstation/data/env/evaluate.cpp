@@ -50,7 +50,7 @@ class Runner {
       if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
       const double power_w =
           ordered_power_w(battery, step, action, policy_.power_share_max(step, soc_frac_));
-      const auto [moved, power] = followed_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
+      const auto [moved, power] = response_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
       const double profit_eur = step_profit_eur(battery, mwh, kHoursPerStep, step.paid_eur_per_mwh);
       result.profit_eur += profit_eur;

@@ -40,7 +40,7 @@ struct DayResult {
   double soc_end_frac;
   double throughput_mwh = 0;  ///< charged and discharged, grid side
   double soc_start_frac = 0;
-  double charge_value_eur = 0;  ///< part of the profit: final charge (charge_left.h)
+  double charge_value_eur = 0;  ///< part of the profit: final charge (final_charge.h)
 };
 
 /// Final charge as a part of the profit, EUR per day per MWh of capacity; NaN if not valued.

@@ -200,18 +200,18 @@ RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>
 
 namespace {
 
-using Made = std::shared_ptr<Policy>;
+using PolicyPtr = std::shared_ptr<Policy>;
 
-Made rule(double low_eur_per_mwh, double high_eur_per_mwh) {
+PolicyPtr rule(double low_eur_per_mwh, double high_eur_per_mwh) {
   return std::make_shared<RuleBasedPolicy>(low_eur_per_mwh, high_eur_per_mwh);
 }
 
-Made paper_rule(const MarketSteps&, const BatteryParameters&) {
+PolicyPtr paper_rule(const MarketSteps&, const BatteryParameters&) {
   return rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
 }
 
 /// Quartiles of the training days' settled prices: the paper's rule without its look-ahead.
-Made quartile_rule(const MarketSteps& market, const BatteryParameters&) {
+PolicyPtr quartile_rule(const MarketSteps& market, const BatteryParameters&) {
   std::vector<double> prices =
       market.prices_of(market.days_of(Split::kTrain), &MarketStep::paid_eur_per_mwh);
   require_training_days(prices.size());
@@ -219,25 +219,26 @@ Made quartile_rule(const MarketSteps& market, const BatteryParameters&) {
   return rule(prices[prices.size() / 4], prices[prices.size() * 3 / 4]);
 }
 
-Made tuned_rule(const MarketSteps& market, const BatteryParameters& battery) {
+PolicyPtr tuned_rule(const MarketSteps& market, const BatteryParameters& battery) {
   const RuleThresholds t = tune_rule(market, market.days_of(Split::kTrain), battery);
   return rule(t.low_eur_per_mwh, t.high_eur_per_mwh);
 }
 
 /// Fits a planner on the training days, within a limit on daily full cycles.
 template <typename Planner, typename... Options>
-Made fit(const MarketSteps& market, const BatteryParameters& battery, const Options&... options) {
+PolicyPtr fit(const MarketSteps& market, const BatteryParameters& battery,
+              const Options&... options) {
   const std::vector<MarketDay> days = market.days_of(Split::kTrain);
   return std::make_shared<Planner>(
       market, days, battery_with_shadow_price<Planner>(market, days, battery, options...),
       options...);
 }
 
-Made program_by_hour(const MarketSteps& market, const BatteryParameters& battery) {
+PolicyPtr program_by_hour(const MarketSteps& market, const BatteryParameters& battery) {
   return fit<StochasticProgramPolicy>(market, battery, StochasticProgramOptions{.level_weight = 0});
 }
 
-Made foresight(const MarketSteps&, const BatteryParameters& battery) {
+PolicyPtr foresight(const MarketSteps&, const BatteryParameters& battery) {
   return std::make_shared<ForesightPolicy>(battery);
 }
 

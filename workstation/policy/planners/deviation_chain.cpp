@@ -40,7 +40,7 @@ int DeviationChain::bin_of(double deviation) const {
   return static_cast<int>(std::ranges::lower_bound(bin_edges_, deviation) - bin_edges_.begin());
 }
 
-DeviationChain::Between DeviationChain::between(double deviation) const {
+DeviationChain::BinPosition DeviationChain::between(double deviation) const {
   const auto upper = std::ranges::upper_bound(bin_centres_, deviation) - bin_centres_.begin();
   const int lower = std::clamp(static_cast<int>(upper) - 1, 0, kBins - 2);
   const double width = bin_centres_[lower + 1] - bin_centres_[lower];

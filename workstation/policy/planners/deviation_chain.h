@@ -31,16 +31,16 @@ class DeviationChain {
   explicit DeviationChain(BinaryReader& in);
 
   /// Position between two bins' mean deviations.
-  struct Between {
+  struct BinPosition {
     int lower;
     double weight;  ///< of the upper neighbour
   };
-  [[nodiscard]] Between between(double deviation) const;
+  [[nodiscard]] BinPosition between(double deviation) const;
   /// Mean deviation of the newest price in a bin, EUR/MWh.
   [[nodiscard]] double centre(int bin) const { return bin_centres_[static_cast<std::size_t>(bin)]; }
   /// Mean deviation paid, EUR/MWh.
   [[nodiscard]] double paid(int phase, int bin) const { return paid_[phase * kBins + bin]; }
-  [[nodiscard]] double paid(int phase, Between bins) const {
+  [[nodiscard]] double paid(int phase, BinPosition bins) const {
     const double* at = &paid_[phase * kBins + bins.lower];
     return at[0] + bins.weight * (at[1] - at[0]);
   }

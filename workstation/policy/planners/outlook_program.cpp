@@ -11,7 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 
 namespace bess {
 namespace {
@@ -87,28 +87,28 @@ std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
 
 }  // namespace
 
-struct OutlookProgram::Kept {
-  struct Seen {
+struct OutlookProgram::ValueCache {
+  struct Entry {
     MarketStep step;
-    Sight sees;                         ///< without `ahead`
+    GridPosition position;              ///< without `ahead`
     float ahead_eur[2][2][kSocPoints];  ///< by level and bin
   };
   std::mutex mutex;
-  std::unordered_map<std::int64_t, Seen> by_utc_s;
+  std::unordered_map<std::int64_t, Entry> by_utc_s;
 
-  [[nodiscard]] const Seen* find(const MarketStep& step) const {
+  [[nodiscard]] const Entry* find(const MarketStep& step) const {
     const auto found = by_utc_s.find(step.utc_s);
     return found != by_utc_s.end() && found->second.step == step ? &found->second : nullptr;
   }
-  const Seen& add(const MarketStep& step, const Sight& sees) {
+  const Entry& add(const MarketStep& step, const GridPosition& position) {
     if (by_utc_s.size() >= kKeptMax) by_utc_s.clear();
-    Seen& seen = by_utc_s.insert_or_assign(step.utc_s, Seen{step, sees, {}}).first->second;
-    for (std::size_t l = 0; l < sees.ahead.size(); ++l) {
-      if (sees.ahead[l] == nullptr) continue;
-      std::copy_n(sees.ahead[l], 2 * kSocPoints, &seen.ahead_eur[l][0][0]);
-      seen.sees.ahead[l] = &seen.ahead_eur[l][0][0];
+    Entry& entry = by_utc_s.insert_or_assign(step.utc_s, Entry{step, position, {}}).first->second;
+    for (std::size_t l = 0; l < position.ahead.size(); ++l) {
+      if (position.ahead[l] == nullptr) continue;
+      std::copy_n(position.ahead[l], 2 * kSocPoints, &entry.ahead_eur[l][0][0]);
+      entry.position.ahead[l] = &entry.ahead_eur[l][0][0];
     }
-    return seen;
+    return entry;
   }
 };
 
@@ -118,7 +118,7 @@ OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<Mark
       options_(options),
       grid_(battery, kSocPoints),
       recursion_(battery_, grid_, options_.gamma),
-      kept_(std::make_shared<Kept>()) {
+      cache_(std::make_shared<ValueCache>()) {
   require_training_days(days.size());
   fit_means(market, days);
   fit_lasting(market, days);
@@ -150,7 +150,7 @@ OutlookProgram::OutlookProgram(BinaryReader& in)
       levels_(in.take_list<double>()),
       chain_(in),
       recursion_(battery_, grid_, options_.gamma),
-      kept_(std::make_shared<Kept>()) {
+      cache_(std::make_shared<ValueCache>()) {
   if (levels_.size() < 2) in.damaged("has a program with an outlook of another size");
   solve_usual_days();
 }
@@ -362,7 +362,7 @@ const std::vector<float>& OutlookProgram::continuation_of(int level, Plan& plan)
   return continuation;
 }
 
-DeviationChain::Between OutlookProgram::between_levels(double level) const {
+DeviationChain::BinPosition OutlookProgram::between_levels(double level) const {
   const double step = levels_[1] - levels_[0];
   const auto count = static_cast<int>(levels_.size());
   const double x = std::clamp((level - levels_[0]) / step, 0.0, count - 1.0);
@@ -370,7 +370,8 @@ DeviationChain::Between OutlookProgram::between_levels(double level) const {
   return {lower, x - lower};
 }
 
-OutlookProgram::Sight OutlookProgram::sight_of(const MarketStep& step, Plan& plan) const {
+OutlookProgram::GridPosition OutlookProgram::grid_position_of(const MarketStep& step,
+                                                              Plan& plan) const {
   const double level = step.level_eur_per_mwh();
   const auto bins =
       chain_.between(step.observed_eur_per_mwh - usual_at(plan, row_utc_s(step), level));
@@ -388,37 +389,38 @@ OutlookProgram::Sight OutlookProgram::sight_of(const MarketStep& step, Plan& pla
 
 std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const {
-  return worth(sight_of(step, plan), soc_frac);
+  return worth(grid_position_of(step, plan), soc_frac);
 }
 
 std::array<double, kActionCount> OutlookProgram::kept_action_values(const MarketStep& step,
                                                                     double soc_frac,
                                                                     Plan& plan) const {
-  const std::lock_guard lock(kept_->mutex);
-  const Kept::Seen* seen = kept_->find(step);
-  if (seen == nullptr) {
+  const std::lock_guard lock(cache_->mutex);
+  const ValueCache::Entry* entry = cache_->find(step);
+  if (entry == nullptr) {
     if (!plan.serves(step)) plan = plan_of(step);
-    seen = &kept_->add(step, sight_of(step, plan));
+    entry = &cache_->add(step, grid_position_of(step, plan));
   }
-  return worth(seen->sees, soc_frac);
+  return worth(entry->position, soc_frac);
 }
 
 void OutlookProgram::prepare(const MarketSteps& market, const std::vector<MarketDay>& days,
                              int threads) const {
   if (days.size() * kStepsPerDay > kKeptMax) return;
-  in_parallel(days.size(), threads, [&](std::size_t d) {
+  parallel_for(days.size(), threads, [&](std::size_t d) {
     Plan plan;
     for (const MarketStep& step : market.of(days[d])) {
       if (!plan.serves(step)) plan = plan_of(step);
-      const Sight sees = sight_of(step, plan);
-      const std::lock_guard lock(kept_->mutex);
-      kept_->add(step, sees);
+      const GridPosition position = grid_position_of(step, plan);
+      const std::lock_guard lock(cache_->mutex);
+      cache_->add(step, position);
     }
   });
 }
 
-std::array<double, kActionCount> OutlookProgram::worth(const Sight& sees, double soc_frac) const {
-  const auto& [ahead, bins, anchors, price, full_w] = sees;
+std::array<double, kActionCount> OutlookProgram::worth(const GridPosition& position,
+                                                       double soc_frac) const {
+  const auto& [ahead, bins, anchors, price, full_w] = position;
   std::array<double, kActionCount> values_eur{};
   for (int a = 0; a < kActionCount; ++a) {
     const double wanted_w = power_sign(static_cast<Action>(a)) * full_w;
@@ -437,18 +439,18 @@ std::array<double, kActionCount> OutlookProgram::worth(const Sight& sees, double
 }
 
 double OutlookProgram::continuation(const MarketStep& step, Plan& plan, float* value_eur) const {
-  const Sight sees = sight_of(step, plan);
+  const GridPosition position = grid_position_of(step, plan);
   for (int p = 0; p < kSocPoints; ++p) {
     double ahead = 0;
-    for (std::size_t l = 0; l < sees.ahead.size(); ++l) {
-      if (sees.ahead[l] == nullptr) continue;
-      const double weight = l == 0 ? 1 - sees.levels.weight : sees.levels.weight;
-      ahead += weight * ((1 - sees.bins.weight) * double{sees.ahead[l][p]} +
-                         sees.bins.weight * double{sees.ahead[l][kSocPoints + p]});
+    for (std::size_t l = 0; l < position.ahead.size(); ++l) {
+      if (position.ahead[l] == nullptr) continue;
+      const double weight = l == 0 ? 1 - position.levels.weight : position.levels.weight;
+      ahead += weight * ((1 - position.bins.weight) * double{position.ahead[l][p]} +
+                         position.bins.weight * double{position.ahead[l][kSocPoints + p]});
     }
     value_eur[p] = static_cast<float>(ahead);
   }
-  return sees.price_eur_per_mwh;
+  return position.price_eur_per_mwh;
 }
 
 Action OutlookPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {

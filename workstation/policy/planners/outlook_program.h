@@ -101,15 +101,16 @@ class OutlookProgram {
 
  private:
   /// Position of a step among the computed values: two levels with two bins each.
-  struct Sight {
+  struct GridPosition {
     std::array<const float*, 2> ahead;  ///< by level, at the lower bin; null: zero weight
-    DeviationChain::Between bins, levels;
+    DeviationChain::BinPosition bins, levels;
     double price_eur_per_mwh;  ///< expected
     double full_power_w;       ///< of the step
   };
-  struct Kept;
-  [[nodiscard]] Sight sight_of(const MarketStep& step, Plan& plan) const;
-  [[nodiscard]] std::array<double, kActionCount> worth(const Sight& sees, double soc_frac) const;
+  struct ValueCache;
+  [[nodiscard]] GridPosition grid_position_of(const MarketStep& step, Plan& plan) const;
+  [[nodiscard]] std::array<double, kActionCount> worth(const GridPosition& position,
+                                                       double soc_frac) const;
   [[nodiscard]] double usual(double day_ahead, int quarter_hour, double level) const;
   /// D at a step's row or payment: published price, or its substitute.
   [[nodiscard]] double known_or_usual(const MarketStep& step, std::int64_t utc_s) const;
@@ -123,7 +124,7 @@ class OutlookProgram {
   void solve_usual_days();
   [[nodiscard]] double height_before(const MarketStep& step) const;
   const std::vector<float>& continuation_of(int level, Plan& plan) const;
-  [[nodiscard]] DeviationChain::Between between_levels(double level) const;
+  [[nodiscard]] DeviationChain::BinPosition between_levels(double level) const;
 
   BatteryParameters battery_;
   OutlookOptions options_;
@@ -135,7 +136,7 @@ class OutlookProgram {
   DeviationChain chain_;
   StorageRecursion recursion_;
   std::vector<std::vector<float>> usual_days_;  ///< by level: [bin][SoC point] at midnight, EUR
-  std::shared_ptr<Kept> kept_;
+  std::shared_ptr<ValueCache> cache_;
 };
 
 class OutlookPolicy final : public Policy {

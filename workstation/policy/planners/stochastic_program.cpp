@@ -150,7 +150,7 @@ StochasticProgram::StochasticProgram(BinaryReader& in)
   solve();
 }
 
-StochasticProgram::Situation StochasticProgram::situation_of(const MarketStep& step) {
+StochasticProgram::MarketState StochasticProgram::market_state_of(const MarketStep& step) {
   return {.step_of_day = step_of_day(step),
           .row_quarter_hour = step.row_quarter_hour(),
           .price_eur_per_mwh = step.observed_eur_per_mwh,
@@ -167,7 +167,7 @@ double StochasticProgram::usual_paid(int step, double level) const {
   return 0.5 * (usual(first, level) + usual(second, level));
 }
 
-StochasticProgram::Between StochasticProgram::between_levels(double level) const {
+StochasticProgram::BinPosition StochasticProgram::between_levels(double level) const {
   const auto count = static_cast<int>(levels_.size());
   if (count == 1) return {0, 0};
   const double step = levels_[1] - levels_[0];
@@ -216,7 +216,7 @@ void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<M
   std::vector<DeviationChain::Sample> samples;
   std::int64_t follows_utc_s = 0;
   for_each_step(market, days, [&](const MarketStep& step) {
-    const Situation at = situation_of(step);
+    const MarketState at = market_state_of(step);
     const double level = at.level_eur_per_mwh;
     samples.push_back(
         {step.half_hour_phase, at.price_eur_per_mwh - usual(at.row_quarter_hour, level),
@@ -240,10 +240,10 @@ void StochasticProgram::solve() {
   }
 }
 
-StochasticProgram::Outlook StochasticProgram::outlook(const Situation& at) const {
+StochasticProgram::Outlook StochasticProgram::outlook(const MarketState& at) const {
   const double level = at.level_eur_per_mwh;
-  const Between bins = chain_.between(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
-  const Between anchors = between_levels(level);
+  const BinPosition bins = chain_.between(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
+  const BinPosition anchors = between_levels(level);
   const int phase = at.step_of_day % kPhases;
   Outlook outlook{};
   outlook.price_eur_per_mwh = chain_.paid(phase, bins) + usual_paid(at.step_of_day, level);
@@ -259,7 +259,7 @@ StochasticProgram::Outlook StochasticProgram::outlook(const Situation& at) const
   return outlook;
 }
 
-std::array<double, kActionCount> StochasticProgram::action_values(const Situation& at,
+std::array<double, kActionCount> StochasticProgram::action_values(const MarketState& at,
                                                                   double soc_frac) const {
   const Outlook sees = outlook(at);
   const double full_w = battery_.power_w_at(quarter_hour_of(at.step_of_day));
@@ -280,11 +280,11 @@ std::array<double, kActionCount> StochasticProgram::action_values(const Situatio
   return worth;
 }
 
-double StochasticProgram::expected_price(const Situation& at) const {
+double StochasticProgram::expected_price(const MarketState& at) const {
   return outlook(at).price_eur_per_mwh;
 }
 
-void StochasticProgram::continuation(const Situation& at, float* value_eur) const {
+void StochasticProgram::continuation(const MarketState& at, float* value_eur) const {
   const Outlook sees = outlook(at);
   for (int p = 0; p < kSocPoints; ++p) {
     double ahead = 0;
@@ -295,7 +295,7 @@ void StochasticProgram::continuation(const Situation& at, float* value_eur) cons
   }
 }
 
-void StochasticProgram::values(const Situation& at, float* value_eur) const {
+void StochasticProgram::values(const MarketState& at, float* value_eur) const {
   for (int i = 0; i < kSocPoints; ++i) {
     const auto worth = action_values(at, grid_.at(i));
     value_eur[i] = static_cast<float>(*std::ranges::max_element(worth));

@@ -87,7 +87,7 @@ class StochasticProgram {
   static constexpr int kQuarterHours = 96;
 
   /// Inputs of a decision without the SoC.
-  struct Situation {
+  struct MarketState {
     int step_of_day;           ///< 0..719, local
     int row_quarter_hour;      ///< 0..95, of the newest price
     double price_eur_per_mwh;  ///< newest price
@@ -102,7 +102,7 @@ class StochasticProgram {
   void save(BinaryWriter& out) const;
   explicit StochasticProgram(BinaryReader& in);
 
-  [[nodiscard]] static Situation situation_of(const MarketStep& step);
+  [[nodiscard]] static MarketState market_state_of(const MarketStep& step);
   /// Most frequent quarter-hour of the newest price at this minute on the fitted days; in the first
   /// minutes it is the previous quarter-hour.
   [[nodiscard]] int row_quarter_hour(int quarter_hour, int minute_of_quarter_hour) const {
@@ -112,23 +112,23 @@ class StochasticProgram {
   }
   /// Value of each action, EUR over an infinite horizon, up to a constant: [discharge, idle,
   /// charge].
-  [[nodiscard]] std::array<double, kActionCount> action_values(const Situation& at,
+  [[nodiscard]] std::array<double, kActionCount> action_values(const MarketState& at,
                                                                double soc_frac) const;
   /// Value of the SoC grid's points [kSocPoints], EUR, for shaping rewards.
-  void values(const Situation& at, float* value_eur) const;
+  void values(const MarketState& at, float* value_eur) const;
   /// Parts of action_values(): expected price of the step, and discounted value of the SoC grid's
   /// points [kSocPoints] after it, EUR.
-  [[nodiscard]] double expected_price(const Situation& at) const;
-  void continuation(const Situation& at, float* value_eur) const;
+  [[nodiscard]] double expected_price(const MarketState& at) const;
+  void continuation(const MarketState& at, float* value_eur) const;
   [[nodiscard]] double gamma() const { return options_.gamma; }
   [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
 
  private:
-  using Between = DeviationChain::Between;
+  using BinPosition = DeviationChain::BinPosition;
   [[nodiscard]] double usual(int quarter_hour, double level) const;
   [[nodiscard]] double usual_paid(int step_of_day, double level) const;
-  [[nodiscard]] Between between_levels(double level) const;
+  [[nodiscard]] BinPosition between_levels(double level) const;
   void fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve();
@@ -138,7 +138,7 @@ class StochasticProgram {
     std::array<double, 4> weight;
     double price_eur_per_mwh;
   };
-  [[nodiscard]] Outlook outlook(const Situation& at) const;
+  [[nodiscard]] Outlook outlook(const MarketState& at) const;
   /// Index in `continuation_` of the first SoC point of a level, step and bin.
   [[nodiscard]] static std::size_t continuation_at(int level, int step_of_day, int bin) {
     return ((static_cast<std::size_t>(level) * kStepsPerDay + step_of_day) * kBins + bin) *
@@ -165,7 +165,7 @@ class StochasticProgramPolicy final : public Policy {
                           const StochasticProgramOptions& options = {})
       : program_(market, days, battery, options) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
-    const auto worth = program_.action_values(StochasticProgram::situation_of(step), soc_frac);
+    const auto worth = program_.action_values(StochasticProgram::market_state_of(step), soc_frac);
     return argmax_action(worth.data());
   }
 

@@ -23,7 +23,7 @@ enum class Horizon {
 
 /// With a program, rewards are r' of program_residual.h, centred; otherwise they are money.
 struct RewardShaping {
-  Foundation program{};
+  BasePrograms program{};
   int threads = 1;  ///< for its plans
 };
 

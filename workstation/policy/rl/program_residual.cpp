@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "shared/exchange_cost.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/policy/rl/transition.h"
 
 namespace bess {
@@ -15,11 +15,11 @@ static_assert(kSocPoints == OutlookProgram::kSocPoints);
 
 }  // namespace
 
-ProgramRows::ProgramRows(Foundation foundation)
-    : foundation_(std::move(foundation)),
-      grid_(foundation_.battery(), kSocPoints),
-      break_even_grid_(foundation_.battery(), OutlookModel::kSocPoints),
-      unit_per_eur_(learned_per_eur(foundation_.battery())) {}
+ProgramRows::ProgramRows(BasePrograms base_programs)
+    : base_programs_(std::move(base_programs)),
+      grid_(base_programs_.battery(), kSocPoints),
+      break_even_grid_(base_programs_.battery(), OutlookModel::kSocPoints),
+      unit_per_eur_(learned_per_eur(base_programs_.battery())) {}
 
 std::uint32_t ProgramRows::add(const MarketStep& step) {
   if (is_outlook()) {
@@ -28,10 +28,10 @@ std::uint32_t ProgramRows::add(const MarketStep& step) {
   }
   if (utc_s_.empty() || step.utc_s != utc_s_.back()) {
     continuation_.resize(continuation_.size() + kSocPoints);
-    const auto at = StochasticProgram::situation_of(step);
-    foundation_.program->continuation(at, &*(continuation_.end() - kSocPoints));
-    price_eur_per_mwh_.push_back(foundation_.program->expected_price(at));
-    full_power_w_.push_back(foundation_.battery().power_w_at(step.quarter_hour));
+    const auto at = StochasticProgram::market_state_of(step);
+    base_programs_.program->continuation(at, &*(continuation_.end() - kSocPoints));
+    price_eur_per_mwh_.push_back(base_programs_.program->expected_price(at));
+    full_power_w_.push_back(base_programs_.battery().power_w_at(step.quarter_hour));
     utc_s_.push_back(step.utc_s);
   }
   return static_cast<std::uint32_t>(utc_s_.size() - 1);
@@ -48,21 +48,21 @@ void ProgramRows::plan(const MarketSteps& market, const std::vector<MarketDay>& 
   price_eur_per_mwh_.resize(utc_s_.size());
   full_power_w_.resize(utc_s_.size());
   begins_plan_.resize(utc_s_.size());
-  in_parallel(days.size(), threads,
-              [&](std::size_t d) { plan_day(market.of(days[d]), first_row[d]); });
+  parallel_for(days.size(), threads,
+               [&](std::size_t d) { plan_day(market.of(days[d]), first_row[d]); });
 }
 
 void ProgramRows::plan_day(std::span<const MarketStep> steps, std::size_t row) {
-  const OutlookModel& model = foundation_.book->model();
+  const OutlookModel& model = base_programs_.plan_cache->model();
   const auto points = static_cast<std::size_t>(break_even_grid_.count);
   OutlookProgram::Plan plan;
   for (const MarketStep& step : steps) {
     begins_plan_[row] = plan.serves(step) ? 0 : 1;
-    if (begins_plan_[row] != 0) plan = foundation_.outlook->plan_of(step);
+    if (begins_plan_[row] != 0) plan = base_programs_.outlook->plan_of(step);
     price_eur_per_mwh_[row] =
-        foundation_.outlook->continuation(step, plan, &continuation_[row * kSocPoints]);
-    full_power_w_[row] = foundation_.battery().power_w_at(step.quarter_hour);
-    const auto integers = foundation_.book->plan_for(step);
+        base_programs_.outlook->continuation(step, plan, &continuation_[row * kSocPoints]);
+    full_power_w_[row] = base_programs_.battery().power_w_at(step.quarter_hour);
+    const auto integers = base_programs_.plan_cache->plan_for(step);
     for (std::size_t p = 0; p < points; ++p) {
       const double soc_frac = break_even_grid_.at(static_cast<int>(p));
       const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
@@ -81,7 +81,7 @@ double ProgramRows::break_even(std::uint32_t row, double soc_frac) const {
 }
 
 ProgramRows::Values ProgramRows::at(std::uint32_t row, double soc_frac) const {
-  const BatteryParameters& battery = foundation_.battery();
+  const BatteryParameters& battery = base_programs_.battery();
   const float* ahead = &continuation_[std::size_t{row} * kSocPoints];
   Values values{};
   for (int a = 0; a < kActionCount; ++a) {

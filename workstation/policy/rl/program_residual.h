@@ -28,7 +28,7 @@
 #include <span>
 #include <vector>
 
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 #include "workstation/policy/planners/outlook_program.h"
 #include "workstation/policy/planners/stochastic_program.h"
 #include "workstation/policy/rl/price_map.h"
@@ -36,10 +36,10 @@
 namespace bess {
 
 /// Program that the residual adds to: by month or level, or planned on day-ahead prices.
-struct Foundation {
+struct BasePrograms {
   std::shared_ptr<const StochasticProgram> program = nullptr;
   std::shared_ptr<const OutlookProgram> outlook = nullptr;
-  std::shared_ptr<const OutlookBook> book = nullptr;  ///< with `outlook`
+  std::shared_ptr<const PlanCache> plan_cache = nullptr;  ///< with `outlook`
 
   explicit operator bool() const { return program != nullptr || outlook != nullptr; }
   [[nodiscard]] const BatteryParameters& battery() const {
@@ -52,7 +52,7 @@ struct Foundation {
 /// outlook also the break-even price, which the network gets instead of a class.
 class ProgramRows {
  public:
-  explicit ProgramRows(Foundation foundation);
+  explicit ProgramRows(BasePrograms base_programs);
 
   /// With the outlook, before any step is added: makes the plans of all later steps.
   void plan(const MarketSteps& market, const std::vector<MarketDay>& days, int threads);
@@ -65,8 +65,8 @@ class ProgramRows {
     float best;                              ///< V_P
   };
   [[nodiscard]] Values at(std::uint32_t row, double soc_frac) const;
-  [[nodiscard]] double gamma() const { return foundation_.gamma(); }
-  [[nodiscard]] bool is_outlook() const { return foundation_.outlook != nullptr; }
+  [[nodiscard]] double gamma() const { return base_programs_.gamma(); }
+  [[nodiscard]] bool is_outlook() const { return base_programs_.outlook != nullptr; }
   /// With the outlook: EUR/MWh.
   [[nodiscard]] double break_even(std::uint32_t row, double soc_frac) const;
   /// With the outlook: the row is the first of its plan. Values of two plans have no common zero.
@@ -75,7 +75,7 @@ class ProgramRows {
  private:
   void plan_day(std::span<const MarketStep> steps, std::size_t row);
 
-  Foundation foundation_;
+  BasePrograms base_programs_;
   SocGrid grid_, break_even_grid_;
   double unit_per_eur_;
   std::vector<float> continuation_;        ///< [row][SoC point], EUR

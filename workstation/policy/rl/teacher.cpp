@@ -71,7 +71,7 @@ int unscaled(float input, int scale) {
 }
 
 /// Program state for five inputs.
-StochasticProgram::Situation situation_at(const Teacher& teacher, const float* x) {
+StochasticProgram::MarketState market_state_at(const Teacher& teacher, const float* x) {
   const StochasticProgram& program = *teacher.program;
   const int minute = unscaled(x[0], kMinuteOfQuarterHourScale);
   const int quarter_hour = unscaled(x[1], kQuarterHourScale);
@@ -91,7 +91,7 @@ Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
   Matrix values(kActionCount, x.cols());
   for (Eigen::Index c = 0; c < x.cols(); ++c) {
     const auto worth =
-        program.action_values(situation_at(teacher, x.col(c).data()),
+        program.action_values(market_state_at(teacher, x.col(c).data()),
                               double{x(3, c)} * kInputOne / kSocScale / (kSocCount - 1));
     for (int a = 0; a < kActionCount; ++a) {
       values(a, c) = static_cast<float>((worth[a] - worth[1]) * scale);
@@ -151,7 +151,7 @@ void Teacher::add_network(const MarketStep& step, double soc_frac, Matrix& x, Ml
                           std::array<double, kActionCount>& worth_eur) const {
   write_inputs(step, soc_frac, x.data());
   const Matrix added = network_values(x, tile);
-  const double unit_per_eur = learned_per_eur(foundation().battery());
+  const double unit_per_eur = learned_per_eur(base_programs().battery());
   for (int a = 0; a < kActionCount; ++a) worth_eur[a] += double{added(a)} / unit_per_eur;
 }
 
@@ -167,14 +167,14 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
-  if (!teacher_.foundation()) {
+  if (!teacher_.base_programs()) {
     teacher_.write_inputs(step, soc_frac, x_.data());
     return argmax_action(teacher_.action_values(x_, tile_).data());
   }
   // The program gets the step itself, not the network's inputs.
-  auto worth_eur =
-      outlook_ ? outlook_->action_values(step, soc_frac)
-               : teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
+  auto worth_eur = outlook_ ? outlook_->action_values(step, soc_frac)
+                            : teacher_.program->action_values(
+                                  StochasticProgram::market_state_of(step), soc_frac);
   if (teacher_.is_residual()) teacher_.add_network(step, soc_frac, x_, tile_, worth_eur);
   return argmax_action(worth_eur.data());
 }
@@ -253,7 +253,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
 }
 
 void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher) {
-  teacher.book = OutlookBook::of(outlook_integers(*program));
+  teacher.plan_cache = PlanCache::of(outlook_integers(*program));
   teacher.outlook = std::move(program);
 }
 

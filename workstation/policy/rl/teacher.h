@@ -9,7 +9,7 @@
 #include <string>
 
 #include "workstation/base/answer.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 #include "workstation/data/env/policy.h"
 #include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/planners/outlook_program.h"
@@ -40,10 +40,10 @@ struct Teacher {
   /// With the outlook: the program on day-ahead prices, instead of `program`, and its integer
   /// plans, which give the student its context.
   std::shared_ptr<const OutlookProgram> outlook = nullptr;
-  std::shared_ptr<const OutlookBook> book = nullptr;
+  std::shared_ptr<const PlanCache> plan_cache = nullptr;
 
-  [[nodiscard]] Foundation foundation() const { return {program, outlook, book}; }
-  [[nodiscard]] bool is_residual() const { return foundation() && method != Method::kSdp; }
+  [[nodiscard]] BasePrograms base_programs() const { return {program, outlook, plan_cache}; }
+  [[nodiscard]] bool is_residual() const { return base_programs() && method != Method::kSdp; }
   /// Action values, means of their distributions, [3 x samples] in units of 1e4 EUR/h for inputs [5
   /// x samples]. With the outlook they are no function of the inputs: three rows below the inputs
   /// contain them.
@@ -58,9 +58,9 @@ struct Teacher {
   /// student's class.
   void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
     NetworkContext seen = network_context(step, price_map, context);
-    if (book) {
+    if (plan_cache) {
       seen.context_class =
-          price_map(double{book->break_even_centi(step, soc_frac) / double{kCentiPerEur}});
+          price_map(double{plan_cache->break_even_centi(step, soc_frac) / double{kCentiPerEur}});
     }
     write_input(seen, soc_frac, x);
   }

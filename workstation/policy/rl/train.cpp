@@ -195,9 +195,9 @@ void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, in
   // Every validation trades the same days.
   const std::vector<MarketDay> validation = market.days_of(Split::kValidation);
   teacher.outlook->prepare(market, validation, threads);
-  teacher.book->prepare(market, training, threads);
-  teacher.book->prepare(market, validation, threads);
-  teacher.context = fit_outlook_classes(market, *teacher.book);
+  teacher.plan_cache->prepare(market, training, threads);
+  teacher.plan_cache->prepare(market, validation, threads);
+  teacher.context = fit_outlook_classes(market, *teacher.plan_cache);
 }
 
 /// Teacher without a network: programs, price map and context classes.
@@ -245,7 +245,7 @@ struct TrainingSetup {
 TrainingSetup set_up(const MarketSteps& market, const BatteryParameters& battery,
                      const TrainOptions& options) {
   Teacher teacher = without_network(market, battery, options);
-  const Foundation program = options.residual ? teacher.foundation() : Foundation{};
+  const BasePrograms program = options.residual ? teacher.base_programs() : BasePrograms{};
   TrainingMarket training(market, teacher.price_map, battery, options.horizon,
                           {.program = program, .threads = options.threads}, teacher.context);
   TrainingSetup setup{std::move(teacher),     std::move(training), false,

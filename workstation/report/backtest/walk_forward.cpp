@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
-#include "workstation/data/env/charge_left.h"
 #include "workstation/data/env/drawdown.h"
+#include "workstation/data/env/final_charge.h"
 
 namespace bess {
 namespace {

@@ -25,7 +25,7 @@ std::string format_table(const HtmlTable& table);
 /// Shows columns with a title.
 std::string format_table(const std::string& caption, const Table& table);
 
-/// Base style sheet of every page, shared/host/made/document.css.
+/// Base style sheet of every page, shared/host/embed/document.css.
 std::string style_sheet();
 
 /// Complete, self-contained document for light, dark, phone and print.

@@ -68,7 +68,7 @@ void watch_interruption() {
   });
 }
 
-std::function<bool()> watched_from_the_first_look() {
+std::function<bool()> watch_from_first_call() {
   return [watching = false]() mutable {
     if (!watching) watch_interruption();
     watching = true;
@@ -110,9 +110,9 @@ bool is_still_there(int fd, const std::filesystem::path& path) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder, Of what)
+FolderLock::FolderLock(const std::filesystem::path& folder, LockScope what)
     : fd_(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  const int kind = what == Of::kFolder ? LOCK_EX : LOCK_SH;
+  const int kind = what == LockScope::kFolder ? LOCK_EX : LOCK_SH;
   if (fd_.get() < 0 || flock(fd_.get(), kind | LOCK_NB) == 0) return;
   if (errno == EWOULDBLOCK) at_work(folder);
   warn_unlocked(folder);

@@ -25,7 +25,7 @@ void watch_interruption();
 std::atomic<bool>& interruption();
 
 /// The flag as a function. Its first call starts watching: before that a loop has no state to save.
-std::function<bool()> watched_from_the_first_look();
+std::function<bool()> watch_from_first_call();
 
 /// Returns within 0.1 s after an interruption.
 void sleep_unless(double seconds, const std::atomic<bool>& interrupted);
@@ -33,11 +33,11 @@ void sleep_unless(double seconds, const std::atomic<bool>& interrupted);
 class FolderLock {
  public:
   /// Exclusive use of the folder, or shared use by writers of single files.
-  enum class Of : std::uint8_t { kFolder, kOneFile };
+  enum class LockScope : std::uint8_t { kFolder, kOneFile };
 
   /// Throws UserError when another program owns it; kFolder excludes all others. Only warns on a
   /// file system without locks.
-  explicit FolderLock(const std::filesystem::path& folder, Of what = Of::kFolder);
+  explicit FolderLock(const std::filesystem::path& folder, LockScope what = LockScope::kFolder);
 
  private:
   FileDescriptor fd_;

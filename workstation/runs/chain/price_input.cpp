@@ -125,7 +125,8 @@ MinuteSeries PriceInput::read(const std::string& path) const {
 }
 
 JoinedMarket PriceInput::read_joined(const std::vector<std::string>& files,
-                                     std::set<MarketSource>* sources, const OwnForm& own) const {
+                                     std::set<MarketSource>* sources,
+                                     const CustomCsvFormat& own) const {
   MarketRows rows = read_market_files(files, own);
   if (sources != nullptr) *sources = rows.sources;
   JoinedMarket market = join_market(std::move(rows), files.front());

@@ -12,8 +12,8 @@
 #include "workstation/data/env/market_steps.h"
 #include "workstation/data/market/feed/day_ahead_rows.h"
 #include "workstation/data/market/feed/market_files.h"
+#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/day_ahead.h"
-#include "workstation/data/market/series/judged_prices.h"
 
 namespace bess {
 
@@ -39,7 +39,7 @@ class PriceInput {
   /// Minute files and downloads in any mixture. Throws UserError as join_market() does.
   [[nodiscard]] JoinedMarket read_joined(const std::vector<std::string>& files,
                                          std::set<MarketSource>* sources = nullptr,
-                                         const OwnForm& own = {}) const;
+                                         const CustomCsvFormat& own = {}) const;
 
  private:
   std::string accept_;

@@ -64,7 +64,7 @@ class PartRunner {
     const double wanted_w =
         ordered_power_w(battery, step, action, part_.policy->power_share_max(step, soc_frac_));
     const double change_w = part_.step_share * battery.power_w_max;
-    const auto [moved, power] = followed_step(
+    const auto [moved, power] = response_step(
         battery, soc_frac_, power_, std::clamp(wanted_w, power_w_ - change_w, power_w_ + change_w),
         kHoursPerStep);
     steps_.push_back({t, action, moved.power_w, moved.soc_frac});

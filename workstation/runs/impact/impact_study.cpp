@@ -9,7 +9,7 @@
 
 #include "shared/host/file.h"
 #include "workstation/base/answer.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
@@ -206,7 +206,7 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
   const auto seeds = static_cast<std::size_t>(plan.seeds);
   std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
   Progress progress("impact", "markets", static_cast<double>(found.size()));
-  in_parallel(found.size(), plan.threads, progress, [&](std::size_t i) {
+  parallel_for(found.size(), plan.threads, progress, [&](std::size_t i) {
     FleetOptions options = base;
     options.formula = static_cast<PriceFormula>(i / seeds);
     found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));

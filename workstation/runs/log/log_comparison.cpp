@@ -2,7 +2,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/correction/student/exported_policy.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/policy/planners/baselines.h"
 
 namespace bess {
@@ -47,8 +47,8 @@ std::vector<NamedEvaluation> compare_log(const ReadLog& read,
   return all;
 }
 
-Paid paid_of(const Evaluation& evaluation) {
-  Paid paid{};
+NetEarnings net_earnings_of(const Evaluation& evaluation) {
+  NetEarnings paid{};
   for (const DayResult& day : evaluation.days) {
     paid.paid_eur += day.profit_eur - day.charge_value_eur;
     paid.charge_eur += day.charge_value_eur;

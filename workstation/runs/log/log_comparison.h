@@ -18,10 +18,10 @@ std::vector<NamedEvaluation> compare_log(const ReadLog& read,
                                          const std::vector<std::string>& policies);
 
 /// Earnings of the whole battery over all days, EUR.
-struct Paid {
+struct NetEarnings {
   double paid_eur;    ///< net of costs and wear
   double charge_eur;  ///< value of the final charge
 };
-Paid paid_of(const Evaluation& evaluation);
+NetEarnings net_earnings_of(const Evaluation& evaluation);
 
 }  // namespace bess

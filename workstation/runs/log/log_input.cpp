@@ -196,16 +196,16 @@ std::int32_t day_of(const std::string& text, const char* option, std::int32_t ot
   return (year * 100 + month) * 100 + day;
 }
 
-void tell(const std::string& file, const CycleLog& log, const std::vector<LoggedDay>& days) {
+void report_log(const std::string& file, const CycleLog& log, const std::vector<LoggedDay>& days) {
   int missing = 0;
   for (const LoggedDay& day : days) missing += day.missing;
-  const auto tell_one = [&](int count, const char* noun, const char* what) {
+  const auto report_count = [&](int count, const char* noun, const char* what) {
     if (count == 0) return;
     fmt::print(stderr, "{}: {} {}\n", file, counted(static_cast<std::size_t>(count), noun), what);
   };
-  tell_one(log.torn, "last line", "without a line end: ignored");
-  tell_one(log.duplicates, "row", "with a duplicate time: ignored");
-  tell_one(missing, "tick", "without a row: energy estimated from the state of charge");
+  report_count(log.torn, "last line", "without a line end: ignored");
+  report_count(log.duplicates, "row", "with a duplicate time: ignored");
+  report_count(missing, "tick", "without a row: energy estimated from the state of charge");
 }
 
 }  // namespace
@@ -241,12 +241,12 @@ ReadLog LogInput::read() const {
   std::vector<LoggedDay> days = days_of(log, prices, battery, span);
   if (days.empty())
     fail("{}: the log has no control cycle on these days; change --from or --to", files_.front());
-  tell(files_.front(), log, days);
+  report_log(files_.front(), log, days);
   return {std::move(log), battery, span, std::move(prices), std::move(days)};
 }
 
 void LogInput::require_not_read(const std::string& option, const std::string& output) const {
-  std::vector<GivenPath> inputs = given_paths("files", files_);
+  std::vector<NamedPath> inputs = named_paths("files", files_);
   inputs.push_back({"--settled", settled_});
   inputs.push_back({"--config", config_});
   require_distinct({{option, output}}, inputs);

@@ -37,7 +37,7 @@ struct DifferingDecision {
   Action before, now;
 };
 
-struct Proposal {
+struct CandidateRun {
   Evaluation before, now;  ///< evaluated days, SoC carried over, final charge valued
   PairedDifference gain;   ///< of the candidate, EUR per day per MWh
   std::size_t decisions = 0;
@@ -48,13 +48,13 @@ struct Proposal {
 };
 
 /// Precondition: `market` has test days.
-Proposal judge_refit(const StudentFile& before, const StudentFile& now, const MarketSteps& market,
-                     const RunConfig& config);
+CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
+                         const MarketSteps& market, const RunConfig& config);
 
 /// Header `utc,price_eur_mwh,paid_eur_mwh,soc,before,now`.
-std::string differing_decisions_csv(const Proposal& proposal);
-std::string proposal_text(const Proposal& proposal);
-Json proposal_json(const Proposal& proposal);
+std::string differing_decisions_csv(const CandidateRun& candidate);
+std::string candidate_text(const CandidateRun& candidate);
+Json candidate_json(const CandidateRun& candidate);
 
 /// Maximum and minimum number of evaluation days of a candidate.
 inline constexpr int kJudgedDays = 30;
@@ -65,9 +65,9 @@ struct RefreshRequest {
   int window_days;
   bool adopt = false;
   /// Write the latest prices as a minute file and, for a run by outlook, checked day-ahead prices.
-  std::function<void(const std::filesystem::path& out)> bring_prices;
+  std::function<void(const std::filesystem::path& out)> provide_prices;
   std::function<void(const std::filesystem::path& out, const MinuteSeries& settled)>
-      bring_day_ahead;
+      provide_day_ahead;
 };
 
 /// Progress and results go to `messages`. Throws UserError.

@@ -19,7 +19,7 @@ std::string absolute(const std::string& path) {
 
 /// Checks the output folder of a new run.
 void require_free(const RunFolder& folder, const RunRequest& request) {
-  std::vector<GivenPath> outputs;
+  std::vector<NamedPath> outputs;
   for (const std::string& name : RunStages::files())
     outputs.push_back({"--out", folder.file(name)});
   require_distinct(outputs, {{"--prices", request.prices},

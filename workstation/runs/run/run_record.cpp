@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "shared/crc32.h"
+#include "shared/host/embed/build_info.h"
 #include "shared/host/file.h"
 #include "shared/host/json_reader.h"
-#include "shared/host/made/build_info.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/correction/rules/rule_file.h"

@@ -11,8 +11,8 @@
 #include <iterator>
 
 #include "shared/crc32.h"
+#include "shared/host/embed/build_info.h"
 #include "shared/host/file.h"
-#include "shared/host/made/build_info.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -23,7 +23,7 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/rule_prices.h"
@@ -97,8 +97,8 @@ std::string span_text(const MarketSteps& market) {
 
 }  // namespace
 
-std::vector<Fact> making_facts(const RunFolder& folder) {
-  std::vector<Fact> facts;
+std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
+  std::vector<ProvenanceLine> facts;
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
     facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
     return facts;
@@ -115,9 +115,9 @@ std::vector<Fact> making_facts(const RunFolder& folder) {
 
 std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
 
-std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
-                            const RunFolder& folder) {
-  std::vector<Fact> facts = making_facts(folder);
+std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps& market,
+                                      const RunFolder& folder) {
+  std::vector<ProvenanceLine> facts = making_facts(folder);
   const int delay_min = config.market.observation_delay_min;
   facts.push_back({"program", program_text()});
   facts.push_back({"prices", prices_text(folder)});
@@ -427,7 +427,7 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   if (run.teacher.outlook) {  // the same plans for both accountings
     const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
     run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
-    run.teacher.book->prepare(run.market, days, run.config.train.threads);
+    run.teacher.plan_cache->prepare(run.market, days, run.config.train.threads);
     OutlookPolicy program(run.teacher.outlook);
     all.push_back(evaluate_both(kOutlookProgramName, program, run));
   }

@@ -21,8 +21,8 @@
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/learnt_for.h"
 #include "workstation/runs/run/run_backtest.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {
@@ -99,7 +99,7 @@ RunStages::RunStages(RunFolder folder, RunRecord record, const MinuteSeries& ser
       market_(market_of_run(series, config_, record_, folder_)),
       messages_(messages) {}
 
-void RunStages::tell(const std::string& text) const {
+void RunStages::report_line(const std::string& text) const {
   fmt::print(messages_, "      {}\n", text);
   std::fflush(messages_);
 }
@@ -107,48 +107,48 @@ void RunStages::tell(const std::string& text) const {
 std::span<const RunStages::Stage> RunStages::stages() {
   using R = RunStages;
   static const Stage kRows[] = {
-      {"configuration", 1, "", When::kAlways, &R::make_configuration, {}, {kConfig}},
-      {"prices", 1, "", When::kOnBuiltInPrices, &R::make_prices, {}, {kSimulatedPrices}},
+      {"configuration", 1, "", StageCondition::kAlways, &R::make_configuration, {}, {kConfig}},
+      {"prices", 1, "", StageCondition::kOnBuiltInPrices, &R::make_prices, {}, {kSimulatedPrices}},
       {kTeacherStage,
        2,
        "train or copy the teacher",
-       When::kAlways,
+       StageCondition::kAlways,
        &R::make_teacher,
        {},
        {kTeacher, kTrainingCurve, kCheckpoint}},
       {"plain student",
        3,
        "distil without correction, for comparison",
-       When::kUnlessLean,
+       StageCondition::kUnlessLean,
        &R::make_plain_student,
        {kTeacher},
        {kPlainStudent, kPlainViolations}},
       {kProofStage,
        4,
        "correct while distilling, and prove",
-       When::kAlways,
+       StageCondition::kAlways,
        &R::make_corrected_student,
        {kTeacher},
        {kStudent, kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds, kCheckpoints}},
-      {"header", 5, "export", When::kAlways, &R::make_header, {kStudent}, {kHeader}},
+      {"header", 5, "export", StageCondition::kAlways, &R::make_header, {kStudent}, {kHeader}},
       {kEvaluationStage,
        6,
        "evaluate on test days and write the report",
-       When::kAlways,
+       StageCondition::kAlways,
        &R::make_evaluation,
        {kTeacher, kPlainStudent, kStudent},
        {kTable, kDays}},
       {kReportStage,
        6,
        "",
-       When::kUnlessLean,
+       StageCondition::kUnlessLean,
        &R::make_report,
        {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
        {kSummary, kReport}},
       {kFailureStage,
        6,
        "report where the proof failed",
-       When::kAfterFailedProof,
+       StageCondition::kAfterFailedProof,
        &R::make_failure_report,
        {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
        {kSummary, kReport}},
@@ -190,7 +190,7 @@ void RunStages::announce(const Stage& stage) const {
 void RunStages::go_through(const Stage& row) {
   if (const StageRecord* done = record_.holds(std::string(row.name), row.inputs, folder_)) {
     if (done->failed) fail_the_proof();
-    if (row.make != &RunStages::make_configuration) tell(fmt::format("{}: kept", row.name));
+    if (row.make != &RunStages::make_configuration) report_line(fmt::format("{}: kept", row.name));
     return;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -242,14 +242,14 @@ void RunStages::finish() {
 }
 
 bool RunStages::is_due(const Stage& stage) const {
-  switch (stage.when) {
-    case When::kAlways:
+  switch (stage.condition) {
+    case StageCondition::kAlways:
       return true;
-    case When::kOnBuiltInPrices:
+    case StageCondition::kOnBuiltInPrices:
       return record_.prices == kSimulatedPrices;
-    case When::kUnlessLean:
+    case StageCondition::kUnlessLean:
       return !record_.is_lean();
-    case When::kAfterFailedProof:  // fail_the_proof() goes there
+    case StageCondition::kAfterFailedProof:  // fail_the_proof() goes there
       break;
   }
   return false;
@@ -258,7 +258,7 @@ bool RunStages::is_due(const Stage& stage) const {
 void RunStages::report_again() {
   const int proof = stage_named(kProofStage).number;
   for (const Stage& stage : stages()) {
-    if (stage.number > proof || stage.when == When::kOnBuiltInPrices) continue;
+    if (stage.number > proof || stage.condition == StageCondition::kOnBuiltInPrices) continue;
     if (record_.holds(std::string(stage.name), stage.inputs, folder_) != nullptr) continue;
     fail(
         "{}: the {} is missing or changed; regenerate it with 'bess-train run --resume --out "
@@ -297,8 +297,8 @@ RunStages::Names RunStages::make_prices() {
 
 RunStages::Names RunStages::make_teacher() {
   const bool is_taken = !record_.teacher_file.empty();
-  tell(is_taken ? "the teacher of " + record_.teacher_file
-                : "method " + std::string(method_name(config_.train.method)));
+  report_line(is_taken ? "the teacher of " + record_.teacher_file
+                       : "method " + std::string(method_name(config_.train.method)));
   return is_taken ? take_teacher() : train_teacher_here();
 }
 
@@ -307,7 +307,7 @@ RunStages::Names RunStages::train_teacher_here() {
   for (const auto& [name, value] : record_.identity)
     identity += fmt::format("{} {}\n", name, value);
   const auto train = [&](bool resume) {
-    return train_teacher(market_, config_.battery, config_.train, watched_from_the_first_look(),
+    return train_teacher(market_, config_.battery, config_.train, watch_from_first_call(),
                          {path(kCheckpoint), resume, identity});
   };
   const auto train_on = [&] {
@@ -333,9 +333,9 @@ RunStages::Names RunStages::train_teacher_here() {
   save_teacher(path(kTeacher), trained.teacher);
   (void)teacher();  // read now: by outlook it reuses the plans of the training
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
-  tell(fmt::format("kept at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
-                   trained.best_step, trained.best_validation_eur_per_day_per_mwh,
-                   trained.seconds));
+  report_line(fmt::format("kept at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
+                          trained.best_step, trained.best_validation_eur_per_day_per_mwh,
+                          trained.seconds));
   return {kTeacher, kTrainingCurve};
 }
 
@@ -359,8 +359,8 @@ RunStages::Names RunStages::make_plain_student() {
   save_student(path(kPlainStudent), student);
   write_file(path(kPlainViolations), counterexamples_csv(student.certificate.counterexamples));
   const std::string broken = broken_text(demand_counts(student.certificate));
-  tell(fmt::format("{} violations in {} checked states{}", student.certificate.violations(),
-                   student.certificate.states_checked, broken.empty() ? "" : ": " + broken));
+  report_line(fmt::format("{} violations in {} checked states{}", student.certificate.violations(),
+                          student.certificate.states_checked, broken.empty() ? "" : ": " + broken));
   return {kPlainStudent, kPlainViolations};
 }
 
@@ -370,7 +370,7 @@ RunStages::Names RunStages::make_corrected_student() {
                         validation_score(market_, config_.battery, config_.initial_soc_frac),
                         [&](const ProofRound& round, const RoundsState& state) {
                           if (state.done > 1 || round.violations() > 0)
-                            tell(round_line(round, state));
+                            report_line(round_line(round, state));
                         });
   const StudentFile& student = student_of(corrected.verdict);
   write_file(path(kProofRounds), proof_rounds_csv(corrected.rounds));
@@ -386,8 +386,8 @@ RunStages::Names RunStages::make_corrected_student() {
   save_student(path(kStudent), student);
   const std::size_t rounds = corrected.rounds.size();
   proved_ = *proved;
-  tell(fmt::format("proved: no violation in {} states, {} round{}",
-                   student.certificate.states_checked, rounds, rounds == 1 ? "" : "s"));
+  report_line(fmt::format("proved: no violation in {} states, {} round{}",
+                          student.certificate.states_checked, rounds, rounds == 1 ? "" : "s"));
   return {kStudent, kDistilCurve, kProofRounds, kCheckpoints};
 }
 

@@ -32,12 +32,12 @@ class RunStages {
   [[nodiscard]] const MarketSteps& market() const { return market_; }
 
   using Names = std::vector<std::string>;
-  enum class When { kAlways, kOnBuiltInPrices, kUnlessLean, kAfterFailedProof };
+  enum class StageCondition { kAlways, kOnBuiltInPrices, kUnlessLean, kAfterFailedProof };
   struct Stage {
     std::string_view name;  ///< in run.json and times.json
     int number;             ///< of the announced stages
     const char* text;       ///< empty: not announced
-    When when;
+    StageCondition condition;
     Names (RunStages::*make)();  ///< returns the written files
     Names inputs;                ///< kept while their marks are unchanged
     Names outputs;               ///< possible files, without figures and their tables
@@ -59,7 +59,7 @@ class RunStages {
   /// Records a finished stage.
   void note(StageRecord stage, double seconds);
   void announce(const Stage& stage) const;
-  void tell(const std::string& text) const;
+  void report_line(const std::string& text) const;
   /// Removes unfinished files and an obsolete checkpoint.
   void tidy() const;
 

@@ -7,9 +7,9 @@
 #include "shared/host/file.h"
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
-#include "workstation/base/in_parallel.h"
+#include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/runs/chain/learning_class.h"
@@ -145,15 +145,15 @@ double foresight_profit(const MarketSteps& market, const RunConfig& config,
   return bound.profit_eur_per_day_per_mwh();
 }
 
-SizeClass trade_class(const RunConfig& config, const SizeTrial& trial) {
+SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {
   const FoldPolicy make = [&](const Fold& fold) {
-    return make_policy(trial.policy, fold.market, config.battery);
+    return make_policy(backtest.policy, fold.market, config.battery);
   };
   std::vector<StepRecord> steps;
-  WalkForward walked = walk_forward(trial.policy, trial.folds, make, config.battery,
-                                    config.initial_soc_frac, trial.market, false, &steps);
+  WalkForward walked = walk_forward(backtest.policy, backtest.folds, make, config.battery,
+                                    config.initial_soc_frac, backtest.market, false, &steps);
   const double bound =
-      foresight_profit(trial.market, config, traded_days(trial.market, walked.total));
+      foresight_profit(backtest.market, config, traded_days(backtest.market, walked.total));
   const double profit = walked.total.profit_eur_per_day_per_mwh();
   return {config.battery, std::move(walked.total), month_peaks(steps, config.battery.power_w_max),
           bound > 0 ? profit / bound : NAN};
@@ -206,11 +206,11 @@ std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double 
 }
 
 std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
-                                     const SizeTrial& trial) {
+                                     const SizeBacktest& backtest) {
   std::vector<SizeClass> classes(configs.size());
   Progress progress("size", "classes", static_cast<double>(configs.size()));
-  in_parallel(configs.size(), trial.threads, progress,
-              [&](std::size_t c) { classes[c] = trade_class(configs[c], trial); });
+  parallel_for(configs.size(), backtest.threads, progress,
+               [&](std::size_t c) { classes[c] = trade_class(configs[c], backtest); });
   return classes;
 }
 
@@ -265,7 +265,8 @@ RunConfig cell_config(const RunConfig& base, double power_w, double capacity_wh,
   return config;
 }
 
-SizeCells weigh_up(const SizePlan& plan, const RunConfig& base, const SizeTrial& trial) {
+SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base,
+                         const SizeBacktest& backtest) {
   std::vector<RunConfig> configs;
   std::map<std::string, std::size_t> by_key;
   std::vector<std::size_t> class_of;
@@ -281,7 +282,7 @@ SizeCells weigh_up(const SizePlan& plan, const RunConfig& base, const SizeTrial&
       }
     }
   }
-  SizeCells all{{}, trade_classes(configs, trial)};
+  SizeCells all{{}, trade_classes(configs, backtest)};
   auto of = class_of.begin();
   for (const double power_w : plan.power_w) {
     for (const double capacity_wh : plan.capacity_wh) {
@@ -312,15 +313,15 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
                 .life_years = 0,
                 .pay_back_years = NAN,
                 .life_eur = 0};
-  const LifeOfBattery life = life_of(cell, plan.ageing);
+  const BatteryLifetime life = lifetime_of(cell, plan.ageing);
   cell.life_years = life.years;
   cell.pay_back_years = life.pay_back_years;
   cell.life_eur = life.eur;
   return cell;
 }
 
-LifeOfBattery life_of(const SizeCell& cell, const Ageing& ageing) {
-  LifeOfBattery life{0, NAN, -cell.price_eur};
+BatteryLifetime lifetime_of(const SizeCell& cell, const Ageing& ageing) {
+  BatteryLifetime life{0, NAN, -cell.price_eur};
   double capacity = 1;  // of the initial capacity
   const double cycles = cell.cycles_per_day * kDaysPerYear / kMonthsPerYear;
   for (int month = 0; month < kLifeMonthsMax && capacity > ageing.end_percent / 100; ++month) {

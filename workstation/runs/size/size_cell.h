@@ -75,7 +75,7 @@ struct SizeClass {
 };
 
 /// Common inputs of all backtests.
-struct SizeTrial {
+struct SizeBacktest {
   const MarketSteps& market;
   const Folds& folds;
   std::string policy;
@@ -83,7 +83,8 @@ struct SizeTrial {
 };
 
 /// One class for each of the canonical `configs`. Throws UserError.
-std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs, const SizeTrial& trial);
+std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
+                                     const SizeBacktest& backtest);
 
 /// Highest quarter-hour of each local month; `steps` ascending. A step in two quarter-hours counts
 /// half in each.
@@ -126,13 +127,13 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
                    double power_w, double capacity_wh);
 
 /// Throws UserError.
-SizeCells weigh_up(const SizePlan& plan, const RunConfig& base, const SizeTrial& trial);
+SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base, const SizeBacktest& backtest);
 
 /// Lifetime result by month: the margin falls with the remaining capacity, fixed costs do not.
-struct LifeOfBattery {
+struct BatteryLifetime {
   double years, pay_back_years, eur;
 };
-LifeOfBattery life_of(const SizeCell& cell, const Ageing& ageing);
+BatteryLifetime lifetime_of(const SizeCell& cell, const Ageing& ageing);
 
 /// Shortest payback; if none pays back, the highest lifetime result; without prices, the highest
 /// yearly earnings per kWh.

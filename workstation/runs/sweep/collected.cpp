@@ -18,7 +18,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/env/day_errors.h"
-#include "workstation/data/market/series/judged_prices.h"
+#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/run/run_folder.h"
 #include "workstation/runs/run/run_record.h"

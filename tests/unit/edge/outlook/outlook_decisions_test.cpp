@@ -25,7 +25,8 @@ class Edge {
     for (std::int64_t t = inputs_.start_utc_s + kSecondsPerStep; t < inputs_.end_utc_s;
          t += kSecondsPerStep) {
       take_answers(t);
-      planner_.plan({.tick_utc_s = t, .level_centi = level_.centi_eur_per_mwh()}, book_.days_at(t));
+      planner_.plan({.tick_utc_s = t, .level_centi = level_.centi_eur_per_mwh()},
+                    store_.days_at(t));
       if (see_newest_row(t)) decide(t);
     }
     return digest_;
@@ -43,7 +44,7 @@ class Edge {
         rows.push_back({answer.first_utc_s + static_cast<std::int64_t>(q) * kSecondsPerQuarterHour,
                         answer.centi[q] / 100.0});
       }
-      ASSERT_EQ(book_.take(lay_out_day_ahead(rows).days, answer.received_utc_s), Status::kOk);
+      ASSERT_EQ(store_.take(lay_out_day_ahead(rows).days, answer.received_utc_s), Status::kOk);
     }
   }
   bool see_newest_row(std::int64_t t) {
@@ -59,7 +60,7 @@ class Edge {
   }
   void decide(std::int64_t t) {
     const std::int32_t soc_e4 = OutlookInputs::soc_e4(t);
-    const OutlookReport report = outlook_at(board_, t, soc_e4, level_.centi_eur_per_mwh());
+    const OutlookReport report = outlook_at(exchange_, t, soc_e4, level_.centi_eur_per_mwh());
     ++sources_[static_cast<std::size_t>(report.source)];
     const LocalMinute now = local_minute_of(t);
     const std::int16_t context_class = student_context_class(now, report.break_even_centi);
@@ -68,9 +69,9 @@ class Edge {
   }
 
   const OutlookInputs& inputs_;
-  DayAheadBook book_;
-  OutlookBoard board_;
-  OutlookPlanner planner_{*student_outlook(), board_};
+  DayAheadStore store_;
+  OutlookExchange exchange_;
+  OutlookPlanner planner_{*student_outlook(), exchange_};
   PriceLevel level_;
   std::int32_t price_centi_ = 0;
   std::size_t next_ = 0;

@@ -45,7 +45,7 @@ blame "$(includes '"shared/host' $e |
 # The simulators, and the trial, which must not share their errors.
 layer tools/simulators              tools/simulators $e/device/registers $e/core/base shared
 layer tests/system/trial            tests/system/trial tests/support/thorough.h \
-  $e/app/program/take_over.h $e/core shared
+  $e/app/program/restored_run.h $e/core shared
 # It runs the edge's own objects in virtual time, and the real programs; the witness is independent
 # of the decoded device.
 h=tools/hil_runner

@@ -15,8 +15,8 @@ class DistinctFiles : public testing::Test {
  protected:
   DistinctFiles() { fs::create_directory(folder_.file("sub")); }
 
-  static std::string refusal(const std::vector<GivenPath>& outputs,
-                             const std::vector<GivenPath>& inputs) {
+  static std::string refusal(const std::vector<NamedPath>& outputs,
+                             const std::vector<NamedPath>& inputs) {
     return refusal_of([&] { require_distinct(outputs, inputs); });
   }
 

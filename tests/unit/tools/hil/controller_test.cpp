@@ -29,15 +29,15 @@ class WatchedWorld : public VirtualWorld {
     calls.emplace_back("open");
     return may_open;
   }
-  Recall recall() {
+  RestoredState restore_state() {
     calls.emplace_back("recall");
-    return VirtualWorld::recall();
+    return VirtualWorld::restore_state();
   }
   void keep(const CycleRecord& record) {
     calls.emplace_back("keep");
     VirtualWorld::keep(record);
   }
-  const HoldMailbox& listen() {
+  const LatestHold& listen() {
     calls.emplace_back("listen");
     return VirtualWorld::listen();
   }
@@ -77,11 +77,11 @@ struct QuietHour {
     }
     pthread_sigmask(SIG_SETMASK, nullptr, &mask);
     world.emplace(config, VirtualPrices(config.price.feed, market, faults, scenario, time),
-                  VirtualWorld::Surroundings{.time = time,
-                                             .physics = battery,
-                                             .weather = nullptr,
-                                             .state = state,
-                                             .people = people});
+                  VirtualWorld::VirtualEnvironment{.time = time,
+                                                   .physics = battery,
+                                                   .derating = nullptr,
+                                                   .state = state,
+                                                   .site_operator = site_operator});
     controller.emplace(config, *world);
   }
   QuietHour(const QuietHour&) = delete;
@@ -97,7 +97,7 @@ struct QuietHour {
   EdgeConfig config;
   std::optional<VirtualBus> bus;
   EdgeState state;
-  VirtualOperator people;
+  VirtualOperator site_operator;
   sigset_t mask{};
   std::optional<WatchedWorld> world;
   std::optional<Controller<WatchedWorld>> controller;

@@ -143,17 +143,17 @@ HandMade at_rest(double eur_per_mwh, const char* guard = "") {
 }
 
 TEST(Judge, KnowsHoldsAndLimitsAboveTheThresholds) {
-  using enum ScenarioEvent::Does;
+  using enum ScenarioEvent::EventKind;
   HandMade held = at_rest(-600);
-  held.scenario.events = {{.at_min = 5, .does = kHold, .for_s = 600}};
+  held.scenario.events = {{.at_min = 5, .kind = kHold, .for_s = 600}};
   EXPECT_EQ(held.broken(), "");
-  held.scenario.events.push_back({.at_min = 6, .does = kHoldRelease});
+  held.scenario.events.push_back({.at_min = 6, .kind = kHoldRelease});
   EXPECT_EQ(held.broken(), "thresholds");
   HandMade over = at_rest(-600);
-  over.scenario.events = {{.at_min = 1, .does = kHold, .for_s = 120}};
+  over.scenario.events = {{.at_min = 1, .kind = kHold, .for_s = 120}};
   EXPECT_EQ(over.broken(), "thresholds");
   HandMade limited = at_rest(-600);
-  limited.scenario.events = {{.at_min = 5, .does = kLimit, .for_s = 600, .charge_w = 1'000}};
+  limited.scenario.events = {{.at_min = 5, .kind = kLimit, .for_s = 600, .charge_w = 1'000}};
   limited.order_of(8).power_w = 1'000;
   EXPECT_EQ(limited.broken(), "");
   limited.order_of(8).power_w = -1'000;

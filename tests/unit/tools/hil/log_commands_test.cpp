@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_accounts.h"
 #include "shared/host/json.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
@@ -102,7 +102,7 @@ class SameDays {
                                         std::vector<std::string> options) const {
     options.insert(options.begin(),
                    {BESS_TRAIN_PROGRAM, "log", name, log_, "--from", days.from, "--to", days.to});
-    const ProgramResult said = run_and_hear(options, 60);
+    const ProgramResult said = run_and_capture(options, 60);
     EXPECT_TRUE(said.is_well()) << said.complaint();
     return said.output;
   }
@@ -132,7 +132,7 @@ class SameDays {
           soc_frac < 0 && r.has_measurement && local_day_at(r.utc_s) >= days.first;
       if (is_first) soc_frac = r.measurement.soc_e4 / 1e4;
     }
-    const ProgramResult said = run_and_hear(
+    const ProgramResult said = run_and_capture(
         {BESS_TRAIN_PROGRAM, "evaluate", "--prices", folder_.file("traded.csv"), "--split", "all",
          "--carry-soc", "--config", train_, "--initial-soc", formatted("%.4f", soc_frac), "--json",
          "--policy", kNames[0], kNames[1], kNames[2]},

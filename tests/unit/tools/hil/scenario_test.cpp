@@ -66,13 +66,13 @@ TEST(Scenarios, EveryFaultOfThePricesIsInOne) {
 }
 
 TEST(Scenarios, EveryEventIsInOne) {
-  std::set<ScenarioEvent::Does> tried;
+  std::set<ScenarioEvent::EventKind> tried;
   for (const Scenario& s : shipped()) {
-    for (const ScenarioEvent& event : s.events) tried.insert(event.does);
+    for (const ScenarioEvent& event : s.events) tried.insert(event.kind);
   }
-  for (int i = 0; i <= static_cast<int>(ScenarioEvent::Does::kDiskFull); ++i) {
-    const auto does = static_cast<ScenarioEvent::Does>(i);
-    EXPECT_TRUE(tried.contains(does)) << event_name(does);
+  for (int i = 0; i <= static_cast<int>(ScenarioEvent::EventKind::kDiskFull); ++i) {
+    const auto kind = static_cast<ScenarioEvent::EventKind>(i);
+    EXPECT_TRUE(tried.contains(kind)) << event_name(kind);
   }
 }
 
@@ -248,8 +248,8 @@ TEST(Scenarios, AnEventThatFindsNothingToDoIsRefusedWithItsLine) {
   const auto of = [](std::initializer_list<const char*> events) {
     std::string text = "title = \"x\"\ntime = \"virtual\"\n";
     int at_min = 0;
-    for (const char* const does : events) {
-      text += fmt::format("[[event]]\nat_min = {}\ndoes = \"{}\"\n", ++at_min, does);
+    for (const char* const kind : events) {
+      text += fmt::format("[[event]]\nat_min = {}\ndoes = \"{}\"\n", ++at_min, kind);
     }
     return refusal(text);
   };

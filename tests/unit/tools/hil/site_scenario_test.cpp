@@ -41,7 +41,7 @@ constexpr Subject kSubjects[] = {
      }},
     {"what is said",
      [](Scenario& s) {
-       return std::erase_if(s.events, [](const auto& e) { return is_of_people(e.does); }) > 0;
+       return std::erase_if(s.events, [](const auto& e) { return is_operator_event(e.kind); }) > 0;
      }},
     {"reserve",
      [](Scenario& s) {

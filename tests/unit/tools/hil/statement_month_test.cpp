@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "edge/records/account/account_days.h"
 #include "edge/records/account/day_account.h"
+#include "edge/records/account/day_accounts.h"
 #include "edge/records/account/earnings.h"
 #include "edge/records/log/ring_log.h"
 #include "shared/host/json.h"
@@ -104,9 +104,9 @@ struct Month {
   Account record;
 
   [[nodiscard]] Earnings statement() const {
-    DayBook book(kFirstDay, kLastDay, terms);
-    for (const CycleRecord& cycle : outcome.evidence.log) book.add(cycle);
-    return Earnings(book.accounts());
+    DayAccounts day_accounts(kFirstDay, kLastDay, terms);
+    for (const CycleRecord& cycle : outcome.evidence.log) day_accounts.add(cycle);
+    return Earnings(day_accounts.accounts());
   }
 };
 
@@ -150,7 +150,7 @@ double by_readings_eur(const Month& month) {
   return eur;
 }
 
-void tell(const char* name, const DayAccount& statement, const Month& month) {
+void report_month(const char* name, const DayAccount& statement, const Month& month) {
   const double net_wh = month.record.charged_wh - month.record.discharged_wh;
   const double told_wh = 1'000 * (statement.charged_kwh() - statement.discharged_kwh());
   std::printf("%-12s by readings alone %+.3f %%\n", name,
@@ -169,7 +169,7 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
     const Month& month = undisturbed(map);
     EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
     const DayAccount statement = month.statement().together();
-    tell(map.c_str(), statement, month);
+    report_month(map.c_str(), statement, month);
     const QuarterHourMoney money = statement.money();
     EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
     EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
@@ -206,7 +206,7 @@ TEST(StatementOfAMonth, IsWhatTheProgramSays) {
                                 "/edge/device/maps/alphaess.toml\"\n"
                                 "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
   const ProgramResult said =
-      run_and_hear({BESS_EDGE_PROGRAM, "earned", "2023-03", "--json", "--config", config}, 60);
+      run_and_capture({BESS_EDGE_PROGRAM, "earned", "2023-03", "--json", "--config", config}, 60);
   ASSERT_TRUE(said.is_well()) << said.complaint();
   const Json json = Json::parse(said.output);
   const DayAccount statement = month.statement().together();
@@ -220,7 +220,7 @@ TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
   const Month month = run_month(kDisturbed);
   const Earnings earnings = month.statement();
   const DayAccount& statement = earnings.together();
-  tell("disturbed", statement, month);
+  report_month("disturbed", statement, month);
   EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
               kOfTheMoney * month.record.profit_eur);
   EXPECT_GT(statement.unseen_kwh(), 0);

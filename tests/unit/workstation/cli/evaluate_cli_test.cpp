@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "shared/host/file.h"
-#include "tests/support/said_by_command.h"
+#include "tests/support/output_of_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -20,7 +20,7 @@ class EvaluateCli : public testing::Test {
 
   /// Standard output of `bess-train evaluate --prices <file> ARGUMENTS`.
   std::string output(const std::string& arguments) {
-    return said_by_command("evaluate --prices " + prices_.string() + " " + arguments).output;
+    return output_of_command("evaluate --prices " + prices_.string() + " " + arguments).output;
   }
   static std::vector<std::string> lines(const std::string& text) {
     std::vector<std::string> out;

@@ -5,8 +5,8 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "tests/support/output_of_command.h"
 #include "tests/support/rule_sets.h"
-#include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
@@ -26,7 +26,7 @@ class RulesCli : public testing::Test {
   /// Standard output of `bess-train WORDS`.
   static std::string output(const std::string& words) {
     try {
-      return said_by_command(words).output;
+      return output_of_command(words).output;
     } catch (...) {
       testing::internal::GetCapturedStderr();
       testing::internal::GetCapturedStdout();

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "tests/support/tokens.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {

@@ -14,7 +14,7 @@
 
 #include "shared/host/http_client.h"
 #include "workstation/data/market/feed/market_join.h"
-#include "workstation/data/market/series/judged_prices.h"
+#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {

@@ -62,7 +62,7 @@ struct Instant {
   fail("{}:{}: \"{}\" {}", name, of.number, one_line(of.text, 40), why);
 }
 
-Instant instant_of(const TextLine& of, std::string_view name, const OwnTimes& form) {
+Instant instant_of(const TextLine& of, std::string_view name, const CustomTimeFormat& form) {
   const std::string text = iso_text(of.text, form.date_format);
   Instant instant{};
   if (parse_utc(text, instant.utc_s, kAlsoBlank)) return instant;
@@ -114,7 +114,7 @@ void part_hours(std::vector<Instant>& instants, const std::vector<TextLine>& tex
 }  // namespace
 
 std::vector<std::int64_t> read_times(const std::vector<TextLine>& texts, std::string_view name,
-                                     const OwnTimes& form) {
+                                     const CustomTimeFormat& form) {
   std::vector<Instant> instants;
   for (const TextLine& text : texts) instants.push_back(instant_of(text, name, form));
   part_hours(instants, texts, name);
@@ -208,7 +208,7 @@ struct Columns {
   char separator;
   std::vector<std::optional<MarketField>> fields;
   bool are_own = false;  ///< no resolution code
-  OwnTimes times{};
+  CustomTimeFormat times{};
 };
 
 bool is_price(std::optional<MarketField> field) {
@@ -241,7 +241,7 @@ std::optional<std::size_t> own_column(const std::vector<std::string_view>& label
 }
 
 /// Selects the columns of time and price; ignores others of these kinds.
-void name_own_columns(const std::vector<std::string_view>& labels, const OwnForm& own,
+void name_own_columns(const std::vector<std::string_view>& labels, const CustomCsvFormat& own,
                       std::string_view name, Columns& columns) {
   auto& fields = columns.fields;
   if (const auto time = own_column(labels, MarketField::kTime, own.time_column, name)) {
@@ -259,7 +259,7 @@ void name_own_columns(const std::vector<std::string_view>& labels, const OwnForm
   }
 }
 
-Columns parse_header(std::string_view line, std::string_view name, const OwnForm& own) {
+Columns parse_header(std::string_view line, std::string_view name, const CustomCsvFormat& own) {
   const std::size_t separator = std::min(line.find(';'), line.find('\t'));
   Columns columns{.separator = separator == line.npos ? ',' : line[separator], .fields = {}};
   std::vector<std::string_view> labels;
@@ -351,7 +351,8 @@ void add_own_rows(const std::vector<TextLine>& lines, const Columns& columns, st
 
 }  // namespace
 
-MarketRows parse_market_csv(std::string_view text, std::string_view name, const OwnForm& own) {
+MarketRows parse_market_csv(std::string_view text, std::string_view name,
+                            const CustomCsvFormat& own) {
   MarketRows rows;
   std::optional<Columns> columns;
   std::vector<TextLine> own_lines;
@@ -371,7 +372,8 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name, const 
   return rows;
 }
 
-MarketRows parse_market_text(std::string_view text, std::string_view name, const OwnForm& own) {
+MarketRows parse_market_text(std::string_view text, std::string_view name,
+                             const CustomCsvFormat& own) {
   text = plain_text(text, name);
   if (text.find_first_not_of(" \t\r\n") == text.npos)
     fail("{}: the file is empty; download it again", name);
@@ -484,7 +486,7 @@ std::string joined(const std::vector<std::string>& parts, std::string_view separ
 
 }  // namespace
 
-MarketRows read_market_files(const std::vector<std::string>& paths, const OwnForm& own) {
+MarketRows read_market_files(const std::vector<std::string>& paths, const CustomCsvFormat& own) {
   MarketRows all;
   Overlap overlap;
   for (const std::string& path : paths) {

@@ -18,7 +18,7 @@ namespace bess {
 
 enum class WallClock { kUtc, kLocal };
 
-struct OwnTimes {
+struct CustomTimeFormat {
   std::string date_format = "yyyy-mm-dd";
   std::optional<WallClock> clock{};  ///< for times without an offset
 };
@@ -32,7 +32,7 @@ struct TextLine {
 /// UTC instants, one for each text. In a repeated local hour (autumn) the order of the rows
 /// decides. Throws UserError.
 std::vector<std::int64_t> read_times(const std::vector<TextLine>& texts, std::string_view name,
-                                     const OwnTimes& form);
+                                     const CustomTimeFormat& form);
 
 /// Seconds between prices, 60 or 900, by the majority of neighbours. Throws UserError for others.
 std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view name);
@@ -46,20 +46,22 @@ MarketRows parse_market_json(std::string_view text, std::string_view name);
 // CSV: downloads and custom files, `;` `,` or tabs, optional quotes, any column order.
 
 /// Format of a custom file: column names, empty for detection.
-struct OwnForm {
+struct CustomCsvFormat {
   std::string time_column, price_column;
-  OwnTimes times;
+  CustomTimeFormat times;
 };
 
 /// Without a resolution code the spacing of the rows decides between minutes and quarter-hours, and
 /// contradictions of one time are an error. `name` is used in messages.
-MarketRows parse_market_csv(std::string_view text, std::string_view name, const OwnForm& own = {});
+MarketRows parse_market_csv(std::string_view text, std::string_view name,
+                            const CustomCsvFormat& own = {});
 
 // Prices in any supported form, detected by content.
 
 /// Elia's CSV or JSON, custom CSV, ENTSO-E's XML, minute files and recorded days. `name` is used in
 /// messages.
-MarketRows parse_market_text(std::string_view text, std::string_view name, const OwnForm& own = {});
+MarketRows parse_market_text(std::string_view text, std::string_view name,
+                             const CustomCsvFormat& own = {});
 
 // Minute files as rows, to join an earlier import with more rows or to reconstruct minutes from its
 // settled prices.
@@ -73,7 +75,8 @@ bool is_spreadsheet_minute_csv(std::string_view text);
 std::string from_spreadsheet(std::string_view text);
 
 /// Rows of all files in order; `own` is the format of custom CSV.
-MarketRows read_market_files(const std::vector<std::string>& paths, const OwnForm& own = {});
+MarketRows read_market_files(const std::vector<std::string>& paths,
+                             const CustomCsvFormat& own = {});
 
 struct SettledQuarterHours {
   std::vector<QuarterHour> quarter_hours;  ///< ascending

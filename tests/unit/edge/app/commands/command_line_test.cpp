@@ -15,12 +15,12 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-struct Said {
+struct ProgramOutput {
   int exit_code;
   std::string text;  ///< stdout, then stderr
 };
 
-Said said_to(const std::vector<std::string>& words) {
+ProgramOutput said_to(const std::vector<std::string>& words) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const int exit_code = run_edge_words(words);
@@ -37,7 +37,7 @@ TEST(EdgeWords, EveryCommandHasHelpWithExitCodes) {
     std::vector<std::string> words = {line.substr(2, line.find(' ', 2) - 2)};
     if (words.front() == "map") words.emplace_back("check");
     words.emplace_back("--help");
-    const Said said = said_to(words);
+    const ProgramOutput said = said_to(words);
     EXPECT_EQ(said.exit_code, 0) << line;
     EXPECT_THAT(said.text, ::testing::ContainsRegex("Exit codes:\n  0 ")) << line;
   }
@@ -68,7 +68,7 @@ TEST(EdgeWords, ATypingErrorIsReportedWithASuggestion) {
       {{"--config"}, "--config --help bess-edge"},
   };
   for (const auto& [words, complaint] : slips) {
-    const Said said = said_to(words);
+    const ProgramOutput said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
     EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), Names(complaint)));
     EXPECT_EQ(said.text.find('\n'), said.text.size() - 1) << said.text;
@@ -97,7 +97,7 @@ TEST(EdgeWords, MissingArgumentsAreReportedBeforeAFileIsRead) {
       {{"signature", "--config", "x"}, "--config"},
   };
   for (const auto& [words, complaint] : incomplete) {
-    const Said said = said_to(words);
+    const ProgramOutput said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
     EXPECT_THAT(said.text.substr(said.text.find("bess-edge: ")), Names(complaint));
   }
@@ -115,7 +115,7 @@ url = "http://127.0.0.1:1/prices"
 timeout_ms = 100
 )");
   for (int i = 0; i < 2; ++i) {
-    const Said said = said_to({"--check", "--config", config});
+    const ProgramOutput said = said_to({"--check", "--config", config});
     EXPECT_EQ(said.exit_code, 1);
     EXPECT_THAT(said.text, AllOf(Names("student simulator 127.0.0.1:1 http://127.0.0.1:1/prices"),
                                  HasSubstr(" 0x0")));

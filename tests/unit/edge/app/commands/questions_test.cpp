@@ -76,12 +76,12 @@ url = "http://127.0.0.1:1/prices"
       ASSERT_TRUE(ring_.append(r));
     }
   }
-  struct Said {
+  struct ProgramOutput {
     int exit_code;
     std::string out;
     std::string error;
   };
-  Said ask(std::vector<std::string> words) {
+  ProgramOutput ask(std::vector<std::string> words) {
     words.insert(words.end(), {"--config", config_});
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
@@ -99,7 +99,7 @@ url = "http://127.0.0.1:1/prices"
 
 TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
   log_until_now(30);
-  const Said newest = ask({"why"});
+  const ProgramOutput newest = ask({"why"});
   EXPECT_EQ(newest.exit_code, 0) << newest.error;
   EXPECT_THAT(newest.out, StartsWith(local_text(newest_utc_s_).c_str()));
   EXPECT_THAT(newest.out, Names("student 30"));
@@ -107,7 +107,7 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
   for (const std::string& at :
        {std::string(local_clock_text(before_s + 90).view()),
         std::string(local_text(before_s).view()), std::string(utc_text(before_s + 119).view())}) {
-    const Said then = ask({"why", "--json", "--at", at});
+    const ProgramOutput then = ask({"why", "--json", "--at", at});
     ASSERT_EQ(then.exit_code, 0) << at << ": " << then.error;
     const Json json = Json::parse(then.out);
     EXPECT_EQ(json.value()["utc"].text(), std::string(utc_text(before_s).view())) << at;
@@ -118,13 +118,13 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
 TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
   EXPECT_EQ(ask({"why"}).exit_code, 1);
   log_until_now(5);
-  const Said early = ask({"why", "--at", "2020-01-01 12:00"});
+  const ProgramOutput early = ask({"why", "--at", "2020-01-01 12:00"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.error,
               Names("2020-01-01 12:00 " +
                     std::string(local_text(newest_utc_s_ - 4 * kSecondsPerStep).view())));
   for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", "x"}) {
-    const Said said = ask({"why", "--at", at});
+    const ProgramOutput said = ask({"why", "--at", at});
     EXPECT_EQ(said.exit_code, 2) << at;
     EXPECT_THAT(said.error, Names("--at 14:32"));
   }
@@ -180,11 +180,11 @@ TEST_F(Questions, StatusShowsTheTrainingDays) {
   };
   const std::string today{local_date_text(std::time(nullptr)).view()};
   published("2023-01-01", today.c_str());
-  const Said fresh = ask({"status"});
+  const ProgramOutput fresh = ask({"status"});
   EXPECT_THAT(fresh.out, Names("2023-01-01 " + today));
   EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
   published("2023-01-01", "2023-05-22");
-  const Said old = ask({"status"});
+  const ProgramOutput old = ask({"status"});
   EXPECT_THAT(old.out, Names("2023-05-22 WARN"));
   EXPECT_EQ(old.exit_code, fresh.exit_code);
   const Json json = Json::parse(ask({"status", "--json"}).out);
@@ -200,7 +200,7 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   log_until_now(60);
   const std::string span = std::string(local_text(newest_utc_s_ - 7'200).view()).substr(0, 10) +
                            ".." + std::string(local_text(newest_utc_s_).view()).substr(0, 10);
-  const Said said = ask({"earned", span, "--json"});
+  const ProgramOutput said = ask({"earned", span, "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.error;
   const Json json = Json::parse(said.out);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value(), 3.0 * 2, 1e-9);
@@ -228,7 +228,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), -0.240 - 0.750 * 0.1, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
   ASSERT_NE(folder_.write("state/settled.csv", "damaged"), "");
-  const Said damaged = ask({"earned", span});
+  const ProgramOutput damaged = ask({"earned", span});
   EXPECT_EQ(damaged.exit_code, 0);
   EXPECT_THAT(damaged.error, Names("settled.csv"));
 }
@@ -236,7 +236,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
 TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
   log_until_now(1);
   const std::string today = std::string(local_text(newest_utc_s_).view()).substr(0, 10);
-  const Said early = ask({"earned", "2020-01-01..2020-01-31"});
+  const ProgramOutput early = ask({"earned", "2020-01-01..2020-01-31"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.error, Names("2020-01-01 2020-01-31 " + today));
   EXPECT_EQ(ask({"earned", "tomorrow"}).exit_code, 2);

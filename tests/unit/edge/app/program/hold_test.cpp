@@ -7,7 +7,7 @@
 
 #include "edge/app/program/hold_watch.h"
 #include "edge/app/storage/operator_files.h"
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -60,7 +60,7 @@ TEST(HoldFile, NoFileIsNoHoldAndWhatBlocksOrLeadsAwayIsUnreadable) {
 /// Waits for the other thread's finding; false after 30 s.
 bool is_published(const HoldWatch& watch, const Hold& hold) {
   for (int ms = 0; ms < 30'000; ++ms) {
-    if (watch.mailbox().latest() == hold) return true;
+    if (watch.latest_hold().latest() == hold) return true;
     sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 1'000);
   }
   return false;
@@ -71,7 +71,7 @@ TEST(HoldWatch, KnowsTheFileImmediatelyAndFollowsIt) {
   const std::string path = folder.write("hold", line_of(kHold));
   const auto watch = std::make_unique<HoldWatch>();
   watch->start({.state = path.c_str(), .run = ""}, {}, 900);
-  EXPECT_EQ(watch->mailbox().latest(), kHold);  // before the thread has looked
+  EXPECT_EQ(watch->latest_hold().latest(), kHold);  // before the thread has looked
   const Hold other{.power_w = 3, .until_utc_s = 4};
   ASSERT_TRUE(replace_file(path.c_str(), line_of(other)));
   EXPECT_TRUE(is_published(*watch, other));
@@ -94,7 +94,7 @@ class TwoHolds : public ::testing::Test {
   [[nodiscard]] HoldReading reading() const { return read_newest_hold(paths_); }
 
   const TemporaryFolder folder_;
-  const BothPlaces paths_;
+  const StateFilePaths paths_;
   const Hold other_{.power_w = 3, .until_utc_s = 4};
 };
 
@@ -132,14 +132,14 @@ TEST_F(TwoHolds, TheWatchNamesALossOnce) {
   watch->start(paths_, {}, 900);
   put(paths_.state, "nonsense", 3);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 10);
-  EXPECT_EQ(watch->mailbox().latest(), kHold);
+  EXPECT_EQ(watch->latest_hold().latest(), kHold);
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_THAT(said, Names("hold " + folder_.file("state") + " " + folder_.file("run")));
   EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
 }
 
 TEST(HoldWatch, NeedsNoStart) {
-  EXPECT_EQ(std::make_unique<HoldWatch>()->mailbox().latest(), Hold{});
+  EXPECT_EQ(std::make_unique<HoldWatch>()->latest_hold().latest(), Hold{});
 }
 
 }  // namespace

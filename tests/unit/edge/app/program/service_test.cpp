@@ -31,7 +31,7 @@ TEST(InstanceLock, TheSecondIsRefusedWithTheFirstOnesProcess) {
   InstanceLock second;
   EXPECT_FALSE(second.take(path.c_str(), "the battery", error));
   EXPECT_THAT(error.c_str(), Names("battery " + std::to_string(getpid()) + " " + path));
-  EXPECT_EQ(holder_of(path.c_str()), getpid());
+  EXPECT_EQ(lock_owner_pid(path.c_str()), getpid());
 }
 
 TEST(InstanceLock, IsFreeAfterItsHolderHasGoneHoweverItWent) {
@@ -48,13 +48,13 @@ TEST(InstanceLock, IsFreeAfterItsHolderHasGoneHoweverItWent) {
   waitpid(child, &status, 0);
   ASSERT_EQ(WEXITSTATUS(status), 7);
   EXPECT_TRUE(std::filesystem::exists(path));
-  EXPECT_EQ(holder_of(path.c_str()), 0);
+  EXPECT_EQ(lock_owner_pid(path.c_str()), 0);
   {
     InstanceLock lock;
     EXPECT_TRUE(lock.take(path.c_str(), "x", error)) << error.c_str();
   }
   EXPECT_FALSE(std::filesystem::exists(path));
-  EXPECT_EQ(holder_of(path.c_str()), 0);
+  EXPECT_EQ(lock_owner_pid(path.c_str()), 0);
 }
 
 /// The owner removes the file: a lock on the removed file must not count.

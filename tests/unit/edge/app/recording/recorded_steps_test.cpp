@@ -39,7 +39,7 @@ class RecordedStepsTest : public ::testing::Test {
   void pass(double seconds) {
     PowerResponse now = response_;
     now.delay_s = std::max(response_.delay_s - (now_s_ - ordered_s_), 0.0);
-    power_ = followed_power(now, power_, ordered_w_, seconds).end;
+    power_ = response_power(now, power_, ordered_w_, seconds).end;
     now_s_ += seconds;
   }
   void order(int power_w) {

@@ -106,7 +106,7 @@ TEST_F(Recording, IsCompleteUnderItsNameAndAPartFileUntilThen) {
   BusExchange silence = reading(10, {0});
   silence.outcome = BusOutcome::kTimeout;
   for (const BusExchange& exchange : {reading(10, {0xFFFE}), refused, silence}) {
-    listener.tell(listener.owner, exchange);
+    listener.on_exchange(listener.owner, exchange);
   }
   EXPECT_FALSE(std::filesystem::exists(path));
   ASSERT_TRUE(recorder.finish(error_)) << error_.c_str();
@@ -135,7 +135,7 @@ TEST_F(Recording, EndsAtItsBoundAndIsStillWhole) {
   ExchangeRecorder recorder;
   ASSERT_TRUE(recorder.start(path.c_str(), head_, map_, clock_, error_, kBytesMax));
   const ExchangeListener listener = recorder.listener();
-  for (int i = 0; i < 100; ++i) listener.tell(listener.owner, reading(10, {1}));
+  for (int i = 0; i < 100; ++i) listener.on_exchange(listener.owner, reading(10, {1}));
   ASSERT_TRUE(recorder.finish(error_)) << error_.c_str();
   EXPECT_LE(std::filesystem::file_size(path), kBytesMax);
   EXPECT_GT(recorder.exchanges(), 10);

@@ -105,12 +105,12 @@ TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
   const Loaded loaded(meter(""), "alphaess", "power_w = 3000\n");
   ASSERT_TRUE(loaded.is_good) << loaded.error;
   const SiteSettings& site = loaded.config->site.settings;
-  EXPECT_TRUE(site.witness.judges);
-  EXPECT_EQ(site.witness.power_w, 3'000);
-  EXPECT_EQ(site.witness.settle_s, loaded.config->battery.map.response.settle_s);
+  EXPECT_TRUE(site.meter_check.judges);
+  EXPECT_EQ(site.meter_check.power_w, 3'000);
+  EXPECT_EQ(site.meter_check.settle_s, loaded.config->battery.map.response.settle_s);
   const Loaded told(meter("judged = false\npv_w_max = 6000\n"));
   ASSERT_TRUE(told.is_good) << told.error;
-  EXPECT_FALSE(told.config->site.settings.witness.judges);
+  EXPECT_FALSE(told.config->site.settings.meter_check.judges);
   EXPECT_EQ(told.config->site.settings.pv_w_max, 6'000);
 }
 

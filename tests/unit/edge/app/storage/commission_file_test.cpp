@@ -104,7 +104,7 @@ class CommissionCopies : public CommissionFile {
   void expect_all_whole() {
     for (const char* place : kPlaces) EXPECT_EQ(text_of_file(folder_.file(place)), text_) << place;
     EXPECT_THAT(commission_file_losses(config_), ::testing::IsEmpty());
-    EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+    EXPECT_THAT(repair_commission_file(config_), ::testing::IsEmpty());
   }
 
   static constexpr const char* kPlaces[] = {"state/commissioned.toml", "state/commissioned.copy",
@@ -124,7 +124,8 @@ TEST_F(CommissionCopies, AnyFlippedByteOfAnyCopyIsReportedAndRepaired) {
                   ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
       ASSERT_EQ(text_of_file(folder_.file(place)), flipped) << "a check writes nothing";
-      ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(folder_.file(place))))
+      ASSERT_THAT(repair_commission_file(config_),
+                  ::testing::ElementsAre(Names(folder_.file(place))))
           << i;
       ASSERT_EQ(text_of_file(folder_.file(place)), text_) << i;
     }
@@ -139,19 +140,20 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
     for (const std::size_t size : {text_.size() - 1, text_.size() / 2, std::size_t{0}}) {
       fs::resize_file(path, size);
       ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
-      EXPECT_EQ(mend_commission_file(config_).size(), 1U);
+      EXPECT_EQ(repair_commission_file(config_).size(), 1U);
       expect_all_whole();
     }
     fs::remove(path);
     ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
     const bool is_in_memory = std::string(place).starts_with("run/");
     EXPECT_EQ(commission_file_losses(config_).size(), is_in_memory ? 0U : 1U);
-    EXPECT_EQ(mend_commission_file(config_).size(), is_in_memory ? 0U : 1U) << "a boot is no loss";
+    EXPECT_EQ(repair_commission_file(config_).size(), is_in_memory ? 0U : 1U)
+        << "a boot is no loss";
     expect_all_whole();
     fs::remove(path);
     fs::create_directory(path);
     ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
-    EXPECT_THAT(mend_commission_file(config_), ::testing::ElementsAre(Names(path)));
+    EXPECT_THAT(repair_commission_file(config_), ::testing::ElementsAre(Names(path)));
     fs::remove(path);
     folder_.write(place, text_);
   }
@@ -163,7 +165,7 @@ TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
   for (const std::string& broken : {std::string(3, '\0'), changed}) {
     for (const char* place : kPlaces) folder_.write(place, broken);
     EXPECT_THAT(complaint(), Names("commissioned.toml bess-edge commission --config --yes"));
-    EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+    EXPECT_THAT(repair_commission_file(config_), ::testing::IsEmpty());
   }
 }
 
@@ -181,7 +183,7 @@ TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
   for (const char* place : kPlaces) std::filesystem::remove(folder_.file(place));
   folder_.write(kPlaces[0], text_.substr(0, text_.rfind("# crc32=")));
   ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
-  EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  EXPECT_THAT(repair_commission_file(config_), ::testing::IsEmpty());
   expect_all_whole();
 }
 

@@ -65,7 +65,7 @@ TEST_F(FileOwner, NoOtherUserMayOpenTheLock) {
   if (child == 0) {
     if (setgid(kStranger) != 0 || setuid(kStranger) != 0) _exit(1);
     if (open(path.c_str(), O_RDONLY | O_CLOEXEC) >= 0) _exit(2);
-    _exit(holder_of(path.c_str()) == kHolderHidden ? 0 : 3);
+    _exit(lock_owner_pid(path.c_str()) == kOwnerHidden ? 0 : 3);
   }
   int status = 0;
   waitpid(child, &status, 0);
@@ -76,7 +76,7 @@ TEST_F(FileOwner, NoOtherUserMayOpenTheLock) {
 TEST_F(FileOwner, AReaderBelievesTheOwnerOfTheFolder) {
   const std::string path = strangers("status.json");
   EXPECT_FALSE(is_believable(path.c_str()));
-  EXPECT_EQ(holder_of(path.c_str()), 0);
+  EXPECT_EQ(lock_owner_pid(path.c_str()), 0);
   ASSERT_EQ(chown(folder_.file("").c_str(), kStranger, kStranger), 0);
   EXPECT_TRUE(is_believable(path.c_str()));
   EXPECT_TRUE(is_believable(folder_.file("none").c_str()));

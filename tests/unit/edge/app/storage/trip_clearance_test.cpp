@@ -1,5 +1,5 @@
 // File of cleared trips: its text, invalid texts, and that an entry in either copy suffices.
-#include "edge/app/storage/recall.h"
+#include "edge/app/storage/restored_state.h"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ class TwoPlaces : public ::testing::Test {
     paths_.run = folder_.file("run").c_str();
   }
   const TemporaryFolder folder_;
-  BothPlaces paths_;
+  StateFilePaths paths_;
 };
 
 TEST_F(TwoPlaces, AnEntryInEitherIsEnough) {

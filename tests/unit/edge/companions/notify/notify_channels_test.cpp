@@ -4,7 +4,7 @@
 
 #include "shared/host/child_process.h"
 #include "shared/scaled_clock.h"
-#include "tests/support/said.h"
+#include "tests/support/program_output.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/edge/companions/notify/notify_site.h"
 
@@ -171,7 +171,7 @@ TEST_F(Channels, AKillLosesNothing) {
 }
 
 /// Output of one run.
-Said run(std::vector<std::string> arguments) {
+ProgramOutput run(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
   return answer_of(std::move(arguments));
 }
@@ -180,7 +180,7 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
   const std::string file = config();
   {
     Running first(*this);
-    const Said second = run({"--config", file, "--once"});
+    const ProgramOutput second = run({"--config", file, "--once"});
     EXPECT_EQ(second.exit_code, 1);
     EXPECT_THAT(second.text, Names("[notify] folder " + std::to_string(first.notify.pid()) + " " +
                                    folder_.file("notify/lock")));
@@ -204,7 +204,7 @@ TEST_F(Channels, ANotifierThatCannotLockStillReports) {
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
                                      settings_.program + "\"\n");
   set_status("degraded", R"("WARN: a trouble")");
-  const Said said = run({"--config", file, "--once"});
+  const ProgramOutput said = run({"--config", file, "--once"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.text, AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
                                HasSubstr("ALERT: WARN: a trouble")));

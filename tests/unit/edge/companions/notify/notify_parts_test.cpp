@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "edge/companions/notify/alarm_command.h"
+#include "edge/companions/notify/alert_command.h"
 #include "edge/companions/notify/controller_status.h"
 #include "edge/companions/notify/notifier_state.h"
 #include "edge/companions/notify/notify_settings.h"
@@ -160,16 +160,16 @@ TEST(ChildProgram, WhatDoesNotEndIsKilledWithItsChildren) {
 
 TEST(ChildProgram, IsReadWithItsErrors) {
   const ProgramResult result =
-      run_and_hear({"sh", "-c", "echo said; echo first >&2; echo last >&2; exit 7"}, 10);
+      run_and_capture({"sh", "-c", "echo said; echo first >&2; echo last >&2; exit 7"}, 10);
   EXPECT_EQ(result.output, "said\n");
   EXPECT_EQ(result.errors, "first\nlast\n");
   EXPECT_EQ(result.exit_code, 7);
   EXPECT_FALSE(result.is_well());
   EXPECT_EQ(result.complaint(), "last");
-  EXPECT_TRUE(run_and_hear({"true"}, 10).is_well());
-  EXPECT_EQ(run_and_hear({"sh", "-c", "kill -9 $$"}, 10).exit_code, 128 + 9);
+  EXPECT_TRUE(run_and_capture({"true"}, 10).is_well());
+  EXPECT_EQ(run_and_capture({"sh", "-c", "kill -9 $$"}, 10).exit_code, 128 + 9);
   // It closes its output and continues, but not beyond its time limit.
-  EXPECT_THAT(run_and_hear({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 1).complaint(),
+  EXPECT_THAT(run_and_capture({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 1).complaint(),
               HasSubstr("did not end in time"));
 }
 
@@ -252,9 +252,9 @@ const Message kAlarm{.severity = "alarm",
                      .utc_s = 1'679'875'320,
                      .since_utc_s = 1'679'875'020};
 
-class AlarmCommand : public ::testing::Test {
+class AlertCommand : public ::testing::Test {
  protected:
-  AlarmCommand() { signal(SIGPIPE, SIG_IGN); }  // as the program does: not all read their input
+  AlertCommand() { signal(SIGPIPE, SIG_IGN); }  // as the program does: not all read their input
   std::string run(const std::string& command) {
     settings_.command = command;
     return run_alarm_command(settings_, kAlarm);
@@ -270,7 +270,7 @@ class AlarmCommand : public ::testing::Test {
   }();
 };
 
-TEST_F(AlarmCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
+TEST_F(AlertCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
   EXPECT_EQ(run("{ echo \"$BESS_SEVERITY|$BESS_TITLE|$BESS_NODE|$BESS_KEY|$BESS_UTC\"; "
                 "cat; } >" +
                 folder_.file("said")),
@@ -281,7 +281,7 @@ TEST_F(AlarmCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
   EXPECT_THAT(said(), HasSubstr("call: Ann, +32 2 555 01 23\n"));
 }
 
-TEST_F(AlarmCommand, NothingInATextIsReadByTheShell) {
+TEST_F(AlertCommand, NothingInATextIsReadByTheShell) {
   Message evil = kAlarm;
   evil.text = "'; touch " + folder_.file("owned") + "; $(touch " + folder_.file("owned") + ") `id`";
   settings_.command = "echo \"$BESS_TEXT\" >" + folder_.file("said");
@@ -290,7 +290,7 @@ TEST_F(AlarmCommand, NothingInATextIsReadByTheShell) {
   EXPECT_FALSE(std::filesystem::exists(folder_.file("owned")));
 }
 
-TEST_F(AlarmCommand, ThatFailsHangsOrIsMissingIsReported) {
+TEST_F(AlertCommand, ThatFailsHangsOrIsMissingIsReported) {
   EXPECT_THAT(run("exit 3"), HasSubstr("exit code 3"));
   EXPECT_THAT(run("/no/such/program"), HasSubstr("exit code 127"));
   settings_.command_ms_max = 200;

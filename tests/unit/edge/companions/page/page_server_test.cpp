@@ -64,7 +64,7 @@ class PageServerTest : public ::testing::Test {
   [[nodiscard]] std::string printed(std::vector<std::string> words) const {
     words.insert(words.begin(), BESS_EDGE_PROGRAM);
     words.insert(words.end(), {"--config", site_.config()});
-    return run_and_hear(words, 30).output;
+    return run_and_capture(words, 30).output;
   }
   /// Settings whose controller is this shell script.
   [[nodiscard]] PageSettings with_program(const std::string& script) const {

@@ -98,9 +98,9 @@ TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
   EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
   frozen.observe(kFirstMinute + 120, 700);
   EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
-  for (const StandingPrice& damaged :
-       {StandingPrice{INT64_MIN, 700, INT32_MIN}, StandingPrice{kFirstMinute, 700, INT32_MIN},
-        StandingPrice{INT64_MAX, 700, -1}}) {
+  for (const UnchangedPrice& damaged :
+       {UnchangedPrice{INT64_MIN, 700, INT32_MIN}, UnchangedPrice{kFirstMinute, 700, INT32_MIN},
+        UnchangedPrice{INT64_MAX, 700, -1}}) {
     frozen.restore(damaged);
     frozen.observe(kFirstMinute + 120, 700);
     EXPECT_EQ(frozen.price().unchanged_s, 0);

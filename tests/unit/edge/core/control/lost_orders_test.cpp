@@ -13,10 +13,10 @@ namespace {
 constexpr std::int64_t kFirstUtcS = 1'679'788'800;
 constexpr std::int32_t kW = 3'000;
 
-enum class Fate { kHolds, kReplaced, kEnded };
+enum class OrderOutcome { kHolds, kReplaced, kEnded };
 
-Response reading(std::int64_t number, Fate fate, std::int32_t ordered_w = kW) {
-  const bool holds = fate == Fate::kHolds;
+Response reading(std::int64_t number, OrderOutcome outcome, std::int32_t ordered_w = kW) {
+  const bool holds = outcome == OrderOutcome::kHolds;
   return {.utc_s = kFirstUtcS + kSecondsPerStep * number,
           .steady_s = kFirstUtcS + kSecondsPerStep * number,
           .is_driven = holds,
@@ -26,15 +26,16 @@ Response reading(std::int64_t number, Fate fate, std::int32_t ordered_w = kW) {
           .measurement = {.soc_e4 = 5'000,
                           .power_w = holds ? ordered_w : 0,
                           .dispatch_active = holds,
-                          .order_replaced = fate == Fate::kReplaced,
-                          .order_ended = fate == Fate::kEnded}};
+                          .order_replaced = outcome == OrderOutcome::kReplaced,
+                          .order_ended = outcome == OrderOutcome::kEnded}};
 }
 
 /// Readings until the release of the battery; 0: not within `most`.
-int given_back_after(const std::function<Fate(int)>& fate, bool yields = true, int most = 400) {
+int given_back_after(const std::function<OrderOutcome(int)>& outcome, bool yields = true,
+                     int most = 400) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 1; i <= most; ++i) {
-    const Response now = reading(i, fate(i));
+    const Response now = reading(i, outcome(i));
     orders.observe(now, false);
     if (orders.is_to_be_given_up(now.steady_s, yields)) return i;
   }
@@ -42,22 +43,24 @@ int given_back_after(const std::function<Fate(int)>& fate, bool yields = true, i
 }
 
 TEST(LostOrders, AnIntermittentControllerIsFoundAsWell) {
-  for (const Fate lost : {Fate::kReplaced, Fate::kEnded}) {
+  for (const OrderOutcome lost : {OrderOutcome::kReplaced, OrderOutcome::kEnded}) {
     const auto every = [lost](int k) {
-      return [lost, k](int i) { return i % k == 0 ? lost : Fate::kHolds; };
+      return [lost, k](int i) { return i % k == 0 ? lost : OrderOutcome::kHolds; };
     };
     EXPECT_EQ(given_back_after(every(1)), 2);
     EXPECT_EQ(given_back_after(every(2)), 4);
     EXPECT_EQ(given_back_after(every(3)), 9);
     EXPECT_EQ(given_back_after(every(4)), 0);
-    EXPECT_EQ(given_back_after([lost](int i) { return i == 7 ? lost : Fate::kHolds; }), 0);
+    EXPECT_EQ(given_back_after([lost](int i) { return i == 7 ? lost : OrderOutcome::kHolds; }), 0);
   }
 }
 
 /// Alternating stop and other power: one master.
 TEST(LostOrders, EndsAndReplacementsCountTogether) {
   const auto mixed = [](int i) {
-    return i % 4 == 0 ? Fate::kEnded : i % 2 == 0 ? Fate::kReplaced : Fate::kHolds;
+    return i % 4 == 0   ? OrderOutcome::kEnded
+           : i % 2 == 0 ? OrderOutcome::kReplaced
+                        : OrderOutcome::kHolds;
   };
   EXPECT_EQ(given_back_after(mixed), 4);
 }
@@ -65,8 +68,8 @@ TEST(LostOrders, EndsAndReplacementsCountTogether) {
 TEST(LostOrders, TheReasonIsTheHandThatWasSeen) {
   for (const bool replaced : {false, true}) {
     LostOrders orders{ResponseSettings{}};
-    orders.observe(reading(1, replaced ? Fate::kReplaced : Fate::kEnded), false);
-    orders.observe(reading(2, Fate::kEnded), false);
+    orders.observe(reading(1, replaced ? OrderOutcome::kReplaced : OrderOutcome::kEnded), false);
+    orders.observe(reading(2, OrderOutcome::kEnded), false);
     EXPECT_EQ(orders.reason(), replaced ? Reason::kOtherMaster : Reason::kNoAnswer);
     EXPECT_EQ(orders.replaced(), replaced ? 1 : 0);
     EXPECT_EQ(orders.ended(), replaced ? 1 : 2);
@@ -77,7 +80,7 @@ TEST(LostOrders, TheReasonIsTheHandThatWasSeen) {
 TEST(LostOrders, OneOrderIsLostOnce) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 0; i < 5; ++i) {
-    Response now = reading(1, Fate::kEnded);
+    Response now = reading(1, OrderOutcome::kEnded);
     now.steady_s += 120 * i;
     orders.observe(now, false);
     EXPECT_FALSE(orders.is_to_be_given_up(now.steady_s, true));
@@ -88,8 +91,8 @@ TEST(LostOrders, OneOrderIsLostOnce) {
 /// Read as ours before the tick, replaced before the refresh at the tick: the same number.
 TEST(LostOrders, AnOrderThatWasSeenToHoldCanStillBeLost) {
   LostOrders orders{ResponseSettings{}};
-  orders.observe(reading(1, Fate::kHolds), false);
-  orders.observe(reading(1, Fate::kReplaced), false);
+  orders.observe(reading(1, OrderOutcome::kHolds), false);
+  orders.observe(reading(1, OrderOutcome::kReplaced), false);
   EXPECT_EQ(orders.replaced(), 1);
 }
 
@@ -133,7 +136,7 @@ TEST(LostOrders, UnintendedEndsAreNoFinding) {
   };
   for (const Case& c : cases) {
     LostOrders orders{ResponseSettings{}};
-    Response now = reading(1, Fate::kEnded, c.ordered_w);
+    Response now = reading(1, OrderOutcome::kEnded, c.ordered_w);
     c.is(now);
     orders.observe(now, false);
     EXPECT_EQ(orders.ended(), c.is_lost ? 1 : 0) << c.name;
@@ -149,17 +152,17 @@ TEST(LostOrders, UnintendedEndsAreNoFinding) {
 TEST(LostOrders, RestForgivesNothingButTwoHoursDo) {
   for (const auto& [hours, found] : {std::pair{1, true}, {3, false}}) {
     LostOrders orders{ResponseSettings{}};
-    orders.observe(reading(1, Fate::kReplaced), false);
+    orders.observe(reading(1, OrderOutcome::kReplaced), false);
     const int next = 1 + 30 * hours;
-    for (int i = 2; i < next; ++i) orders.observe(reading(i, Fate::kHolds, 0), false);
-    orders.observe(reading(next, Fate::kReplaced), false);
+    for (int i = 2; i < next; ++i) orders.observe(reading(i, OrderOutcome::kHolds, 0), false);
+    orders.observe(reading(next, OrderOutcome::kReplaced), false);
     EXPECT_EQ(orders.is_to_be_given_up(kFirstUtcS + next * kSecondsPerStep, true), found) << hours;
   }
 }
 
 TEST(LostOrders, InsistsForAnHourAndAfterThatOnlyAgainstFew) {
   const auto every = [](int k) {
-    return [k](int i) { return i % k == 0 ? Fate::kReplaced : Fate::kHolds; };
+    return [k](int i) { return i % k == 0 ? OrderOutcome::kReplaced : OrderOutcome::kHolds; };
   };
   EXPECT_EQ(given_back_after(every(1), false), 31);
   EXPECT_EQ(given_back_after(every(2), false), 32);
@@ -171,7 +174,7 @@ TEST(LostOrders, TheNextTryEndsSoonerUntilOrdersHaveLasted) {
   int i = 0;
   const auto lose_until_given_up = [&] {
     for (int n = 1;; ++n) {
-      const Response now = reading(++i, Fate::kReplaced);
+      const Response now = reading(++i, OrderOutcome::kReplaced);
       orders.observe(now, false);
       if (!orders.is_to_be_given_up(now.steady_s, false)) continue;
       orders.forget_findings();
@@ -181,7 +184,7 @@ TEST(LostOrders, TheNextTryEndsSoonerUntilOrdersHaveLasted) {
   EXPECT_EQ(lose_until_given_up(), 31);
   i += 5;  // the pause
   EXPECT_EQ(lose_until_given_up(), 2);
-  for (int n = 0; n < 40; ++n) orders.observe(reading(++i, Fate::kHolds), false);
+  for (int n = 0; n < 40; ++n) orders.observe(reading(++i, OrderOutcome::kHolds), false);
   EXPECT_TRUE(orders.has_settled());
   EXPECT_EQ(lose_until_given_up(), 31);
 }
@@ -189,14 +192,14 @@ TEST(LostOrders, TheNextTryEndsSoonerUntilOrdersHaveLasted) {
 TEST(LostOrders, TheShareOfTheLastHourOutlastsARestart) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 1; i <= 60; ++i)
-    orders.observe(reading(i, i % 3 == 0 ? Fate::kEnded : Fate::kHolds), false);
+    orders.observe(reading(i, i % 3 == 0 ? OrderOutcome::kEnded : OrderOutcome::kHolds), false);
   EXPECT_EQ(orders.history().judged, 30);
   EXPECT_EQ(orders.history().lost, 10);
   LostOrders next{ResponseSettings{}};
   next.restore(orders.history(), kFirstUtcS + 60 * kSecondsPerStep);
   EXPECT_EQ(next.history(), orders.history());
   EXPECT_EQ(next.ended(), 0) << "since start";
-  next.observe(reading(63, Fate::kEnded), false);
+  next.observe(reading(63, OrderOutcome::kEnded), false);
   EXPECT_TRUE(next.is_to_be_given_up(kFirstUtcS + 63 * kSecondsPerStep, true));
 }
 
@@ -208,7 +211,7 @@ TEST(LostOrders, ManyShortRunsFindItTogether) {
     LostOrders orders{ResponseSettings{}};
     const std::int64_t utc_s = kFirstUtcS + run * 165;
     orders.restore(logged, utc_s - 60);
-    Response now = reading(1, Fate::kReplaced);
+    Response now = reading(1, OrderOutcome::kReplaced);
     now.steady_s = utc_s;
     orders.observe(now, false);
     if (orders.is_to_be_given_up(utc_s, true)) found = run;
@@ -233,8 +236,8 @@ TEST(LostOrders, PausesGrowUntilOrdersHold) {
   std::int64_t number = 0;
   std::int64_t utc_s = kFirstUtcS;
   std::int32_t soc_e4 = 5'000;
-  const auto observe = [&](Fate fate, bool own = false) {
-    Response now = reading(++number, fate, soc_e4 < 5'000 ? kW : -kW);
+  const auto observe = [&](OrderOutcome outcome, bool own = false) {
+    Response now = reading(++number, outcome, soc_e4 < 5'000 ? kW : -kW);
     now.steady_s = utc_s += kSecondsPerStep;
     if (own) now.measurement.power_w = 0;
     soc_e4 += now.measurement.power_w / 24;  // of 8 kWh, in two minutes
@@ -245,16 +248,17 @@ TEST(LostOrders, PausesGrowUntilOrdersHold) {
   };
   const auto paused_cycles = [&] {
     while (!supervision.stop_reason()) {
-      observe(number % 3 == 2 ? Fate::kReplaced : Fate::kHolds);
+      observe(number % 3 == 2 ? OrderOutcome::kReplaced : OrderOutcome::kHolds);
     }
     int cycles = 0;
-    for (; supervision.stop_reason() == Reason::kOtherMaster; ++cycles) observe(Fate::kHolds, true);
+    for (; supervision.stop_reason() == Reason::kOtherMaster; ++cycles)
+      observe(OrderOutcome::kHolds, true);
     return cycles;
   };
   EXPECT_EQ(paused_cycles(), 5);
   EXPECT_EQ(paused_cycles(), 10);
   EXPECT_EQ(paused_cycles(), 20);
-  for (int i = 0; i < 10; ++i) observe(Fate::kHolds);
+  for (int i = 0; i < 10; ++i) observe(OrderOutcome::kHolds);
   EXPECT_EQ(paused_cycles(), 5);
 }
 

@@ -16,14 +16,14 @@ namespace {
 constexpr std::uint32_t kSoon = kNow + 600;
 
 TEST(Hold, CrossesTheMailboxAsItIs) {
-  HoldMailbox mailbox;
-  EXPECT_EQ(mailbox.latest(), Hold{});
+  LatestHold latest_hold;
+  EXPECT_EQ(latest_hold.latest(), Hold{});
   for (const Hold& hold :
        {Hold{.power_w = -2'000, .until_utc_s = kSoon},
         Hold{.power_w = INT32_MAX, .until_utc_s = UINT32_MAX - 1},
         Hold{.power_w = INT32_MIN, .until_utc_s = 1}, Hold{.unreadable = true}, Hold{}}) {
-    mailbox.publish(hold);
-    EXPECT_EQ(mailbox.latest(), hold);
+    latest_hold.publish(hold);
+    EXPECT_EQ(latest_hold.latest(), hold);
   }
 }
 
@@ -31,25 +31,25 @@ TEST(FullCharge, IsSeenAtTheEndOfAStepAndNotBetweenTwoTicks) {
   FullChargePart part(7);
   CycleRecord record{.utc_s = kNow, .days_since_full = 3};
   part.restore(record);
-  Reading reading{.look = Look::kCheck, .utc_s = kNow, .is_read = true};
+  Reading reading{.purpose = ReadingPurpose::kCheck, .utc_s = kNow, .is_read = true};
   reading.response.measurement.soc_e4 = 10'000;
   part.observe(reading);
   part.report(record);
   EXPECT_EQ(record.days_since_full, 0) << "nothing was counted yet";
   reading.response.measurement.soc_e4 = 5'000;
-  reading.look = Look::kTick;
+  reading.purpose = ReadingPurpose::kTick;
   part.observe(reading);
   part.report(record);
   EXPECT_EQ(record.days_since_full, 3);
 }
 
 TEST(Hold, IsTakenUpAtATickAndNotBetweenTwo) {
-  HoldMailbox mailbox;
+  LatestHold latest_hold;
   HoldPart part;
-  part.mailbox = &mailbox;
+  part.latest_hold = &latest_hold;
   CycleRecord record{.utc_s = kNow};
   GuardInputs in;
-  mailbox.publish({.power_w = 1'500, .until_utc_s = kSoon});
+  latest_hold.publish({.power_w = 1'500, .until_utc_s = kSoon});
   part.put({.is_tick = false}, record, in);
   EXPECT_FALSE(in.held) << "the order in force is held against limits, not changed";
   part.put({.is_tick = true}, record, in);
@@ -57,15 +57,15 @@ TEST(Hold, IsTakenUpAtATickAndNotBetweenTwo) {
   EXPECT_EQ(in.held_power_w, 1'500);
 }
 
-TEST(Mailbox, WhatWasPostedLastStaysUntilAnotherIsPosted) {
-  Mailbox<int> mailbox;
+TEST(LatestValue, WhatWasPostedLastStaysUntilAnotherIsPosted) {
+  LatestValue<int> latest_hold;
   for (int i = 1; i < 6; ++i) {
     for (int posts = 0; posts < i % 3; ++posts) {
-      mailbox.draft() = 10 * i + posts;
-      mailbox.post();
+      latest_hold.draft() = 10 * i + posts;
+      latest_hold.post();
     }
     const int last = i % 3 == 0 ? 21 : 10 * i + i % 3 - 1;
-    for (int look = 0; look < 4; ++look) EXPECT_EQ(mailbox.latest(), last) << i;
+    for (int purpose = 0; purpose < 4; ++purpose) EXPECT_EQ(latest_hold.latest(), last) << i;
   }
 }
 
@@ -127,17 +127,18 @@ TEST(FullCharge, IsDueAfterTheDaysAndUrgentADayLater) {
   charge.update(100, 5'000);  // nothing known: the days count from now on
   EXPECT_EQ(charge.days_since_full(), 0);
   charge.update(109, 9'949);
-  EXPECT_EQ(charge.wish(-50'000, level), FullChargeWish::kNone);
+  EXPECT_EQ(charge.request(-50'000, level), FullChargeRequest::kNone);
   charge.update(110, 5'000);
   EXPECT_EQ(charge.days_since_full(), 10);
-  EXPECT_EQ(charge.wish(8'001, level), FullChargeWish::kNoDischarge);
-  EXPECT_EQ(charge.wish(8'000, level), FullChargeWish::kCharge);
-  EXPECT_EQ(charge.wish(8'001, PriceLevel{}), FullChargeWish::kCharge);  // no level to wait for
+  EXPECT_EQ(charge.request(8'001, level), FullChargeRequest::kNoDischarge);
+  EXPECT_EQ(charge.request(8'000, level), FullChargeRequest::kCharge);
+  EXPECT_EQ(charge.request(8'001, PriceLevel{}),
+            FullChargeRequest::kCharge);  // no level to wait for
   charge.update(111, 5'000);
-  EXPECT_EQ(charge.wish(100'000, level), FullChargeWish::kCharge);
+  EXPECT_EQ(charge.request(100'000, level), FullChargeRequest::kCharge);
   charge.update(111, 9'950);
   EXPECT_EQ(charge.days_since_full(), 0);
-  EXPECT_EQ(charge.wish(-50'000, level), FullChargeWish::kNone);
+  EXPECT_EQ(charge.request(-50'000, level), FullChargeRequest::kNone);
 }
 
 TEST(FullCharge, OffNeverWantsAnything) {
@@ -145,7 +146,7 @@ TEST(FullCharge, OffNeverWantsAnything) {
   charge.restore(1);
   charge.update(20'000, 5'000);
   EXPECT_EQ(charge.days_since_full(), 19'999);
-  EXPECT_EQ(charge.wish(-50'000, {}), FullChargeWish::kNone);
+  EXPECT_EQ(charge.request(-50'000, {}), FullChargeRequest::kNone);
 }
 
 TEST(FullCharge, ARestartContinuesTheCount) {
@@ -175,7 +176,7 @@ TEST(GuardOfHolds, ReplacesTheStudentTheThresholdsAndTheNeedOfAPrice) {
   expect(decide(in), -1'500, Reason::kHeld);
   in.price_centi_eur_per_mwh = -60'000;
   expect(decide(in), -1'500, Reason::kHeld);
-  in.full_charge = FullChargeWish::kCharge;
+  in.full_charge = FullChargeRequest::kCharge;
   expect(decide(in), -1'500, Reason::kHeld);
   in.has_price = false;
   expect(decide(in), -1'500, Reason::kHeld);
@@ -248,13 +249,13 @@ TEST(GuardOfTheReserve, SaysEmptyBelowSocMin) {
 
 TEST(GuardOfFullCharges, ReplacesTheStudentBetweenTheThresholds) {
   GuardInputs in = healthy(Action::kDischarge);
-  in.full_charge = FullChargeWish::kNoDischarge;
+  in.full_charge = FullChargeRequest::kNoDischarge;
   expect(decide(in), 0, Reason::kFullCharge);
   in.student_action = Action::kCharge;
   expect(decide(in), 4'000, Reason::kStudent);
   in.student_action = Action::kIdle;
   expect(decide(in), 0, Reason::kStudent);
-  in.full_charge = FullChargeWish::kCharge;
+  in.full_charge = FullChargeRequest::kCharge;
   expect(decide(in), 2'000, Reason::kFullCharge);
   in.price_centi_eur_per_mwh = 150'000;
   expect(decide(in), -4'000, Reason::kPriceHigh);

@@ -172,16 +172,16 @@ TEST(SocMonitor, EnergyThatDoesNotArriveInOneDirectionIsAShareAndNoDrain) {
 
 /// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are certain
 /// after 560 s; with an unknown past, 140 s either way, after twice as long.
-TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
+TEST(SparseSocCheck, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   const ResponseSettings settings{.band = {.soc_refresh_s = 120}};
-  SeldomSoc soc(settings);
+  SparseSocCheck soc(settings);
   ASSERT_TRUE(soc.is_seldom());
   const auto reading = [](int i) {
     return driven_reading(1'000 + kReadingS * i, 4'000, 4'000, kReadingS * i, 5'000, 0);
   };
   soc.begin(reading(0));
   std::vector<int> taken;
-  SeldomSoc::Interval interval;
+  SparseSocCheck::Interval interval;
   for (int i = 1; i <= 20; ++i) {
     soc.note_power(reading(i), 4'000);
     soc.observe(reading(i));
@@ -193,7 +193,7 @@ TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   EXPECT_EQ(taken, (std::vector<int>{10, 15, 20}));
   EXPECT_EQ(interval.seconds, 600);
   EXPECT_EQ(interval.surely_ws, 4'000 * (600 - 140));
-  EXPECT_FALSE(SeldomSoc(ResponseSettings{}).is_seldom());
+  EXPECT_FALSE(SparseSocCheck(ResponseSettings{}).is_seldom());
 }
 
 /// The SoC of a device that updates it every `refresh_s`, and declares so.
@@ -233,7 +233,7 @@ struct SeldomBattery {
   }
 };
 
-TEST(SeldomSoc, AHealthyOneIsAcceptedWhateverIsOrdered) {
+TEST(SparseSocCheck, AHealthyOneIsAcceptedWhateverIsOrdered) {
   std::mt19937_64 random(5);
   for (const std::int32_t refresh_s : {90, 110, 120, 180, 300, 600}) {
     SeldomBattery battery(refresh_s);
@@ -249,7 +249,7 @@ TEST(SeldomSoc, AHealthyOneIsAcceptedWhateverIsOrdered) {
   }
 }
 
-TEST(SeldomSoc, FaultsAtOneDirectionAreStillFound) {
+TEST(SparseSocCheck, FaultsAtOneDirectionAreStillFound) {
   for (const auto& [refresh_s, frozen_max, half_max] : {std::tuple{120, 5, 40}, {300, 8, 40}}) {
     SeldomBattery frozen(refresh_s);
     for (int i = 0; i < 10; ++i) frozen.step(0);

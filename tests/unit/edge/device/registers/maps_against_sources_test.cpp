@@ -167,7 +167,7 @@ TEST(SunSpecMeter, SignsGridPowerAsTheManufacturerDoes) {
         Recording{"", 0x0133, 1, 3'070}}) {
     const RegisterMap map =
         load_good_map(BESS_SOURCE_DIR "/edge/device/meters/sunspec.toml", c.variant);
-    LivePoints live;
+    PointValues live;
     live.keep(map, find_point(map, "power_sf"), &c.exponent);
     live.keep(map, find_point(map, "grid_power"), &c.raw);
     std::int64_t power_w = 0;

@@ -17,18 +17,18 @@ class Feed : public InMarketZone, public testing::Test {
   Feed() { settings_.file = folder_.file("answer.json").c_str(); }
   Status ask(const std::string& answer) {
     EXPECT_EQ(settings_.file.view(), folder_.write("answer.json", answer));
-    asked_ = ask_day_ahead(settings_, now_, [] { return false; });
+    reply_ = ask_day_ahead(settings_, now_, [] { return false; });
     rows_.clear();
-    for (const DayAheadDay& day : asked_.days) {
+    for (const DayAheadDay& day : reply_.days) {
       rows_.insert(rows_.end(), day.quarter_hours.begin(), day.quarter_hours.end());
     }
-    if (asked_.status != Status::kOk) return asked_.status;
-    return DayAheadBook().take(asked_.days, now_);
+    if (reply_.status != Status::kOk) return reply_.status;
+    return DayAheadStore().take(reply_.days, now_);
   }
   std::int64_t now_ = utc_from_civil({2025, 6, 11, 10, 0, 0});
   TemporaryFolder folder_;
   OutlookSettings settings_;
-  DayAheadAsked asked_;
+  DayAheadReply reply_;
   std::vector<DayAheadQuarterHour> rows_;
 };
 
@@ -102,12 +102,12 @@ class Schedule : public Feed {
     for (std::int64_t t = outlook_days_around(now_).today_utc_s; t < until; t += 900) {
       rows.push_back({t, static_cast<double>(t / 900 % 97)});
     }
-    ASSERT_EQ(book_.take(lay_out_day_ahead(rows).days, local(0, 0)), Status::kOk);
+    ASSERT_EQ(store_.take(lay_out_day_ahead(rows).days, local(0, 0)), Status::kOk);
   }
   [[nodiscard]] std::int64_t next(std::int64_t now, std::int64_t last, int tries) const {
-    return next_ask_utc_s(book_, settings_, now, last, tries);
+    return next_ask_utc_s(store_, settings_, now, last, tries);
   }
-  DayAheadBook book_;
+  DayAheadStore store_;
 };
 
 TEST_F(Schedule, FetchesTodayImmediatelyThenTomorrowAtTenToOne) {
@@ -132,10 +132,10 @@ TEST_F(Schedule, AsksAgainAfterAMinuteThenTwoToHalfAnHour) {
 
 TEST_F(Schedule, AfterTenToOneItIsDueUntilTomorrowIsWhole) {
   know_until(outlook_days_around(now_).tomorrow_utc_s);
-  EXPECT_GT(due_utc_s(book_, settings_, local(12, 49)), local(12, 49));
-  EXPECT_LE(due_utc_s(book_, settings_, local(12, 50)), local(12, 50));
+  EXPECT_GT(due_utc_s(store_, settings_, local(12, 49)), local(12, 49));
+  EXPECT_LE(due_utc_s(store_, settings_, local(12, 50)), local(12, 50));
   know_until(outlook_days_around(now_).end_utc_s);
-  EXPECT_GT(due_utc_s(book_, settings_, local(12, 58)), local(12, 58));
+  EXPECT_GT(due_utc_s(store_, settings_, local(12, 58)), local(12, 58));
 }
 
 TEST_F(Schedule, AClockThatWasSteppedBackKeepsItFromNothing) {

@@ -20,7 +20,7 @@ class Planner : public InMarketZone, public testing::Test {
     return planner_->plan({.tick_utc_s = tick, .level_centi = level_centi}, days);
   }
   OutlookReport at(std::int64_t tick, std::int32_t level_centi, std::int32_t soc_e4 = 4'000) {
-    return outlook_at(*board_, tick, soc_e4, level_centi);
+    return outlook_at(*exchange_, tick, soc_e4, level_centi);
   }
   /// A plan of the days and level, cached until others are requested.
   std::int32_t direct(std::int64_t tick, std::int32_t level_centi, const OutlookDays& days,
@@ -35,9 +35,9 @@ class Planner : public InMarketZone, public testing::Test {
 
   std::int64_t tick_ = utc_from_civil({2025, 6, 11, 10, 2, 0});
   OutlookDays days_ = made_up_outlook_days(tick_);
-  std::unique_ptr<OutlookBoard> board_ = std::make_unique<OutlookBoard>();
+  std::unique_ptr<OutlookExchange> exchange_ = std::make_unique<OutlookExchange>();
   std::unique_ptr<OutlookPlanner> planner_ =
-      std::make_unique<OutlookPlanner>(*student_outlook(), *board_);
+      std::make_unique<OutlookPlanner>(*student_outlook(), *exchange_);
   std::unique_ptr<OutlookPlan> plan_ = std::make_unique<OutlookPlan>();
   OutlookDays planned_days_{};
   std::int32_t planned_for_ = INT32_MIN;
@@ -68,12 +68,12 @@ TEST_F(Planner, MakesNoPlanTwice) {
 TEST_F(Planner, LateItServesHalfAnHourAndThenTheUsualDay) {
   planner_->plan_usual_day(tick_, 8'000);
   plan(tick_, 8'000, days_);
-  for (int k = 1; k < OutlookOffer::kTicks; ++k) {
+  for (int k = 1; k < OutlookPlanRows::kTicks; ++k) {
     const OutlookReport found = at(tick_ + k * kSecondsPerStep, 8'000);
     EXPECT_EQ(found.source, OutlookSource::kLate);
     EXPECT_EQ(found.break_even_centi, direct(tick_ + k * kSecondsPerStep, 8'000, days_));
   }
-  for (const std::int64_t off : {OutlookOffer::kTicks * kSecondsPerStep, 86'400, -120, 60}) {
+  for (const std::int64_t off : {OutlookPlanRows::kTicks * kSecondsPerStep, 86'400, -120, 60}) {
     const OutlookReport found = at(tick_ + off, 8'000);
     EXPECT_EQ(found.source, OutlookSource::kMissing) << off;
     EXPECT_NEAR(found.break_even_centi,
@@ -94,7 +94,7 @@ TEST_F(Planner, TheUsualDayIsAPlanOfNothingPublished) {
 TEST_F(Planner, TheUsualDayHasEveryQuarterHourWhateverDayItWasMadeOn) {
   for (const CivilTime day : {CivilTime{2025, 3, 30, 8, 0, 0}, CivilTime{2025, 10, 26, 8, 0, 0}}) {
     planner_->plan_usual_day(utc_from_civil(day), 8'000);
-    for (const BreakEvenRow& row : board_->usual.rows) {
+    for (const BreakEvenRow& row : exchange_->usual.rows) {
       EXPECT_NE(row.tenths[OutlookModel::kSocPoints / 2], 0);
     }
   }

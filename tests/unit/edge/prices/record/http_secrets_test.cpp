@@ -1,5 +1,5 @@
 // Secrets of the price request: allowed contents of the header file and of a log.
-#include "edge/prices/record/http_trust.h"
+#include "edge/prices/record/transport_security.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_accounts.h"
 
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
@@ -28,14 +28,14 @@ CycleRecord cycle(std::int32_t power_w, std::int32_t price_centi,
 /// Of records two minutes apart, from noon of the day.
 DayAccount account_of(std::vector<CycleRecord> records, const MoneyTerms& terms = {}) {
   set_market_time_zone();
-  DayBook book(kDay, kDay, terms);
+  DayAccounts day_accounts(kDay, kDay, terms);
   std::int64_t utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
   for (CycleRecord& record : records) {
     record.utc_s = utc_s += kSecondsPerStep;
     record.price.minute_utc_s = utc_s - 60;
-    book.add(record);
+    day_accounts.add(record);
   }
-  return book.accounts().at(0);
+  return day_accounts.accounts().at(0);
 }
 
 /// Half an hour at 4 kW in at -50, half an hour out at 200 EUR/MWh: 2 kWh each, 0.10 + 0.40 EUR.
@@ -91,15 +91,15 @@ TEST(DayAccount, ASampleIsARecordsOwn) {
 TEST(DayAccount, TicksWithoutARecordCount) {
   set_market_time_zone();
   const MoneyTerms terms;
-  DayBook book(kDay, kDay, terms);
+  DayAccounts day_accounts(kDay, kDay, terms);
   const std::int64_t noon_utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
   for (const int tick : {-400, 0, 1, 5, 2}) {  // the first belongs to the previous day
     CycleRecord record = cycle(0, 0, Reason::kPriceAge);
     record.mode = Mode::kHolding;
     record.utc_s = noon_utc_s + tick * kSecondsPerStep;
-    book.add(record);
+    day_accounts.add(record);
   }
-  const DayAccount day = book.accounts().at(0);
+  const DayAccount day = day_accounts.accounts().at(0);
   EXPECT_EQ(day.cycles(), 4);
   EXPECT_EQ(day.missing_cycles(), 3);
   EXPECT_EQ(day.driven_share(), 0);

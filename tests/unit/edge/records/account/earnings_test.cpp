@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_accounts.h"
 #include "shared/local_time.h"
 
 namespace bess {
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 constexpr std::int64_t kEarningsStart = 1'795'341'600;  // 2026-11-22T10:00:00Z
 
 /// Half an hour at that power and price, from that SoC to that one.
-void add_half_hour(DayBook& book, std::int64_t from_utc_s, std::int32_t power_w,
+void add_half_hour(DayAccounts& day_accounts, std::int64_t from_utc_s, std::int32_t power_w,
                    std::int32_t price_centi, std::int32_t from_e4, std::int32_t to_e4) {
   for (int i = 0; i < 15; ++i) {
     CycleRecord r{
@@ -31,27 +31,28 @@ void add_half_hour(DayBook& book, std::int64_t from_utc_s, std::int32_t power_w,
     r.price.minute_utc_s = r.utc_s - 60;
     r.ordered_power_w = i < 14 ? power_w : 0;
     r.written = true;
-    book.add(r);
+    day_accounts.add(r);
   }
 }
 
 /// 2 kWh in at 50 EUR/MWh on the first day, 1 kWh out at 250 on the second: half of it remains.
 Earnings two_days(const MoneyTerms& terms = {}) {
   set_market_time_zone();
-  DayBook book(20'261'122, 20'261'123, terms);
-  add_half_hour(book, kEarningsStart, 4'000, 5'000, 3'000, 5'500);
+  DayAccounts day_accounts(20'261'122, 20'261'123, terms);
+  add_half_hour(day_accounts, kEarningsStart, 4'000, 5'000, 3'000, 5'500);
   CycleRecord rest{
       .utc_s = kEarningsStart + 15 * 120, .mode = Mode::kRunning, .reason = Reason::kStudent};
   rest.has_measurement = true;
   rest.measurement.soc_e4 = 5'500;
-  book.add(rest);
+  day_accounts.add(rest);
   rest.utc_s = kEarningsStart + 86'400 - 120;
   rest.ordered_power_w = -2'000;
   rest.written = true;
-  book.add(rest);
-  add_half_hour(book, kEarningsStart + 86'400, -2'000, 25'000, 5'500, 4'250);
-  book.add({.utc_s = kEarningsStart + 90'000, .mode = Mode::kHolding, .reason = Reason::kPriceAge});
-  return Earnings(book.accounts());
+  day_accounts.add(rest);
+  add_half_hour(day_accounts, kEarningsStart + 86'400, -2'000, 25'000, 5'500, 4'250);
+  day_accounts.add(
+      {.utc_s = kEarningsStart + 90'000, .mode = Mode::kHolding, .reason = Reason::kPriceAge});
+  return Earnings(day_accounts.accounts());
 }
 
 TEST(EarningsOfDays, AddUp) {

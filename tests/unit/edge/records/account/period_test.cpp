@@ -1,5 +1,5 @@
 // Valid and invalid periods.
-#include "edge/records/account/account_days.h"
+#include "edge/records/account/day_accounts.h"
 
 #include <gtest/gtest.h>
 

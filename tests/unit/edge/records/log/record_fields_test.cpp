@@ -159,8 +159,8 @@ TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
   constexpr std::size_t kLeaves =
       count_leaves<BatteryMeasurement, PriceReport, DayThroughput, BatteryCounters, PriceLevel,
                    Trip, ReversalHistory, HoldReport, SiteReport, MeterTrust, LostOrderHistory,
-                   StandingPrice, ResponseFindings, FollowedOrder, OutlookReport, PricedQuarterHour,
-                   PricedQuarterHour>();
+                   UnchangedPrice, ResponseFindings, FollowedOrder, OutlookReport,
+                   PricedQuarterHour, PricedQuarterHour>();
   constexpr std::size_t kElsewhere =
       2;  // the battery's own grid meter: its used values are in `site`
   EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/edge/records/log/sample_records.h"
 
@@ -91,11 +91,11 @@ std::map<std::string, Family> parse_prometheus(const std::string& text) {
 /// A reader detects any damaged byte.
 TEST(RunStatusTexts, EndWithTheirChecksum) {
   const RunTotals totals = totals_after({good_record()});
-  EXPECT_EQ(check_text(prometheus_text(totals), kCommentChecksum), TextState::kIntact);
+  EXPECT_EQ(check_text(prometheus_text(totals), kCommentChecksum), ChecksumState::kIntact);
   char storage[kStatusBytes];
   TextBuffer json(storage);
   format_status_json({.identity = sample_identity(), .totals = totals}, json);
-  EXPECT_EQ(check_text(json.view(), kJsonChecksum), TextState::kIntact);
+  EXPECT_EQ(check_text(json.view(), kJsonChecksum), ChecksumState::kIntact);
 }
 
 /// Any damaged byte, a file of another build, and a truncated one.

@@ -1,5 +1,5 @@
 // Texts with their own checksum: every flipped bit and every truncation is found.
-#include "edge/records/log/whole_file.h"
+#include "edge/records/log/atomic_file.h"
 
 #include <gtest/gtest.h>
 
@@ -26,9 +26,9 @@ TEST(TextChecksum, EndsWithTheKnownCrc32) {
 
 TEST(TextChecksum, AWholeTextIsIntactAndGivesItsBody) {
   for (const Form& form : kForms) {
-    EXPECT_EQ(check_text(checked(form), form.frame), TextState::kIntact);
+    EXPECT_EQ(check_text(checked(form), form.frame), ChecksumState::kIntact);
     EXPECT_EQ(without_checksum(checked(form), form.frame), form.body);
-    EXPECT_EQ(check_text(form.body, form.frame), TextState::kUnchecked);
+    EXPECT_EQ(check_text(form.body, form.frame), ChecksumState::kUnchecked);
     EXPECT_EQ(without_checksum(form.body, form.frame), form.body);
   }
 }
@@ -40,17 +40,17 @@ TEST(TextChecksum, NoFlippedBitAndNoCutIsIntact) {
       for (int bit = 0; bit < 8; ++bit) {
         std::string bad = good;
         bad[i] = static_cast<char>(bad[i] ^ (1 << bit));
-        EXPECT_NE(check_text(bad, form.frame), TextState::kIntact) << i << " " << bit;
+        EXPECT_NE(check_text(bad, form.frame), ChecksumState::kIntact) << i << " " << bit;
         // A change of the text itself is always found.
         if (i < std::string(form.body).size()) {
-          EXPECT_EQ(check_text(bad, form.frame), TextState::kBroken) << i << " " << bit;
+          EXPECT_EQ(check_text(bad, form.frame), ChecksumState::kBroken) << i << " " << bit;
         }
       }
-      EXPECT_NE(check_text(good.substr(0, i), form.frame), TextState::kIntact) << i;
-      EXPECT_NE(check_text(good.substr(i + 1), form.frame), TextState::kIntact) << i;
+      EXPECT_NE(check_text(good.substr(0, i), form.frame), ChecksumState::kIntact) << i;
+      EXPECT_NE(check_text(good.substr(i + 1), form.frame), ChecksumState::kIntact) << i;
     }
-    EXPECT_NE(check_text(std::string(good.size(), '\0'), form.frame), TextState::kIntact);
-    EXPECT_NE(check_text("", form.frame), TextState::kIntact);
+    EXPECT_NE(check_text(std::string(good.size(), '\0'), form.frame), ChecksumState::kIntact);
+    EXPECT_NE(check_text("", form.frame), ChecksumState::kIntact);
   }
 }
 

@@ -29,8 +29,8 @@ LatticeState drawn_state(std::mt19937_64& random) {
 }
 
 /// Joint decision of thresholds and student at a price.
-Action wish_at(LatticeState state, std::int32_t price_centi, const PriceThresholds& thresholds,
-               Policy policy = decide_with_student) {
+Action requested_action_at(LatticeState state, std::int32_t price_centi,
+                           const PriceThresholds& thresholds, Policy policy = decide_with_student) {
   if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
   if (price_centi >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
   state.price_eur_per_mwh = lattice_price_of(price_centi);
@@ -57,14 +57,14 @@ TEST(Margins, AreWholeColumnsOfTheLatticeForDrawnStates) {
     const Margins margins = find_margins(state, price_centi, kThresholds, decide_with_student);
     for (int price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh; ++price) {
       ASSERT_EQ(said_of_price(margins, price * kCentiPerEur),
-                wish_at(state, price * kCentiPerEur, kThresholds))
+                requested_action_at(state, price * kCentiPerEur, kThresholds))
           << "state " << i << " at " << price;
     }
     for (int soc_index = 0; soc_index < kSocCount; ++soc_index) {
       LatticeState at = state;
       at.soc_index = static_cast<std::int16_t>(soc_index);
       ASSERT_EQ(said_of_soc(margins, soc_index * kSocE4PerLatticeStep),
-                wish_at(at, price_centi, kThresholds))
+                requested_action_at(at, price_centi, kThresholds))
           << "state " << i << " at SoC index " << soc_index;
     }
   }
@@ -85,7 +85,8 @@ TEST(Margins, TurnWhereTheStudentDoesInEveryContext) {
     for (const std::int32_t edge_centi :
          {margins.charge_up_to_centi, margins.charge_up_to_centi + 1,
           margins.discharge_from_centi - 1, margins.discharge_from_centi}) {
-      ASSERT_EQ(said_of_price(margins, edge_centi), wish_at(state, edge_centi, kThresholds))
+      ASSERT_EQ(said_of_price(margins, edge_centi),
+                requested_action_at(state, edge_centi, kThresholds))
           << "context " << context << " at " << edge_centi;
     }
     for (const std::int32_t edge_e4 :
@@ -94,7 +95,7 @@ TEST(Margins, TurnWhereTheStudentDoesInEveryContext) {
       if (edge_e4 < 0 || edge_e4 > kSocFullE4) continue;
       LatticeState at = state;
       at.soc_index = soc_index_of(edge_e4);
-      ASSERT_EQ(said_of_soc(margins, edge_e4), wish_at(at, price_centi, kThresholds))
+      ASSERT_EQ(said_of_soc(margins, edge_e4), requested_action_at(at, price_centi, kThresholds))
           << "context " << context << " at SoC " << edge_e4;
     }
   }
@@ -137,7 +138,7 @@ TEST(Margins, AreThoseOfTheGuardWhateverItsThresholds) {
              {margins.charge_up_to_centi, margins.charge_up_to_centi + 1,
               margins.discharge_from_centi - 1, margins.discharge_from_centi, -1'500'000, 1'500'000,
               -51, -50, -49, 0, 49, 50, 51, -50'050, 150'049}) {
-          GuardInputs in = healthy(wish_at(state, price_centi, thresholds, policy));
+          GuardInputs in = healthy(requested_action_at(state, price_centi, thresholds, policy));
           in.price_centi_eur_per_mwh = price_centi;
           LatticeState at = state;
           at.price_eur_per_mwh = lattice_price_of(price_centi);

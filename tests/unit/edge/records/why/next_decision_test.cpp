@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "edge/app/settings/idle_keys.h"
+#include "edge/app/settings/unused_keys.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
 #include "shared/local_text.h"

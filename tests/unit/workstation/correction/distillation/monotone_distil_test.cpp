@@ -26,13 +26,13 @@ struct School {
   Teacher teacher;
   DistilOptions options;
   Matrix visited;
-  LessonStates lessons;
+  TrainingBatch batch;
 
   School() : teacher(make_teacher()) {
     options.epochs = 12;
     options.seed = 5;
     visited = visited_inputs(teacher, market, {}, options);
-    lessons = make_lessons(teacher, visited, options);
+    batch = make_training_states(teacher, visited, options);
   }
   [[nodiscard]] Teacher make_teacher() const {
     std::vector<double> prices;
@@ -46,37 +46,37 @@ const School& school() {
   return school;
 }
 
-TEST(Lessons, HaveTheTeachersActionAndTheLossOfOthers) {
-  const LessonStates& lessons = school().lessons;
-  ASSERT_EQ(lessons.inputs.cols(), lessons.teacher_frac.cols());
-  ASSERT_GT(lessons.inputs.cols(), school().visited.cols());
+TEST(TrainingBatch, HaveTheTeachersActionAndTheLossOfOthers) {
+  const TrainingBatch& batch = school().batch;
+  ASSERT_EQ(batch.inputs.cols(), batch.teacher_frac.cols());
+  ASSERT_GT(batch.inputs.cols(), school().visited.cols());
   MlpTile tile;
-  for (Eigen::Index c = 0; c < lessons.inputs.cols(); c += 997) {
-    const Matrix values = school().teacher.action_values(lessons.inputs.middleCols(c, 1), tile);
+  for (Eigen::Index c = 0; c < batch.inputs.cols(); c += 997) {
+    const Matrix values = school().teacher.action_values(batch.inputs.middleCols(c, 1), tile);
     const auto best = static_cast<int>(argmax_action(values.data()));
-    EXPECT_EQ(lessons.regret(best, c), 0);
-    EXPECT_NEAR(lessons.teacher_frac.col(c).sum(), 1, 1e-5);
-    EXPECT_EQ(lessons.teacher_frac.col(c).maxCoeff(), lessons.teacher_frac(best, c));
-    EXPECT_GE(lessons.inputs.col(c).minCoeff(), 0);
-    EXPECT_LE(lessons.inputs.col(c).maxCoeff(), 1);
+    EXPECT_EQ(batch.regret(best, c), 0);
+    EXPECT_NEAR(batch.teacher_frac.col(c).sum(), 1, 1e-5);
+    EXPECT_EQ(batch.teacher_frac.col(c).maxCoeff(), batch.teacher_frac(best, c));
+    EXPECT_GE(batch.inputs.col(c).minCoeff(), 0);
+    EXPECT_LE(batch.inputs.col(c).maxCoeff(), 1);
   }
 }
 
 /// States in which the teacher's first choice violates the rules.
 int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOptions& options) {
-  const RuleLessons asked(rules, teacher.context.kind);
-  const LessonStates lessons = make_lessons(teacher, school().visited, options);
+  const RuleSamples samples(rules, teacher.context.kind);
+  const TrainingBatch batch = make_training_states(teacher, school().visited, options);
   int broken = 0;
-  for (Eigen::Index c = 0; c < lessons.inputs.cols(); ++c) {
-    const ActionSet left = asked.actions_at(lessons.inputs.col(c).data(), teacher.price_map);
+  for (Eigen::Index c = 0; c < batch.inputs.cols(); ++c) {
+    const ActionSet left = samples.actions_at(batch.inputs.col(c).data(), teacher.price_map);
     Eigen::Index first = 0;
-    lessons.teacher_frac.col(c).maxCoeff(&first);
+    batch.teacher_frac.col(c).maxCoeff(&first);
     broken += allows(left, static_cast<Action>(first)) ? 0 : 1;
   }
   return broken;
 }
 
-TEST(Lessons, ObeyTheRulesForAnyTeacher) {
+TEST(TrainingBatch, ObeyTheRulesForAnyTeacher) {
   const RuleSet rules = load_rules({example_rule_path("quiet_hours")});
   for (const Method method : {Method::kSdp, Method::kC51, Method::kDqn}) {
     SCOPED_TRACE(method_name(method));
@@ -98,7 +98,7 @@ TEST(Lessons, ObeyTheRulesForAnyTeacher) {
 }
 
 TEST(MonotoneDistiller, RegretFallsAndTheBoundsHold) {
-  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  MonotoneDistiller distiller(school().teacher, school().batch, school().options);
   const SignBounds bounds = SignBounds::monotone();
   distiller.run(12, {}, kRunning,
                 [&](double) { EXPECT_TRUE(bounds.contain(distiller.parameters())); });
@@ -113,7 +113,7 @@ TEST(MonotoneDistiller, SameSeedAndThreadsGiveTheSameBits) {
     options.threads = threads;
     Parameters results[2];
     for (Parameters& result : results) {
-      MonotoneDistiller distiller(school().teacher, school().lessons, options);
+      MonotoneDistiller distiller(school().teacher, school().batch, options);
       distiller.run(2, {}, kRunning, [](double) {});
       result = distiller.parameters();
     }
@@ -123,7 +123,7 @@ TEST(MonotoneDistiller, SameSeedAndThreadsGiveTheSameBits) {
 }
 
 TEST(MonotoneDistiller, InterruptionReturns) {
-  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  MonotoneDistiller distiller(school().teacher, school().batch, school().options);
   const std::atomic<bool> interrupted{true};
   int looks = 0;
   distiller.run(1'000'000, {}, interrupted, [&](double) { ++looks; });

@@ -9,8 +9,8 @@
 #include <regex>
 
 #include "shared/host/file.h"
+#include "tests/support/program_output.h"
 #include "tests/support/proved_students.h"
-#include "tests/support/said.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "workstation/correction/rules/rule_file.h"
@@ -123,8 +123,8 @@ TEST(Export, CommittedHeaderIsWhatTheExporterWrites) {
 }
 
 /// The compiler's output for these options, with the header's folder in its include path.
-Said compiled(const TemporaryFolder& folder, const std::string& header,
-              std::vector<std::string> words) {
+ProgramOutput compiled(const TemporaryFolder& folder, const std::string& header,
+                       std::vector<std::string> words) {
   write_file(folder.file("student_weights.h"), header);
   words.insert(words.end(), {"-I", folder.file(""), "-I", BESS_SOURCE_DIR});
   return answer_of(words);
@@ -155,7 +155,7 @@ void expect_header_compiles(const std::string& header, const std::string& proven
   for (const auto& [compiler, standard, source] :
        {std::tuple(BESS_C_COMPILER, "-std=c11", c_source),
         std::tuple(BESS_CXX_COMPILER, "-std=c++20", cpp_source)}) {
-    const Said built = compiled(
+    const ProgramOutput built = compiled(
         folder, header,
         {compiler, standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o", program, source});
     ASSERT_EQ(built.exit_code, 0) << built.text;
@@ -187,7 +187,7 @@ TEST(Export, ProvenanceIsSafe) {
 void expect_header_is_refused(const std::string& header, const std::string& names) {
   const TemporaryFolder folder;
   const std::string source = folder.write("a.cpp", "#include \"shared/nn/exported_student.h\"\n");
-  const Said outcome =
+  const ProgramOutput outcome =
       compiled(folder, header, {BESS_CXX_COMPILER, "-std=c++20", "-fsyntax-only", source});
   EXPECT_NE(outcome.exit_code, 0);
   EXPECT_THAT(outcome.text, Names("exported_student.h " + names));
@@ -291,7 +291,7 @@ int main() {
         "shared/local_time", "shared/outlook/outlook_model", "shared/outlook/outlook_plan"}) {
     command.push_back(fmt::format("{}/{}.cpp", BESS_SOURCE_DIR, file));
   }
-  const Said built = compiled(folder, format_weight_header(ruled_student()), command);
+  const ProgramOutput built = compiled(folder, format_weight_header(ruled_student()), command);
   ASSERT_EQ(built.exit_code, 0) << built.text;
   EXPECT_EQ(answer_of({program}).text, decision_signature_line(ruled_student().file()) + '\n');
   EXPECT_NE(decision_signature_line(ruled_student().file()),
@@ -364,7 +364,7 @@ TEST(ExportCommand, WritesAProvedStudent) {
   const std::string student = folder.file("student.json");
   const std::string header = folder.file("out/student_weights.h");
   save_student(student, crowded_student().file());
-  const Said outcome = answer_of(
+  const ProgramOutput outcome = answer_of(
       {BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header, "--threads", "2"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
   EXPECT_EQ(read_file(header), format_weight_header(crowded_student()));
@@ -382,7 +382,7 @@ TEST(ExportCommand, RefusesViolations) {
   const std::string student = folder.file("student.json");
   const std::string header = folder.file("out/student_weights.h");
   save_student(student, {LinearNet{.charge_below = 0}.net(), flawless_claim(), "never charges"});
-  const Said outcome =
+  const ProgramOutput outcome =
       answer_of({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.text, Names(student + ": 3473280 1"));
@@ -395,7 +395,8 @@ TEST(VerifyCommand, ExitCodeIsTheVerdict) {
   const std::string student = folder.file("student.json");
   save_student(student,
                {LinearNet{.discharge_from = 20'000}.net(), flawless_claim(), "never discharges"});
-  const Said outcome = answer_of({BESS_TRAIN_PROGRAM, "verify", "--student", student, "--json"});
+  const ProgramOutput outcome =
+      answer_of({BESS_TRAIN_PROGRAM, "verify", "--student", student, "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.text, HasSubstr("\"violations_property_1\":0"));
   EXPECT_THAT(outcome.text, HasSubstr("\"violations_property_2\":3473280"));

@@ -32,21 +32,22 @@ struct School {
     o.context = ContextKind::kOutlook;
     return o;
   }
-  static DistilOptions lessons() {
+  static DistilOptions distil_options() {
     DistilOptions o;
     o.epochs = 30;
     o.rules = with_outlook_rule({});
     return o;
   }
   [[nodiscard]] StudentFile student() const {
-    const DistilOptions o = lessons();
-    const LessonStates states = make_lessons(teacher, visited_inputs(teacher, market, {}, o), o);
+    const DistilOptions o = distil_options();
+    const TrainingBatch states =
+        make_training_states(teacher, visited_inputs(teacher, market, {}, o), o);
     MonotoneDistiller distiller(teacher, states, o);
     distiller.run(o.epochs, {}, false, [](double) {});
     StudentFile file{};
     file.net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
     file.net.context = teacher.context;
-    file.outlook = teacher.book;
+    file.outlook = teacher.plan_cache;
     file.certificate.rules = o.rules;
     return file;
   }
@@ -143,13 +144,14 @@ TEST(OutlookStudent, WhatItCannotDoIsSaid) {
   blind.day_ahead = nullptr;
   EXPECT_THAT(refusal_of([&] { train_teacher(blind, {}, School::options(), never); }),
               HasSubstr("--day-ahead"));
-  EXPECT_THAT(refusal_of([&] { visited_inputs(school().teacher, blind, {}, School::lessons()); }),
-              HasSubstr("--day-ahead"));
+  EXPECT_THAT(
+      refusal_of([&] { visited_inputs(school().teacher, blind, {}, School::distil_options()); }),
+      HasSubstr("--day-ahead"));
   MlpTile tile;
   EXPECT_THAT(
       refusal_of([&] { static_cast<void>(school().teacher.action_values(Matrix(5, 1), tile)); }),
       testing::Ne(""));
-  DistilOptions layer = School::lessons();
+  DistilOptions layer = School::distil_options();
   layer.method = CorrectionMethod::kLayer;
   EXPECT_THAT(refusal_of([&] { correct_and_prove(school().teacher, Matrix(8, 1), layer, false); }),
               Names("[distil] method \"construction\""));

@@ -9,7 +9,7 @@
 #include "tests/support/outlook_market.h"
 #include "workstation/base/random.h"
 #include "workstation/data/env/context_fit.h"
-#include "workstation/data/env/outlook_book.h"
+#include "workstation/data/env/plan_cache.h"
 
 namespace bess {
 namespace {
@@ -21,13 +21,13 @@ class OutlookIntegers : public testing::Test {
         steps_(market_.steps()),
         program_(steps_, {steps_.days.begin(), steps_.days.begin() + 26}, {}),
         model_(outlook_integers(program_)),
-        book_(model_) {}
+        plan_cache_(model_) {}
 
   OutlookMarket market_;
   MarketSteps steps_;
   OutlookProgram program_;
   OutlookModel model_;
-  OutlookBook book_;
+  PlanCache plan_cache_;
 };
 
 TEST_F(OutlookIntegers, DivideChargingFromDischargingWhereTheProgramDoes) {
@@ -40,7 +40,7 @@ TEST_F(OutlookIntegers, DivideChargingFromDischargingWhereTheProgramDoes) {
       const double soc_frac = 0.15 + 0.8 * random.uniform();
       const auto worth = program_.action_values(step, soc_frac, plan);
       const bool charges =
-          step.observed_eur_per_mwh * kCentiPerEur < book_.break_even_centi(step, soc_frac);
+          step.observed_eur_per_mwh * kCentiPerEur < plan_cache_.break_even_centi(step, soc_frac);
       at_stake_eur += std::abs(worth[2] - worth[0]);
       lost_eur += std::max(0.0, charges ? worth[0] - worth[2] : worth[2] - worth[0]);
     }
@@ -53,9 +53,9 @@ TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
   const MarketDay& day = steps_.days[29];  // of a change of clocks
   std::vector<std::int32_t> forward;
   for (const MarketStep& step : steps_.of(day)) {
-    forward.push_back(book_.break_even_centi(step, 0.4));
+    forward.push_back(plan_cache_.break_even_centi(step, 0.4));
   }
-  const OutlookBook other(model_);
+  const PlanCache other(model_);
   std::vector<std::int32_t> backward(forward.size());
   const auto ask = [&](std::size_t first) {
     for (std::size_t i = first; i < forward.size(); i += 2) {
@@ -67,7 +67,7 @@ TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
   ask(1);
   even.join();
   EXPECT_EQ(forward, backward);
-  const OutlookBook prepared(model_);
+  const PlanCache prepared(model_);
   prepared.prepare(steps_, {steps_.days.begin() + 28, steps_.days.begin() + 32}, 3);
   for (std::size_t i = 0; i < forward.size(); ++i) {
     ASSERT_EQ(prepared.break_even_centi(steps_.of(day)[i], 0.4), forward[i]) << i;
@@ -94,22 +94,22 @@ TEST_F(OutlookIntegers, WhatTheProgramKeepsIsOfTheVeryStepThatIsAsked) {
 
 // A run's teacher and students plan once.
 TEST_F(OutlookIntegers, OneModelHasOneBookWhileItIsInUse) {
-  const auto book = OutlookBook::of(model_);
-  EXPECT_EQ(OutlookBook::of(model_), book);
+  const auto plan_cache = PlanCache::of(model_);
+  EXPECT_EQ(PlanCache::of(model_), plan_cache);
   OutlookModel other = model_;
   ++other.constant_centi;
-  EXPECT_EQ(OutlookBook::of(other)->model().constant_centi, other.constant_centi);
+  EXPECT_EQ(PlanCache::of(other)->model().constant_centi, other.constant_centi);
 }
 
 TEST_F(OutlookIntegers, EachClassHoldsAsManyBreakEvenPrices) {
-  const ContextClasses classes = fit_outlook_classes(steps_, book_);
+  const ContextClasses classes = fit_outlook_classes(steps_, plan_cache_);
   EXPECT_TRUE(classes.is_valid());
   std::array<int, kContextClassCount> count{};
   Random random(8);
   int all = 0;
   for (const MarketDay& day : steps_.days_of(Split::kTrain)) {
     for (const MarketStep& step : steps_.of(day)) {
-      const std::int32_t price = book_.break_even_centi(step, 0.1 + 0.9 * random.uniform());
+      const std::int32_t price = plan_cache_.break_even_centi(step, 0.1 + 0.9 * random.uniform());
       ++count[static_cast<std::size_t>(classes.class_of(step.month, price) - 1)];
       ++all;
     }

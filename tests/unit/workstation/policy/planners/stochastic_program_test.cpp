@@ -33,7 +33,7 @@ TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
   constexpr int kPoints = StochasticProgram::kSocPoints;
   for (std::size_t i = 0; i < small_steps().steps.size(); i += 997) {
     float value[kPoints];
-    program.values(StochasticProgram::situation_of(small_steps().steps[i]), value);
+    program.values(StochasticProgram::market_state_of(small_steps().steps[i]), value);
     for (int p = 2; p < kPoints; ++p) {
       const float concave = value[p] - 2 * value[p - 1] + value[p - 2];
       EXPECT_LT(concave, 0.01F * std::fabs(value[kPoints - 1] - value[0])) << i << ' ' << p;
@@ -43,7 +43,8 @@ TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
 
 TEST(StochasticProgram, DoesNotBuyAboveWhatIsUsualAtTheLevel) {
   const StochasticProgram program(small_steps(), small_steps().days_of(Split::kTrain), {});
-  StochasticProgram::Situation at = StochasticProgram::situation_of(small_steps().steps[5'000]);
+  StochasticProgram::MarketState at =
+      StochasticProgram::market_state_of(small_steps().steps[5'000]);
   const auto best = [&] { return argmax_action(program.action_values(at, 0.5).data()); };
   at.price_eur_per_mwh = at.level_eur_per_mwh - 400;
   EXPECT_EQ(best(), Action::kCharge);

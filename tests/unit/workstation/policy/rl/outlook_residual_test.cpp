@@ -92,7 +92,8 @@ TEST(OutlookResidual, IsRewardedAndTaughtTheSameOnAnyNumberOfThreads) {
   const Teacher& teacher = learnt().teacher;
   const auto on = [&](int threads) {
     return TrainingMarket(market(), teacher.price_map, {}, Horizon::kContinuing,
-                          {.program = teacher.foundation(), .threads = threads}, teacher.context);
+                          {.program = teacher.base_programs(), .threads = threads},
+                          teacher.context);
   };
   const TrainingMarket alone = on(1), together = on(3);
   for (std::size_t i = 0; i < alone.step_count(); i += 7) {
@@ -115,7 +116,7 @@ TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepLessTheCommonPart) {
   const Teacher& teacher = learnt().teacher;
   const OutlookProgram& program = *teacher.outlook;
   const TrainingMarket shaped(market(), teacher.price_map, {}, Horizon::kContinuing,
-                              {.program = teacher.foundation()}, teacher.context);
+                              {.program = teacher.base_programs()}, teacher.context);
   const TrainingMarket plain(market(), teacher.price_map, {}, Horizon::kContinuing, {});
   const double unit = learned_per_eur({});
   const MarketStep* step = market().of(market().days_of(Split::kTrain)[0]).data();
@@ -154,7 +155,7 @@ TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepLessTheCommonPart) {
 TEST(OutlookResidual, LearnsFromTheInputsThatItDecidesBy) {
   const Teacher& teacher = learnt().teacher;
   const TrainingMarket training(market(), teacher.price_map, {}, Horizon::kContinuing,
-                                {.program = teacher.foundation()}, teacher.context);
+                                {.program = teacher.base_programs()}, teacher.context);
   const auto steps = market().of(market().days_of(Split::kTrain)[0]);
   float x[kNetworkInputs];
   for (std::size_t i = 0; i < 700; i += 13) {

@@ -98,13 +98,13 @@ TEST(ProgramResidual, RewardIsTheProgramsErrorInOneStep) {
   std::vector<double> centres;  // the subtracted baseline, equal for a whole day
   for (std::size_t i = 0; i < 700; i += 7) {
     for (const double soc : {0.1, 0.1003, 0.4321, 0.998, 1.0}) {
-      const auto here = program->action_values(StochasticProgram::situation_of(step[i]), soc);
+      const auto here = program->action_values(StochasticProgram::market_state_of(step[i]), soc);
       for (int a = 0; a < kActionCount; ++a) {
         Transition t{}, paid{};
         const double next_soc = shaped.make_transition(i, soc, static_cast<Action>(a), t);
         (void)plain.make_transition(i, soc, static_cast<Action>(a), paid);
         const auto next =
-            program->action_values(StochasticProgram::situation_of(step[i + 1]), next_soc);
+            program->action_values(StochasticProgram::market_state_of(step[i + 1]), next_soc);
         const double best = *std::ranges::max_element(next);
         for (int b = 0; b < kActionCount; ++b) {
           EXPECT_NEAR(t.next_advantage[b], (next[b] - best) * unit, 2e-4);

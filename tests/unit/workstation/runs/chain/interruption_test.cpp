@@ -39,14 +39,14 @@ TEST(Interruption, BeforeTheFirstLookThereIsNothingToSave) {
   EXPECT_EXIT(
       {
         end_when_interrupted();
-        const auto interrupted = watched_from_the_first_look();
+        const auto interrupted = watch_from_first_call();
         raise(SIGTERM);
       },
       ExitedWithCode(3), "interrupted");
   EXPECT_EXIT(
       {
         end_when_interrupted();
-        const auto interrupted = watched_from_the_first_look();
+        const auto interrupted = watch_from_first_call();
         if (interrupted()) _exit(1);
         raise(SIGTERM);
         _exit(interrupted() ? 0 : 2);

@@ -100,8 +100,10 @@ TEST_F(Log, ARuleIsPaidByTheSameQuarterHours) {
       compare_log(read(hour_of_trade()), {"rbc:100:200", "rbc:-1000:1000"});
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all[0].name, kThisBattery);
-  const Paid battery = paid_of(all[0].carried_over), rule = paid_of(all[1].carried_over);
-  const Paid rest = paid_of(all[2].carried_over), foresight = paid_of(all[3].carried_over);
+  const NetEarnings battery = net_earnings_of(all[0].carried_over),
+                    rule = net_earnings_of(all[1].carried_over);
+  const NetEarnings rest = net_earnings_of(all[2].carried_over),
+                    foresight = net_earnings_of(all[3].carried_over);
   EXPECT_NEAR(battery.paid_eur, 0.4, 1e-9);
   EXPECT_EQ(battery.charge_eur, 0);
   EXPECT_NEAR(rule.paid_eur, (16 * 250 - 14 * 50 - 250) / 7'500.0, 1e-9);

@@ -10,7 +10,7 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "workstation/runs/chain/folder_lock.h"
-#include "workstation/runs/run/learnt_for.h"
+#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {
@@ -187,10 +187,10 @@ TEST_F(RunPlanning, AModelOlderThanAKeyIsNotReported) {
 /// one program.
 TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
   const fs::path folder = request_.out;
-  using Of = FolderLock::Of;
+  using LockScope = FolderLock::LockScope;
   const auto is_busy = [](auto lock) { return !refusal_of(lock).empty(); };
   const auto whole = [&] { const FolderLock lock(folder); };
-  const auto part = [&] { const FolderLock lock(folder, Of::kOneFile); };
+  const auto part = [&] { const FolderLock lock(folder, LockScope::kOneFile); };
   const auto file = [&] { const FileLock lock(folder / "teacher.bin"); };
   {
     const FolderLock lock(folder);
@@ -198,7 +198,7 @@ TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
     EXPECT_TRUE(is_busy(part));
   }
   {
-    const FolderLock lock(folder, Of::kOneFile);
+    const FolderLock lock(folder, LockScope::kOneFile);
     const FileLock of_file(folder / "teacher.bin");
     EXPECT_TRUE(is_busy(whole));
     EXPECT_FALSE(is_busy(part)) << "another file of the folder";

@@ -12,7 +12,7 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "tests/unit/workstation/report/report_test_support.h"
-#include "workstation/data/env/charge_left.h"
+#include "workstation/data/env/final_charge.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
@@ -174,8 +174,8 @@ TEST(RunSummaries, AnUnfinishedRunIsNamedWithTheRemedy) {
 
 using testing::MatchesRegex;
 
-std::string value_of(const std::vector<Fact>& facts, const std::string& name) {
-  const auto found = std::ranges::find(facts, name, &Fact::name);
+std::string value_of(const std::vector<ProvenanceLine>& facts, const std::string& name) {
+  const auto found = std::ranges::find(facts, name, &ProvenanceLine::name);
   return found == facts.end() ? "" : found->value;
 }
 
@@ -183,7 +183,7 @@ class RunFacts : public testing::Test {
  protected:
   ~RunFacts() override { unsetenv("SOURCE_DATE_EPOCH"); }
 
-  std::vector<Fact> facts() {
+  std::vector<ProvenanceLine> facts() {
     return run_facts(RunConfig{}, small_market(), RunFolder{folder_.file("")});
   }
 
@@ -203,7 +203,7 @@ TEST_F(RunFacts, PricesAreNamedWithTheirChecksum) {
 TEST_F(RunFacts, SayWhenWhereAndHow) {
   put("run.json", "{}");
   put("times.json", R"({"teacher": {"seconds": 12.25, "finished_utc": "x"}})");
-  const std::vector<Fact> all = facts();
+  const std::vector<ProvenanceLine> all = facts();
   EXPECT_THAT(value_of(all, "date"), MatchesRegex("20..-..-..T..:..:..Z"));
   EXPECT_THAT(value_of(all, "command"), Names("report_test"));
   EXPECT_THAT(value_of(all, "program"), MatchesRegex("bess-train .*, commit .*"));
@@ -217,7 +217,7 @@ TEST_F(RunFacts, AFixedDateLeavesOutWhatDiffers) {
   put("run.json", "{}");
   put("times.json", R"({"teacher": {"seconds": 12.2, "finished_utc": "x"}})");
   setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
-  const std::vector<Fact> all = facts();
+  const std::vector<ProvenanceLine> all = facts();
   EXPECT_EQ(value_of(all, "date"), "2023-11-14T22:13:20Z");
   for (const char* name : {"host", "command", "CPU time", "stages"}) {
     EXPECT_EQ(value_of(all, name), "") << name;

@@ -7,7 +7,7 @@
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
-#include "tests/support/said_by_command.h"
+#include "tests/support/output_of_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string output_of(const std::string& arguments) { return said_by_command(arguments).output; }
+std::string output_of(const std::string& arguments) { return output_of_command(arguments).output; }
 
 /// Minutes [from, until) of `series` are missing.
 void leave_out(MinuteSeries& series, std::int64_t from_utc_s, std::int64_t until_utc_s) {
@@ -126,15 +126,15 @@ TEST(Size, ABatteryPaysBackWhileItAges) {
   cell.price_eur = 100;
   cell.cycles_per_day = 0;
   // 12 % a year, 1 % a month of what was bought: it ends at 97 % after three months of 50, 49, 48.
-  LifeOfBattery life = life_of(cell, {12, 0, 97.5});
+  BatteryLifetime life = lifetime_of(cell, {12, 0, 97.5});
   EXPECT_NEAR(life.years, 3 / 12.0, 1e-9);
   EXPECT_NEAR(life.eur, -100 + 50 + 49 + 48, 1e-9);
   EXPECT_NEAR(life.pay_back_years, (2 + 1 / 48.0) / 12, 1e-9);
   cell.price_eur = 1000;
-  EXPECT_TRUE(std::isnan(life_of(cell, {12, 0, 97.5}).pay_back_years));
+  EXPECT_TRUE(std::isnan(lifetime_of(cell, {12, 0, 97.5}).pay_back_years));
   // By full cycles alone: 1,000 of them in a month take 10 % of the rest.
   cell.cycles_per_day = 1000 * 12 / 365.25;
-  life = life_of(cell, {0, 10, 80});
+  life = lifetime_of(cell, {0, 10, 80});
   EXPECT_NEAR(life.years, 3 / 12.0, 1e-9) << "90 %, 81 %, 72.9 %";
 }
 

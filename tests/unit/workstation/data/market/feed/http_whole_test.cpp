@@ -117,7 +117,7 @@ struct TextCase {
 };
 
 /// Answer to a client with compression, and to one without.
-struct Said {
+struct ServedAnswer {
   std::string packed, plain;
   bool answer(TestConnection& connection, const std::string& request) const {
     const bool wants_plain = request.find("ccept-Encoding: identity") != request.npos;
@@ -128,7 +128,7 @@ struct Said {
 
 /// Every compression, framing, text and fault at `url`, whose answers come from `said`. A server
 /// that always compresses leaves a text without an end of its own ambiguous.
-void expect_all(const std::string& url, Said& said, bool may_close) {
+void expect_all(const std::string& url, ServedAnswer& said, bool may_close) {
   std::mt19937 draws(7);
   const std::string row = "time;price\n2025-06-01T10:00:00Z;" + digits(draws);
   const std::vector<TextCase> texts{{"JSON", "{\"price\":[\"" + digits(draws) + "\"]}", true},
@@ -165,7 +165,7 @@ void expect_all(const std::string& url, Said& said, bool may_close) {
 }
 
 TEST(HttpWhole, ByHttp1) {
-  Said said;
+  ServedAnswer said;
   const TestServer server([&said](TestConnection& connection, const std::string& request) {
     return said.answer(connection, request);
   });
@@ -176,7 +176,7 @@ TEST(HttpWhole, ByHttp2) {
   if (access(Http2Front::kProgram, X_OK) != 0) {
     GTEST_SKIP() << "no nghttp2-proxy here; tools/setup --test installs it";
   }
-  Said said;
+  ServedAnswer said;
   const TestServer server([&said](TestConnection& connection, const std::string& request) {
     EXPECT_THAT(request, HasSubstr("Via: 2 ")) << "not asked by HTTP/2";
     return said.answer(connection, request);

@@ -14,15 +14,15 @@
 namespace bess {
 namespace {
 
-OwnForm form(const std::string& date_format, std::optional<WallClock> clock) {
+CustomCsvFormat form(const std::string& date_format, std::optional<WallClock> clock) {
   return {.time_column = "", .price_column = "", .times = {date_format, clock}};
 }
-const OwnForm kBelgian = form("dd/mm/yyyy", WallClock::kLocal);
+const CustomCsvFormat kBelgian = form("dd/mm/yyyy", WallClock::kLocal);
 
 struct OwnCase {
   std::string text;
   const char* names;  ///< named in the error, its place first; the form of an accepted one
-  OwnForm own{};
+  CustomCsvFormat own{};
 };
 
 /// All mean 10.5 at 2025-01-31T00:15Z and nothing half an hour before.
@@ -174,7 +174,7 @@ TEST(OwnCsv, DrawnFormsReadBack) {
     const char* formats[] = {"yyyy-mm-dd", "dd/mm/yyyy", "mm/dd/yyyy"};
     const char* line_end = one_of(2) == 0 ? "\n" : "\r\n";
     const char* between = one_of(2) == 0 ? " " : "T";
-    OwnForm own = form(formats[order], std::nullopt);
+    CustomCsvFormat own = form(formats[order], std::nullopt);
     if (clock == 1) own.times.clock = WallClock::kUtc;
     if (clock == 2) own.times.clock = WallClock::kLocal;
     const char* times[] = {"Datetime", "TIME", "timestamp", "Date"};

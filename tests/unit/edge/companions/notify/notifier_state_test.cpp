@@ -1,0 +1,109 @@
+// Alarms: each once, its end once, over restarts and clocks that step.
+#include "edge/companions/notify/notifier_state.h"
+
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+const Trouble kLink{.key = "not running: link", .text = "WARN: mode is holding, reason link"};
+const Trouble kPrices{.key = "prices: timeout", .text = "WARN: prices: timeout"};
+
+class AlarmList {
+ public:
+  explicit AlarmList(std::int64_t after_s, std::vector<Alarm> before = {})
+      : after_s_(after_s), alarms_(std::move(before)) {}
+  std::vector<AlarmEvent> observe(const std::vector<Trouble>& troubles, std::int64_t now_utc_s) {
+    return bess::observe(alarms_, troubles, after_s_, now_utc_s);
+  }
+  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+
+ private:
+  std::int64_t after_s_;
+  std::vector<Alarm> alarms_;
+};
+
+TEST(Alarms, AFaultIsReportedOnceAndItsEndOnce) {
+  AlarmList list(300);
+  int told = 0;
+  for (int s = 0; s < 3'600; s += 30) {
+    for (const AlarmEvent& event : list.observe({kLink}, 1'000 + s)) {
+      ++told;
+      EXPECT_FALSE(event.is_over);
+      EXPECT_EQ(event.alarm.key, kLink.key);
+      EXPECT_EQ(event.alarm.since_utc_s, 1'000);
+      EXPECT_EQ(s, 300);
+    }
+  }
+  EXPECT_EQ(told, 1);
+  int over = 0;
+  for (int s = 3'600; s < 7'200; s += 30) {
+    for (const AlarmEvent& event : list.observe({}, 1'000 + s)) {
+      ++over;
+      EXPECT_TRUE(event.is_over);
+      EXPECT_EQ(event.alarm.since_utc_s, 1'000);
+      EXPECT_EQ(event.alarm.seen_utc_s, 1'000 + 3'570);
+      EXPECT_EQ(s, 3'570 + 300);
+    }
+  }
+  EXPECT_EQ(over, 1);
+  EXPECT_TRUE(list.alarms().empty());
+}
+
+TEST(Alarms, AShortFaultIsNotReported) {
+  AlarmList list(300);
+  for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(list.observe({kLink}, s).empty());
+  for (int s = 300; s <= 1'200; s += 30) EXPECT_TRUE(list.observe({}, s).empty());
+  EXPECT_TRUE(list.alarms().empty());
+  EXPECT_TRUE(list.observe({kLink}, 1'230).empty());  // another one: counted from here
+}
+
+TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
+  AlarmList list(300);
+  int told = 0;
+  for (int s = 0; s < 3'600; s += 30) {
+    const bool is_there = s / 120 % 2 == 0;
+    told += static_cast<int>(
+        list.observe(is_there ? std::vector{kPrices} : std::vector<Trouble>{}, s).size());
+  }
+  EXPECT_EQ(told, 1);
+}
+
+TEST(Alarms, ARestartRepeatsNothingAndReportsTheEnd) {
+  AlarmList before(300);
+  before.observe({kLink, kPrices}, 0);
+  EXPECT_EQ(before.observe({kLink, kPrices}, 300).size(), 2U);
+  AlarmList after(300, before.alarms());
+  EXPECT_TRUE(after.observe({kLink, kPrices}, 330).empty());
+  const std::vector<AlarmEvent> events = after.observe({kLink}, 86'400);  // away for a day
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_TRUE(events[0].is_over);
+  EXPECT_EQ(events[0].alarm.key, kPrices.key);
+}
+
+TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
+  AlarmList list(300);
+  list.observe({kLink}, 1'000'000);
+  EXPECT_TRUE(list.observe({kLink}, 1'000).empty());
+  EXPECT_EQ(list.observe({kLink}, 1'300).size(), 1U);
+  list.observe({}, 500);
+  EXPECT_EQ(list.observe({}, 800).size(), 1U);
+}
+
+TEST(Alarms, WithoutADelayEverythingIsReportedImmediately) {
+  AlarmList list(0);
+  EXPECT_EQ(list.observe({kLink}, 10).size(), 1U);
+  EXPECT_TRUE(list.observe({kLink}, 10).empty());
+  EXPECT_EQ(list.observe({}, 11).size(), 1U);
+}
+
+TEST(Alarms, TheTextIsTheNewest) {
+  AlarmList list(60);
+  list.observe({{"age", "260 s ago"}}, 0);
+  const std::vector<AlarmEvent> events = list.observe({{"age", "320 s ago"}}, 60);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].alarm.text, "320 s ago");
+}
+
+}  // namespace
+}  // namespace bess
