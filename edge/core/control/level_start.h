@@ -18,9 +18,9 @@
 namespace bess {
 
 // Estimate of an imbalance price that is too old to trade on: its distance from the trailing level
-// decays by 1/30 per step, to about a third after an hour. Measured on three years ("When prices
-// stay away", edge/prices/record/README.md): for half an hour this saves up to two fifths of the
-// cost of a short outage; after an hour no estimate is profitable.
+// decays by 1/30 per step, to about a third after an hour. Measured on three years: for half an
+// hour this saves up to two fifths of the cost of a short outage; after an hour no estimate is
+// profitable (shared/manual/notebook/2026-11-26_stand_in_for_missing_prices.md).
 
 /// Hundredths of EUR/MWh. `age_s` from 0 to a day.
 constexpr std::int32_t stand_in_centi(std::int32_t newest_centi, std::int32_t level_centi,

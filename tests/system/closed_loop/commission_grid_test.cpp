@@ -1,6 +1,6 @@
 // Commissioning of batteries with every dead time, time constant, ramp, noise and read-out, in
 // moved time: accepted if their largest step is within settle_s, refused if not, and the printed
-// value passes when it is set. Prints the table of edge/device/battery/README.md.
+// value passes when it is set.
 //
 // The batteries are independent of bess-sim and of the fitted model.
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-// Commands of bess-edge as an operator types them: each exit code in edge/README.md, and the
+// Commands of bess-edge as an operator types them: each exit code of the manual, and the
 // reports about a controller that has tripped or ended.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class EdgeCommands : public SiteTest {
   int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
 };
 
-/// The table of exit codes in edge/README.md, row by row; 2 (command line) is above.
+/// Exit codes of shared/manual/reference/exit_codes.md; 2 (command line) is above.
 TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   config_ = site_.write_config();  // no listener
   EXPECT_EQ(code_of({"--check"}), 1);

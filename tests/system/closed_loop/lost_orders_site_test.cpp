@@ -46,7 +46,7 @@ const std::vector<Interference> kInterferences = {
      }},
 };
 
-/// What a map's registers can show (the table in edge/device/maps/README.md).
+/// What a map's registers can show.
 struct Shows {
   bool replaced = true;
   bool ended = true;

@@ -164,7 +164,7 @@ TEST(TrialFaults, EnergyBeyondOrdersOfEitherSignIsReported) {
   }
 }
 
-/// Faults that nothing shows within two hours, see edge/core/supervision/README.md.
+/// Faults that nothing shows within two hours (notebook, 2026-11-23_limits_of_supervision.md).
 constexpr std::string_view kUnseen[] = {"soc_at_least_9_percent", "limit_0_w_shown"};
 
 TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrReported) {

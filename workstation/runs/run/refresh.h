@@ -27,8 +27,8 @@ namespace bess {
 
 // Comparison of a candidate with the current run on days that neither was trained or selected on,
 // each with its own SoC carried over. The evaluated student is the one to be adopted, so its
-// training window ends before these days (cost of the lost days: workstation/README.md,
-// "Refreshed").
+// training window ends before these days (cost of the lost days: notebook,
+// 2026-11-25_refresh_adopted_and_refused.md).
 
 /// State on the current student's path in which the candidate decides differently.
 struct DifferingDecision {

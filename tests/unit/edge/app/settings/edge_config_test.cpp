@@ -72,8 +72,8 @@ TEST_F(ConfigFile, ReadsEveryUnit) {
   EXPECT_EQ(config_->clock.anchor_monotonic_ns, 5);
 }
 
-/// They bound the effect of a wrong price source, and real prices never come near:
-/// edge/prices/record/README.md.
+/// They bound the effect of a wrong price source, and real prices never come near
+/// (shared/manual/notebook/2026-11-22_limits_on_honest_prices.md).
 TEST_F(ConfigFile, CyclesAndReversalsAreBoundedByDefault) {
   load_good(valid_text());
   EXPECT_EQ(config_->control.cycles_per_day_max_e4, 60'000);
