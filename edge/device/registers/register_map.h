@@ -1,5 +1,5 @@
 // Register map of a battery as fixed-size data: link, named points, state, commands, watchdog.
-// Loaded once from edge/device/maps/*.toml (map_file.h; format: add_a_battery.md in the manual), then
+// Loaded once from edge/device/maps/*.toml (map_file.h; format: add_a_battery.md), then
 // constant. The edge drives the battery with it, and the battery simulator responds with it.
 #pragma once
 
