@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutation test of the edge: a scenario or a unit test must find each of hundreds of small defects.
 
-  mutate.py make         builds the mutated copy of the tree (tests/checks/mutation/README.md)
+  mutate.py make         builds the mutated copy of the tree
   mutate.py run [--sample N --seed S] [--only TEXT]   runs scenarios and unit tests on each
   mutate.py run --each N --rooms core/control         N of each of these rooms
   mutate.py report       the score by folder, and the survivors

@@ -1,6 +1,6 @@
 """bess-edge on its targets: on this machine, on an emulated Raspberry Pi, on a real one over
 ssh; with a simulated battery on the same machine, and with a real one on request.
-README.md here has the commands."""
+shared/manual/guides/hardware_tests.md has the commands."""
 import math
 import re
 from collections import namedtuple
