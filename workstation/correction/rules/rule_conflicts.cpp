@@ -197,12 +197,12 @@ ActionRange ImpliedRanges::at(int quarter_hour, int context_class, int soc_index
 void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind) {
   check_each(rules, kind);
   check_directions(rules);
-  const PriceThresholds bound = rules.thresholds(thresholds);
-  if (!bound.are_ordered()) {
+  const PriceThresholds tightened = rules.thresholds(thresholds);
+  if (!tightened.are_ordered()) {
     fail(
         "the thresholds of the rules and of [correction] cross: charge at or below {} and "
         "discharge at or above {} EUR/MWh; change one of them",
-        bound.low_eur_per_mwh, bound.high_eur_per_mwh);
+        tightened.low_eur_per_mwh, tightened.high_eur_per_mwh);
   }
   for (const Rule& a : rules.rules) {
     for (const Rule& b : rules.rules) {
