@@ -138,13 +138,13 @@ void add_log(EdgeCommand root) {
   const auto options = std::make_shared<LogOptions>();
   command.flag("--csv", options->csv,
                "CSV with a header; default: one key=value line per control cycle");
+  command.flag("--local", options->local,
+               "also local time, energy (Wh, positive charges) and money (EUR)");
   command
       .flag("--short", options->is_short,
             "local time, order, price, SoC and reason of each control cycle, as a table")
       .excludes("--csv")
       .excludes("--local");
-  command.flag("--local", options->local,
-               "also local time, energy (Wh, positive charges) and money (EUR)");
   command.flag("--explain", options->explain,
                "also the decision margins (EUR/MWh): highest price to charge, lowest to discharge");
   command.option("--last", options->last, "only the newest N control cycles")
