@@ -55,9 +55,10 @@ Table rows_of(const BacktestResults& results, Evaluation WalkForward::*days) {
 /// Totals over all months.
 Table total_table(const BacktestResults& results) {
   Table table = rows_of(results, &WalkForward::total);
-  table.add<WalkForward>({{"drawdown_eur_per_mwh", "drawdown", "{:.0f}", 2, "Drawdown"},
-                          &WalkForward::drawdown_eur_per_mwh},
-                         results.policies);
+  table.add<WalkForward>(
+      {{"drawdown_eur_per_mwh", "drawdown", "{:.0f}", 2, "Drawdown, EUR/MWh of capacity"},
+       &WalkForward::drawdown_eur_per_mwh},
+      results.policies);
   return table;
 }
 
@@ -86,7 +87,8 @@ std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) 
 
 std::string fall_text(double drawdown_eur_per_mwh) {
   if (drawdown_eur_per_mwh == 0) return "no drawdown";
-  return fmt::format("its maximum drawdown by day was {:.0f} EUR per MWh", drawdown_eur_per_mwh);
+  return fmt::format("its maximum drawdown by day was {:.0f} EUR per MWh of capacity",
+                     drawdown_eur_per_mwh);
 }
 
 std::string chart_caption(const BacktestResults& results) {
@@ -95,7 +97,7 @@ std::string chart_caption(const BacktestResults& results) {
       shown, {}, [](const WalkForward* p) { return p->total.profit_eur_per_day_per_mwh(); });
   return fmt::format(
       "Each month was traded by policies fitted on {}, SoC carried over. {} earned most: "
-      "{:.1f} EUR per day per MWh; {}.",
+      "{:.1f} EUR per day per MWh of capacity; {}.",
       window_text(results), (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
@@ -130,6 +132,7 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   }
   return Json::object({{"id", id},
                        {"kind", "lines"},
+                       {"y", "EUR/MWh of capacity"},
                        {"labels", Json::list_from(dates)},
                        {"marks", regime_marks(dates)},
                        {"series", std::move(series)}});
@@ -159,7 +162,7 @@ Table month_table(const BacktestResults& results) {
 std::string day_reset_html(const BacktestResults& results) {
   const Table table = day_reset_table(results);
   if (table.size() == 0) return {};
-  return format_table("EUR per day per MWh, day-reset accounting: each day starts at the same SoC",
+  return format_table("Day-reset accounting: each day starts at the same SoC",
                       table.only(std::string("policy,") + kDayResetKeys));
 }
 
@@ -280,23 +283,24 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   });
   if (any_falls) {
     charts.add(lines_chart("falls", results, below_peak));
-    pictures += "<p class=\"note\">Drawdown, EUR per MWh</p>\n" +
+    pictures += "<p class=\"note\">Drawdown, EUR per MWh of capacity</p>\n" +
                 chart_html("falls", "Drawdown of each policy");
   }
   const std::string body = fmt::format(
       "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">Gain: day by day, over {}. "
       "By month: {}. SoC carried over; {}. At wear 10: {}. Drawdown: maximum fall between ends of "
-      "days, EUR per MWh.</p>\n<figure>\n<h2>Cumulative profit, EUR per MWh</h2>\n{}"
+      "days.</p>\n<figure>\n<h2>Cumulative profit, EUR per MWh of capacity</h2>\n{}"
       "<figcaption>{} {}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance),
-      format_table("EUR per day per MWh of capacity, all traded days",
+      format_table("All traded days; EUR/day/MWh: EUR per day per MWh of capacity",
                    total_table(results).only(kBacktestShownKeys)) +
           day_reset_html(results),
       html_escaped(first.name), html_escaped(by_month_meaning(first.total.errors().months)),
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
       html_escaped(with_true_minus(chart_caption(results))), csv_link("backtest_days.csv"),
-      format_table(fmt::format("Profit by month, and gain over {}", first.name),
+      format_table(fmt::format("Profit by month (gain over {}), EUR per day per MWh of capacity",
+                               first.name),
                    month_table(results)),
       months_html(results));
   write_file(folder / "backtest.html",

@@ -9,7 +9,9 @@
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/student_policy.h"
+#include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/page_data.h"
 
 namespace bess {
@@ -37,19 +39,20 @@ struct Means {
 };
 
 /// "2023-01" -> mean regret by hour, EUR per day per MWh.
-std::map<std::string, std::array<double, kHoursPerDay>> regret_by_month(
+std::map<std::string, std::array<HeatValue, kHoursPerDay>> regret_by_month(
     const std::vector<DayLoss>& losses, double capacity_mwh) {
-  std::map<std::string, std::array<double, kHoursPerDay>> months;
-  std::map<std::string, double> days;
+  std::map<std::string, std::array<std::vector<DayValue>, kHoursPerDay>> days;
   for (const DayLoss& day : losses) {
-    const std::string month = day.date.substr(0, kMonthTextLength);
-    days[month] += 1;
+    auto& hours = days[day.date.substr(0, kMonthTextLength)];
     for (std::size_t h = 0; h < kHoursPerDay; ++h) {
-      months[month][h] += day.regret_eur[h] / capacity_mwh;
+      hours[h].emplace_back(day.date, day.regret_eur[h] / capacity_mwh);
     }
   }
-  for (auto& [month, hours] : months) {
-    for (double& hour : hours) hour /= days[month];
+  std::map<std::string, std::array<HeatValue, kHoursPerDay>> months;
+  for (const auto& [month, hours] : days) {
+    for (std::size_t h = 0; h < kHoursPerDay; ++h) {
+      months[month][h] = {mean_of(hours[h]), day_errors(hours[h]).plain};
+    }
   }
   return months;
 }
@@ -68,7 +71,7 @@ std::vector<LossCause> causes_of(const std::array<double, kLossCauseCount>& part
 std::string causes_html(const Means& means) {
   std::string text =
       "<figure id=\"lost-causes\"><figcaption>By cause<small>mean over the test days, EUR per day "
-      "per MWh; the parts add up to the gap " +
+      "per MWh of capacity; the parts add up to the gap " +
       csv_link("lost_causes.csv") +
       "</small></figcaption>\n<table class=\"causes\"><thead><tr><th scope=\"col\">Cause</th><th "
       "scope=\"col\">EUR/day/MWh</th><th scope=\"col\">% of gap</th></tr></thead>\n<tbody>\n";
@@ -94,22 +97,29 @@ std::string causes_html(const Means& means) {
 std::string heat_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   const auto months = regret_by_month(losses, capacity_mwh);
   double most = 0;
-  for (const auto& [month, hours] : months) most = std::max(most, std::ranges::max(hours));
+  for (const auto& [month, hours] : months)
+    most = std::max(most, std::ranges::max(hours, {}, &HeatValue::value).value);
   std::string text = fmt::format(
       "<figure id=\"lost-hours\"><figcaption>By hour and month<small>gap by decisions of each "
-      "local hour, mean over the month's test days, EUR per day per MWh; darkest: {:.1f} "
-      "{}</small></figcaption>\n<table class=\"heat\"><thead><tr><th scope=\"col\">Month</th>",
-      most, csv_link("lost_hours.csv"));
+      "local hour, mean over the month's test days, EUR per day per MWh of capacity; darkest: "
+      "{:.1f}; {} {}</small></figcaption>\n<table class=\"heat\"><thead><tr><th "
+      "scope=\"col\">Month</th>",
+      most, kShadeMeaning, csv_link("lost_hours.csv"));
   for (std::size_t h = 0; h < kHoursPerDay; ++h) {
     text += fmt::format("<th scope=\"col\">{:02}</th>", h);
   }
   text += "</tr></thead>\n<tbody>\n";
   for (const auto& [month, hours] : months) {
     text += fmt::format("<tr><th scope=\"row\">{}</th>", month);
+    HeatValue shade{0, 0};
     for (std::size_t h = 0; h < kHoursPerDay; ++h) {
+      const HeatValue& hour = hours[h];
+      shade = shade_of(hour, shade);
       text += fmt::format(
-          "<td style=\"--heat:{:.3f}\" title=\"{}, {:02}:00: {:.1f}\"><span>{:.0f}</span></td>",
-          most > 0 ? hours[h] / most : 0, month, h, hours[h], hours[h]);
+          "<td style=\"--heat:{:.3f}\" title=\"{}, {:02}:00: {:.1f} \u00b1 {}\"><span>{:.0f}</span>"
+          "</td>",
+          most > 0 ? shade.value / most : 0, month, h, hour.value,
+          error_text(hour.error, 1, kNoValue), hour.value);
     }
     text += "</tr>\n";
   }
@@ -138,7 +148,7 @@ std::string moment_html(const DayLoss& day, double capacity_mwh) {
   if (m.eur <= 0) return {};
   return fmt::format(
       "<a href=\"#day\" data-day=\"{}\" data-minute=\"{}\">{}</a> at {:.0f} %: {}, optimum {}; "
-      "paid {}, newest price {} EUR/MWh; loss {}",
+      "paid {}, newest price {} EUR/MWh; loss {} EUR per MWh of capacity",
       day.date, m.step.utc_s / 60, clock_text(m.step), 100 * m.soc_frac, action_name(m.done),
       action_name(m.best), number(m.step.paid_eur_per_mwh), number(m.step.observed_eur_per_mwh),
       number(m.eur / capacity_mwh));
@@ -147,11 +157,12 @@ std::string moment_html(const DayLoss& day, double capacity_mwh) {
 std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   std::string text =
       "<figure id=\"lost-days\"><figcaption>Worst days<small>largest gap to perfect "
-      "foresight, EUR per MWh; click a date or time to open it below; causes below a tenth are in "
-      "the file " +
+      "foresight, EUR per MWh of capacity; click a date or time to open it below; causes below a "
+      "tenth are in the file " +
       csv_link("lost_days.csv") +
       "</small></figcaption>\n<table id=\"worst-days\"><thead><tr><th scope=\"col\">Day</th><th "
-      "scope=\"col\">Gap</th><th scope=\"col\">Earned</th><th scope=\"col\">Foresight</th><th "
+      "scope=\"col\">Gap, EUR/MWh of capacity</th><th scope=\"col\">Earned, EUR/MWh of capacity"
+      "</th><th scope=\"col\">Foresight, EUR/MWh of capacity</th><th "
       "scope=\"col\" class=\"why\">Causes</th><th scope=\"col\" class=\"why\">Most expensive "
       "decision of the first cause</th></tr></thead>\n<tbody>\n";
   const std::vector<const DayLoss*> worst = by_missed(losses);
@@ -159,9 +170,9 @@ std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
     const DayLoss& day = *worst[d];
     text += fmt::format(
         "<tr><th scope=\"row\"><a href=\"#day\" data-day=\"{0}\">{0}</a></th><td "
-        "data-label=\"Gap\">{1}</td><td data-label=\"Earned\">{2}</td><td "
-        "data-label=\"Foresight\">{3}</td><td class=\"why\">{4}</td><td class=\"why\">{5}</td>"
-        "</tr>\n",
+        "data-label=\"Gap, EUR/MWh of capacity\">{1}</td><td data-label=\"Earned, EUR/MWh of "
+        "capacity\">{2}</td><td data-label=\"Foresight, EUR/MWh of capacity\">{3}</td><td "
+        "class=\"why\">{4}</td><td class=\"why\">{5}</td></tr>\n",
         day.date, number(day.missed_eur() / capacity_mwh), number(day.earned_eur / capacity_mwh),
         number(day.foresight_eur / capacity_mwh), parts_text(day, capacity_mwh),
         moment_html(day, capacity_mwh));
@@ -184,7 +195,7 @@ PictureTable hour_table(const std::vector<DayLoss>& losses, double capacity_mwh)
   PictureTable table{"lost_hours", {"month", "local_hour", "missed_eur_per_day_per_mwh"}, {}};
   for (const auto& [month, hours] : regret_by_month(losses, capacity_mwh)) {
     for (std::size_t h = 0; h < kHoursPerDay; ++h) {
-      table.rows.push_back({month, fmt::format("{}", h), exact(hours[h])});
+      table.rows.push_back({month, fmt::format("{}", h), exact(hours[h].value)});
     }
   }
   return table;

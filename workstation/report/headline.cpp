@@ -66,7 +66,8 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
   for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
     const PairedDifference& d = gain.difference[w];
     row += fmt::format(
-        "<td data-label=\"wear {:g}\"><span class=\"number\">{}{}</span><small>{}</small>{}</td>",
+        "<td data-label=\"Wear {:g}, EUR/day/MWh\"><span "
+        "class=\"number\">{}{}</span><small>{}</small>{}</td>",
         kHeadlineWears[w], signed_text(d.mean), plain_error(d.errors()), month_error(d.errors()),
         bound ? "" : bar(d, reach));
   }
@@ -169,7 +170,7 @@ std::string headline_accounting(const Headline& headline) {
   if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
     text += fmt::format(
         "; the final charge is valued at {:.1f} EUR/MWh, the mean settled price of these "
-        "days, with losses and costs: {} of the result",
+        "days, with losses and costs: {} of the result, EUR per day per MWh of capacity",
         headline.charge_left.price_eur_per_mwh,
         signed_text(headline.charge_left.value_eur_per_day_per_mwh));
   }
@@ -177,7 +178,7 @@ std::string headline_accounting(const Headline& headline) {
   if (!headline.reset_profit) return text;
   return text + fmt::format(
                     " Day-reset accounting (each day starts at the same SoC, its end is not "
-                    "valued): {:.1f}.",
+                    "valued): {:.1f} EUR per day per MWh of capacity.",
                     *headline.reset_profit);
 }
 
@@ -212,12 +213,13 @@ std::string headline_html(const Headline& headline) {
       headline.profit, errors_text(headline.errors), headline.student, headline.days,
       html_escaped(headline_accounting(headline)));
   if (headline.correction) {
-    text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",
+    text += fmt::format("<li id=\"price-of-correction\">{}; EUR per day per MWh of capacity</li>\n",
                         html_escaped(correction_text(*headline.correction)));
   }
   if (headline.rules) {
-    text += fmt::format("<li id=\"price-of-rules\">Cost of the rules: {}</li>\n",
-                        html_escaped(rules_text(*headline.rules)));
+    text += fmt::format(
+        "<li id=\"price-of-rules\">Cost of the rules: {}; EUR per day per MWh of capacity</li>\n",
+        html_escaped(rules_text(*headline.rules)));
   }
   if (headline.foresight_share) {
     text += fmt::format("<li>{:.1f} % of the profit of perfect foresight</li>\n",
@@ -227,14 +229,14 @@ std::string headline_html(const Headline& headline) {
   if (headline.gains.empty()) return text;
   text += fmt::format(
       "<table class=\"gains\">\n<caption>Gain over each alternative: mean day-by-day difference, "
-      "EUR per day per MWh of capacity, \u00b1 standard error (by month)</caption>\n<thead><tr><th "
-      "scope=\"col\">Against</th><th scope=\"col\">No wear</th><th scope=\"col\">Wear {:g} "
-      "EUR/MWh</th></tr></thead>\n<tbody>\n",
+      "EUR/day/MWh (EUR per day per MWh of capacity) \u00b1 standard error (by month)</caption>\n"
+      "<thead><tr><th scope=\"col\">Against</th><th scope=\"col\">No wear, EUR/day/MWh</th><th "
+      "scope=\"col\">Wear {:g}, EUR/day/MWh</th></tr></thead>\n<tbody>\n",
       kHeadlineWears[1]);
   const double reach = bar_reach(headline);
   for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
   return text + fmt::format(
-                    "</tbody></table>\n<p class=\"note\">Wear is per MWh charged and per MWh "
+                    "</tbody></table>\n<p class=\"note\">Wear: EUR per MWh charged and per MWh "
                     "discharged. A bar spans the 95 % interval of the larger error (Student's t); "
                     "one that touches the line is not significant. By month: {}. SoC carried "
                     "over.</p>\n",

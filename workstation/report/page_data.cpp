@@ -303,7 +303,7 @@ Json learning_json(const ReportInputs& in) {
   for (const CurvePoint& p : in.training_curve) {
     const bool is_kept = &p == &kept_point(in.training_curve);
     training.add(Json::list_of(static_cast<double>(p.step), p.validation_eur_per_day_per_mwh,
-                               is_kept ? 1.0 : 0.0));
+                               is_kept ? 1.0 : 0.0, p.loss));
   }
   Json distil = Json::list();
   bool by_construction = !in.distil_curve.empty();

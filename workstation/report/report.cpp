@@ -23,19 +23,37 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPage = "report.html";
-constexpr const char* kPageTitle = "Battery arbitrage: trained, corrected and proved policy";
-constexpr const char* kFailedTitle = "Battery arbitrage: trained policy, proof failed";
+constexpr const char* kPageKind = "Battery arbitrage: trained, corrected and proved policy";
+constexpr const char* kFailedKind = "Battery arbitrage: trained policy, proof failed";
 
 /// Rules of the corrected student.
 RuleSet rules_of(const ReportInputs& in) {
   return in.corrected ? in.corrected->certificate.rules : RuleSet{};
 }
 
+/// "8 MW, 16 MWh" or "4 kW, 8 kWh"
+std::string size_text(const BatteryParameters& battery) {
+  const bool is_small = battery.power_w_max < 1e6;
+  return fmt::format("{0:g} {2}W, {1:g} {2}Wh", battery.power_w_max / (is_small ? 1e3 : 1e6),
+                     battery.capacity_wh / (is_small ? 1e3 : 1e6), is_small ? 'k' : 'M');
+}
+
 std::string battery_text(const BatteryParameters& battery) {
-  return fmt::format("{:g} MW, {:g} MWh, round-trip efficiency {:.1f} %, SoC {:.0f} to {:.0f} %",
-                     battery.power_w_max / 1e6, battery.capacity_wh / 1e6,
+  return fmt::format("{}, round-trip efficiency {:.1f} %, SoC {:.0f} to {:.0f} %",
+                     size_text(battery),
                      100 * battery.charge_efficiency * battery.discharge_efficiency,
                      100 * battery.soc_min_frac, 100 * battery.soc_max_frac);
+}
+
+/// Run, prices, battery and date, as far as known: "first, market.csv, 8 MW, 16 MWh, 2026-11-23"
+std::string title_of(const ReportInputs& in) {
+  const auto fact = [&](std::string_view name, std::string_view end) {
+    const auto found = std::ranges::find(in.facts, name, &ProvenanceLine::name);
+    return found == in.facts.end() ? "" : found->value.substr(0, found->value.rfind(end)) + ", ";
+  };
+  const std::string title =
+      fact("run", "\n") + fact("prices", ": ") + size_text(in.battery) + ", " + fact("date", "T");
+  return title.substr(0, title.size() - 2);
 }
 
 /// Relation of the result to training days, and the walk-forward result.
@@ -85,7 +103,8 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   const bool has_failed = !in.broken.empty();
   return format_report_page(
-      {{"title", has_failed ? kFailedTitle : kPageTitle},
+      {{"title", html_escaped(title_of(in))},
+       {"kind", has_failed ? kFailedKind : kPageKind},
        {"head", head_of(in)},
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
        {"failure_link", has_failed ? "<li><a href=\"#failure\">Failed proof</a></li>\n" : ""},

@@ -49,7 +49,8 @@ std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) 
   if (evaluations.empty()) return {};
   HtmlTable table{
       "The configured battery of " + capacity_text(capacity_mwh_in(evaluations.front())),
-      {"Policy", "EUR/day, day-reset", "EUR/day, SoC carried over"},
+      {"Policy", "EUR of this battery per day, day-reset",
+       "EUR of this battery per day, SoC carried over"},
       {}};
   for (const NamedEvaluation& named : evaluations) {
     if (is_under_rules(named.name)) continue;
@@ -161,9 +162,10 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
   const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
   if (reset.empty() && carried.empty()) return {};
   return fmt::format(
-      "{}{}<p class=\"note\">EUR per day per MWh of capacity. Gain: mean day-by-day difference to "
-      "{}; s.e.: standard error of the mean to its left; by month: {}. A gain within {} is not "
-      "significant. Cycles: full cycles (throughput over twice the capacity); switches: changes of "
+      "{}{}<p class=\"note\">EUR/day/MWh: EUR per day per MWh of capacity. Gain: mean day-by-day "
+      "difference to {}; s.e.: standard error of the mean to its left; by month: {}. A gain within "
+      "{} is not significant. Cycles: full cycles (throughput over twice the capacity); switches: "
+      "changes of "
       "the order. At wear {:g}: {}.</p>\n",
       comparison_table("SoC carried over from day to day", carried),
       comparison_table("Day-reset: each day starts at the same SoC", reset),
@@ -202,8 +204,9 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
   if (prices != nullptr) {
     text += format_table("Effect of the rules", rule_prices_table(*prices));
     note += fmt::format(
-        " EUR per day per MWh of capacity, \u00b1 standard error, SoC carried over. The effect of "
-        "a rule is measured on the plain student: each decision is moved to the nearest allowed "
+        " EUR/day/MWh: EUR per day per MWh of capacity, \u00b1 standard error, SoC carried over. "
+        "The effect of a rule is measured on the plain student: each decision is moved to the "
+        "nearest allowed "
         "one, and the days are run again, for each rule and all together. The difference to the {} "
         "is {}. Rules on the direction of time or context are part of the correction.",
         prices->student, prices->correction.meaning);

@@ -35,6 +35,10 @@ function axis(options = {}) {
   };
 }
 
+function axisTitle(text) {
+  return {display: true, text, color: colour("muted")};
+}
+
 /** Options of all charts. */
 function baseOptions(options) {
   return {

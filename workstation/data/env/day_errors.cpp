@@ -19,13 +19,13 @@ constexpr int kMonthsEnough = 10;
 /// "2023-01" of "2023-01-31".
 std::string_view month_of(const std::string& date) { return std::string_view(date).substr(0, 7); }
 
+}  // namespace
+
 double mean_of(const std::vector<DayValue>& days) {
   double sum = 0;
   for (const auto& [date, value] : days) sum += value;
   return sum / static_cast<double>(days.size());
 }
-
-}  // namespace
 
 DayErrors day_errors(const std::vector<DayValue>& days) {
   if (days.empty()) return {kUnknown, kUnknown, 0, 0};

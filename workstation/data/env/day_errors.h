@@ -38,6 +38,7 @@ struct DayErrors {
 /// Local date, "2023-01-31", and the day's value; days of a month need not be adjacent.
 using DayValue = std::pair<std::string, double>;
 
+double mean_of(const std::vector<DayValue>& days);
 DayErrors day_errors(const std::vector<DayValue>& days);
 
 /// Half-width of the interval that contains the true mean with probability `coverage` (0..1): the

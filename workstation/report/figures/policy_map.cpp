@@ -7,6 +7,7 @@
 #include <map>
 
 #include "workstation/correction/student/verify.h"
+#include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/sort_table.h"
@@ -36,39 +37,41 @@ std::vector<std::string> values_of(const std::vector<HeatPoint>& points,
 }
 
 struct Mean {
-  double sum = 0;
+  double sum = 0, squares = 0;  ///< of values and of their errors
   int count = 0;
-  [[nodiscard]] double value() const { return sum / count; }
+  [[nodiscard]] HeatValue value() const { return {sum / count, std::sqrt(squares) / count}; }
 };
 
-/// Colour from faint (lowest) to strong (highest); numbers stay legible in light and dark.
-std::string cell_html(const Mean& mean, double low, double high, const std::string& label) {
-  const double share = high > low ? (mean.value() - low) / (high - low) : 0.5;
+/// Colour by `share` of the strongest; numbers stay legible in light and dark.
+std::string cell_html(const HeatValue& of, double share, const std::string& label) {
   return fmt::format(
-      "<td data-label=\"{}\" style=\"background:color-mix(in srgb, var(--charge) {:.0f}%, "
-      "var(--paper))\"><span>{}</span></td>",
-      html_escaped(label), 4 + 38 * share,
-      html_escaped(with_true_minus(fmt::format("{:.1f}", mean.value()))));
+      "<td data-label=\"{}\" title=\"\u00b1 {}\" style=\"background:color-mix(in srgb, var(--{}) "
+      "{:.0f}%, var(--paper))\"><span>{}</span></td>",
+      html_escaped(label), error_text(of.error, 1, kNoValue), share < 0 ? "discharge" : "charge",
+      42 * std::abs(share), html_escaped(with_true_minus(fmt::format("{:.1f}", of.value))));
 }
 
 std::string shown(const std::string& value) { return value.empty() ? "as configured" : value; }
 
 }  // namespace
 
+HeatValue shade_of(const HeatValue& cell, const HeatValue& left) {
+  if (!(std::abs(cell.value) >= 2 * cell.error)) return {0, 0};  // true for NaN
+  const bool is_same = std::abs(cell.value - left.value) < 2 * std::hypot(cell.error, left.error);
+  return is_same ? left : cell;
+}
+
 std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text) {
   std::map<std::pair<std::string, std::string>, Mean> means;  // by down, then across
   for (const HeatPoint& point : points) {
-    if (std::isnan(point.value)) continue;
+    if (std::isnan(point.of.value)) continue;
     Mean& mean = means[{point.down, point.across}];
-    mean.sum += point.value;
+    mean.sum += point.of.value;
+    mean.squares += point.of.error * point.of.error;
     ++mean.count;
   }
-  double low = 0, high = 0;
-  for (bool is_first = true; const auto& [at, mean] : means) {
-    low = is_first ? mean.value() : std::min(low, mean.value());
-    high = is_first ? mean.value() : std::max(high, mean.value());
-    is_first = false;
-  }
+  double most = 0;
+  for (const auto& [at, mean] : means) most = std::max(most, std::abs(mean.value().value));
   const std::vector<std::string> columns = values_of(points, &HeatPoint::across);
   std::string html = fmt::format(
       "<div class=\"wide\"><table id=\"{}\">\n<caption style=\"white-space:nowrap\">{}: "
@@ -82,11 +85,14 @@ std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapTex
   html += "</tr></thead>\n<tbody>\n";
   for (const std::string& row : values_of(points, &HeatPoint::down)) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", html_escaped(shown(row)));
+    HeatValue shade{0, 0};
     for (const std::string& column : columns) {
       const auto found = means.find({row, column});
+      if (found != means.end()) shade = shade_of(found->second.value(), shade);
       html += found == means.end() ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>",
                                                  html_escaped(shown(column)), kNoValue)
-                                   : cell_html(found->second, low, high, shown(column));
+                                   : cell_html(found->second.value(),
+                                               most > 0 ? shade.value / most : 0, shown(column));
     }
     html += "</tr>\n";
   }

@@ -13,10 +13,21 @@ namespace bess {
 
 // Heat map of means over two settings, as an accessible table with coloured cells.
 
+struct HeatValue {
+  double value, error;  ///< standard error; NaN: unknown
+};
+
+/// Value of a cell's colour: 0 within two standard errors of zero, or without an error; `left`, the
+/// shade of the cell to its left, within two standard errors of it; else its own.
+HeatValue shade_of(const HeatValue& cell, const HeatValue& left);
+
 struct HeatPoint {
   std::string across, down;  ///< values of the two settings; empty: as configured
-  double value;              ///< NaN: unknown, shown empty
+  HeatValue of;              ///< an unknown value is shown empty
 };
+
+inline constexpr const char* kShadeMeaning =
+    "pale: within two standard errors of zero; equal shade: within two of the cell to the left";
 
 /// Names of the two settings; `what` is the caption, `id` the unique id of the table.
 struct HeatMapText {

@@ -90,13 +90,14 @@ class DayView {
     this.drawPrices();
     this.drawPower();
     this.drawSteps(
-      "chart-soc", (policy) => Array.from(policy.soc, (soc) => 100 * soc), {min: 0, max: 100});
-    this.drawSteps("chart-eur", (_, p) => this.earnings[p], {});
+      "chart-soc", (policy) => Array.from(policy.soc, (soc) => 100 * soc),
+      "%", {min: 0, max: 100});
+    this.drawSteps("chart-eur", (_, p) => this.earnings[p], "EUR of this battery", {});
   }
 
   describe() {
     const earned = this.data.archive.policies.map(
-      (name, p) => `${name} ${signed(this.earnings[p].at(-1), 0)} EUR`);
+      (name, p) => `${name} ${signed(this.earnings[p].at(-1), 0)} EUR of this battery`);
     const left = this.data.archive.days_left_out;
     document.getElementById("day-note").textContent = `${this.day.date}: ${earned.join(", ")}.` +
       (left > 0
@@ -133,7 +134,7 @@ class DayView {
                     {borderWidth: 1, stepped: "before"}),
         ],
       },
-      options: this.options({min: low, max: high}),
+      options: this.options({min: low, max: high, title: axisTitle("EUR/MWh")}),
       plugins: [this.cursorPlugin(), this.edgePlugin(low, high)],
     }));
   }
@@ -150,7 +151,7 @@ class DayView {
   }
 
   /** One line per policy; the first is the widest. */
-  drawSteps(id, valuesOf, {min, max}) {
+  drawSteps(id, valuesOf, unit, y) {
     drawChart(id, () => ({
       type: "line",
       data: {
@@ -159,7 +160,7 @@ class DayView {
           policyColour(this.data.archive.policies[p]),
           {borderWidth: p === 0 ? 2.5 : 1.2, borderDash: p === 2 ? [4, 3] : [], order: p})),
       },
-      options: this.options({min, max}),
+      options: this.options({...y, title: axisTitle(unit)}),
       plugins: [this.cursorPlugin()],
     }));
   }
@@ -183,7 +184,7 @@ class DayView {
         x: axis({type: "linear", min: 0, max: end,
                  ticks: {stepSize: 3, callback: (hour) => this.timeAt(hour)}}),
         y: axis({...y, ticks: {maxTicksLimit: 6, includeBounds: false, ...y.ticks},
-                 afterFit: (scale) => { scale.width = 58; }}),
+                 afterFit: (scale) => { scale.width = 78; }}),
       },
     };
   }
@@ -218,7 +219,7 @@ class DayView {
         `${kActions[policy.action[step]]}, ` +
         `${(Math.abs(policy.power[step]) / 1e6).toPrecision(3)} MW at ` +
         `${(100 * policy.soc[step]).toFixed(1)} %, ` +
-        `${signed(this.earnings[p][step], 1)} EUR so far`)));
+        `${signed(this.earnings[p][step], 1)} EUR of this battery so far`)));
     for (const id of kDayCharts) shownCharts.get(id).chart.draw();
   }
 

@@ -2,26 +2,29 @@
 "use strict";
 
 /**
- * Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; a radius
- * gives points without a line.
+ * Lines over numbers; `series`: [name, points, colour, dash, radius, axis] each, points [x, y]; a
+ * radius gives points without a line; `x`, `y`: titles; `scales`: more axes.
  */
-function drawLines(id, series, scales) {
+function drawLines(id, series, x, y, scales = () => ({})) {
   drawChart(id, () => ({
     type: "line",
     data: {
-      datasets: series.map(([label, points, ink, dash, radius]) => ({
+      datasets: series.map(([label, points, ink, dash, radius, yAxisID = "y"]) => ({
         label, data: points.map(([x, y]) => ({x, y})), borderColor: colour(ink),
         backgroundColor: colour(ink),
         pointRadius: radius || (points.length > 40 ? 0 : 2), borderWidth: 2, borderDash: dash || [],
-        showLine: !radius, order: radius ? 0 : 1,
+        showLine: !radius, order: radius ? 0 : 1, yAxisID,
       })),
     },
-    options: {parsing: false, scales: {x: axis({type: "linear", ticks: {precision: 0}}),
-                                       y: axis({ticks: kFewTicks}), ...scales()}},
+    options: {
+      parsing: false, interaction: {mode: "nearest", axis: "x", intersect: false},
+      scales: {x: axis({type: "linear", title: axisTitle(x), ticks: {precision: 0}}),
+               y: axis({title: axisTitle(y), ticks: kFewTicks}), ...scales()},
+    },
   }));
 }
 
-/** Step 0 of a residual teacher is the SDP. */
+/** `training`: [step, profit, 1 if selected, loss]; step 0 of a residual teacher is the SDP. */
 function drawTraining({training, rule}) {
   // An SDP is not trained.
   document.getElementById("training-figure").hidden = training.length < 2;
@@ -30,10 +33,16 @@ function drawTraining({training, rule}) {
   const level = (profit) =>
     [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
   const began = training[0][0] === 0
-    ? [["SDP (step 0)", level(training[0][1]), "line-4", [6, 4], 0]] : [];
-  drawLines("chart-training", [["checkpoint", training, "line-1"],
-                               ["selected", [kept], "line-2", undefined, 6], ...began,
-    ["rule-based", level(rule), "muted", [2, 3], 0]], () => ({}));
+    ? [["program (SDP, step 0)", level(training[0][1]), "line-4", [6, 4], 0]] : [];
+  document.getElementById("program-kept").hidden = kept[0] !== 0;
+  const losses = training.filter((point) => point[3] > 0).map((point) => [point[0], point[3]]);
+  const loss = losses.length > 0 ? [["loss", losses, "line-3", [1, 2], 0, "loss"]] : [];
+  const lossAxis = () => axis({type: "logarithmic", axis: "y", position: "right", ticks: kFewTicks,
+                               title: axisTitle("loss"), grid: {drawOnChartArea: false}});
+  drawLines("chart-training", [
+    ["checkpoint", training, "line-1"], ["selected", [kept], "line-2", undefined, 6], ...began,
+    ["rule-based", level(rule), "muted", [2, 3], 0], ...loss], "gradient steps", kProfitUnit,
+            () => loss.length > 0 ? {loss: lossAxis()} : {});
 }
 
 /**
@@ -46,7 +55,7 @@ function drawCheckpoints({checkpoints}) {
   const of = (state) => checkpoints.filter((point) => point[2] === state);
   drawLines("chart-checkpoints", [
     ["checkpoint", checkpoints, "line-1"], ["violations", of("disobeys"), "muted", undefined, 6],
-    ["selected", of("chosen"), "line-2", undefined, 6]], () => ({}));
+    ["selected", of("chosen"), "line-2", undefined, 6]], "epoch", kProfitUnit);
 }
 
 function drawDistillation({distil, by_construction}) {
@@ -60,7 +69,8 @@ function drawDistillation({distil, by_construction}) {
                   ["correction loss", column(2), "line-2"], visited];
   drawLines("chart-distil", by_construction ? [visited] : losses.map(
     ([name, points, ink]) => [name, points.filter(([, y]) => y > 0), ink]),
-            () => (by_construction ? {} : {y: axis({type: "logarithmic"})}));
+            "epoch", "loss", () => (by_construction ? {} : {
+              y: axis({type: "logarithmic", title: axisTitle("loss")})}));
 }
 
 function drawPriceHistogram({low, bin, train, test, outside_train, outside_test}) {
@@ -80,6 +90,7 @@ function drawPriceHistogram({low, bin, train, test, outside_train, outside_test}
          order: 1},
       ],
     },
-    options: {scales: {x: axis(), y: axis()}},
+    options: {scales: {x: axis({title: axisTitle("observed price, EUR/MWh")}),
+                       y: axis({title: axisTitle("% of decisions")})}},
   }));
 }

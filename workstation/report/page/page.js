@@ -5,6 +5,8 @@
 const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1",
                         "plain student": "line-2", "teacher": "line-3"};
 
+const kProfitUnit = "EUR/day/MWh of capacity", kSumUnit = "EUR/MWh of capacity";
+
 /** Colour of a policy on the whole page. */
 function policyColour(name) {
   return colour(kPolicyColours[name] || "muted");

@@ -2,8 +2,8 @@
 "use strict";
 
 const kKinds = {
-  /** `series`: [name, colour, values] each. */
-  lines: ({labels, series, marks = []}) => ({
+  /** `series`: [name, colour, values] each; `y`: title of its axis. */
+  lines: ({labels, series, y, marks = []}) => ({
     type: "line",
     plugins: [marksDrawn(marks)],
     data: {
@@ -13,7 +13,7 @@ const kKinds = {
         pointRadius: 0, pointHitRadius: 8,
       })),
     },
-    options: {scales: {x: axis(), y: axis({ticks: kFewTicks})}},
+    options: {scales: {x: axis(), y: axis({title: axisTitle(y), ticks: kFewTicks})}},
   }),
 
   /** `points`: [x, y, label] each. */
@@ -32,10 +32,6 @@ const kKinds = {
     },
   }),
 };
-
-function axisTitle(text) {
-  return {display: true, text, color: colour("muted")};
-}
 
 for (const {id, kind, ...shown} of JSON.parse(document.getElementById("data").textContent)) {
   drawChart(id, () => kKinds[kind](shown));

@@ -1,14 +1,15 @@
-// Policy maps: decisions over price and SoC, evaluated exactly (student.js), in time slices so that
-// sliders stay responsive.
+// Policy maps: decisions over SoC (across) and price (up), as on the edge's page, evaluated exactly
+// (student.js), in time slices so that sliders stay responsive.
 "use strict";
 
 const kSliceMs = 20;
 const kPaintEveryMs = 120;
 const kCoarseRows = 8;       // row stride of the first pass
 const kWindowRoundTo = 10;   // EUR/MWh
-const kMargin = {left: 46, right: 8, top: 10, bottom: 38};  // CSS pixels around a map
+const kMargin = {left: 60, right: 14, top: 10, bottom: 38};  // CSS pixels around a map
 const kMarkPx = 3;           // minimum size of a violation
 const kHatchPx = 8;          // distance of hatching lines
+const kFillAlpha = 0x55;     // of an action
 
 /** Map of one student: canvas and grid. */
 class StudentMap {
@@ -257,10 +258,10 @@ class PolicyMap {
     const width = map.canvas.clientWidth, height = map.canvas.clientHeight;
     const plot = {x: kMargin.left, y: kMargin.top, w: width - kMargin.left - kMargin.right,
                   h: height - kMargin.top - kMargin.bottom};
-    const {first, last} = map.window, columns = last - first + 1, rows = this.lattice.soc_count;
-    return {width, height, plot, columns, rows, cellW: plot.w / columns, cellH: plot.h / rows,
-            xOf: (price) => plot.x + (price - first + .5) / columns * plot.w,
-            yOf: (soc) => plot.y + plot.h - (soc + .5) / rows * plot.h};
+    const {first, last} = map.window, prices = last - first + 1, socs = this.lattice.soc_count;
+    return {width, height, plot, prices, socs, cellW: plot.w / socs, cellH: plot.h / prices,
+            xOf: (soc) => plot.x + (soc + .5) / socs * plot.w,
+            yOf: (price) => plot.y + plot.h - (price - first + .5) / prices * plot.h};
   }
 
   paint() {
@@ -283,16 +284,16 @@ class PolicyMap {
     if (this.marked) this.paintMarked(ctx, frame);
   }
 
-  paintCells(ctx, map, {plot, columns, rows}) {
-    const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
+  paintCells(ctx, map, {plot, prices, socs}) {
+    const cells = new OffscreenCanvas(socs, prices), image = new ImageData(socs, prices);
     const pixels = new Uint32Array(image.data.buffer);
-    const inks = kActions.map((name) => pixelOf(colour(name)));
-    for (let soc = 0; soc < rows; ++soc) {
-      // The nearest evaluated row.
-      const from = map.grid[soc * columns] < 0 ? soc - soc % kCoarseRows : soc;
-      for (let column = 0; column < columns; ++column) {
-        const action = map.grid[from * columns + column];
-        if (action >= 0) pixels[(rows - 1 - soc) * columns + column] = inks[action];
+    const inks = kActions.map((name) => name === "idle" ? 0 : pixelOf(colour(name), kFillAlpha));
+    for (let soc = 0; soc < socs; ++soc) {
+      // The nearest evaluated SoC.
+      const from = map.grid[soc * prices] < 0 ? soc - soc % kCoarseRows : soc;
+      for (let price = 0; price < prices; ++price) {
+        const action = map.grid[from * prices + price];
+        if (action >= 0) pixels[(prices - 1 - price) * socs + soc] = inks[action];
       }
     }
     cells.getContext("2d").putImageData(image, 0, 0);
@@ -301,13 +302,13 @@ class PolicyMap {
   }
 
   /** Hatching of states that break a rule; the action stays visible. */
-  paintBrokenRules(ctx, map, {plot, columns, rows}) {
+  paintBrokenRules(ctx, map, {plot, prices, socs}) {
     if (map.violations.rules.length === 0) return;
-    const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
+    const cells = new OffscreenCanvas(socs, prices), image = new ImageData(socs, prices);
     const pixels = new Uint32Array(image.data.buffer), ink = pixelOf("#000000");
     for (const {cells: broken} of map.violations.rules) {
       for (const cell of broken)
-        pixels[(rows - 1 - Math.floor(cell / columns)) * columns + cell % columns] = ink;
+        pixels[(prices - 1 - cell % prices) * socs + Math.floor(cell / prices)] = ink;
     }
     cells.getContext("2d").putImageData(image, 0, 0);
     const ratio = devicePixelRatio || 1;
@@ -328,7 +329,7 @@ class PolicyMap {
     ctx.drawImage(lines, plot.x, plot.y, plot.w, plot.h);
   }
 
-  paintViolations(ctx, map, {plot, cellW, cellH, rows}) {
+  paintViolations(ctx, map, {plot, cellW, cellH, prices}) {
     ctx.save();
     ctx.beginPath();
     ctx.rect(plot.x, plot.y, plot.w, plot.h);
@@ -336,19 +337,19 @@ class PolicyMap {
     ctx.fillStyle = colour("mark");
     const w = Math.max(cellW, kMarkPx), h = Math.max(cellH, kMarkPx);
     const fill = (x, y) => ctx.fillRect(x - w / 2, y - h / 2, w, h);
-    const left = (column) => plot.x + column * cellW,
-          top = (soc) => plot.y + (rows - 1 - soc) * cellH;
+    const left = (soc) => plot.x + soc * cellW,
+          top = (column) => plot.y + (prices - 1 - column) * cellH;
     for (const {soc, column, towards} of map.violations.order) {  // on the border between the two
       fill(
-        left(column) + (towards === "price" ? cellW : cellW / 2),
-        top(soc) + (towards === "soc" ? 0 : cellH / 2));
+        left(soc) + (towards === "soc" ? cellW : cellW / 2),
+        top(column) + (towards === "price" ? 0 : cellH / 2));
     }
     for (const {soc, column} of map.violations.threshold)
-      fill(left(column) + cellW / 2, top(soc) + cellH / 2);
+      fill(left(soc) + cellW / 2, top(column) + cellH / 2);
     ctx.restore();
   }
 
-  paintAxes(ctx, map, {plot, xOf, yOf, width}) {
+  paintAxes(ctx, map, {plot, xOf, yOf}) {
     ctx.strokeStyle = colour("muted");
     ctx.lineWidth = 1;
     ctx.strokeRect(plot.x, plot.y, plot.w, plot.h);
@@ -356,30 +357,33 @@ class PolicyMap {
     ctx.font = "12px system-ui, sans-serif";
     ctx.textAlign = "right";
     ctx.textBaseline = "middle";
-    for (const percent of [0, 25, 50, 75, 100])
-      ctx.fillText(`${percent} %`, plot.x - 6, yOf(2 * percent));
+    const {first, last} = map.window, step = niceStep((last - first) / (plot.h / 40));
+    for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
+      ctx.fillText(trueMinus(price), plot.x - 6, yOf(price));
+      ctx.fillRect(plot.x - 4, yOf(price) - .5, 4, 1);
+    }
     ctx.textAlign = "center";
     ctx.textBaseline = "top";
-    const {first, last} = map.window, step = niceStep((last - first) / (width / 60));
-    for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
-      const label = trueMinus(price), half = ctx.measureText(label).width / 2;
-      // Keeps the last label on the canvas.
-      ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);
-      ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
-    }
-    ctx.fillText("price, EUR/MWh", plot.x + plot.w / 2, plot.y + plot.h + 20);
+    for (const percent of [0, 25, 50, 75, 100])
+      ctx.fillText(percent, xOf(percent / 100 * (this.lattice.soc_count - 1)), plot.y + plot.h + 5);
+    ctx.fillText("state of charge, %", plot.x + plot.w / 2, plot.y + plot.h + 20);
+    ctx.save();
+    ctx.translate(2, plot.y + plot.h / 2);
+    ctx.rotate(-Math.PI / 2);
+    ctx.fillText("price, EUR/MWh", 0, 0);
+    ctx.restore();
     ctx.setLineDash([4, 4]);
     ctx.strokeStyle = colour("ink");
-    const reserve = yOf(this.data.battery.soc_min * (this.lattice.soc_count - 1));
+    const reserve = xOf(this.data.battery.soc_min * (this.lattice.soc_count - 1));
     ctx.beginPath();
-    ctx.moveTo(plot.x, reserve);
-    ctx.lineTo(plot.x + plot.w, reserve);
+    ctx.moveTo(reserve, plot.y);
+    ctx.lineTo(reserve, plot.y + plot.h);
     ctx.stroke();
     ctx.setLineDash([]);
   }
 
   paintMarked(ctx, {xOf, yOf}) {
-    const x = xOf(this.marked.price), y = yOf(this.marked.soc * (this.lattice.soc_count - 1));
+    const x = xOf(this.marked.soc * (this.lattice.soc_count - 1)), y = yOf(this.marked.price);
     for (const [ink, width] of [[colour("paper"), 5], [colour("ink"), 2]]) {
       ctx.strokeStyle = ink;
       ctx.lineWidth = width;
@@ -391,10 +395,10 @@ class PolicyMap {
 
   /** Shows the actions at the pointer. */
   tell(map, event) {
-    const {plot, columns, rows} = this.frame(map);
-    const column = Math.floor((event.offsetX - plot.x) / plot.w * columns);
-    const soc = rows - 1 - Math.floor((event.offsetY - plot.y) / plot.h * rows);
-    if (column < 0 || column >= columns || soc < 0 || soc >= rows) {
+    const {plot, prices, socs} = this.frame(map);
+    const soc = Math.floor((event.offsetX - plot.x) / plot.w * socs);
+    const column = prices - 1 - Math.floor((event.offsetY - plot.y) / plot.h * prices);
+    if (column < 0 || column >= prices || soc < 0 || soc >= socs) {
       this.point(null);
       return;
     }
@@ -404,7 +408,7 @@ class PolicyMap {
     const rules = this.rules.atState(this.context, soc, price);
     const names = rules.map(({number, name}) => `${number} ${name}`);
     document.getElementById("map-readout").textContent =
-      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ` +
+      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (socs - 1)).toFixed(1)} %: ` +
       actions.join(", ") +
       (names.length > 0 ? `. Rules that apply: ${names.join(", ")}` : "");
     this.point(rules.length > 0 ? rules.at(-1) : null);
@@ -419,23 +423,25 @@ class PolicyMap {
 }
 
 /** Little-endian pixel value of "#rrggbb". */
-function pixelOf(hex) {
+function pixelOf(hex, alpha = 255) {
   const [red, green, blue] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
-  return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
+  return (alpha << 24 | blue << 16 | green << 8 | red) >>> 0;
 }
 
 /** Legend of the maps. */
 function showMapKeys(hasRules) {
-  const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"],
-                ["mark", "violation"],
+  const faint = (name) =>
+    `color-mix(in srgb, var(--${name}) ${100 * kFillAlpha / 255}%, transparent)`;
+  const keys = [[faint("charge"), "charge"], ["transparent", "idle"],
+                [faint("discharge"), "discharge"], ["var(--mark)", "violation"],
                 ["", "dashed line: minimum SoC"],
                 ...(hasRules ? [["", "outlined with number: region of a rule, dashed if only " +
                                      "the guard enforces it; hatched: violations"]] : [])];
-  document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
+  document.getElementById("map-keys").replaceChildren(...keys.map(([background, text]) => {
     const item = document.createElement("li");
-    if (name) {
+    if (background) {
       const swatch = document.createElement("i");
-      swatch.style.background = `var(--${name})`;
+      swatch.style.background = background;
       item.append(swatch);
     }
     item.append(text);

@@ -93,7 +93,7 @@ class RuleBoxes {
 
   /** Outlines with numbers; the one under the pointer is thicker and named. */
   paint(ctx, frame, window, context) {
-    const {plot, cellW, cellH, rows} = frame;
+    const {plot, cellW, cellH} = frame;
     ctx.save();
     ctx.beginPath();
     ctx.rect(plot.x - 2, plot.y - 2, plot.w + 4, plot.h + 4);
@@ -103,9 +103,8 @@ class RuleBoxes {
       const first = Math.max(rule.price[0], window.first),
             last = Math.min(rule.price[1], window.last);
       if (first > last) continue;
-      const x = plot.x + (first - window.first) * cellW, w = (last - first + 1) * cellW;
-      const y = plot.y + (rows - 1 - rule.soc[1]) * cellH,
-            h = (rule.soc[1] - rule.soc[0] + 1) * cellH;
+      const x = plot.x + rule.soc[0] * cellW, w = (rule.soc[1] - rule.soc[0] + 1) * cellW;
+      const y = plot.y + (window.last - last) * cellH, h = (last - first + 1) * cellH;
       const pointed = this.pointed === rule;
       for (const [ink, width] of [[colour("paper"), pointed ? 7 : 4.5],
                                   [colour("ink"), pointed ? 3.5 : 2]]) {

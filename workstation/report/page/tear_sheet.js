@@ -59,7 +59,7 @@ class TearSheet {
           borderDash: policy.name === this.data.foresight ? [5, 4] : [],
         })),
       },
-      options: {scales: {x: axis(), y: axis()}},
+      options: {scales: {x: axis(), y: axis({title: axisTitle(kSumUnit)})}},
     }));
   }
 
@@ -77,7 +77,7 @@ class TearSheet {
     const anyFalls = falls.some(([, values]) => Math.min(...values) < 0);
     document.getElementById("drawdown-none").hidden = anyFalls;
     document.getElementById("chart-drawdown").parentElement.hidden = !anyFalls;
-    if (anyFalls) this.drawBars("chart-drawdown", this.data.dates, falls, {max: 0});
+    if (anyFalls) this.drawBars("chart-drawdown", this.data.dates, falls, "", kSumUnit, {max: 0});
   }
 
   drawMonths(exported) {
@@ -90,7 +90,7 @@ class TearSheet {
       });
     };
     this.drawBars("chart-months", months, [exported, ...this.rivals(2)].map(
-      (policy) => [policy.name, means(policy)]));
+      (policy) => [policy.name, means(policy)]), "", kProfitUnit);
   }
 
   drawDistribution(exported) {
@@ -104,7 +104,7 @@ class TearSheet {
       const bins = new Array(count).fill(0);
       for (const profit of all[p]) ++bins[Math.floor((profit - first) / width)];
       return [policy.name, bins];
-    }));
+    }), kSumUnit, "days");
   }
 
   /** Means of the exported policy over the days of the page. */
@@ -137,12 +137,14 @@ class TearSheet {
            order: 1},
         ],
       },
-      options: {scales: {x: axis({stacked: true}), y: axis({stacked: true, ticks: kFewTicks})}},
+      options: {scales: {x: axis({stacked: true, title: axisTitle("local hour")}),
+                         y: axis({stacked: true, title: axisTitle(kProfitUnit),
+                                  ticks: kFewTicks})}},
     }));
   }
 
-  /** Grouped bars; `series`: [name, values] each; `y`: options of its axis. */
-  drawBars(id, labels, series, y = {}) {
+  /** Grouped bars; `series`: [name, values] each; `x`, `y`: titles; `more`: options of y. */
+  drawBars(id, labels, series, x, y, more = {}) {
     drawChart(id, () => ({
       type: "bar",
       data: {
@@ -150,7 +152,8 @@ class TearSheet {
         datasets: series.map(([name, values]) => ({label: name, data: values,
                                                    backgroundColor: policyColour(name)})),
       },
-      options: {scales: {x: axis(), y: axis({ticks: {precision: 0}, ...y})}},
+      options: {scales: {x: axis({title: {...axisTitle(x), display: x !== ""}}),
+                         y: axis({title: axisTitle(y), ticks: {precision: 0}, ...more})}},
     }));
   }
 }

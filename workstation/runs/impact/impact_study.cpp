@@ -231,6 +231,7 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
 
 namespace {
 
+constexpr const char* kMoneyUnit = "EUR per MW and day";
 constexpr std::array kLineColours{"ink", "charge", "discharge", "muted", "soft", "mark", "idle"};
 
 std::string formula_name(PriceFormula formula) {
@@ -245,8 +246,9 @@ Table table_of(const std::vector<ImpactRow>& rows) {
       {{"variant", "", "", 0, "Variant"}, &R::variant},
       {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR per MW and day"},
        [](const R& r) { return r.mean.eur_per_mw_day; }},
-      {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds"}, &R::standard_error},
-      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot"},
+      {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds, EUR per MW and day"},
+       &R::standard_error},
+      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot, share"},
        [](const R& r) { return r.mean.overshoot_share; }},
       {{"imbalance_mw", "", "{:.1f}", 4, "Mean |SI|, MW"},
        [](const R& r) { return r.mean.imbalance_mw; }},
@@ -288,7 +290,7 @@ std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>&
 
 /// Lines over fleet size: `value` for each of `names`.
 template <typename Value>
-Json lines_chart(const std::string& id, const ImpactPlan& plan,
+Json lines_chart(const std::string& id, const std::string& unit, const ImpactPlan& plan,
                  const std::vector<std::string>& names, Value value) {
   const auto label = [](double mw) { return fmt::format("{:g} MW", mw); };
   Json series = Json::list();
@@ -299,6 +301,7 @@ Json lines_chart(const std::string& id, const ImpactPlan& plan,
   }
   return Json::object({{"id", id},
                        {"kind", "lines"},
+                       {"y", unit},
                        {"labels", Json::list_from(plan.fleet_mw, label)},
                        {"series", std::move(series)}});
 }
@@ -376,18 +379,18 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
     return row_at(rows, static_cast<PriceFormula>(f), mw, variants.front()).mean;
   };
   figure("EUR per MW and day by fleet size", "money",
-         lines_chart("money", plan, formulas,
+         lines_chart("money", kMoneyUnit, plan, formulas,
                      [&](std::size_t f, double mw) { return of_formula(f, mw).eur_per_mw_day; }),
          "Variant 'as it is', by price formula.");
   figure("Mean absolute system imbalance with the fleet, MW", "imbalance",
-         lines_chart("imbalance", plan, formulas,
+         lines_chart("imbalance", "MW", plan, formulas,
                      [&](std::size_t f, double mw) { return of_formula(f, mw).imbalance_mw; }),
          fmt::format("Without a fleet {:.1f} MW.", rows.front().mean.imbalance_alone_mw));
   for (std::size_t f = 0; f < formulas.size(); ++f) {
     const auto formula = static_cast<PriceFormula>(f);
     const std::string id = fmt::format("variants-{}", f + 1);
-    figure(fmt::format("Variants, formula {}", formulas[f]), id,
-           lines_chart(id, plan, variants,
+    figure(fmt::format("Variants, formula {}, {}", formulas[f], kMoneyUnit), id,
+           lines_chart(id, kMoneyUnit, plan, variants,
                        [&](std::size_t v, double mw) {
                          return row_at(rows, formula, mw, variants[v]).mean.eur_per_mw_day;
                        }),

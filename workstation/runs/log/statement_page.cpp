@@ -2,40 +2,20 @@
 
 #include <fmt/format.h>
 
-#include "shared/host/text.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {
 
-constexpr const char* kStyle =
-    "body{font:11pt/1.4 sans-serif;max-width:48em;margin:2em auto;padding:0 1em;color:#111;"
-    "background:#fff}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}"
-    "th,td{padding:.15em .5em;text-align:right;border-bottom:1px solid #ccc}"
-    "th:first-child,td:first-child{text-align:left;white-space:nowrap}tr.sum th,tr.sum "
-    "td{border-top:2px solid #111;font-weight:bold}"
-    "caption{text-align:left;font-weight:bold;padding:1em 0 .3em}"
-    "@media print{body{margin:0;font-size:9pt}tr{break-inside:avoid}}";
-
-std::string table(const std::string& caption, const std::vector<std::string>& heads,
-                  const std::string& rows) {
-  std::string head_cells;
-  for (const std::string& head : heads) head_cells += "<th scope=\"col\">" + head + "</th>";
-  return "<table><caption>" + caption + "</caption>" +
-         (heads.empty() ? "" : "<thead><tr>" + head_cells + "</tr></thead>") + "<tbody>\n" + rows +
-         "</tbody></table>\n";
-}
-
-std::string row(const std::string& name, const std::string& cells, const char* kind = "") {
-  return fmt::format("<tr{}><th scope=\"row\">{}</th>{}</tr>\n", kind, name, cells);
-}
-
-std::string day_cells(const ExchangedDay& day) {
+std::vector<std::string> day_row(const std::string& name, const ExchangedDay& day) {
   const QuarterHourMoney& money = day.money;
-  return fmt::format(
-      "<td>{:.3f}</td><td>{:.3f}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.2f}</td>"
-      "<td>{} / {} / {}</td>",
-      day.charged_wh / 1'000, day.discharged_wh / 1'000, money.earned_eur, money.contract_eur,
-      money.net_eur(), money.quarter_hours, money.published, money.validated);
+  return {name,
+          fmt::format("{:.3f}", day.charged_wh / 1'000),
+          fmt::format("{:.3f}", day.discharged_wh / 1'000),
+          fmt::format("{:.2f}", money.earned_eur),
+          fmt::format("{:.2f}", money.contract_eur),
+          fmt::format("{:.2f}", money.net_eur()),
+          fmt::format("{} / {} / {}", money.quarter_hours, money.published, money.validated)};
 }
 
 std::string notes(const ExchangedDay& all, double stored_kwh) {
@@ -56,15 +36,15 @@ std::string notes(const ExchangedDay& all, double stored_kwh) {
 
 std::string contract_table(const BatteryParameters& battery) {
   const TradingCosts& costs = battery.costs;
-  const auto line = [](const char* name, double value, const char* unit) {
-    return row(name, fmt::format("<td>{:g} {}</td>", value, unit));
-  };
-  return table("Contract terms in addition to the price", {},
-               line("surcharge on imports", costs.import_adder_eur_per_mwh, "EUR/MWh") +
-                   line("surcharge, of the absolute price", costs.import_percent, "%") +
-                   line("fee on exports", costs.export_fee_eur_per_mwh, "EUR/MWh") +
-                   line("fee, of the absolute price", costs.export_percent, "%") +
-                   line("wear, imports and exports", battery.wear_eur_per_mwh, "EUR/MWh"));
+  const auto eur = [](double value) { return fmt::format("{:g} EUR per MWh traded", value); };
+  const auto percent = [](double value) { return fmt::format("{:g} %", value); };
+  return format_table({"Contract terms in addition to the price",
+                       {"Term", "Value"},
+                       {{"surcharge on imports", eur(costs.import_adder_eur_per_mwh)},
+                        {"surcharge, of the absolute price", percent(costs.import_percent)},
+                        {"fee on exports", eur(costs.export_fee_eur_per_mwh)},
+                        {"fee, of the absolute price", percent(costs.export_percent)},
+                        {"wear, imports and exports", eur(battery.wear_eur_per_mwh)}}});
 }
 
 }  // namespace
@@ -72,41 +52,37 @@ std::string contract_table(const BatteryParameters& battery) {
 std::string statement_page(const std::vector<LoggedDay>& days, const BatteryParameters& battery) {
   ExchangedDay all;
   std::map<std::string, int> stopped;
-  std::string rows, stops;
+  HtmlTable table{"This battery by day",
+                  {"Day", "Charged, kWh", "Discharged, kWh", "At quarter-hour prices, EUR",
+                   "Contract, EUR", "Net, EUR", "Quarter-hours / settled / validated"},
+                  {}};
+  HtmlTable stops{"Control cycles not decided by the student", {"Reason", "Cycles"}, {}};
   int cycles = 0, driven = 0, missing = 0;
   for (const LoggedDay& day : days) {
-    rows += row(day.date, day_cells(day.exchanged));
+    table.rows.push_back(day_row(day.date, day.exchanged));
     all.add(day.exchanged);
     cycles += day.cycles;
     driven += day.driven_cycles;
     missing += day.missing;
     for (const auto& [reason, count] : day.stopped) stopped[reason] += count;
   }
-  rows += row("total", day_cells(all), " class=\"sum\"");
+  table.rows.push_back(day_row("total", all));
   for (const auto& [reason, count] : stopped) {
-    stops += row(html_escaped(reason), fmt::format("<td>{}</td>", count));
+    stops.rows.push_back({reason, fmt::format("{}", count)});
   }
   const Evaluation evaluation = evaluation_of(days, battery);
   const double stored_kwh =
       (evaluation.days.back().soc_end_frac - evaluation.days.front().soc_start_frac) *
       battery.capacity_wh / 1'000;
   const std::string title = fmt::format("Battery: {} to {}", days.front().date, days.back().date);
-  return fmt::format(
-             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-             "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"/>\n"
-             "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-             title, kStyle) +
-         table("By day",
-               {"day", "charged kWh", "discharged kWh", "at quarter-hour prices EUR",
-                "contract EUR", "net EUR", "quarter-hours / settled / validated"},
-               rows) +
-         notes(all, stored_kwh) + contract_table(battery) +
-         fmt::format("<p>Controlled {:.1f} % of the time; {} ticks have no row in the log.</p>\n",
-                     100.0 * driven / (cycles + missing), missing) +
-         (stops.empty()
-              ? ""
-              : table("Control cycles not decided by the student", {"reason", "cycles"}, stops)) +
-         "</body>\n</html>\n";
+  return format_page(
+      title,
+      fmt::format(
+          "<h1>{}</h1>\n{}{}{}<p>Controlled {:.1f} % of the time; {} ticks have no row in the "
+          "log.</p>\n{}",
+          title, format_table(table), notes(all, stored_kwh), contract_table(battery),
+          100.0 * driven / (cycles + missing), missing,
+          stops.rows.empty() ? "" : format_table(stops)));
 }
 
 }  // namespace bess

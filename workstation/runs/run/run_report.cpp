@@ -61,6 +61,12 @@ std::string host_name() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
+/// Last part of the path; a proposal will replace its run.
+std::string run_name(const RunFolder& folder) {
+  const fs::path path = fs::absolute(folder.path / "").lexically_normal().parent_path();
+  return path.extension() == ".proposal" ? path.stem().string() : path.filename().string();
+}
+
 /// "teacher 12.1 s, ..." of times.json; empty without one.
 std::string stage_times(const fs::path& path) {
   std::string text;
@@ -104,6 +110,7 @@ std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
     return facts;
   }
   facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
+  facts.push_back({"run", run_name(folder)});
   facts.push_back({"host", host_name()});
   facts.push_back({"command", command_line()});
   facts.push_back({"CPU time", fmt::format("{:.1f} s, this command until here",

@@ -18,15 +18,15 @@
 
 namespace bess {
 
-// Provenance of a run's page: date, host, command, program and prices.
+// Provenance of a run's page: date, run, host, command, program and prices.
 
-/// Date, host, command and times; with SOURCE_DATE_EPOCH only the date.
+/// Date, run, host, command and times; with SOURCE_DATE_EPOCH only the date.
 std::vector<ProvenanceLine> making_facts(const RunFolder& folder);
 /// "bess-train 0.1.0, BUILD"
 std::string program_text();
 
 /// Reads prices from run.json and stage times from times.json, if present. With SOURCE_DATE_EPOCH
-/// (reproducible-builds.org) host, command and times are left out: the same run gives the same
+/// (reproducible-builds.org) run, host, command and times are left out: the same run gives the same
 /// bytes.
 std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps& market,
                                       const RunFolder& folder);

@@ -91,12 +91,12 @@ std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
 }
 
 SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
-  SortTable table{
-      "runs",
-      fmt::format("Profit of the {} of each run on its test days", kExportedPolicy),
-      {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over", "Gain",
-       "EUR/day, whole battery", "At wear 10", "% of foresight", "Same charge each day", "Weights"},
-      {}};
+  SortTable table{"runs",
+                  fmt::format("Profit of the {} of each run on its test days", kExportedPolicy),
+                  {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over, EUR/day/MWh",
+                   "Gain, EUR/day/MWh", "EUR of this battery per day", "At wear 10, EUR/day/MWh",
+                   "% of foresight", "Same charge each day, EUR/day/MWh", "Weights"},
+                  {}};
   const Evaluation* first = nullptr;
   for (const RunLine& run : runs) {
     if (first == nullptr) first = exported_days(run, &NamedEvaluation::carried_over);
@@ -156,9 +156,9 @@ std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
   return format_page(
       title,
       fmt::format(
-          "<h1>{}</h1>\n{}<p class=\"note\">EUR per day per MWh of capacity unless stated "
-          "otherwise, \u00b1 standard error (in brackets: by month). Carried over: the SoC is "
-          "carried from day to day. Gain: mean day-by-day difference to the first finished run "
+          "<h1>{}</h1>\n{}<p class=\"note\">EUR/day/MWh: EUR per day per MWh of capacity, \u00b1 "
+          "standard error (in brackets: by month). Carried over: the SoC is carried from day to "
+          "day. Gain: mean day-by-day difference to the first finished run "
           "with the same days. Click a column head to sort, again to reverse; unknown values come "
           "last.</p>\n{}<script>\n{}</script>\n",
           title, sort_table_html(run_table(runs, page)), differ, page_file("sort.js")));

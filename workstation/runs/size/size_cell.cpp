@@ -235,12 +235,6 @@ std::vector<DayValue> cash_of(const SizeClass& of, double share_percent) {
   return days;
 }
 
-double mean_of(const std::vector<DayValue>& days) {
-  double sum = 0;
-  for (const DayValue& day : days) sum += day.second;
-  return sum / static_cast<double>(days.size());
-}
-
 double fixed_costs(const SizeContract& contract, const SizeClass& of, double power_w) {
   double kw = 0;
   for (const MonthPeak& peak : of.peaks) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -129,6 +131,14 @@ TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
               AllOf(HasSubstr("\"marks\":[[3,\"PICASSO\"]]"), HasSubstr("<li>2024-12 "), is_named));
   write_backtest_page(results(5), folder.file(""));
   EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("\"marks\":[]"));
+}
+
+TEST(HeatMap, CellsWithinTheirErrorAreShadedAlike) {
+  const HeatValue left{10, 1};
+  EXPECT_EQ(shade_of({1.9, 1}, left).value, 0) << "within its error of zero";
+  EXPECT_EQ(shade_of({30, NAN}, left).value, 0);
+  EXPECT_EQ(shade_of({12, 1}, left).value, 10) << "within its error of the cell to the left";
+  EXPECT_EQ(shade_of({13, 1}, left).value, 13);
 }
 
 TEST(BacktestReport, MarksAreWhereARegimeBeginsAmongTheDays) {

@@ -170,22 +170,33 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
     const Evaluation& teacher = in.evaluations[1].*field;
     const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
     const std::string cells = with_minus(fmt::format(
-        "teacher</th><td data-label=\"EUR/day/MWh\">{:.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
-        "<td data-label=\"By month\">{:.1f}</td><td data-label=\"Gain\">{:+.1f}</td>"
+        "teacher</th><td data-label=\"Profit, EUR/day/MWh\">{:.1f}</td><td "
+        "data-label=\"s.e.\">{:.1f}</td><td data-label=\"By month\">{:.1f}</td><td "
+        "data-label=\"Gain, EUR/day/MWh\">{:+.1f}</td>"
         "<td data-label=\"Its s.e.\">{:.1f}</td><td data-label=\"Gain by month\">{:.1f}</td>"
-        "<td data-label=\"Worst day\">{:.1f}</td><td data-label=\"Cycles/day\">{:.2f}</td>"
-        "<td data-label=\"Switches/day\">{:.1f}</td>",
+        "<td data-label=\"Worst day, EUR/MWh of capacity\">{:.1f}</td><td "
+        "data-label=\"Cycles/day\">{:.2f}</td><td data-label=\"Switches/day\">{:.1f}</td>",
         teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,
         d.mean, d.standard_error, d.standard_error_by_month, teacher.worst_day_eur_per_mwh(),
         teacher.cycles_per_day(), teacher.switches_per_day()));
     EXPECT_THAT(html, testing::HasSubstr(cells));
   }
-  EXPECT_THAT(html, testing::HasSubstr("<th scope=\"col\">At wear 10</th>"));
+  EXPECT_THAT(html, testing::HasSubstr("<th scope=\"col\">At wear 10, EUR/day/MWh</th>"));
   const double at_wear =
       in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
-  EXPECT_THAT(html, testing::HasSubstr(with_minus(
-                        fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear))));
+  EXPECT_THAT(html, testing::HasSubstr(with_minus(fmt::format(
+                        "<td data-label=\"At wear 10, EUR/day/MWh\">{:.1f}</td></tr>", at_wear))));
   EXPECT_THAT(html, testing::HasSubstr("<td data-label=\"Pairs out of order\">42</td></tr>"));
+}
+
+TEST(Report, TitleAndHeadingNameRunPricesBatteryAndDate) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  ReportInputs in = run.inputs();
+  in.facts = {{"date", "2026-11-23T12:00Z"}, {"run", "<first>"}, {"prices", "a.csv: crc32 1"}};
+  const std::string html = html_of(in, folder.file("run"));
+  EXPECT_EQ(count_of(html, ">&lt;first&gt;, a.csv, 4 MW, 8 MWh, 2026-11-23</"), 2);
+  EXPECT_THAT(html, testing::HasSubstr("\"training\":[[0,100,0,0],[500,140,1,3],[750,160,0,2.9]]"));
 }
 
 TEST(Report, OnlyAMarketIsEnough) {

@@ -74,6 +74,29 @@ class Pages(unittest.TestCase):
         for run in RUNS:
             page = self.look_at(os.path.join(run, "report.html"), DRAWN)
             self.assertGreater(page.run("document.querySelectorAll('canvas').length"), 2, run)
+            self.assertEqual(page.run("""[...shownCharts.entries()].filter(
+                ([, {chart}]) => !chart.options.scales.y.title.text).map(([id]) => id)"""),
+                             ["chart-power"], run)
+
+    def test_a_training_curve_has_loss_and_program(self):
+        page = self.look_at("report.html", DRAWN)
+        lines = page.run("""shownCharts.get('chart-training').chart.data.datasets.map(
+            ({yAxisID, data}) => [yAxisID, data.map(({x, y}) => [x, y])])""")
+        self.assertIn(["loss", [[500, 3.0], [750, 2.9]]], lines)
+        self.assertIn(["y", [[0, 100], [750, 100]]], lines)
+
+    def test_a_policy_map_has_the_axes_and_colours_of_the_edge(self):
+        page = self.look_at("report.html", DRAWN)
+        alike = page.run("""(() => {
+          const map = page.map.maps[0], {prices, socs, xOf, yOf} = page.map.frame(map);
+          const ctx = map.canvas.getContext('2d'), {first} = map.window;
+          const states = Array.from({length: 400}, (_, i) => [i * 7 % socs, i * 13 % prices]);
+          return states.filter(([soc, price]) => {
+            const [red, , blue] = ctx.getImageData(xOf(soc), yOf(first + price), 1, 1).data;
+            return Math.sign(blue - red) + 1 === map.grid[soc * prices + price];
+          }).length;
+        })()""")
+        self.assertGreater(alike, 340, "all but outlines and violations")
 
     def test_students_on_the_page_are_those_of_the_edge_to_the_bit(self):
         with open(self.path("expected.json"), encoding="utf-8") as file:

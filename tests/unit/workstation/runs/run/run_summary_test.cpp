@@ -206,6 +206,8 @@ TEST_F(RunFacts, SayWhenWhereAndHow) {
   const std::vector<ProvenanceLine> all = facts();
   EXPECT_THAT(value_of(all, "date"), MatchesRegex("20..-..-..T..:..:..Z"));
   EXPECT_THAT(value_of(all, "command"), Names("report_test"));
+  EXPECT_EQ(value_of(all, "run"),
+            std::filesystem::path(folder_.file("x")).parent_path().filename().string());
   EXPECT_THAT(value_of(all, "program"), MatchesRegex("bess-train .*, commit .*"));
   EXPECT_THAT(value_of(all, "span"), Names("2023-01-01 2023-02-28 40"));
   EXPECT_THAT(value_of(all, "observation delay"), Names("1"));
@@ -219,7 +221,7 @@ TEST_F(RunFacts, AFixedDateLeavesOutWhatDiffers) {
   setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
   const std::vector<ProvenanceLine> all = facts();
   EXPECT_EQ(value_of(all, "date"), "2023-11-14T22:13:20Z");
-  for (const char* name : {"host", "command", "CPU time", "stages"}) {
+  for (const char* name : {"run", "host", "command", "CPU time", "stages"}) {
     EXPECT_EQ(value_of(all, name), "") << name;
   }
 }
