@@ -88,9 +88,10 @@ function showFlow(last) {
   const nodes = [
     {x: 60, name: "Grid", watts: grid ?? battery, value: say(grid ?? undefined, 0, "W"),
      note: isPriced ? price(last.price_centi_eur_per_mwh / 100) : "no current price"},
-    {x: 180, name: "Battery", watts: battery, value: say(battery, 0, "W"),
+    {x: 300, name: "Battery", watts: battery, value: say(battery, 0, "W"),
      note: last.has_measurement ? percent(last.soc_e4 / 100) : "not measured"}];
   if (grid !== undefined && battery !== undefined) {
+    nodes[1].x = 180;
     nodes.push({x: 300, name: "House", watts: grid - battery, value: say(grid - battery, 0, "W"),
                 note: grid < battery ? "feeds in" : "load"});
   }
@@ -126,12 +127,12 @@ function showNext(next, noEffect) {
 
 function showWhy(why) {
   const at = why.margins;
-  const cause = why.reason !== "student" ? `${why.meaning || why.reason} (${why.reason})`
+  const cause = why.reason !== "student"
+    ? `${why.meaning} (${why.reason}) since ${moment(why.since_utc)}`
     : `the price of ${price(why.price_eur_per_mwh)} is ` +
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
   byId("sentence").textContent =
-    `The battery ${does(why.ordered_power_w)}: ${cause}, since ${clock(why.since_utc)}` +
-    `${why.ends ? ", " + why.ends : ""}.`;
+    `The battery ${does(why.ordered_power_w)}: ${cause}${why.ends && ", " + why.ends}.`;
   const told = [
     `${why.local}: price ${price(why.price_eur_per_mwh)}, state of charge ` +
     `${percent(why.soc_percent)}. ` +
