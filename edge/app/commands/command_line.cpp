@@ -94,7 +94,7 @@ int run_command_line(int argc, const char* const* argv) {
   settings = {};
   ChosenCommand chosen{.settings = settings};
   {
-    CommandLine line("bess-edge", "Drive a battery by the imbalance price, every two minutes",
+    CommandLine line("bess-edge", "drive a battery by the imbalance price, every two minutes",
                      version_text());
     const EdgeCommand root(line.root(), chosen);
     for (const auto add :

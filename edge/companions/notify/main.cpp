@@ -97,7 +97,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   bess::CommandLine line("bess-notify",
-                         "Report troubles of a battery controller by a command and MQTT",
+                         "report troubles of a battery controller by a command and MQTT",
                          "bess-notify " BESS_VERSION);
   bess::Options options;
   bess::ProgramCommand root = line.root();

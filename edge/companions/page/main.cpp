@@ -68,7 +68,7 @@ int run(const Options& options) {
 }  // namespace bess
 
 int main(int argc, char** argv) {
-  bess::CommandLine line("bess-page", "Show a battery controller as a web page",
+  bess::CommandLine line("bess-page", "show a battery controller as a web page",
                          "bess-page " BESS_VERSION);
   bess::Options options;
   bess::ProgramCommand root = line.root();

@@ -195,16 +195,16 @@ std::string complaint_of_address(const std::string& address) {
 
 void add_real_options(ProgramCommand& command, RealOptions& options) {
   command.flag("--yes-drive-real-battery", options.is_sure,
-               "Confirmation for --real: charges and discharges that battery");
-  command.option("--real-map", options.map, "Register map: a name in edge/device/maps, or a path");
-  command.option("--real-capacity-wh", options.capacity_wh, "Capacity, Wh").positive();
-  command.option("--real-power-w", options.power_w, "Maximum power of an order, W")
+               "confirmation for --real: charges and discharges that battery");
+  command.option("--real-map", options.map, "register map: a name in edge/device/maps, or a path");
+  command.option("--real-capacity-wh", options.capacity_wh, "capacity, Wh").positive();
+  command.option("--real-power-w", options.power_w, "maximum power of an order, W")
       .range(10.0, 1e8);
-  command.option("--real-soc-min", options.soc_min_frac, "Minimum SoC, 0 to 1").range(0.0, 1.0);
-  command.option("--real-soc-max", options.soc_max_frac, "Maximum SoC, 0 to 1").range(0.0, 1.0);
+  command.option("--real-soc-min", options.soc_min_frac, "minimum SoC, 0 to 1").range(0.0, 1.0);
+  command.option("--real-soc-max", options.soc_max_frac, "maximum SoC, 0 to 1").range(0.0, 1.0);
   auto real = command.option(
       "--real", options.address,
-      "Real battery at this address, HOST[:PORT] or /dev/..., in real time instead of a simulated "
+      "real battery at this address, HOST[:PORT] or /dev/..., in real time instead of a simulated "
       "one: commissioned, judged by its bus traffic, released at every end. Q or Ctrl-C stops "
       "immediately");
   real.value_name("ADDRESS").check(complaint_of_address);
@@ -212,17 +212,17 @@ void add_real_options(ProgramCommand& command, RealOptions& options) {
                                   "--real-power-w", "--real-soc-min", "--real-soc-max"}) {
     real.needs(other);
   }
-  command.option("--real-variant", options.variant, "Map variant (default: the first)")
+  command.option("--real-variant", options.variant, "map variant (default: the first)")
       .needs("--real");
   command.option("--real-unit", options.unit, "Modbus unit (default: from the map)")
       .range(0, 255)
       .needs("--real");
-  command.option("--real-baud", options.baud, "Baud rate (default: from the map)")
+  command.option("--real-baud", options.baud, "baud rate (default: from the map)")
       .range(1'200, 230'400)
       .needs("--real");
   command
       .option("--real-time-scale", options.time_scale,
-              "Time scale of a bess-sim battery used instead of a real one")
+              "time scale of a bess-sim battery used instead of a real one")
       .range(1, 900)
       .needs("--real");
 }

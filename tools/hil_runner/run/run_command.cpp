@@ -327,7 +327,7 @@ void run(const RunOptions& options) {
 void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<RunOptions>();
   ProgramCommand command =
-      app.subcommand("run", "Run and judge scenarios; prints one line for each");
+      app.subcommand("run", "run and judge scenarios; prints one line for each");
   command.footer(
       "Examples:\n"
       "  bess-hil run tests/scenarios/quiet_hour.toml\n"
@@ -340,38 +340,38 @@ void add_run_command(ProgramCommand& app) {
       "      --real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3 "
       "--real-soc-max 0.7\n"
       "Exit codes: 0 all passed, 1 a run failed or bad file, 2 bad command line, 3 interrupted.");
-  command.option("scenarios", options->places, "Scenario files, or folders with scenarios")
+  command.option("scenarios", options->places, "scenario files, or folders with scenarios")
       .value_name("SCENARIO...");
   command.choice<TimeModes>(
       "--time", options->times,
       {{"virtual", TimeModes::kVirtual}, {"wall", TimeModes::kWall}, {"both", TimeModes::kBoth}},
       "virtual (default): computed time, with the edge's code; wall: scaled time, with the real "
       "programs");
-  command.option("--jobs", options->jobs, "Parallel scenarios in wall time")
+  command.option("--jobs", options->jobs, "parallel scenarios in wall time")
       .range(1, 64)
       .with_default();
-  command.flag("--list", options->list, "List scenarios with times; mark those for a real battery");
-  command.flag("--invariants", options->list_invariants, "List the judged rules");
+  command.flag("--list", options->list, "list scenarios with times; mark those for a real battery");
+  command.flag("--invariants", options->list_invariants, "list the judged rules");
   command.flag(
       "--each-part", options->each_part,
-      "Also run each passed virtual scenario without each of its parts; every run must differ");
+      "also run each passed virtual scenario without each of its parts; every run must differ");
   command
-      .option("--pinned", options->pinned, "Compare virtual runs with the signatures in this file")
+      .option("--pinned", options->pinned, "compare virtual runs with the signatures in this file")
       .value_name("FILE");
   command.flag("--agree", options->agree,
-               "Run scenarios in both times and compare set points by control cycle");
-  command.option("--draw", options->draw, "Number of scenarios to draw at random").range(1, 1'000);
-  command.option("--seed", options->seed, "Random seed for --draw").needs("--draw");
-  command.flag("--json", options->json, "Output as one JSON object");
-  command.option("--junit", options->junit, "Output file in JUnit XML");
-  command.option("--report", options->report, "Output file of the HTML report with charts");
+               "run scenarios in both times and compare set points by control cycle");
+  command.option("--draw", options->draw, "number of scenarios to draw at random").range(1, 1'000);
+  command.option("--seed", options->seed, "random seed for --draw").needs("--draw");
+  command.flag("--json", options->json, "output as one JSON object");
+  command.option("--junit", options->junit, "output file in JUnit XML");
+  command.option("--report", options->report, "output file of the HTML report with charts");
   command
       .option("--records", options->records,
-              "Output folder for battery traces and decision logs (CSV), for bess-sim settle")
+              "output folder for battery traces and decision logs (CSV), for bess-sim settle")
       .value_name("FOLDER");
-  command.option("--edge", options->edge, "Path of bess-edge (default: next to this program)");
+  command.option("--edge", options->edge, "path of bess-edge (default: next to this program)");
   command.option("--simulators", options->simulators,
-                 "Path of bess-sim (default: next to this program)");
+                 "path of bess-sim (default: next to this program)");
   add_real_options(command, options->real);
   command.runs([options] { run(*options); });
 }

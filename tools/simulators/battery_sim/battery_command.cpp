@@ -269,28 +269,28 @@ std::string footer() {
 }
 
 void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
-  command.option("--host", server.host, "Numeric IPv4 address to listen on").ipv4().with_default();
+  command.option("--host", server.host, "numeric IPv4 address to listen on").ipv4().with_default();
   command.option("--port", server.port, "TCP port; 0: any free port")
       .range(0, 65'535)
       .with_default();
-  command.option("--clients-max", server.clients_max, "Maximum number of clients; more are refused")
+  command.option("--clients-max", server.clients_max, "maximum number of clients; more are refused")
       .range(1, 32)
       .with_default();
-  command.option("--serial", server.serial_device, "Serial device for Modbus RTU, instead of TCP")
+  command.option("--serial", server.serial_device, "serial device for Modbus RTU, instead of TCP")
       .excludes("--host")
       .excludes("--port")
       .excludes("--clients-max");
-  command.option("--baud", server.baud, "Baud rate of the serial line")
+  command.option("--baud", server.baud, "baud rate of the serial line")
       .with_default()
       .needs("--serial");
   command
       .choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
-                    "Parity of the serial line: none, even or odd")
+                    "parity of the serial line: none, even or odd")
       .needs("--serial");
-  command.option("--stop-bits", server.stop_bits, "Stop bits: 1 or 2")
+  command.option("--stop-bits", server.stop_bits, "stop bits: 1 or 2")
       .range(1, 2)
       .needs("--serial");
-  command.option("--response-delay-ms", server.response_delay_ms, "Delay before each response, ms")
+  command.option("--response-delay-ms", server.response_delay_ms, "delay before each response, ms")
       .range(0, 60'000);
 }
 
@@ -316,33 +316,33 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   FaultSchedule& faults = server.faults;
   command
       .option("--fault", options.fault_names,
-              "Faults to inject, see below; with several, one at random each time")
+              "faults to inject, see below; with several, one at random each time")
       .check(known_fault)
       .value_name("NAME");
-  command.option("--fault-every", faults.every, "Inject at every Nth opportunity")
+  command.option("--fault-every", faults.every, "inject at every Nth opportunity")
       .range(1, 1'000'000)
       .with_default()
       .needs("--fault");
   command
-      .option("--fault-probability", faults.probability, "Probability at each opportunity, 0 to 1")
+      .option("--fault-probability", faults.probability, "probability at each opportunity, 0 to 1")
       .range(0.0, 1.0)
       .needs("--fault")
       .excludes("--fault-every");
-  command.option("--fault-seed", faults.seed, "Random seed of the faults")
+  command.option("--fault-seed", faults.seed, "random seed of the faults")
       .with_default()
       .needs("--fault");
   add_fault_span(command, "--fault", faults);
   command
       .option("--fault-period-s", faults.period_s,
-              "Interval of faults that end or replace orders, s")
+              "interval of faults that end or replace orders, s")
       .range(1, 86'400)
       .with_default()
       .needs("--fault");
-  command.option("--late-ms", server.late_ms, "Delay of the faults late and byte-gap, ms")
+  command.option("--late-ms", server.late_ms, "delay of the faults late and byte-gap, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
-  command.option("--drip-ms", server.drip_ms, "Interval between bytes of the fault drip, ms")
+  command.option("--drip-ms", server.drip_ms, "interval between bytes of the fault drip, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
@@ -355,31 +355,31 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
 }
 
 void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
-  command.option("--map", options.map_path, "Register map of the simulated device (TOML)");
-  command.option("--variant", options.map_variant, "Map variant (default: the first)");
-  command.option("--soc", options.soc_frac, "State of charge at start, 0 to 1")
+  command.option("--map", options.map_path, "register map of the simulated device (TOML)");
+  command.option("--variant", options.map_variant, "map variant (default: the first)");
+  command.option("--soc", options.soc_frac, "state of charge at start, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--power-w", options.battery.power_w_max, "Rated power, W")
+  command.option("--power-w", options.battery.power_w_max, "rated power, W")
       .positive()
       .with_default();
-  command.option("--capacity-wh", options.battery.capacity_wh, "Capacity, Wh")
+  command.option("--capacity-wh", options.battery.capacity_wh, "capacity, Wh")
       .positive()
       .with_default();
-  command.option("--soc-min", options.battery.soc_min_frac, "Battery's minimum SoC, 0 to 1")
+  command.option("--soc-min", options.battery.soc_min_frac, "battery's minimum SoC, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--soc-max", options.battery.soc_max_frac, "Battery's maximum SoC, 0 to 1")
+  command.option("--soc-max", options.battery.soc_max_frac, "battery's maximum SoC, 0 to 1")
       .range(0.0, 1.0)
       .with_default();
-  command.option("--efficiency", options.round_trip_efficiency, "Round-trip efficiency, 0 to 1")
+  command.option("--efficiency", options.round_trip_efficiency, "round-trip efficiency, 0 to 1")
       .range(0.01, 1.0)
       .with_default();
   command.option("--battery", options.battery_path,
-                 "File with battery parameters in [battery] (bess-train battery fit)");
+                 "file with battery parameters in [battery] (bess-train battery fit)");
   command
       .option("--time-constant-s", options.battery.response.time_constant_s,
-              "Time constant of the first-order power response, s; 0: immediate")
+              "time constant of the first-order power response, s; 0: immediate")
       .range(0.0, 600.0)
       .with_default();
   command.option("--record", options.record_path,
@@ -391,26 +391,26 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
 void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
   command.option(
       "--replay", replay.path,
-      "Replay a recording (bess-edge record) by address and time; other options of battery, "
+      "replay a recording (bess-edge record) by address and time; other options of battery, "
       "house and faults are ignored");
   command.flag("--accept-cut", replay.accept_cut,
-               "Accept a recording that ends without its last line");
+               "accept a recording that ends without its last line");
 }
 
 void add_house_options(ProgramCommand& command, BatteryOptions& options) {
   command.option(
       "--house", options.house,
-      "House load behind the same meter: daily, power in W, or CSV file (minute_utc,house_w)");
-  command.option("--house-seed", options.house_seed, "Random seed of --house daily")
+      "house load behind the same meter: daily, power in W, or CSV file (minute_utc,house_w)");
+  command.option("--house-seed", options.house_seed, "random seed of --house daily")
       .with_default()
       .needs("--house");
   command
       .option(
           "--meter-map", options.meter_map_path,
-          "Register map of a meter to simulate as well (edge/device/meters); not needed when the "
+          "register map of a meter to simulate as well (edge/device/meters); not needed when the "
           "battery map has a grid point")
       .needs("--house");
-  command.option("--meter-variant", options.meter_variant, "Map variant (default: the first)")
+  command.option("--meter-variant", options.meter_variant, "map variant (default: the first)")
       .needs("--meter-map");
   command.option("--meter-port", options.meter.port, "TCP port of the meter; 0: any free port")
       .range(0, 65'535)
@@ -418,7 +418,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
       .needs("--meter-map");
   command
       .option("--meter-fault", options.meter_fault_names,
-              "Meter faults, at every opportunity: silence, frozen, wrong-sign, grid-scaled, ...")
+              "meter faults, at every opportunity: silence, frozen, wrong-sign, grid-scaled, ...")
       .check(known_fault)
       .value_name("NAME")
       .needs("--meter-map");
@@ -430,7 +430,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
 void add_battery_command(ProgramCommand& app) {
   auto options = std::make_shared<BatteryOptions>();
   ProgramCommand command =
-      app.subcommand("battery", "Simulate a Modbus battery (TCP or RTU) of any register map");
+      app.subcommand("battery", "simulate a Modbus battery (TCP or RTU) of any register map");
   command.footer(footer());
   add_bus_options(command, options->server);
   options->clock.add_to(command);

@@ -72,7 +72,7 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
                  "Day-ahead file, published as energy-charts does (/price)");
   command
       .option("--day-ahead-at", options.day_ahead_at,
-              "Local time of publication on the previous day, unless given in the file")
+              "local time of publication on the previous day, unless given in the file")
       .with_default()
       .needs(kFile);
   std::vector<std::pair<std::string, AuctionFault>> faults;
@@ -82,7 +82,7 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
   command
       .choice(kFault, auction.fault, faults, "Fault of the day-ahead prices published from now on")
       .needs(kFile);
-  command.option("--day-ahead-fault-every", auction.every, "Inject on every Nth day")
+  command.option("--day-ahead-fault-every", auction.every, "inject on every Nth day")
       .range(1, 1'000)
       .with_default()
       .needs(kFault);
@@ -90,11 +90,11 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
     command.option(name, value, help).non_negative().needs(kFault);
   };
   seconds("--day-ahead-fault-from-s", auction.from_s,
-          "Start of the day-ahead fault, simulated s after the start");
+          "start of the day-ahead fault, simulated s after the start");
   seconds("--day-ahead-fault-to-s", auction.to_s,
-          "End of the day-ahead fault, simulated s after the start");
+          "end of the day-ahead fault, simulated s after the start");
   seconds("--day-ahead-mend-s", auction.mend_s,
-          "Delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
+          "delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ void add_market_command(ProgramCommand& app) {
   auto options = std::make_shared<MarketOptions>();
   ProgramCommand command =
       app.subcommand("market",
-                     "Simulate a price server with the APIs of Elia (ods161, ods162, ods133) and "
+                     "simulate a price server with the APIs of Elia (ods161, ods162, ods133) and "
                      "energy-charts (day-ahead)");
   command.footer(
       "Examples:\n"
@@ -114,9 +114,9 @@ void add_market_command(ProgramCommand& app) {
       "  bess-sim market --prices minutes.csv.gz --day-ahead day_ahead.csv.gz --port 8080 "
       "--utc-start 2025-03-28T12:00:00Z --day-ahead-fault half --day-ahead-mend-s 3600\n"
       "  curl 'http://127.0.0.1:8080/price?bzn=BE&start=2025-03-28&end=2025-03-29'");
-  command.option("--prices", options->prices_path, "Minute file with the prices, CSV or .csv.gz")
+  command.option("--prices", options->prices_path, "minute file with the prices, CSV or .csv.gz")
       .required();
-  command.option("--host", options->server.host, "Numeric IPv4 address to listen on")
+  command.option("--host", options->server.host, "numeric IPv4 address to listen on")
       .with_default();
   command.option("--port", options->server.port, "TCP port; 0: any free port")
       .range(0, 65'535)
@@ -124,7 +124,7 @@ void add_market_command(ProgramCommand& app) {
   options->clock.add_to(command);
   command
       .option("--latency-s", options->latency_s,
-              "Delay from the end of a minute to its publication, simulated s")
+              "delay from the end of a minute to its publication, simulated s")
       .range(0.0, 3'600.0)
       .with_default();
   command.choice<MarketFault>("--fault", options->server.faults.fault,
@@ -136,19 +136,19 @@ void add_market_command(ProgramCommand& app) {
                                {"twice", MarketFault::kTwice},
                                {"frozen", MarketFault::kFrozen},
                                {"all", MarketFault::kAll}},
-                              "Fault to inject");
-  command.option("--fault-every", options->server.faults.every, "Inject at every Nth request")
+                              "fault to inject");
+  command.option("--fault-every", options->server.faults.every, "inject at every Nth request")
       .range(1, 1'000'000)
       .with_default()
       .needs("--fault");
   command
       .option("--fault-from-s", options->server.faults.from_s,
-              "Start of the fault, simulated s after the start")
+              "start of the fault, simulated s after the start")
       .non_negative()
       .needs("--fault");
   command
       .option("--fault-to-s", options->server.faults.to_s,
-              "End of the fault, simulated s after the start")
+              "end of the fault, simulated s after the start")
       .non_negative()
       .needs("--fault");
   add_day_ahead_options(command, *options);
@@ -158,7 +158,7 @@ void add_market_command(ProgramCommand& app) {
       .needs("--tls-cert");
   certificate.needs("--tls-key");
   command.flag("--close-each", options->server.close_each,
-               "Close the connection after each response");
+               "close the connection after each response");
   command.runs([options] { run_market(*options); });
 }
 

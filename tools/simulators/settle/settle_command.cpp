@@ -66,27 +66,27 @@ void add_costs(ProgramCommand& command, BatteryParameters& battery) {
   TradingCosts& costs = battery.costs;
   command
       .option("--import-adder-eur-per-mwh", costs.import_adder_eur_per_mwh,
-              "Surcharge on charged energy, EUR/MWh")
+              "surcharge on charged energy, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
   command
       .option("--import-percent", costs.import_percent,
-              "Surcharge on charged energy, % of the absolute price")
+              "surcharge on charged energy, % of the absolute price")
       .range(0.0, 100.0)
       .with_default();
   command
       .option("--export-fee-eur-per-mwh", costs.export_fee_eur_per_mwh,
-              "Fee on discharged energy, EUR/MWh")
+              "fee on discharged energy, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
   command
       .option("--export-percent", costs.export_percent,
-              "Fee on discharged energy, % of the absolute price")
+              "fee on discharged energy, % of the absolute price")
       .range(0.0, 100.0)
       .with_default();
   command
       .option("--wear-eur-per-mwh", battery.wear_eur_per_mwh,
-              "Wear cost of energy charged or discharged, EUR/MWh")
+              "wear cost of energy charged or discharged, EUR/MWh")
       .range(0.0, 1000.0)
       .with_default();
 }
@@ -96,20 +96,20 @@ void add_costs(ProgramCommand& command, BatteryParameters& battery) {
 void add_settle_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
   ProgramCommand command =
-      app.subcommand("settle", "Compare energy and money of a run: battery trace against edge log");
-  command.option("--record", options->record, "Battery trace, CSV (bess-sim battery --record)")
+      app.subcommand("settle", "compare energy and money of a run: battery trace against edge log");
+  command.option("--record", options->record, "battery trace, CSV (bess-sim battery --record)")
       .required();
-  command.option("--edge-log", options->edge_log, "Decision log, CSV (bess-edge log --csv)")
+  command.option("--edge-log", options->edge_log, "decision log, CSV (bess-edge log --csv)")
       .required();
-  command.option("--prices", options->prices, "Minute file with settled prices").required();
-  command.option("--power-w", options->battery.power_w_max, "Rated power, W")
+  command.option("--prices", options->prices, "minute file with settled prices").required();
+  command.option("--power-w", options->battery.power_w_max, "rated power, W")
       .positive()
       .with_default();
-  command.option("--capacity-wh", options->battery.capacity_wh, "Capacity, Wh")
+  command.option("--capacity-wh", options->battery.capacity_wh, "capacity, Wh")
       .positive()
       .with_default();
   add_costs(command, options->battery);
-  command.flag("--json", options->json, "Output as one JSON object");
+  command.flag("--json", options->json, "output as one JSON object");
   command.footer(
       "Example:\n"
       "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz\n"

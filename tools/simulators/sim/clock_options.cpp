@@ -8,7 +8,7 @@ namespace bess {
 void ClockOptions::add_to(ProgramCommand& app) {
   app.option("--utc-start", utc_start,
              "UTC at the anchor, e.g. 2023-03-26T00:00:00Z (default: real time)");
-  app.option("--time-scale", time_scale, "Simulated seconds per second (900: a day in 96 s)")
+  app.option("--time-scale", time_scale, "simulated seconds per second (900: a day in 96 s)")
       .range(1, 100'000)
       .needs("--utc-start");
   app.option("--anchor-monotonic-ns", anchor_monotonic_ns,

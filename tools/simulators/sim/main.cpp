@@ -14,8 +14,8 @@ namespace {
 void add_clock_command(bess::ProgramCommand& app) {
   static double in_s = 0;
   bess::ProgramCommand command = app.subcommand(
-      "clock", "Print CLOCK_MONOTONIC in ns, as common anchor of several simulated processes");
-  command.option("--in-s", in_s, "Offset from now, s, for the start of the processes")
+      "clock", "print CLOCK_MONOTONIC in ns, as common anchor of several simulated processes");
+  command.option("--in-s", in_s, "offset from now, s, for the start of the processes")
       .range(0.0, 1.0 * bess::kSecondsPerDay);
   command.runs([] {
     const auto ahead_ns = static_cast<long long>(in_s * 1e9);

@@ -121,7 +121,7 @@ void run_site(const SiteOptions& options) {
 void add_site_command(ProgramCommand& app) {
   auto options = std::make_shared<SiteOptions>();
   ProgramCommand command =
-      app.subcommand("site", "Start a battery, a market and a matching configuration of bess-edge");
+      app.subcommand("site", "start a battery, a market and a matching configuration of bess-edge");
   command.footer(
       "Examples:\n"
       "  bess-sim site --folder site --prices minutes.csv --map edge/device/maps/alphaess.toml "
@@ -136,24 +136,24 @@ void add_site_command(ProgramCommand& app) {
       "Files in the folder: edge.toml once both listen, battery.csv and orders.csv at the end, and "
       "their logs.\n"
       "Exit codes: 0 stopped, 1 bad input or port in use, 2 bad command line.");
-  command.option("--folder", options->folder, "Output folder").required();
-  command.option("--prices", options->prices, "Minute file with the prices, CSV or .csv.gz")
+  command.option("--folder", options->folder, "output folder").required();
+  command.option("--prices", options->prices, "minute file with the prices, CSV or .csv.gz")
       .required();
   command.option("--day-ahead", options->day_ahead,
-                 "Day-ahead file that the market publishes as well");
-  command.option("--map", options->map, "Register map of the battery (TOML)").required();
+                 "day-ahead file that the market publishes as well");
+  command.option("--map", options->map, "register map of the battery (TOML)").required();
   options->clock.add_to(command);
-  command.option("--in-s", options->in_s, "Delay until simulated time begins, s")
+  command.option("--in-s", options->in_s, "delay until simulated time begins, s")
       .range(0.0, 1.0 * kSecondsPerDay)
       .with_default();
   command.option("--battery", options->battery,
-                 "Options passed to bess-sim battery, one quoted argument");
+                 "options passed to bess-sim battery, one quoted argument");
   command.option("--market", options->market,
-                 "Options passed to bess-sim market, one quoted argument");
-  command.option("--set", options->settings, "Key of edge.toml, e.g. guard.soc_max=0.9")
+                 "options passed to bess-sim market, one quoted argument");
+  command.option("--set", options->settings, "key of edge.toml, e.g. guard.soc_max=0.9")
       .value_name("TABLE.KEY=VALUE");
-  command.option("--program", options->program, "Path of bess-sim (default: this program)");
-  command.flag("--no-control", options->is_watching, "Read-only controller (control = false)");
+  command.option("--program", options->program, "path of bess-sim (default: this program)");
+  command.flag("--no-control", options->is_watching, "read-only controller (control = false)");
   command.runs([options] { run_site(*options); });
 }
 
