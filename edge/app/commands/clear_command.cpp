@@ -7,7 +7,7 @@
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
-#include "shared/utc_text.h"
+#include "shared/local_text.h"
 
 namespace bess {
 namespace {
@@ -56,6 +56,7 @@ int clear(const EdgeConfig& config, const StateFilePaths& paths, const Trip& tri
 }
 
 int run_clear(const ClearOptions& options, SettingsFile& settings) {
+  set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
@@ -70,8 +71,8 @@ int run_clear(const ClearOptions& options, SettingsFile& settings) {
     std::printf("nothing to clear: no trip\n");
     return 0;
   }
-  std::printf("tripped    %s at %s\n", reason_name(trip->reason).data(),
-              utc_text(trip->utc_s).c_str());
+  std::printf("tripped    %s at %s local time\n", reason_name(trip->reason).data(),
+              local_text(trip->utc_s).c_str());
   if (!options.yes) {
     report(JournalLevel::kError,
            "check the cause (bess-edge log --last 10), then repeat with --yes");

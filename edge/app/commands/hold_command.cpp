@@ -16,8 +16,7 @@
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
-#include "shared/local_time.h"
-#include "shared/utc_text.h"
+#include "shared/local_text.h"
 
 namespace bess {
 namespace {
@@ -75,7 +74,7 @@ void print_trip(const EdgeConfig& config) {
   std::printf(
       "           NOT FOLLOWED: tripped, %s at %s, until cleared with bess-edge clear --yes (check "
       "the cause: bess-edge log --last 10)\n",
-      reason_name(trip->reason).data(), utc_text(trip->utc_s).c_str());
+      reason_name(trip->reason).data(), local_text(trip->utc_s).c_str());
 }
 
 void print_controller(const EdgeConfig& config) {
@@ -88,17 +87,15 @@ void print_controller(const EdgeConfig& config) {
 }
 
 void print_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
-  const LocalMinute local = local_minute_of(hold.until_utc_s);
   const char* const direction = hold.power_w > 0   ? " (charging)"
                                 : hold.power_w < 0 ? " (discharging)"
                                                    : " (idle)";
-  std::printf("hold       %d W%s until %s, %04d-%02d-%02d %02d:%02d local time\n", hold.power_w,
-              direction, utc_text(hold.until_utc_s).c_str(), local.year, local.month, local.day,
-              local.minute_of_day / 60, local.minute_of_day % 60);
+  std::printf("hold       %d W%s until %s local time\n", hold.power_w, direction,
+              local_text(hold.until_utc_s).c_str());
   std::printf(
       "           from the control cycle at %s, at any price; stop reasons, SoC bounds, reserve, "
       "limits and ramp override it\n",
-      utc_text(next_tick_utc_s(now_utc_s)).c_str());
+      local_clock_text(next_tick_utc_s(now_utc_s)).c_str());
   print_controller(config);
   print_trip(config);
 }

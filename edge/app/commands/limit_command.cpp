@@ -9,6 +9,8 @@
 #include "edge/app/commands/command.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
+#include "shared/local_text.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -54,6 +56,7 @@ std::string power_text(const std::string& power) {
 }
 
 int run_limit(const LimitOptions& options, SettingsFile& settings) {
+  set_market_time_zone();
   const EdgeConfig& config = settings.config;
   const char* const path = config.site.limit_file.c_str();
   if (!config.site.settings.has_outside_limits) {
@@ -75,8 +78,8 @@ int run_limit(const LimitOptions& options, SettingsFile& settings) {
     return refuse(std::string(path) + ": cannot be written: " + std::strerror(errno) +
                   "; the limit is unchanged; use a path below /run, in memory");
   }
-  std::printf("limit      charge %s W, discharge %s W, until %s\n", charge.c_str(),
-              discharge.c_str(), until.c_str());
+  std::printf("limit      charge %s W, discharge %s W, until %s local time\n", charge.c_str(),
+              discharge.c_str(), local_text(until_utc_s).c_str());
   return 0;
 }
 
