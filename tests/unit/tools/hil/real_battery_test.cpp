@@ -70,13 +70,13 @@ TEST(RealBattery, LimitsAreBrokenByOrderByFlowAndBySoc) {
   EXPECT_EQ(beyond_limits(good, battery()), "");
   CycleRecord cycle = good;
   cycle.ordered_power_w = 501;
-  EXPECT_EQ(beyond_limits(cycle, battery()), "501 W were ordered");
+  EXPECT_EQ(beyond_limits(cycle, battery()), "an order of 501 W");
   cycle = good;
   cycle.measurement.power_w = 801;
-  EXPECT_EQ(beyond_limits(cycle, battery()), "801 W flow");
+  EXPECT_EQ(beyond_limits(cycle, battery()), "a power of 801 W");
   cycle = good;
   cycle.measurement.soc_e4 = 7'150;
-  EXPECT_EQ(beyond_limits(cycle, battery()), "its SoC is 71.5 %");
+  EXPECT_EQ(beyond_limits(cycle, battery()), "a SoC of 71.5 %");
   cycle.has_measurement = false;
   EXPECT_EQ(beyond_limits(cycle, battery()), "");
 }
