@@ -248,7 +248,7 @@ TEST(LogCommands, TakeTheContractFromAllAlike) {
             std::string::npos)
       << said;
   const std::string page = text_of_file(days.file("bill.html"));
-  EXPECT_NE(page.find(">20 EUR/MWh</td>"), std::string::npos);
+  EXPECT_NE(page.find(">20 EUR per MWh traded</td>"), std::string::npos);
   EXPECT_NE(page.find("<th scope=\"row\">total</th>"), std::string::npos);
 }
 
