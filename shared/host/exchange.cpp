@@ -96,9 +96,9 @@ class FlowIntegrator {
     if (is_gap(from, until))
       return follows && from.is_ordered && until.utc_s - from.utc_s <= kShortGapS;
     // A battery with constantly less power than ordered.
-    const bool stands =
+    const bool is_same =
         from.is_ordered && from.order_w == order_before_w_ && is_close(until.power_w, from.power_w);
-    return follows || stands;
+    return follows || is_same;
   }
 
   /// Energy since the older sample from the SoC, minus energy already counted.

@@ -61,10 +61,10 @@ class BinaryWriter {
 class BinaryReader {
  public:
   /// Reads the whole file and checks magic, version (`version`, or `version_min` to `version` if
-  /// given) and checksum. Messages contain `kind` ("teacher file") and the remedy `mend` ("train
+  /// given) and checksum. Messages contain `kind` ("teacher file") and the remedy `remedy` ("train
   /// again").
   BinaryReader(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
-               std::string_view kind, std::string_view mend, std::uint32_t version_min = 0);
+               std::string_view kind, std::string_view remedy, std::uint32_t version_min = 0);
   [[nodiscard]] std::uint32_t version() const { return version_; }
 
   template <typename T>
@@ -101,11 +101,11 @@ class BinaryReader {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Throws "FILE: KIND WHAT; REMEDY".
   [[noreturn]] void damaged(std::string_view what) const {
-    fail("{}: {} {}; {}", name_, kind_, what, mend_);
+    fail("{}: {} {}; {}", name_, kind_, what, remedy_);
   }
 
  private:
-  std::string name_, kind_, mend_;
+  std::string name_, kind_, remedy_;
   std::uint32_t version_ = 0;
   std::string bytes_;
   std::string_view rest_;

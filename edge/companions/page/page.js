@@ -106,23 +106,23 @@ function showFlow(last) {
 }
 
 function showNext(next, noEffect) {
-  const told = [];
+  const texts = [];
   if (!next) {
-    told.push("No next decision.");
+    texts.push("No next decision.");
   } else if (next.action === null) {
-    told.push(`At ${next.local}: no control without price and measurement.`);
+    texts.push(`At ${next.local}: no control without price and measurement.`);
   } else {
-    told.push(
+    texts.push(
       `At ${next.local} it ${does(next.power_w)} if price and state of charge stay.`);
   }
-  if (next?.reason) told.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
+  if (next?.reason) texts.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
   for (const change of next?.reserve_changes || []) {
-    told.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
+    texts.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
   }
   if (typeof next?.full_charge_in_days === "number") {
-    told.push(`Days to the next full charge: ${next.full_charge_in_days}.`);
+    texts.push(`Days to the next full charge: ${next.full_charge_in_days}.`);
   }
-  lines("next", [...told, ...noEffect.map((key) => `Set, but without effect: ${key}`)], "li");
+  lines("next", [...texts, ...noEffect.map((key) => `Set, but without effect: ${key}`)], "li");
 }
 
 function showWhy(why) {
@@ -133,26 +133,26 @@ function showWhy(why) {
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
   byId("sentence").textContent =
     `The battery ${does(why.ordered_power_w)}: ${cause}${why.ends && ", " + why.ends}.`;
-  const told = [
+  const texts = [
     `${why.local}: price ${price(why.price_eur_per_mwh)}, state of charge ` +
     `${percent(why.soc_percent)}. ` +
     (why.student ? `Student: ${why.student}.` : "No student decision.")];
   if (at) {
-    told.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
+    texts.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
               `${price(at.discharge_from_eur_per_mwh)}; in between it is idle.`);
   }
   if (at?.charge_up_to_soc_percent != null) {
-    told.push(`At this price it charges up to ${percent(at.charge_up_to_soc_percent)}.`);
+    texts.push(`At this price it charges up to ${percent(at.charge_up_to_soc_percent)}.`);
   }
   if (at?.discharge_from_soc_percent != null) {
-    told.push(`At this price it discharges from ${percent(at.discharge_from_soc_percent)}.`);
+    texts.push(`At this price it discharges from ${percent(at.discharge_from_soc_percent)}.`);
   }
   const outlook = why.outlook;
   if (outlook) {
-    told.push(`Plan: break-even ${price(outlook.break_even_eur_per_mwh)}; highest price ` +
+    texts.push(`Plan: break-even ${price(outlook.break_even_eur_per_mwh)}; highest price ` +
               `${ahead(outlook.dearest)}, lowest ${ahead(outlook.cheapest)}.`);
   }
-  lines("why", told, "p");
+  lines("why", texts, "p");
 }
 
 const kColumns = [  // head, key, decimals

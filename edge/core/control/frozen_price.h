@@ -112,10 +112,10 @@ class FrozenPrice {
   /// state nor turns two equal rows hours apart into a frozen price.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
     recall(minute_utc_s, centi_eur_per_mwh);
-    const bool stands = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
-    const std::int64_t since_s = stands ? minute_utc_s - price_.minute_utc_s : 0;
+    const bool is_same = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
+    const std::int64_t since_s = is_same ? minute_utc_s - price_.minute_utc_s : 0;
     const std::int64_t unchanged_for_s =
-        stands ? price_.unchanged_s + clamp_to<std::int64_t>(since_s, 0, kCountedGapS) : 0;
+        is_same ? price_.unchanged_s + clamp_to<std::int64_t>(since_s, 0, kCountedGapS) : 0;
     price_ = {.minute_utc_s = minute_utc_s,
               .centi_eur_per_mwh = centi_eur_per_mwh,
               .unchanged_s =

@@ -72,8 +72,8 @@ using Kind = EnergyInterval::Kind;
 
 // Shares of the measured energy in percent. A capacity error of 15 %, losses of 10 % each way and a
 // response delayed by half a minute stay within 70 and 150.
-constexpr std::int64_t kToldBelow = 70;
-constexpr std::int64_t kToldAbove = 150;
+constexpr std::int64_t kReportedBelow = 70;
+constexpr std::int64_t kReportedAbove = 150;
 constexpr std::int64_t kContradictedBelow = 40;
 constexpr std::int64_t kContradictedAbove = 250;
 constexpr int kIntervalsToTell = 6;
@@ -157,7 +157,7 @@ std::int64_t lack_beyond_delay(const EnergyInterval& interval) {
   const std::int64_t late = interval.late_energy_e4;
   if (late == energy) return deficit(kContradictedBelow, energy, interval.soc_e4);
   const bool turns = (late < 0) != (energy < 0);
-  const std::int64_t least = (turns ? kToldAbove : kContradictedBelow) * late;
+  const std::int64_t least = (turns ? kReportedAbove : kContradictedBelow) * late;
   return std::max<std::int64_t>((least - kPercent * interval.soc_e4) * energy, 0);
 }
 
@@ -193,8 +193,8 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     beyond_delay.add(lacking != 0 ? energy : 0);  // intervals without evidence add no noise
     if (!flows) continue;
     ++flowing;
-    little.add(deficit(kToldBelow, energy, interval.soc_e4));
-    much.add(-deficit(kToldAbove, energy, interval.soc_e4));
+    little.add(deficit(kReportedBelow, energy, interval.soc_e4));
+    much.add(-deficit(kReportedAbove, energy, interval.soc_e4));
     far_too_little.add(lacking);
     far_too_little_so_far.add(deficit(kContradictedBelow, energy, interval.soc_e4));
     far_too_much.add(-deficit(kContradictedAbove, energy, interval.soc_e4));

@@ -116,7 +116,7 @@ class EnergyPath {
 class WrongEnergy {
  public:
   static constexpr std::int64_t kFoundE6 = 200'000;
-  static constexpr std::int64_t kToldE6 = kFoundE6 / 4;
+  static constexpr std::int64_t kReportedE6 = kFoundE6 / 4;
   static constexpr std::int64_t kForgivenE6PerDay = 25'000;
 
   /// A judged reading; `wrong_w`: power against or beyond its order, since the previous one.

@@ -241,8 +241,8 @@ class SignCheck {
     if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
     note_end(power_w, now_ns);
     // After settling, the rest of a long order has no information on the response time.
-    const std::int64_t told_ns = start_ns + settings_.drive_s * kNanosecondsPerSecond;
-    if (!curve.has_come() || begin_ns <= told_ns) {
+    const std::int64_t ordered_until_ns = start_ns + settings_.drive_s * kNanosecondsPerSecond;
+    if (!curve.has_come() || begin_ns <= ordered_until_ns) {
       curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
                  .end_ms = (now_ns - start_ns) / 1'000'000,
                  .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});

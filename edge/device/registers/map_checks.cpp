@@ -145,7 +145,7 @@ void check_roles(TomlTable& root, const RegisterMap& map) {
   }
 }
 
-bool is_told(const RegisterMap& map, int point) {
+bool is_reported(const RegisterMap& map, int point) {
   const auto looks_at = [point](const Condition& c) { return c.point == point; };
   return looks_at(map.off_grid) || std::any_of(map.alarms.begin(), map.alarms.end(), looks_at) ||
          std::any_of(map.warnings.begin(), map.warnings.end(), looks_at);
@@ -165,7 +165,7 @@ bool is_written(const RegisterMap& map, int point) {
 void check_optional(TomlTable& root, const RegisterMap& map) {
   for (int point = 0; point < map.points.size(); ++point) {
     const RegisterPoint& p = map.points[point];
-    const bool is_used = is_told(map, point) || is_power(map, static_cast<std::int8_t>(point));
+    const bool is_used = is_reported(map, point) || is_power(map, static_cast<std::int8_t>(point));
     if (!p.optional || (is_used && !is_written(map, point))) continue;
     root.fail("point", quoted(p.name.view()) +
                            " is optional: only alarms, warnings, off_grid and "

@@ -80,22 +80,22 @@ void belong_to_folder(int fd, const char* path) {
 }
 
 bool replace(const char* path, std::string_view text, Durability durability) {
-  char beside[640];
-  const int length = std::snprintf(beside, sizeof beside, "%s.new", path);
-  if (length < 0 || length >= static_cast<int>(sizeof beside)) {
+  char new_path[640];
+  const int length = std::snprintf(new_path, sizeof new_path, "%s.new", path);
+  if (length < 0 || length >= static_cast<int>(sizeof new_path)) {
     errno = ENAMETOOLONG;
     return false;
   }
-  const int fd = make_afresh(beside);
+  const int fd = make_afresh(new_path);
   if (fd < 0) return false;
   errno = ENOSPC;  // what a short write means
   const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                        (durability == Durability::kOrdinary || fsync(fd) == 0);
   const int write_errno = errno;
   close(fd);
-  if (written && rename(beside, path) == 0) return true;
+  if (written && rename(new_path, path) == 0) return true;
   const int cause = written ? errno : write_errno;
-  unlink(beside);
+  unlink(new_path);
   errno = cause;
   return false;
 }

@@ -470,9 +470,9 @@ bool EventLog::publish_status(const FixedText<511>& path) {
   const int error = errno;
   TextBuffer status(status_text_);
   format_status_json(stored_.status, status);
-  const bool is_told = replace_or_remove_file(path.c_str(), status.view());
+  const bool is_published = replace_or_remove_file(path.c_str(), status.view());
   if (!is_stored) errno = error;
-  return is_stored && is_told;
+  return is_stored && is_published;
 }
 
 }  // namespace bess

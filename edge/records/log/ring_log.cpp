@@ -73,7 +73,7 @@ bool is_broken(std::span<const std::uint8_t> stored) {
          std::any_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte != 0; });
 }
 
-FixedText<643> beside(const char* path, const char* ending) {
+FixedText<643> path_with(const char* path, const char* ending) {
   char text[644];
   std::snprintf(text, sizeof text, "%s%s", path, ending);
   return {text};
@@ -153,16 +153,16 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
 /// Renames an unreadable log, only for manual inspection.
 void RingLog::set_aside(const char* path) {
   damage_.is_set_aside = true;
-  const FixedText<643> aside = beside(path, ".old");
+  const FixedText<643> aside = path_with(path, ".old");
   if (rename(path, aside.c_str()) == 0) close_file();
 }
 
 /// The new file is complete before the old one is renamed.
 bool RingLog::replace(const char* path, FileMessage& error) {
-  const FixedText<643> new_path = beside(path, ".new");
+  const FixedText<643> new_path = path_with(path, ".new");
   const int made = make_whole(new_path.c_str());
   if (made < 0) return fail_with_errno(new_path.c_str(), "cannot create the log", error);
-  const bool is_free = fd_ < 0 || rename(path, beside(path, ".old").c_str()) == 0;
+  const bool is_free = fd_ < 0 || rename(path, path_with(path, ".old").c_str()) == 0;
   if (!is_free || rename(new_path.c_str(), path) != 0) {
     fail_with_errno(path, "cannot rename the log", error);
     close(made);

@@ -24,7 +24,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       must(exchange.values().size() <= exchange.count, "as many values as registers");
     }
     must((next == Next::kDamaged) == error.starts_with(path + ":"),
-         "damage is told with its place");
+         "damage is reported with its place");
     must(error.find('\n') == std::string::npos, "one line");
     must(exchanges == reader.exchanges(), "every exchange is counted");
   }

@@ -218,8 +218,8 @@ void expect_none_wrong(const char* title, const CommissionSettings& settings, do
     count(result, truth, row);
     bool is_wrong = !is_right(result, truth, has_room);
     if (!passes(result)) {
-      const CommissionSettings told = with_what_was_printed(settings, result);
-      is_wrong = is_wrong || !passes(commission(nature, seed, told, soc_frac));
+      const CommissionSettings reported = with_what_was_printed(settings, result);
+      is_wrong = is_wrong || !passes(commission(nature, seed, reported, soc_frac));
     }
     if (!is_wrong) continue;
     ++row.wrong;

@@ -119,9 +119,10 @@ TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kTooLittle);
   EXPECT_EQ(result.wanted_tolerance_w, 300);  // 225 W are missing
-  CommissionSettings told;
-  told.response.tolerance_w = 300;
-  EXPECT_EQ(CommissionSite({.gain = 0.55}).commission(told).verdict, CommissionVerdict::kPassed);
+  CommissionSettings reported;
+  reported.response.tolerance_w = 300;
+  EXPECT_EQ(CommissionSite({.gain = 0.55}).commission(reported).verdict,
+            CommissionVerdict::kPassed);
 }
 
 TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
@@ -134,9 +135,10 @@ TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
   EXPECT_GE(refused.wanted_settle_s, 25);
   EXPECT_LE(refused.wanted_settle_s, 32);
   EXPECT_EQ(refused.wanted_ramp_w_max, 0);
-  CommissionSettings told;
-  told.response.settle_s = refused.wanted_settle_s;
-  EXPECT_EQ(CommissionSite({.delay_s = 25}).commission(told).verdict, CommissionVerdict::kPassed);
+  CommissionSettings reported;
+  reported.response.settle_s = refused.wanted_settle_s;
+  EXPECT_EQ(CommissionSite({.delay_s = 25}).commission(reported).verdict,
+            CommissionVerdict::kPassed);
 }
 
 /// 500 W are there in 17 s; a reversal of 8 kW takes 267 s, longer than any map may say.
@@ -146,10 +148,10 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   EXPECT_NEAR(ramp_w_per_s(result.charge.speed), 30, 2);
   EXPECT_EQ(result.wanted_settle_s, 100);
   EXPECT_NEAR(result.wanted_ramp_w_max, 2'400, 200);
-  CommissionSettings told;
-  told.response.settle_s = result.wanted_settle_s;
-  told.step_w_max = result.wanted_ramp_w_max;
-  EXPECT_EQ(CommissionSite({.ramp_w_per_s = 30}).commission(told).verdict,
+  CommissionSettings reported;
+  reported.response.settle_s = result.wanted_settle_s;
+  reported.step_w_max = result.wanted_ramp_w_max;
+  EXPECT_EQ(CommissionSite({.ramp_w_per_s = 30}).commission(reported).verdict,
             CommissionVerdict::kPassed);
   // 500 W in 2.5 s, 8 kW in 40.
   const CommissionResult seen = CommissionSite({.ramp_w_per_s = 200}).commission();

@@ -196,10 +196,10 @@ class DyingDisk : public SiteTest {
     Answers answers = ask_all();
     for (int i = 0; i < 20; ++i) {
       const std::string& utc = answers.decided.at("utc");
-      const bool is_told = answers.status.find(local_text_of(utc)) != std::string::npos &&
-                           answers.json.find(utc) != std::string::npos &&
-                           answers.metrics.find(utc_number(utc)) != std::string::npos;
-      if (is_told || may_be_unknown) break;
+      const bool is_reported = answers.status.find(local_text_of(utc)) != std::string::npos &&
+                               answers.json.find(utc) != std::string::npos &&
+                               answers.metrics.find(utc_number(utc)) != std::string::npos;
+      if (is_reported || may_be_unknown) break;
       usleep(40'000);
       answers = ask_all();
     }

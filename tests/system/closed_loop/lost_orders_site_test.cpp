@@ -127,7 +127,7 @@ void expect_found(const Outcome& o, Reason reason, int every) {
 }
 
 /// With insist control stops after an hour, unless two of three orders last.
-void expect_told(const Outcome& o, int every) {
+void expect_reported(const Outcome& o, int every) {
   EXPECT_GT(o.cycles_to_tell, 0);
   EXPECT_LE(o.cycles_to_tell, 3 * every);
   EXPECT_GE(o.cycles_to_find, every == 3 ? 0 : 31);
@@ -149,7 +149,7 @@ TEST_P(EveryMapsOrders, AnotherControllerIsFoundAlsoWhenIntermittent) {
         if (yields) {
           expect_found(o, found_as(map, what.kind), every);
         } else {
-          expect_told(o, every);
+          expect_reported(o, every);
         }
       }
     }

@@ -184,20 +184,21 @@ TEST_F(Processes, SystemdIsNotifiedOfStartCyclesAndStop) {
   setenv("NOTIFY_SOCKET", name.c_str(), 1);
   EXPECT_EQ(ask({"--cycles", "3"}).exit_code, 0);
   unsetenv("NOTIFY_SOCKET");
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   char text[512];
   for (ssize_t n = 0; (n = recv(systemd, text, sizeof text, MSG_DONTWAIT)) >= 0;) {
-    told.emplace_back(text, static_cast<std::size_t>(n));
+    reported.emplace_back(text, static_cast<std::size_t>(n));
   }
   close(systemd);
-  ASSERT_FALSE(told.empty());
-  EXPECT_THAT(told[0], Names("EXTEND_TIMEOUT_USEC=61000000"));
+  ASSERT_FALSE(reported.empty());
+  EXPECT_THAT(reported[0], Names("EXTEND_TIMEOUT_USEC=61000000"));
   // A student by level asks for more time to read the price level's history.
-  std::erase_if(told, [](const std::string& t) { return t.starts_with("EXTEND_TIMEOUT_USEC="); });
-  ASSERT_EQ(told.size(), 5U);
-  EXPECT_THAT(told[0], HasSubstr("READY=1"));
-  EXPECT_THAT(told[1], Names("STATUS=running"));  // its WATCHDOG=1 only if in time
-  EXPECT_THAT(told[4], HasSubstr("STOPPING=1"));
+  std::erase_if(reported,
+                [](const std::string& t) { return t.starts_with("EXTEND_TIMEOUT_USEC="); });
+  ASSERT_EQ(reported.size(), 5U);
+  EXPECT_THAT(reported[0], HasSubstr("READY=1"));
+  EXPECT_THAT(reported[1], Names("STATUS=running"));  // its WATCHDOG=1 only if in time
+  EXPECT_THAT(reported[4], HasSubstr("STOPPING=1"));
 }
 
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {

@@ -268,13 +268,13 @@ TEST_F(RecordCommand, StepsOfACommissionShowDelayRampAndLag) {
       {.battery_keys = "map = \"" + shipped_map("simulator") + "\"\nstart_timeout_s = 2\n"});
   const ProgramOutput driven = edge({"commission", "--config", config, "--record", path_, "--yes"});
   ASSERT_EQ(driven.exit_code, 0) << driven.text;
-  const ProgramOutput told =
+  const ProgramOutput reported =
       edge({"map", "check", "--against", path_, "--steps", "--config", config});
-  ASSERT_EQ(told.exit_code, 0) << told.text;
-  EXPECT_NEAR(number_of("delay_s", told.text), 2, 0.2) << told.text;
-  EXPECT_NEAR(number_of("ramp_w_per_s", told.text), 600, 60);
-  EXPECT_NEAR(number_of("time_constant_s", told.text), 3, 0.3);
-  EXPECT_THAT(told.text, Names("[response] settle_s"));
+  ASSERT_EQ(reported.exit_code, 0) << reported.text;
+  EXPECT_NEAR(number_of("delay_s", reported.text), 2, 0.2) << reported.text;
+  EXPECT_NEAR(number_of("ramp_w_per_s", reported.text), 600, 60);
+  EXPECT_NEAR(number_of("time_constant_s", reported.text), 3, 0.3);
+  EXPECT_THAT(reported.text, Names("[response] settle_s"));
 }
 
 }  // namespace

@@ -240,10 +240,10 @@ TEST_F(StateFiles, AWornCardIsReportedByAllPrograms) {
   for (int cycles = 0; cycles < 2; ++cycles) await_line(running, "utc=");
   const std::string status = ask({"status"}).text;
   const std::string metrics = ask({"status", "--prometheus"}).text;
-  const std::string told = notify();
+  const std::string reported = notify();
   EXPECT_EQ(SimulatedSite::stop(running), 0);
   unsetenv("BESS_ROOT");
-  for (const std::string& text : {status, told}) {
+  for (const std::string& text : {status, reported}) {
     EXPECT_THAT(text,
                 AllOf(ContainsRegex("WARN: [^\n]* 100 %"), ContainsRegex("CRITICAL: [^\n]* 90 %"),
                       ContainsRegex("WARN: [^\n]* 7 ")));

@@ -167,7 +167,7 @@ void expect_nothing_raised(SupervisedSite& site, int days, const After& after_cy
         << "cycle " << i << " " << reason_name(record.reason);
     ASSERT_LT(record.weak_answers, 2) << "cycle " << i;
     ASSERT_EQ(record.replaced_orders + record.ended_orders, 0) << "cycle " << i;
-    ASSERT_LT(record.findings.wrong_energy_e6, WrongEnergy::kToldE6) << "cycle " << i;
+    ASSERT_LT(record.findings.wrong_energy_e6, WrongEnergy::kReportedE6) << "cycle " << i;
     after_cycle(i, record);
   }
 }

@@ -44,14 +44,14 @@ TEST(LearningGate, BeforeItsFirstStepTheTeacherIsTheProgramOnEveryDay) {
   TeacherPolicy teacher(beginning.teacher);
   StochasticProgramPolicy program(market, market.days_of(Split::kTrain), config.battery);
   const EvaluationOptions options{config.battery, config.initial_soc_frac, true};
-  std::vector<StepRecord> taught, told;
+  std::vector<StepRecord> taught, reported;
   evaluate(market, market.days, teacher, options, &taught);
-  evaluate(market, market.days, program, options, &told);
+  evaluate(market, market.days, program, options, &reported);
   ASSERT_GT(taught.size(), 80'000U);
-  ASSERT_EQ(taught.size(), told.size());
+  ASSERT_EQ(taught.size(), reported.size());
   for (std::size_t i = 0; i < taught.size(); ++i) {
-    ASSERT_EQ(taught[i].action, told[i].action) << i;
-    ASSERT_EQ(taught[i].soc_frac, told[i].soc_frac) << i;
+    ASSERT_EQ(taught[i].action, reported[i].action) << i;
+    ASSERT_EQ(taught[i].soc_frac, reported[i].soc_frac) << i;
   }
 }
 

@@ -58,11 +58,11 @@ struct BatteryNature {
 struct HonestVariant {
   const char* name;
   BatteryNature nature;
-  bool charges_by_itself = false;     ///< its register map says so
-  std::int32_t told_soc_step_e4 = 0;  ///< resolution by its register map; 0 = the truth
+  bool charges_by_itself = false;    ///< its register map says so
+  std::int32_t map_soc_step_e4 = 0;  ///< resolution by its register map; 0 = the truth
   std::int32_t night_charge_power_w = 4'000;
-  std::int32_t told_settle_s = 20;  ///< lag by its register map
-  std::int32_t told_soc_refresh_s = 60;
+  std::int32_t map_settle_s = 20;  ///< lag by its register map
+  std::int32_t map_soc_refresh_s = 60;
   friend void PrintTo(const HonestVariant& v, std::ostream* out) { *out << v.name; }
 };
 

@@ -22,7 +22,7 @@ TEST_P(HonestBattery, TripsNothing) {
   const HonestDays days = live_honest_days(GetParam(), kDays);
   EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle " << days.first_trip_cycle;
   EXPECT_GT(days.driven, days.cycles / 3);
-  EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kToldE6);
+  EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kReportedE6);
   EXPECT_GT(days.moved_wh, kDays * GetParam().nature.capacity_wh);
 }
 
@@ -42,7 +42,7 @@ TEST_P(HonestBattery, TripsNothingAmongKillsAndStepsOfTheClock) {
     EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
                              << days.first_trip_cycle;
     if (often.step_every == 0 || !is_beyond_its_map) {
-      EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kToldE6);
+      EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kReportedE6);
     }
     EXPECT_GT(days.driven, days.cycles / (often.step_every == 0 ? 3 : 4));
   }

@@ -30,14 +30,14 @@ double percent_of_capacity(double energy_wh) { return 100 * energy_wh / kCapacit
 std::string say_rare(const FaultResult& r) {
   char text[120];
   const bool is_found = r.reason != Reason::kStudent;
-  std::snprintf(text, sizeof text, "%s%.1f %% after %.1f h, told %.1f %%", is_found ? "" : "- ",
+  std::snprintf(text, sizeof text, "%s%.1f %% after %.1f h, reported %.1f %%", is_found ? "" : "- ",
                 percent_of_capacity(r.wrong_wh), r.cycles / 30.0,
-                percent_of_capacity(r.wrong_until_told_wh));
+                percent_of_capacity(r.wrong_until_reported_wh));
   return text;
 }
 
 constexpr double kFoundPercent = WrongEnergy::kFoundE6 / 1e4;
-constexpr double kToldPercent = WrongEnergy::kToldE6 / 1e4;
+constexpr double kReportedPercent = WrongEnergy::kReportedE6 / 1e4;
 
 class RareFault : public ::testing::TestWithParam<const char*> {};
 
@@ -57,9 +57,9 @@ TEST_P(RareFault, IsReportedAndTripsBeforeTwiceTheBound) {
         EXPECT_TRUE(r.is_trip) << reason_name(r.reason);
         EXPECT_EQ(r.driven_after, 0);
         EXPECT_LT(percent_of_capacity(r.wrong_wh), 2 * kFoundPercent);
-        const bool is_told = r.wrong_until_told_wh > 0;
-        const double until_told_wh = is_told ? r.wrong_until_told_wh : r.wrong_wh;
-        EXPECT_LT(percent_of_capacity(until_told_wh), 2 * kToldPercent);
+        const bool is_reported = r.wrong_until_reported_wh > 0;
+        const double until_reported_wh = is_reported ? r.wrong_until_reported_wh : r.wrong_wh;
+        EXPECT_LT(percent_of_capacity(until_reported_wh), 2 * kReportedPercent);
       }
     }
   }

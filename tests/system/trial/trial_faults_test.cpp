@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, ShownFaultOfTheTrial, ::testing::ValuesIn(kShow
 struct SocFault {
   const char* name;
   int cycles_max;
-  bool is_told =
+  bool is_reported =
       false;  ///< reported as a warning with the share that arrives: a wrong capacity, a bad meter
   friend void PrintTo(const SocFault& f, std::ostream* out) { *out << f.name; }
 };
@@ -128,9 +128,9 @@ class SocFaultOfTheTrial : public ::testing::TestWithParam<SocFault> {
         try_fault({.fault = &trial_fault(GetParam().name), .orders = orders, .soc_frac = soc_frac});
     SCOPED_TRACE(std::string(orders_name(orders)) + " from " + std::to_string(soc_frac) + ": " +
                  say(r));
-    const bool is_told = GetParam().is_told && r.told_cycles > 0;
-    EXPECT_TRUE(is_told || r.reason != Reason::kStudent);
-    EXPECT_LE(is_told ? r.told_cycles : r.cycles, cycles_max);
+    const bool is_reported = GetParam().is_reported && r.reported_cycles > 0;
+    EXPECT_TRUE(is_reported || r.reason != Reason::kStudent);
+    EXPECT_LE(is_reported ? r.reported_cycles : r.cycles, cycles_max);
   }
 };
 
@@ -152,13 +152,13 @@ TEST(TrialFaults, EnergyBeyondOrdersOfEitherSignIsReported) {
   for (const Orders orders : {Orders::kAlternating, Orders::kPairs}) {
     const FaultResult drained =
         try_fault({.fault = &trial_fault("hidden_drain_1_kw"), .orders = orders});
-    EXPECT_GT(drained.told_cycles, 0);
-    EXPECT_LE(drained.told_cycles, 20) << orders_name(orders);
-    EXPECT_NEAR(drained.told.rest_loss_w, 1'000, 200) << orders_name(orders);
-    EXPECT_EQ(drained.reason, Reason::kStudent) << "told, not stopped";
+    EXPECT_GT(drained.reported_cycles, 0);
+    EXPECT_LE(drained.reported_cycles, 20) << orders_name(orders);
+    EXPECT_NEAR(drained.reported.rest_loss_w, 1'000, 200) << orders_name(orders);
+    EXPECT_EQ(drained.reason, Reason::kStudent) << "reported, not stopped";
     const FaultResult creeping =
         try_fault({.fault = &trial_fault("soc_creeps_up"), .orders = orders});
-    EXPECT_LE(creeping.told_cycles, 15) << orders_name(orders);
+    EXPECT_LE(creeping.reported_cycles, 15) << orders_name(orders);
     EXPECT_EQ(creeping.reason, Reason::kSocMismatch) << orders_name(orders);
     EXPECT_LE(creeping.cycles, 50) << orders_name(orders);
   }
@@ -173,7 +173,8 @@ TEST(TrialFaults, AllButTheKnownBlindSpotsAreFoundOrReported) {
     for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero,
                                 Orders::kAlternating, Orders::kPairs}) {
       const FaultResult r = try_fault({.fault = &fault, .orders = orders});
-      is_seen = is_seen || r.reason != Reason::kStudent || r.told_cycles > 0 || r.weak_answers >= 2;
+      is_seen =
+          is_seen || r.reason != Reason::kStudent || r.reported_cycles > 0 || r.weak_answers >= 2;
     }
     EXPECT_EQ(is_seen, std::ranges::find(kUnseen, fault.name) == std::end(kUnseen)) << fault.name;
   }

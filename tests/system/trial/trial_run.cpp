@@ -114,10 +114,10 @@ ControlSettings trial_settings(const HonestVariant& variant) {
   settings.supervision.response.power_w = settings.guard.power_w;
   settings.supervision.response.capacity_wh = static_cast<std::int32_t>(nature.shown_capacity_wh);
   settings.supervision.response.band.charges_by_itself = variant.charges_by_itself;
-  settings.supervision.response.band.settle_s = variant.told_settle_s;
-  settings.supervision.response.band.soc_refresh_s = variant.told_soc_refresh_s;
+  settings.supervision.response.band.settle_s = variant.map_settle_s;
+  settings.supervision.response.band.soc_refresh_s = variant.map_soc_refresh_s;
   settings.supervision.response.band.soc_step_e4 =
-      variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
+      variant.map_soc_step_e4 > 0 ? variant.map_soc_step_e4 : nature.soc_step_e4;
   return settings;
 }
 
@@ -127,10 +127,10 @@ bool tells_of_energy(const ResponseFindings& findings) {
   return findings.energy_share_percent != 0 || findings.rest_loss_w != 0;
 }
 
-void note_told(const ResponseFindings& findings, FaultResult& result) {
+void note_reported(const ResponseFindings& findings, FaultResult& result) {
   if (!tells_of_energy(findings)) return;
-  if (result.told_cycles == 0) result.told_cycles = result.cycles;
-  result.told = findings;
+  if (result.reported_cycles == 0) result.reported_cycles = result.cycles;
+  result.reported = findings;
 }
 
 /// Days of alternating orders end at the floor by losses alone, where a fault has little to move.
@@ -167,10 +167,11 @@ FaultResult try_fault(const FaultCase& c) {
     const CycleRecord record = site.cycle(orders_at(site, c, recharges));
     ++result.cycles;
     result.weak_answers = std::max(result.weak_answers, record.weak_answers);
-    note_told(record.findings, result);
+    note_reported(record.findings, result);
     const double wrong_wh = site.battery.energy().wrong_wh - before.wrong_wh;
-    const bool is_told = record.findings.wrong_energy_e6 >= WrongEnergy::kToldE6;
-    if (is_told && result.wrong_until_told_wh == 0) result.wrong_until_told_wh = wrong_wh;
+    const bool is_reported = record.findings.wrong_energy_e6 >= WrongEnergy::kReportedE6;
+    if (is_reported && result.wrong_until_reported_wh == 0)
+      result.wrong_until_reported_wh = wrong_wh;
     // For days: through the pauses.
     const bool ends = c.cycles_max > 0 ? record.is_tripped : is_stop_reason(record.reason);
     if (ends) result.reason = record.reason;

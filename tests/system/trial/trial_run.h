@@ -110,11 +110,11 @@ struct FaultResult {
   Reason reason = Reason::kStudent;  ///< kStudent: not found
   bool is_trip = false;
   double wrong_wh = 0;
-  double wrong_until_told_wh = 0;  ///< until `status` reports its sum; 0 = never
-  int driven_after = 0;     ///< of the next thirty cycles, those with an order other than 0 W
-  int weak_answers = 0;     ///< maximum number of findings reported
-  int told_cycles = 0;      ///< until missing or lost energy was reported; 0 = never
-  ResponseFindings told{};  ///< the last of it
+  double wrong_until_reported_wh = 0;  ///< until `status` reports its sum; 0 = never
+  int driven_after = 0;         ///< of the next thirty cycles, those with an order other than 0 W
+  int weak_answers = 0;         ///< maximum number of findings reported
+  int reported_cycles = 0;      ///< until missing or lost energy was reported; 0 = never
+  ResponseFindings reported{};  ///< the last of it
 };
 
 /// Two hours; of real prices a day.

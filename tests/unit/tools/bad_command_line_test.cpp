@@ -88,7 +88,7 @@ constexpr BadCommandLine kCases[] = {
     {"market --prices GOOD --day-ahead DAY --day-ahead-at 24:00", 1, "--day-ahead-at 24:00"},
     {"market --prices GOOD --day-ahead-fault late", 2, "--day-ahead-fault --day-ahead"},
     {"market --prices GOOD --day-ahead DAY --day-ahead-fault stale", 2, "--day-ahead-fault"},
-    {"market --prices GOOD --day-ahead DAY --day-ahead-mend-s 60", 2, "--day-ahead-fault"},
+    {"market --prices GOOD --day-ahead DAY --day-ahead-repair-s 60", 2, "--day-ahead-fault"},
     {"settle --record NONE --edge-log NONE --prices GOOD", 1, "NONE"},
     {"settle --record GOOD --edge-log GOOD --prices GOOD", 1, "GOOD"},
     {"clock --in-s -1", 2, "--in-s -1 0 86400"},

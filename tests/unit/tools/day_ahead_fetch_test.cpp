@@ -91,8 +91,8 @@ TEST_F(FetchFromSimulatedAuction, OptionsSayWhichDaysAreStruck) {
       {{"--day-ahead-fault-every", "2"}, false},  // the second day would be published
       {{"--day-ahead-fault-from-s", "60"}, false},
       {{"--day-ahead-fault-to-s", "60"}, true},
-      {{"--day-ahead-mend-s", "0"}, false},
-      {{"--day-ahead-mend-s", "3600"}, true}};
+      {{"--day-ahead-repair-s", "0"}, false},
+      {{"--day-ahead-repair-s", "3600"}, true}};
   for (const auto& [more, is_missing] : cases) {
     EXPECT_EQ(fetch(joined(missing, more)).exit_code, is_missing ? 1 : 0) << more[0];
   }

@@ -48,7 +48,7 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
   table.integer("every", auction.every, 1, 1'000'000);
   double mend_min = 0;
   read_decimal(table, "mend_min", mend_min, 0, kScenarioMinutesMax);
-  if (table.has("mend_min")) auction.mend_s = 60 * mend_min;
+  if (table.has("mend_min")) auction.repair_s = 60 * mend_min;
   table.finish();
 }
 

@@ -103,7 +103,7 @@ void add_day_ahead(Options& options, const Scenario& scenario, const WorkFolder&
   options.add("--day-ahead-fault", kAuctionFaultNames[static_cast<int>(auction.fault)]);
   options.add("--day-ahead-fault-every", auction.every);
   options.add_span("--day-ahead-fault", auction.from_s, auction.to_s);
-  if (auction.mend_s) options.add("--day-ahead-mend-s", *auction.mend_s);
+  if (auction.repair_s) options.add("--day-ahead-repair-s", *auction.repair_s);
 }
 
 }  // namespace

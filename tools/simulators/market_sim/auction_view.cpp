@@ -89,7 +89,7 @@ AuctionFault AuctionView::fault_of(std::int64_t published_utc_s, std::int64_t no
   constexpr double kNever_s = std::numeric_limits<double>::infinity();
   const double usual_s = fault == AuctionFault::kLate ? 6. * kHour_s : kNever_s;
   const auto age_s = static_cast<double>(now_utc_s - published_utc_s);
-  return age_s < settings_.mend_s.value_or(usual_s) ? fault : AuctionFault::kNone;
+  return age_s < settings_.repair_s.value_or(usual_s) ? fault : AuctionFault::kNone;
 }
 
 /// Appends the price of a quarter-hour, with its fault.

@@ -31,7 +31,7 @@ struct AuctionSettings {
   std::int32_t every = 1;  ///< every Nth day published in the span
   double from_s = 0;       ///< simulated seconds since the start
   double to_s = std::numeric_limits<double>::infinity();
-  std::optional<double> mend_s{};  ///< after publication: the day is corrected
+  std::optional<double> repair_s{};  ///< after publication: the day is corrected
 };
 
 struct AuctionAnswer {

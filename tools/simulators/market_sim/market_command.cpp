@@ -93,7 +93,7 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
           "start of the day-ahead fault, simulated s after the start");
   seconds("--day-ahead-fault-to-s", auction.to_s,
           "end of the day-ahead fault, simulated s after the start");
-  seconds("--day-ahead-mend-s", auction.mend_s,
+  seconds("--day-ahead-repair-s", auction.repair_s,
           "delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
 }
 
@@ -112,7 +112,7 @@ void add_market_command(ProgramCommand& app) {
       "  curl 'http://127.0.0.1:8080/api/explore/v2.1/catalog/datasets/ods161/records"
       "?order_by=datetime%20desc&limit=3'\n"
       "  bess-sim market --prices minutes.csv.gz --day-ahead day_ahead.csv.gz --port 8080 "
-      "--utc-start 2025-03-28T12:00:00Z --day-ahead-fault half --day-ahead-mend-s 3600\n"
+      "--utc-start 2025-03-28T12:00:00Z --day-ahead-fault half --day-ahead-repair-s 3600\n"
       "  curl 'http://127.0.0.1:8080/price?bzn=BE&start=2025-03-28&end=2025-03-29'");
   command.option("--prices", options->prices_path, "minute file with the prices, CSV or .csv.gz")
       .required();

@@ -39,7 +39,7 @@ class ActionDemand final : public PredicateDemand<ActionDemand> {
     const auto highest = static_cast<std::int8_t>(highest_of(actions_));
     constexpr auto kIdle = static_cast<std::int8_t>(Action::kIdle);
     const std::int8_t forbidden = has_gap(actions_) ? kIdle : std::int8_t{-1};
-    return [=](std::int8_t here, std::int8_t /*beside*/) {
+    return [=](std::int8_t here, std::int8_t /*neighbour*/) {
       return (here < lowest) | (here > highest) | (here == forbidden);
     };
   }

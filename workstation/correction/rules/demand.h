@@ -34,7 +34,7 @@ struct Direction {
 /// Actions of one SoC by price, and those of the neighbour that a demand on pairs compares with.
 struct ActionRow {
   const std::int8_t* here;
-  const std::int8_t* beside;
+  const std::int8_t* neighbour;
   int begin, end;  ///< price indices to check
 };
 
@@ -57,8 +57,8 @@ class Demand {
   [[nodiscard]] virtual bool binds_student() const { return true; }
   /// Input along which neighbours are compared; none if each state is checked by itself.
   [[nodiscard]] virtual std::optional<RuleInput> pairs_along() const { return {}; }
-  /// Predicate of one state or pair; `beside` is the neighbour's action, or the state's own.
-  [[nodiscard]] virtual bool is_broken(Action here, Action beside) const = 0;
+  /// Predicate of one state or pair; `neighbour` is the neighbour's action, or the state's own.
+  [[nodiscard]] virtual bool is_broken(Action here, Action neighbour) const = 0;
   /// The same for a row: adds the price indices that violate it.
   virtual void broken(const ActionRow& row, std::vector<int>& prices) const = 0;
 };
@@ -81,18 +81,18 @@ std::span<const DemandKind> demand_kinds();
 template <typename Kind>
 class PredicateDemand : public Demand {
  public:
-  [[nodiscard]] bool is_broken(Action here, Action beside) const final {
-    return predicate()(static_cast<std::int8_t>(here), static_cast<std::int8_t>(beside));
+  [[nodiscard]] bool is_broken(Action here, Action neighbour) const final {
+    return predicate()(static_cast<std::int8_t>(here), static_cast<std::int8_t>(neighbour));
   }
   void broken(const ActionRow& row, std::vector<int>& prices) const final {
     const auto breaks = predicate();
     std::int8_t any = 0;  // as wide as an action, branch-free: vectorisable
     for (int p = row.begin; p < row.end; ++p) {
-      any |= static_cast<std::int8_t>(breaks(row.here[p], row.beside[p]));
+      any |= static_cast<std::int8_t>(breaks(row.here[p], row.neighbour[p]));
     }
     if (any == 0) return;
     for (int p = row.begin; p < row.end; ++p) {
-      if (breaks(row.here[p], row.beside[p])) prices.push_back(p);
+      if (breaks(row.here[p], row.neighbour[p])) prices.push_back(p);
     }
   }
 

@@ -35,8 +35,8 @@ class DirectionDemand final : public PredicateDemand<DirectionDemand> {
   [[nodiscard]] auto predicate() const {
     const auto flip =
         static_cast<std::int8_t>(direction_.sign < 0 ? -1 : 0);  // negation without multiplication
-    return [=](std::int8_t here, std::int8_t beside) {
-      return static_cast<std::int8_t>(((beside - here) ^ flip) - flip) < 0;
+    return [=](std::int8_t here, std::int8_t neighbour) {
+      return static_cast<std::int8_t>(((neighbour - here) ^ flip) - flip) < 0;
     };
   }
 

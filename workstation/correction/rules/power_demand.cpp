@@ -23,7 +23,7 @@ class PowerDemand final : public PredicateDemand<PowerDemand> {
   [[nodiscard]] std::int32_t power_permille_max() const override { return permille_max_; }
   [[nodiscard]] bool binds_student() const override { return false; }
   [[nodiscard]] auto predicate() const {
-    return [](std::int8_t /*here*/, std::int8_t /*beside*/) { return false; };
+    return [](std::int8_t /*here*/, std::int8_t /*neighbour*/) { return false; };
   }
 
  private:

@@ -25,7 +25,7 @@ class ThresholdDemand final : public PredicateDemand<ThresholdDemand> {
   [[nodiscard]] ActionSet actions() const override { return action_bit(action_); }
   [[nodiscard]] auto predicate() const {
     const auto action = static_cast<std::int8_t>(action_);
-    return [=](std::int8_t here, std::int8_t /*beside*/) { return here != action; };
+    return [=](std::int8_t here, std::int8_t /*neighbour*/) { return here != action; };
   }
 
  private:

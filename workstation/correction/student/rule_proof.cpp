@@ -83,14 +83,14 @@ void RuleChecker::check_row(std::size_t index, int soc, const ActionGrid& grid,
   const Demand& demand = *rules_.rules[index].demand;
   const std::optional<RuleInput> along = demand.pairs_along();
   const std::int8_t* here = row_of(grid, soc);
-  const std::int8_t* beside = along ? next_row(*along, soc, grid, neighbours) : here;
-  if (beside == nullptr) return;
+  const std::int8_t* neighbour = along ? next_row(*along, soc, grid, neighbours) : here;
+  if (neighbour == nullptr) return;
   const int last = along == RuleInput::kPrice ? kPriceCount - 1 : kPriceCount;
   const int end = std::min(box.price_last + 1, last);
   RuleCount& count = counts_[index];
   count.states += std::max(0, end - box.price_first);
   broken_.clear();
-  demand.broken({here, beside, box.price_first, end}, broken_);
+  demand.broken({here, neighbour, box.price_first, end}, broken_);
   count.violations += static_cast<std::int64_t>(broken_.size());
   for (const int price : broken_) keep(index, soc, price);
 }

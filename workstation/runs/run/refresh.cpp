@@ -155,7 +155,7 @@ class Refresh {
   Refresh(const RefreshRequest& request, std::FILE* messages)
       : request_(request), messages_(messages), run_{fs::weakly_canonical(request.run)} {
     if (!run_.path.has_filename()) run_.path = run_.path.parent_path();  // trailing slash
-    candidate_ = {beside("proposal")};
+    candidate_ = {sibling("proposal")};
   }
 
   void go() const {
@@ -184,7 +184,7 @@ class Refresh {
     std::fflush(messages_);
   }
 
-  [[nodiscard]] fs::path beside(const std::string& what) const {
+  [[nodiscard]] fs::path sibling(const std::string& what) const {
     return run_.path.string() + "." + what;
   }
 
@@ -193,7 +193,7 @@ class Refresh {
     if (fs::exists(run_.path)) return;
     const std::optional<CandidateVerdict> verdict = load_verdict(candidate_);
     if (!verdict || !verdict->refusal.empty()) return;
-    if (!fs::exists(beside("before-" + verdict->last_day))) return;
+    if (!fs::exists(sibling("before-" + verdict->last_day))) return;
     fs::rename(candidate_.path, run_.path);
     report_line("{}: completed an interrupted adoption\n", run_.path.string());
   }
@@ -241,7 +241,7 @@ class Refresh {
     }
     (void)market_of_fold(market, days->name());  // throws if days are missing
     const RunRecord record = record_of(config, present.is_lean(), series, *days);
-    for (const fs::path& place : {run_.path, beside("refused-" + format_local_date(days->last))}) {
+    for (const fs::path& place : {run_.path, sibling("refused-" + format_local_date(days->last))}) {
       const std::optional<RunRecord> there = load_run_record({place});
       if (!there || !differences(there->identity, record.identity).empty()) continue;
       report_line("{}: already trained on these days; no candidate\n", place.string());
@@ -276,7 +276,7 @@ class Refresh {
   void refuse(const CandidateVerdict& verdict) const {
     fs::path place = candidate_.path;
     if (request_.adopt) {
-      place = free_name(beside("refused-" + verdict.last_day));
+      place = free_name(sibling("refused-" + verdict.last_day));
       fs::rename(candidate_.path, place);
     }
     report_line("{}: rejected: {}; {} is unchanged\n", place.string(), verdict.refusal,
@@ -284,7 +284,7 @@ class Refresh {
   }
 
   void adopt(const CandidateVerdict& verdict) const {
-    const fs::path before = free_name(beside("before-" + verdict.last_day));
+    const fs::path before = free_name(sibling("before-" + verdict.last_day));
     fs::rename(run_.path, before);
     fs::rename(candidate_.path, run_.path);
     report_line(

@@ -36,7 +36,8 @@ class Answers(unittest.TestCase):
         with open(cls.file("few.toml"), "w") as config:
             config.write("[train]\nsteps = 20\n[distil]\nepochs = 60\n")
         with open(cls.file("rules.toml"), "w") as rules:
-            rules.write('[[rule]]\nname = "no dear charging"\nprice_min = 301\nat_most = "idle"\n'
+            rules.write('[[rule]]\nname = "no expensive charging"\nprice_min = 301\n'
+                        'at_most = "idle"\n'
                         '[[rule]]\nname = "steady"\nnever_rises_with = "minute"\n')
         cls.bess(["prices", "simulate", "--days", "60", "--out", cls.file("market.csv")])
 
@@ -178,7 +179,7 @@ class Answers(unittest.TestCase):
         check = ["rules", "check", "--rules", "@rules.toml"]
         self.assertIsNone(self.answers(*check)[0]["decisions"])
         with_policy = self.answers(*check, "--policy", "rbc", "--prices", "@market.csv")
-        self.assertEqual([r["rule"] for r in with_policy][-2:], ["no dear charging", "steady"])
+        self.assertEqual([r["rule"] for r in with_policy][-2:], ["no expensive charging", "steady"])
         price = self.answers("rules", "price", "--rules", "@rules.toml", "--prices", "@market.csv",
                              "--policy", "rbc")
         self.assertIsNone(price[1]["gain_eur_per_day_per_mwh"],

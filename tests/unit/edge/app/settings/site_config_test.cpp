@@ -109,9 +109,9 @@ TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
   EXPECT_EQ(site.meter_check.power_w, 3'000);
   EXPECT_EQ(site.meter_check.settle_s, loaded.config->battery.map.response.settle_s);
   const Loaded told(meter("judged = false\npv_w_max = 6000\n"));
-  ASSERT_TRUE(told.is_good) << told.error;
-  EXPECT_FALSE(told.config->site.settings.meter_check.judges);
-  EXPECT_EQ(told.config->site.settings.pv_w_max, 6'000);
+  ASSERT_TRUE(reported.is_good) << reported.error;
+  EXPECT_FALSE(reported.config->site.settings.meter_check.judges);
+  EXPECT_EQ(reported.config->site.settings.pv_w_max, 6'000);
 }
 
 TEST(SiteConfig, AMetersMapDrivesNoBattery) {

@@ -48,8 +48,9 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
   const DatedCertificate renewed("IP:127.0.0.1", -kDayS, kDayS);  // of the same name, another key
   Broker broker(folder_, Broker::free_port(), tls_keys(good));
   EXPECT_EQ(send(broker.port(), good.ca()), "");
-  std::set<std::string> told = {send(broker.port(), other.ca()), send(broker.port(), renewed.ca())};
-  for (const std::string& trouble : told) EXPECT_THAT(trouble, Names("mqtt_ca_file"));
+  std::set<std::string> reported = {send(broker.port(), other.ca()),
+                                    send(broker.port(), renewed.ca())};
+  for (const std::string& trouble : reported) EXPECT_THAT(trouble, Names("mqtt_ca_file"));
   const DatedCertificate expired("IP:127.0.0.1", -2 * kDayS, -kDayS);
   const DatedCertificate early("IP:127.0.0.1", kDayS, 2 * kDayS);
   const DatedCertificate foreign("IP:127.0.0.2", -kDayS, kDayS);
@@ -58,9 +59,9 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
     Broker badly(folder_, Broker::free_port(), tls_keys(*bad));
     const std::string trouble = send(badly.port(), bad->ca());
     EXPECT_NE(has_code(trouble, "timedatectl"), bad == &foreign || bad == &named) << trouble;
-    told.insert(trouble);
+    reported.insert(trouble);
   }
-  EXPECT_EQ(told.size(), 5U) << "two of them are of another name";
+  EXPECT_EQ(reported.size(), 5U) << "two of them are of another name";
 }
 
 TEST_F(MqttTrouble, BrokersThatAreNone) {

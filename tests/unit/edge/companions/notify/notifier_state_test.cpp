@@ -25,17 +25,17 @@ class AlarmList {
 
 TEST(Alarms, AFaultIsReportedOnceAndItsEndOnce) {
   AlarmList list(300);
-  int told = 0;
+  int reported = 0;
   for (int s = 0; s < 3'600; s += 30) {
     for (const AlarmEvent& event : list.observe({kLink}, 1'000 + s)) {
-      ++told;
+      ++reported;
       EXPECT_FALSE(event.is_over);
       EXPECT_EQ(event.alarm.key, kLink.key);
       EXPECT_EQ(event.alarm.since_utc_s, 1'000);
       EXPECT_EQ(s, 300);
     }
   }
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reported, 1);
   int over = 0;
   for (int s = 3'600; s < 7'200; s += 30) {
     for (const AlarmEvent& event : list.observe({}, 1'000 + s)) {
@@ -60,13 +60,13 @@ TEST(Alarms, AShortFaultIsNotReported) {
 
 TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
   AlarmList list(300);
-  int told = 0;
+  int reported = 0;
   for (int s = 0; s < 3'600; s += 30) {
     const bool is_there = s / 120 % 2 == 0;
-    told += static_cast<int>(
+    reported += static_cast<int>(
         list.observe(is_there ? std::vector{kPrices} : std::vector<Trouble>{}, s).size());
   }
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reported, 1);
 }
 
 TEST(Alarms, ARestartRepeatsNothingAndReportsTheEnd) {

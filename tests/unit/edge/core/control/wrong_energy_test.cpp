@@ -104,7 +104,7 @@ TEST(WrongEnergy, APauseForgetsNoneOfIt) {
   RarelyWrong rare;
   rare.run(4'000, -4'000, 20);
   const std::int32_t before_e6 = rare.share_e6();
-  ASSERT_GT(before_e6, WrongEnergy::kToldE6);
+  ASSERT_GT(before_e6, WrongEnergy::kReportedE6);
   for (int i = 0; i < 3; ++i) rare.supervision.on_ordered(rare.steady_s, Status::kBadReply);
   ASSERT_EQ(rare.supervision.stop_reason(), Reason::kOrdersFail);
   EXPECT_EQ(rare.share_e6(), before_e6);

@@ -15,7 +15,7 @@ enum class Told { kAlarm, kWarning, kOffGrid, kNothing };
 struct StateCase {
   int function, address;
   std::vector<int> registers;
-  Told told;
+  Told reported;
 };
 
 Told told_by(const BatteryMeasurement& m) {

@@ -231,7 +231,7 @@ TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
                         {false, Mode::kRunning, Reason::kLink, Reason::kStudent, ""},
                         {true, Mode::kSafe, Reason::kNoPrice, Reason::kStudent, "no_price"},
                         {true, Mode::kSafe, Reason::kLink, Reason::kStateLost, "state_lost"}};
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const Case& one : cases) {
     EventLogSettings s = settings();
     s.metrics = folder_.file("metrics").c_str();
@@ -249,7 +249,7 @@ TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
     const auto line = std::ranges::find_if(lines, is_about_a_file);
     ASSERT_NE(line, lines.end());
     EXPECT_THAT(*line, Names(one.codes));
-    EXPECT_TRUE(told.insert(*line).second) << *line;
+    EXPECT_TRUE(reported.insert(*line).second) << *line;
     std::filesystem::remove(folder_.file("metrics"));
   }
 }

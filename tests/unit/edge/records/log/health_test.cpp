@@ -95,7 +95,7 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](Well& w) { w.last.hold.unreadable = true; }, "WARN bess-edge hold"},
       {[](Well& w) { w.in.cycles_behind = 10; }, "WARN 10"},
   };
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const Case& c : cases) {
     Well well;
     c.spoil(well);
@@ -103,7 +103,7 @@ TEST(Health, EveryTroubleHasItsReason) {
     EXPECT_EQ(health.level, well.in.is_running ? HealthLevel::kDegraded : HealthLevel::kNotRunning);
     ASSERT_EQ(health.reasons.size(), 1U) << c.codes;
     EXPECT_THAT(health.reasons[0], Names(c.codes));
-    EXPECT_TRUE(told.insert(health.reasons[0]).second) << health.reasons[0];
+    EXPECT_TRUE(reported.insert(health.reasons[0]).second) << health.reasons[0];
   }
 }
 

@@ -299,14 +299,14 @@ TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
   EXPECT_THAT(error_.c_str(), Names(folder_.file("none")));
 }
 
-/// Appends until it is killed; writes to `told` when it has begun.
-[[noreturn]] void append_for_ever(const char* path, int told) {
+/// Appends until it is killed; writes to `reported` when it has begun.
+[[noreturn]] void append_for_ever(const char* path, int reported) {
   RingLog ring;
   FileMessage error;
   if (!ring.open(path, 16, error)) _exit(1);
   while (ring.append(full_record(static_cast<std::int64_t>(ring.newest_number()) + 1))) {
-    if (told >= 0 && write(told, "x", 1) != 1) _exit(3);
-    told = -1;
+    if (reported >= 0 && write(reported, "x", 1) != 1) _exit(3);
+    reported = -1;
   }
   _exit(2);
 }
@@ -323,9 +323,9 @@ TEST_F(Ring, SurvivesKillsAtRandomInstants) {
     const pid_t child = fork();
     if (child == 0) append_for_ever(path_.c_str(), ends[1]);
     close(ends[1]);
-    char told = 0;
+    char reported = 0;
     if (while_appending) {
-      ASSERT_EQ(read(ends[0], &told, 1), 1) << "round " << round;
+      ASSERT_EQ(read(ends[0], &reported, 1), 1) << "round " << round;
     }
     sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + random() % 5'000'000);
     kill(child, SIGKILL);

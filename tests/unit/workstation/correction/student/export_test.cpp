@@ -235,7 +235,8 @@ TEST(Export, UnprovedHeaderDoesNotCompile) {
 // An operator's rules in the header.
 
 constexpr const char* kHeaderRules =
-    "[[rule]]\nname = \"no dear charging\"\nprice_min = 301\nat_most = \"idle\"\nenforce = true\n"
+    "[[rule]]\nname = \"no expensive charging\"\nprice_min = 301\nat_most = \"idle\"\nenforce = "
+    "true\n"
     "[[rule]]\nname = \"winter (17-20)\"\nmonths = [11, 12, 1]\nhours = \"17:00-20:00\"\nsoc_max = "
     "0.3\n"
     "price_max = 200\nat_least = \"idle\"\nenforce = true\n"
@@ -257,7 +258,7 @@ const ProvedStudent& ruled_student() {
 TEST(Export, RulesAreAddedToTheHeader) {
   const std::string header = format_weight_header(ruled_student());
   const std::string plain = format_weight_header(crowded_student());
-  EXPECT_THAT(header, Names("no dear charging: 301 EUR/MWh"));
+  EXPECT_THAT(header, Names("no expensive charging: 301 EUR/MWh"));
   EXPECT_THAT(header, Names("cap: 22:00-06:00: 50 %"));
   EXPECT_THAT(header, Names("proved alone: 24 EUR/MWh"));
   EXPECT_THAT(header, HasSubstr("#define BESS_STUDENT_GUARD_RULE_COUNT 4\n"));

@@ -28,7 +28,7 @@ class Actions {
   }
   [[nodiscard]] Action at(int soc, int price) const { return in(here_, soc, price); }
   /// In the next context along the input; none after its last value.
-  [[nodiscard]] std::optional<Action> beside(RuleInput input, int soc, int price) const {
+  [[nodiscard]] std::optional<Action> neighbour(RuleInput input, int soc, int price) const {
     const auto which = static_cast<std::size_t>(input);
     if (which >= beside_.size() || beside_[which].empty()) return {};
     return in(beside_[which], soc, price);
@@ -59,7 +59,7 @@ std::int64_t brute_force(const Rule& rule, const Actions& actions, const Lattice
       found += allows(rule.actions(), action) ? 0 : 1;
       if (direction.sign == 0) continue;
       const RuleInput input = direction.input;
-      std::optional<Action> after = actions.beside(input, soc, price);
+      std::optional<Action> after = actions.neighbour(input, soc, price);
       if (input == RuleInput::kPrice && price < kLatticePriceMaxEurPerMwh) {
         after = actions.at(soc, price + 1);
       }
