@@ -66,6 +66,9 @@ void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
   PowerOrder order{.soc_min_e4 = guard.soc_min_e4,
                    .soc_max_e4 = guard.soc_max_e4,
                    .duration_s = config.control.order_duration_s};
+  if (config.battery.map.sequence(Command::kEnable).writes.size() > 0) {
+    print_registers(config, battery, "enable", order, Command::kEnable);
+  }
   order.power_w = guard.power_w;
   print_registers(config, battery, "charge", order, Command::kCharge);
   order.power_w = 0;

@@ -262,7 +262,7 @@ std::string map_path(const std::string& name, const fs::path& folder) {
   if (name.find('/') == std::string::npos && !name.ends_with(".toml")) {
     return std::string(BESS_MAP_DIR) + "/" + name + ".toml";
   }
-  return (folder / name).lexically_normal().string();
+  return fs::absolute(folder / name).lexically_normal().string();
 }
 
 bool Scenario::has_limits() const {

@@ -22,6 +22,11 @@ grep -q '"passed": *1' "$work/a.json" || complain "--json: $(cat "$work/a.json")
 grep -q '<testcase classname="virtual" name="quiet_hour"' "$work/a.xml" ||
   complain "--junit: $(cat "$work/a.xml")"
 
+# A map next to its scenario, from the folder of both.
+cp "$scenarios/../../edge/device/maps/kostal_plenticore.toml" "$work/mine.toml"
+printf 'title = "mine"\nminutes = 60\n[battery]\nmap = "mine.toml"\n' >"$work/mine_hour.toml"
+(cd "$work" && "$program" run mine_hour.toml >mine.txt 2>&1) || complain "$(cat "$work/mine.txt")"
+
 # A repeated run is bit-identical.
 signature() { sed 's/.*"signature": *"\([0-9a-f]*\)".*/\1/'; }
 first=$(signature <"$work/a.json")
