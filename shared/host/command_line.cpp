@@ -80,6 +80,9 @@ std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
   if (is_subcommand) {
     std::string meant = did_you_mean(left.front(), known);
     if (meant.empty()) meant = did_you_mean("--" + left.front(), option_names(command));
+    if (meant.empty() && known.size() == 1) {
+      meant = "; did you mean " + known.front() + " " + left.front() + "?";
+    }
     return "unknown subcommand \"" + left.front() + "\"" + meant;
   }
   const auto option = std::ranges::find_if(left, is_option);
@@ -207,6 +210,26 @@ std::string refuse_overflow(const std::string& given) {
   return read.ec == std::errc::result_out_of_range ? one_line(given, 30) + " is too large" : "";
 }
 
+/// Name of an option's value in --help, the same in all programs; empty: the type's.
+std::string value_name_of(std::string_view option) {
+  static constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"FILE",
+       " --battery --config --csv --curve-out --day-ahead --day-ahead-out --days-out --edge "
+       "--edge-log --events --fit --from-teacher --html --junit --log --map --meter-map --out "
+       "--output --pinned --plan --prices --program --quarter-hours --real-map --record --replay "
+       "--report --rules --settled --simulators --sites --steps --steps-out --student --teacher "
+       "--tls-cert --tls-key "},
+      {"DIR", " --folder --records --run --source "},
+      {"DATE", " --date --from --start --to "},
+      {"POLICY", " --policy "},
+      {"URL", " --base-url --day-ahead-base-url "}};
+  const std::string word = " " + std::string(option) + " ";
+  for (const auto& [name, options] : kNames) {
+    if (options.find(word) != options.npos) return std::string(name);
+  }
+  return "";
+}
+
 template <typename T>
 struct ValueOf {
   using type = T;
@@ -223,7 +246,8 @@ ProgramOption ProgramCommand::option(const std::string& name, T& value, const st
   CLI::Option* option = app_->add_option(name, value, wrapped(help));
   option->check(CLI::Validator(refuse_empty, ""));
   using Value = typename ValueOf<T>::type;
-  if constexpr (std::is_arithmetic_v<Value>) option->type_name("N");
+  const std::string shown = std::is_arithmetic_v<Value> ? "N" : value_name_of(name);
+  if (!shown.empty()) option->type_name(shown);
   if constexpr (std::is_integral_v<Value>) {
     option->check(CLI::Validator(refuse_overflow<Value>, ""));
   }

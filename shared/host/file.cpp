@@ -243,6 +243,9 @@ void create_parent(const fs::path& path) {
   require_a_name(path);
   if (!path.has_parent_path()) return;
   std::error_code error;
+  if (fs::exists(path.parent_path(), error) && !fs::is_directory(path.parent_path(), error)) {
+    fail("{}: is a file, not a folder; choose another name", path.parent_path().string());
+  }
   fs::create_directories(path.parent_path(), error);
   if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
 }

@@ -53,6 +53,7 @@ TomlValue value_of(const toml::node& node, const FileName& file) {
 std::string complaint(const std::string& name, int line, std::string_view what) {
   const bool is_bare_word = what.find("could not determine value type") != what.npos;
   return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what) +
+         (what.find("control characters") != what.npos ? "; is a closing quote missing?" : "") +
          (is_bare_word ? "; write true or false, a number, or text in \"quotes\"" : "");
 }
 

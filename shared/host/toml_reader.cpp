@@ -82,7 +82,7 @@ void TomlTable::number(std::string_view key, double& value, double min, double m
   const auto number = found->number();
   if (!number) return fail(key, "must be a number");
   if (!std::isfinite(*number) || *number < min || *number > max) {
-    const bool is_percent = max == 1 && *number > 1 && *number <= 100;
+    const bool is_percent = max <= 1 && *number > 1 && *number / 100 >= min && *number / 100 <= max;
     const std::string share = is_percent ? number_text(*number / 100) : "";
     return fail(key, range_text(min, max) +
                          (is_percent ? ": write " + share + " for " + number_text(*number) + " %"

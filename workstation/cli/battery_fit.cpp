@@ -132,15 +132,12 @@ void add_battery_fit(ProgramCommand& battery) {
       .option("--steps", options->steps,
               "step response from bess-edge map check --steps; copied to --out")
       .value_name("FILE");
-  command
-      .option("--config", options->config,
-              "configuration with the nameplate values in [battery] (default: the default battery)")
-      .value_name("FILE");
-  command
-      .option("--out", options->out,
-              "output file: the configuration with the fitted [battery], for --config and for "
-              "bess-sim battery --battery")
-      .value_name("FILE");
+  command.option(
+      "--config", options->config,
+      "configuration with the nameplate values in [battery] (default: the default battery)");
+  command.option("--out", options->out,
+                 "output file: the configuration with the fitted [battery], for --config and for "
+                 "bess-sim battery --battery");
   command.flag("--json", options->json, "JSON, one line per key");
   command.footer(
       "Values that the log cannot show keep the value of --config: standby power needs idle\n"

@@ -42,7 +42,7 @@ void add_commands(ProgramCommand& app) {
 void add_config_command(ProgramCommand& app) {
   auto path = std::make_shared<std::string>();
   ProgramCommand command = app.subcommand("config", "print the configuration as commented TOML");
-  command.option("--config", *path, "file whose values replace the defaults").value_name("FILE");
+  command.option("--config", *path, "file whose values replace the defaults");
   command.footer(
       "Examples:\n"
       "  bess-train config > my.toml\n"

@@ -106,14 +106,12 @@ void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<DistilArguments>();
   ProgramCommand command = app.subcommand(
       "distil", "distil a teacher into a student that satisfies the properties, and prove it");
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
   options->rule_files.add(command, "rule files: operator rules to train and prove as well");
-  command.option("--teacher", options->teacher, "teacher file").value_name("FILE").required();
-  command.option("--out", options->out, "student file to write").value_name("FILE").required();
+  command.option("--teacher", options->teacher, "teacher file").required();
+  command.option("--out", options->out, "student file to write").required();
   command.option("--omega", options->omega,
                  "trade-off of the optimisation layer; larger follows the teacher more closely "
                  "(default: [distil] omega)");
@@ -123,8 +121,7 @@ void add_distil_command(ProgramCommand& app) {
       .positive();
   command.flag("--plain", options->plain,
                "distil without correction; count violations on a sample");
-  command.option("--curve-out", options->curve_out, "output file for the losses (CSV)")
-      .value_name("FILE");
+  command.option("--curve-out", options->curve_out, "output file for the losses (CSV)");
   command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);
   command.footer(

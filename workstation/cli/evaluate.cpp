@@ -254,44 +254,35 @@ void run_evaluate(const EvaluateArguments& options) {
 void add_evaluate_command(ProgramCommand& app) {
   auto options = std::make_shared<EvaluateArguments>();
   ProgramCommand command = app.subcommand("evaluate", "evaluate policies on recorded prices");
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
   command.option("--policy", options->policies, std::string("one or more of ") + policy_help())
-      .value_name("POLICY")
       .required();
   command
       .option("--split", options->split,
               "local days of each month: 1-20, 21-25, 26-end, the last two together, or all")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
-  command
-      .option("--date", options->date,
-              "only this day of the split: YYYY-MM-DD, or widest (largest price range)")
-      .value_name("DATE");
+  command.option("--date", options->date,
+                 "only this day of the split: YYYY-MM-DD, or widest (largest price range)");
   options->common.add_market(command);
   options->common.add_config(command);
   command.flag("--carry-soc", options->carry_soc,
                "carry the SoC from day to day instead of resetting it (default with several "
                "policies: both)");
   command.flag("--json", options->json, "JSON, one line per policy");
-  command.option("--csv", options->csv, "output file for the comparison (CSV)").value_name("FILE");
+  command.option("--csv", options->csv, "output file for the comparison (CSV)");
   const std::string fitted = fmt::format("{}", fmt::join(baseline_names(kFitted), ", "));
-  command
-      .option("--fit", options->fit,
-              fmt::format("minute file for fitting {} (default: --prices)", fitted))
-      .value_name("FILE");
+  command.option("--fit", options->fit,
+                 fmt::format("minute file for fitting {} (default: --prices)", fitted));
   command
       .option("--fit-delay", options->fit_delay_min,
               fmt::format("observation delay for fitting {}, minutes (default: --delay)", fitted))
       .range(0, 5);
-  command.option("--days-out", options->days_out, "output file for the days of all policies (CSV)")
-      .value_name("FILE");
-  command
-      .option("--steps-out", options->steps_out, "output file for the steps of all policies (CSV)")
-      .value_name("FILE");
+  command.option("--days-out", options->days_out, "output file for the days of all policies (CSV)");
+  command.option("--steps-out", options->steps_out,
+                 "output file for the steps of all policies (CSV)");
   command.footer(
       "Examples:\n"
       "  bess-train evaluate --prices market.csv.gz --policy rbc rbc-tuned tabular mpc foresight "

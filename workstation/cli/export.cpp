@@ -67,12 +67,10 @@ void add_export_command(ProgramCommand& app) {
   auto options = std::make_shared<ExportArguments>();
   ProgramCommand command =
       app.subcommand("export", "prove a student and export the weight header and its signature");
-  command.option("--student", options->student, "student file").value_name("FILE").required();
-  command
-      .option("--out", options->out,
-              "output header (default: edge/generated/student_weights.h of the source tree "
-              "around the current folder or this program)")
-      .value_name("FILE");
+  command.option("--student", options->student, "student file").required();
+  command.option("--out", options->out,
+                 "output header (default: edge/generated/student_weights.h of the source tree "
+                 "around the current folder or this program)");
   options->common.add_seed_and_threads(command);
   command.footer(
       "Examples:\n"

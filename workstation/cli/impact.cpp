@@ -91,7 +91,6 @@ void add_impact_command(ProgramCommand& app) {
   command
       .option("--policy", plan.policies,
               std::string("policies of the fleet, in equal parts: ") + policy_help())
-      .value_name("POLICY")
       .with_default();
   command.option("--train-days", plan.train_days, "training days").range(10, 300).with_default();
   command.option("--test-days", plan.test_days, "test days after the training days")

@@ -38,7 +38,6 @@ void add_log_replay(ProgramCommand& log) {
   command
       .option("--student", options->student,
               "student file, run folder, or compiled (the array in this program)")
-      .value_name("FILE")
       .required();
   command
       .option("--limit", options->limit_percent,

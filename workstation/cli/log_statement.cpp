@@ -34,7 +34,7 @@ void add_log_statement(ProgramCommand& log) {
   ProgramCommand command =
       log.subcommand("statement", "write a printable statement of energy and money by day");
   options->input.add(command, true);
-  command.option("--output", options->output, "output file (HTML)").value_name("FILE").required();
+  command.option("--output", options->output, "output file (HTML)").required();
   command.footer(
       "By quarter-hour, at the settled price where --settled has it, less [costs] and [battery]\n"
       "wear_eur_per_mwh of --config. The log must include the first control cycle after the last\n"

@@ -152,11 +152,9 @@ void add_omega_sweep_command(ProgramCommand& app) {
   auto options = std::make_shared<OmegaSweepArguments>();
   ProgramCommand command =
       app.subcommand("omega-sweep", "sweep omega: violations, fidelity and profit");
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
-  command.option("--teacher", options->teacher, "teacher file").value_name("FILE").required();
+  command.option("--teacher", options->teacher, "teacher file").required();
   command.option("--out", options->out, "folder for omega_sweep.csv").value_name("DIR").required();
   command
       .option("--omega", options->omegas, "omega values; one distillation without repair for each")

@@ -75,15 +75,9 @@ void add_prices_fetch(ProgramCommand& prices) {
   auto options = std::make_shared<PricesFetchArguments>();
   ProgramCommand command =
       prices.subcommand("fetch", "download minute and settled prices from Elia's open data");
-  command.option("--from", options->from, "first local day, YYYY-MM-DD")
-      .value_name("DATE")
-      .required();
-  command.option("--to", options->to, "last local day, YYYY-MM-DD, included")
-      .value_name("DATE")
-      .required();
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--from", options->from, "first local day, YYYY-MM-DD").required();
+  command.option("--to", options->to, "last local day, YYYY-MM-DD, included").required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.flag("--allow-gaps", options->allow_gaps,
                "accept missing rows and list them (default: error)");
   options->price_input.add(command);

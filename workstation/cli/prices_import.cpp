@@ -76,9 +76,7 @@ void add_prices_import(ProgramCommand& prices) {
                                            {{"utc", WallClock::kUtc}, {"local", WallClock::kLocal}},
                                            "time zone of times without an offset; local: Belgium");
   options->price_input.add(command);
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.footer(
       "Where two downloads have the same minute, the later file wins; minute files must agree "
       "(--accept overlap: the later file wins). Semicolons with decimal commas are accepted. "

@@ -65,9 +65,7 @@ void add_prices_reconstruct(ProgramCommand& prices) {
       .required();
   options->price_input.add(command);
   command.option("--seed", options->seed, "random seed").non_negative().with_default();
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
   command.footer(
       "For sources without a system imbalance (ENTSO-E A85, minute files) its sign is inferred\n"
       "from the price. ENTSO-E sends a ZIP archive: unzip it first.\n"

@@ -59,16 +59,10 @@ void add_prices_simulate(ProgramCommand& prices) {
       "simulate", "simulate a market with the statistics of Belgium in early 2023");
   command.option("--days", options->days, "local days").range(1, 7320).with_default();
   command.option("--seed", options->seed, "random seed").non_negative().with_default();
-  command.option("--start", options->start, "first local day, YYYY-MM-DD")
-      .value_name("DATE")
-      .with_default();
-  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
-  command
-      .option("--day-ahead-out", options->day_ahead_out,
-              "output file for day-ahead prices of the same market, for sdp-outlook")
-      .value_name("FILE");
+  command.option("--start", options->start, "first local day, YYYY-MM-DD").with_default();
+  command.option("--out", options->out, "minute file to write (.csv or .csv.gz)").required();
+  command.option("--day-ahead-out", options->day_ahead_out,
+                 "output file for day-ahead prices of the same market, for sdp-outlook");
   command.footer(
       "Examples:\n"
       "  bess-train prices simulate --out market.csv.gz\n"

@@ -91,7 +91,7 @@ void add_refresh_command(ProgramCommand& app) {
   auto options = std::make_shared<RefreshArguments>();
   ProgramCommand command = app.subcommand(
       "refresh", "retrain on the latest prices; writes a candidate run next to the run");
-  command.option("--run", options->run, "run folder").value_name("DIR").required();
+  command.option("--run", options->run, "run folder").required();
   command.flag("--adopt", options->adopt,
                "replace the run with the candidate unless it is significantly worse");
   command
@@ -99,17 +99,12 @@ void add_refresh_command(ProgramCommand& app) {
               "training window, days; at least half must have prices")
       .range(30, 3650)
       .with_default();
-  command
-      .option("--prices", options->prices,
-              "minute files or downloads (default: download the latest prices)")
-      .value_name("FILE");
+  command.option("--prices", options->prices,
+                 "minute files or downloads (default: download the latest prices)");
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--base-url", options->source, "API root of the imbalance prices")
-      .value_name("URL")
-      .with_default();
+  command.option("--base-url", options->source, "API root of the imbalance prices").with_default();
   command.option("--day-ahead-base-url", options->day_ahead_source, "API root of day-ahead prices")
-      .value_name("URL")
       .with_default();
   command.footer(
       "The latest 30 days evaluate the candidate; training uses the days before them. The\n"

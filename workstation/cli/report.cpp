@@ -55,9 +55,8 @@ void add_report_command(ProgramCommand& app) {
   auto prices = std::make_shared<std::string>();
   ProgramCommand command =
       app.subcommand("report", "regenerate figures, tables and report.html of a run");
-  command.option("--run", *path, "run folder").value_name("DIR").required();
-  command.option("--prices", *prices, "minute file, if its path changed since the run")
-      .value_name("FILE");
+  command.option("--run", *path, "run folder").required();
+  command.option("--prices", *prices, "minute file, if its path changed since the run");
   command.footer("Examples:\n  bess-train report --run runs/first");
   command.runs([path, prices] { run_report(*path, *prices); });
 }

@@ -134,11 +134,9 @@ void add_rules_check(ProgramCommand& rules) {
       .option("--context", options->context,
               "context class: level or month (default: from the configuration)")
       .one_of({"level", "month"});
-  command
-      .option("--policy", options->policy,
-              std::string("count violations by this policy on real days: ") + policy_help())
-      .value_name("POLICY");
-  command.option("--prices", options->prices, "minute file, for --policy").value_name("FILE");
+  command.option("--policy", options->policy,
+                 std::string("count violations by this policy on real days: ") + policy_help());
+  command.option("--prices", options->prices, "minute file, for --policy");
   options->price_input.add(command);
   command.option("--split", options->split, "days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})

@@ -166,9 +166,7 @@ void add_rules_price(ProgramCommand& rules) {
   ProgramCommand command = rules.subcommand(
       "price", "estimate the daily cost of each rule, alone and together, before training");
   options->rule_files.add(command, "rule files (TOML)").required();
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   command
       .option("--policy", options->policy,

@@ -78,8 +78,7 @@ void add_run_command(ProgramCommand& app) {
   RunRequest& request = options->request;
   ProgramCommand command =
       app.subcommand("run", "run the whole chain: train, correct, prove, export, evaluate, report");
-  command.option("--prices", request.prices, "minute file (default: a built-in simulated year)")
-      .value_name("FILE");
+  command.option("--prices", request.prices, "minute file (default: a built-in simulated year)");
   request.price_input.add(command);
   request.day_ahead.add(command);
   request.rule_files.add(command, "rule files: operator rules to train and prove as well");

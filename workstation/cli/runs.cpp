@@ -81,10 +81,8 @@ void add_runs_commands(ProgramCommand& app) {
       .value_name("DIR")
       .required();
   command.flag("--json", options->json, "JSON, one line per run");
-  command
-      .option("--html", options->html,
-              "write a sortable HTML table instead, including failed and stopped runs")
-      .value_name("FILE");
+  command.option("--html", options->html,
+                 "write a sortable HTML table instead, including failed and stopped runs");
   command.footer(
       "Gains are day-by-day differences to the first run.\n"
       "Examples:\n"

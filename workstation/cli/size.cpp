@@ -104,7 +104,6 @@ void add_size_command(ProgramCommand& app) {
       .required();
   options->price_input.add(command);
   command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)")
-      .value_name("FILE")
       .required();
   command.option("--out", options->out, "folder for table and page").value_name("DIR").required();
   options->day_ahead.add(command);

@@ -62,9 +62,7 @@ void add_sweep_packages(ProgramCommand& sweep) {
       .option("--arch", options->architectures,
               "architectures; most machines have the first (default arm64)")
       .one_of({"arm64", "armhf", "amd64"});
-  command.option("--source", options->source, "source checkout, with tools/package")
-      .value_name("DIR")
-      .with_default();
+  command.option("--source", options->source, "source checkout, with tools/package").with_default();
   command.flag("--partial", options->partial, "skip fleet members without a proved student");
   command.footer(
       "Existing packages of the same student are kept.\n"

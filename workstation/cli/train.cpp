@@ -128,17 +128,14 @@ void run_train(const TrainArguments& options) {
 void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<TrainArguments>();
   ProgramCommand command = app.subcommand("train", "train a teacher: C51, DQN or SDP");
-  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", options->prices, "minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--out", options->out, "teacher file to write").value_name("FILE").required();
+  command.option("--out", options->out, "teacher file to write").required();
   command.option("--method", options->method, "training method (default c51)")
       .one_of({"c51", "dqn", "sdp"});
   command.option("--steps", options->steps, "gradient steps (default: [train] steps)").positive();
-  command.option("--curve-out", options->curve_out, "output file for the training curve (CSV)")
-      .value_name("FILE");
+  command.option("--curve-out", options->curve_out, "output file for the training curve (CSV)");
   command.flag("--resume", options->resume, "resume from OUT.checkpoint; the result is identical");
   command.flag("--json", options->json, "one JSON object");
   options->common.add_all(command);

@@ -87,15 +87,11 @@ void add_verify_command(ProgramCommand& app) {
   auto options = std::make_shared<VerifyArguments>();
   ProgramCommand command =
       app.subcommand("verify", "prove a student over every input (exit code 1 if the proof fails)");
-  command
-      .option("--student", options->student,
-              "student file (default: the array compiled into this program)")
-      .value_name("FILE");
+  command.option("--student", options->student,
+                 "student file (default: the array compiled into this program)");
   options->rule_files.add(command, "rule files to check instead of the student's own");
-  command
-      .option("--prices", options->prices,
-              "minute file: also report how often visited states break a rule")
-      .value_name("FILE");
+  command.option("--prices", options->prices,
+                 "minute file: also report how often visited states break a rule");
   options->price_input.add(command);
   command.flag("--exhaustive", options->exhaustive,
                "evaluate every state instead of proving boxes by bounds (takes minutes)");

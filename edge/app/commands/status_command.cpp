@@ -114,6 +114,16 @@ void print_operator_orders(const CycleRecord& last) {
   std::printf("full       %d days since the last full charge\n", last.days_since_full);
 }
 
+/// A hold that the last control cycle did not have.
+void print_new_hold(const EdgeConfig& config, const CycleRecord& last) {
+  const Hold hold = read_newest_hold(state_file_paths(config, kHoldFileName)).hold;
+  const bool is_followed = last.hold.held && last.hold.power_w == hold.power_w &&
+                           last.hold.until_utc_s == hold.until_utc_s;
+  if (is_followed || hold.until_utc_s <= last.utc_s) return;
+  std::printf("hold       %d W until %s, from the next control cycle\n", hold.power_w,
+              local_of(hold.until_utc_s).c_str());
+}
+
 /// Prints nothing without a meter.
 void print_site(const CycleRecord& last) {
   if (!last.site.has_grid_power) return;
@@ -255,6 +265,7 @@ void print_run(const EdgeConfig& config, const RunStatus& status, bool is_runnin
   std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at", id.battery.c_str(),
               id.map.c_str(), id.variant.empty() ? "" : ", variant ", id.variant.c_str());
   if (status.totals.cycles > 0) print_last_cycle(status, is_running);
+  if (is_running) print_new_hold(config, status.totals.last);
   if (is_running) print_next(config);
   print_counters(status.totals);
 }

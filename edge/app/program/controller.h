@@ -125,9 +125,9 @@ class Controller {
     const Status status = world_.check_price_server();
     if (status == Status::kOk) return status;
     world_.complain(JournalLevel::kWarning,
-                    "note: price from " +
+                    "note: no price yet from " +
                         std::string(loggable_url(config_.price.feed.http.url.view()).view()) +
-                        ": " + std::string(price_status_text(status)) + "; waiting in safe state");
+                        ": " + std::string(price_status_text(status)) + "; 0 W until one arrives");
     return status;
   }
 

@@ -4,6 +4,7 @@
 
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -12,9 +13,9 @@ namespace {
 std::string text_of(const NotifySettings& settings, const Message& message) {
   std::string text = one_line(message.text) + "\n\n";
   if (message.since_utc_s != 0) {
-    text += "since " + std::string(utc_text(message.since_utc_s).view()) + "\n";
+    text += "since " + std::string(local_text(message.since_utc_s).view()) + "\n";
   }
-  text += "seen at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
+  text += "seen at " + std::string(local_text(message.utc_s).view()) + " by bess-notify on " +
           settings.name + "\ndetails: bess-edge status, bess-edge log --last 20\n";
   if (!settings.contact.empty()) text += "call: " + settings.contact + "\n";
   return text;

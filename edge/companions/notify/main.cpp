@@ -78,6 +78,7 @@ int run(const Options& options) {
   }
   if (options.check) return print_check(settings);
   std::stop_source stop;
+  set_market_time_zone();
   const StopSignals stop_signals([&] { stop.request_stop(); });
   if (options.test) return send_test(settings, now_utc_s()) ? 0 : 1;
   InstanceLock lock;
@@ -102,8 +103,7 @@ int main(int argc, char** argv) {
   bess::Options options;
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path, "settings of the controller, section [notify]")
-      .with_default()
-      .value_name("FILE");
+      .with_default();
   root.flag("--once", options.once,
             "run one round, for a timer; default: a round every [notify] every_s");
   root.flag("--test", options.test, "send one test message to every configured channel")

@@ -73,8 +73,7 @@ int main(int argc, char** argv) {
   bess::Options options;
   bess::ProgramCommand root = line.root();
   root.option("--config", options.config_path, "settings of the controller, section [page]")
-      .with_default()
-      .value_name("FILE");
+      .with_default();
   root.option("--port", options.port,
               "port to listen on, 0: any free port, printed; default: [page] port")
       .value_name("PORT")

@@ -63,11 +63,16 @@ function showStatus(status) {
   byId("health").className = "badge " + kind;
   lines("problems", [...status.health_reasons, status.unknown,
                      status.contact && "Call: " + status.contact], "li");
+  for (const problem of byId("problems").children) {
+    problem.classList.toggle("bad", problem.textContent.startsWith("CRITICAL"));
+  }
   showFlow(last);
   const facts = {
     mode: last.mode, version: status.version, battery: status.battery, map: status.map,
     since: status.start_utc && moment(status.start_utc), update: status.update?.phase,
-    student: status.student, "trained on": status.provenance, retrain: status.retrain};
+    "trained on prices of":
+      status.trained_from && `${status.trained_from} to ${status.trained_until}`,
+    retrain: status.retrain, student: status.student, training: status.provenance};
   fill("facts", Object.entries(facts).filter(([, value]) => value).flatMap(
     ([name, value]) => [element("dt", name), element("dd", value)]));
   showNext(status.next, status.no_effect);

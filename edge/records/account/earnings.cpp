@@ -97,7 +97,7 @@ Earnings::Earnings(std::vector<DayAccount> days) : days_(std::move(days)) {
 
 std::string Earnings::text() const {
   std::string text =
-      "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  EUR/MWh\n";
+      "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  mean EUR/MWh\n";
   for (const DayAccount& day : days_) text += table_line(day.date(), day);
   if (days_.size() > 1) text += table_line("total", together_);
   text += money_text(together_);

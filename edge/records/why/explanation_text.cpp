@@ -37,9 +37,8 @@ void add_decider(const Explanation& explanation, const std::string& end, std::st
   } else {
     add_formatted(text, "decided by guard: %s", reason_name(record.reason).data());
   }
-  add_formatted(text, ", since %s (%d control cycle%s)",
-                local_text(explanation.since_utc_s).c_str(), explanation.cycles,
-                explanation.cycles == 1 ? "" : "s");
+  add_formatted(text, ", %d control cycle%s in a row since %s", explanation.cycles,
+                explanation.cycles == 1 ? "" : "s", local_text(explanation.since_utc_s).c_str());
   if (!end.empty()) text.append("; ").append(end);
   text += '\n';
   if (!is_students(record) && record.has_student_action) {

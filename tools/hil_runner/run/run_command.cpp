@@ -355,9 +355,8 @@ void add_run_command(ProgramCommand& app) {
   command.flag(
       "--each-part", options->each_part,
       "also run each passed virtual scenario without each of its parts; every run must differ");
-  command
-      .option("--pinned", options->pinned, "compare virtual runs with the signatures in this file")
-      .value_name("FILE");
+  command.option("--pinned", options->pinned,
+                 "compare virtual runs with the signatures in this file");
   command.flag("--agree", options->agree,
                "run scenarios in both times and compare set points by control cycle");
   command.option("--draw", options->draw, "number of scenarios to draw at random").range(1, 1'000);

@@ -25,7 +25,7 @@ function drawLines(id, series, x, y, scales = () => ({})) {
 }
 
 /** `training`: [step, profit, 1 if selected, loss]; step 0 of a residual teacher is the SDP. */
-function drawTraining({training, rule}) {
+function drawTraining({training}) {
   // An SDP is not trained.
   document.getElementById("training-figure").hidden = training.length < 2;
   if (training.length < 2) return;
@@ -41,7 +41,7 @@ function drawTraining({training, rule}) {
                                title: axisTitle("loss"), grid: {drawOnChartArea: false}});
   drawLines("chart-training", [
     ["checkpoint", training, "line-1"], ["selected", [kept], "line-2", undefined, 6], ...began,
-    ["rule-based", level(rule), "muted", [2, 3], 0], ...loss], "gradient steps", kProfitUnit,
+    ...loss], "gradient steps", kProfitUnit,
             () => loss.length > 0 ? {loss: lossAxis()} : {});
 }
 

@@ -33,11 +33,9 @@ std::string built_in_market_provenance() {
 }
 
 void DayAheadInput::add(ProgramCommand& command) {
-  command
-      .option("--day-ahead", path_,
-              "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
-              "'prices import --day-ahead' or 'prices simulate --day-ahead-out'")
-      .value_name("FILE");
+  command.option("--day-ahead", path_,
+                 "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
+                 "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
 }
 
 std::shared_ptr<const DayAheadPublication> DayAheadInput::read(const MinuteSeries& settled,

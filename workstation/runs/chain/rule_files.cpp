@@ -86,7 +86,7 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
 }
 
 ProgramOption RuleFiles::add(ProgramCommand& command, const std::string& help) {
-  return command.option("--rules", paths_, help).value_name("FILE");
+  return command.option("--rules", paths_, help);
 }
 
 RuleSet RuleFiles::read() const { return load_rules(paths_); }

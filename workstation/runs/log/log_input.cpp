@@ -217,19 +217,13 @@ void LogInput::add(ProgramCommand& command, bool counts_money) {
               "controller logs (bess-edge log --csv or [log] csv); several are joined")
       .value_name("FILE")
       .required();
-  command.option("--from", from_, "first local day, YYYY-MM-DD (default: first of the log)")
-      .value_name("DATE");
-  command.option("--to", to_, "last local day, YYYY-MM-DD (default: last of the log)")
-      .value_name("DATE");
+  command.option("--from", from_, "first local day, YYYY-MM-DD (default: first of the log)");
+  command.option("--to", to_, "last local day, YYYY-MM-DD (default: last of the log)");
   if (!counts_money) return;
-  command
-      .option("--settled", settled_,
-              "settled.csv of bess-prices (default: estimate from the last minute's price)")
-      .value_name("FILE");
-  command
-      .option("--config", config_,
-              "configuration (TOML) with [battery] and [costs] of this battery")
-      .value_name("FILE");
+  command.option("--settled", settled_,
+                 "settled.csv of bess-prices (default: estimate from the last minute's price)");
+  command.option("--config", config_,
+                 "configuration (TOML) with [battery] and [costs] of this battery");
 }
 
 ReadLog LogInput::read() const {

@@ -77,10 +77,11 @@ JsonValue chain_of(const JsonValue& backtest) {
 std::string how_to_make_one(const RunRecord& record) {
   const bool is_own = !fs::path(record.prices).is_absolute();
   return fmt::format(
-      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' creates one",
+      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' creates one ({}: "
+      "this run's folder)",
       is_own ? kRunPlace : "", record.prices, record.day_ahead.empty() ? "" : " --day-ahead ",
       record.day_ahead, kRunPlace, run_file::kConfig, record.value("seed"), kRunPlace,
-      kRunsBacktest);
+      kRunsBacktest, kRunPlace);
 }
 
 }  // namespace

@@ -271,13 +271,14 @@ class AlertCommand : public ::testing::Test {
 };
 
 TEST_F(AlertCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
+  set_market_time_zone();
   EXPECT_EQ(run("{ echo \"$BESS_SEVERITY|$BESS_TITLE|$BESS_NODE|$BESS_KEY|$BESS_UTC\"; "
                 "cat; } >" +
                 folder_.file("said")),
             "");
   EXPECT_THAT(said(), HasSubstr("alarm|[bess garage] ALERT: WARN: mode is safe, reason link "));
   EXPECT_THAT(said(), HasSubstr("|garage|not running: link|2023-03-27T00:02:00Z\n"));
-  EXPECT_THAT(said(), HasSubstr("since 2023-03-26T23:57:00Z\n"));
+  EXPECT_THAT(said(), HasSubstr("since 2023-03-27 01:57\n"));
   EXPECT_THAT(said(), HasSubstr("call: Ann, +32 2 555 01 23\n"));
 }
 
