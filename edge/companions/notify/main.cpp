@@ -10,6 +10,7 @@
 #include "edge/companions/notify/notify_settings.h"
 #include "edge/companions/notify/topics.h"
 #include "shared/host/command_line.h"
+#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

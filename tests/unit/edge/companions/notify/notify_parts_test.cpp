@@ -14,6 +14,7 @@
 #include "edge/companions/notify/topics.h"
 #include "edge/records/log/health.h"
 #include "shared/host/run_program.h"
+#include "shared/local_time.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
