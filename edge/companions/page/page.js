@@ -168,7 +168,8 @@ const kColumns = [  // head, key, decimals
 
 function showMonth(month) {
   const stops = month.stops.by_reason.map((stop) =>
-    ` ${stop.reason}: ${say(stop.cycles)} control cycles, ${say(stop.not_driven)} not driven.`);
+    ` ${stop.meaning} (${stop.reason}): ${say(stop.cycles)} control cycles, ` +
+    `${say(stop.not_driven)} not driven.`);
   byId("money").textContent =
     `${eur(month.earned_eur)} earned, of which ${eur(month.estimated_eur)} estimated: ` +
     `${say(month.settled_quarter_hours)} of ${say(month.quarter_hours)} quarter-hours are at ` +

@@ -71,6 +71,7 @@ Json stops_json(const DayAccount& all) {
     const auto reason = static_cast<Reason>(i);
     if (all.cycles_by_reason()[i] == 0 || reason == Reason::kStudent) continue;
     reasons.add(Json::object({{"reason", reason_name(reason)},
+                              {"meaning", info_of(reason).meaning},
                               {"cycles", all.cycles_by_reason()[i]},
                               {"not_driven", all.not_driven_by_reason()[i]}}));
   }

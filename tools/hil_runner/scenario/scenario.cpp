@@ -28,7 +28,7 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
   }
   battery.map = map_path(map, folder);
   if (table.ok() && !fs::exists(battery.map)) {
-    table.fail("map", "names no register map: " + battery.map);
+    table.fail("map", "names no register map: " + battery.map + kMapsOfTheBuild);
   }
   read_text(table, "variant", battery.variant);
   int transport = 0;

@@ -208,6 +208,8 @@ struct Scenario {
 
 /// Name in edge/device/maps, or path relative to `folder`.
 std::string map_path(const std::string& name, const std::filesystem::path& folder);
+inline constexpr const char* kMapsOfTheBuild =
+    " (names are looked up in the tree that bess-hil was built from; after moving it, rebuild)";
 
 /// Throws UserError naming file and line.
 Scenario read_scenario(const std::string& path);

@@ -86,7 +86,8 @@ void read_meter(TomlTable table, const fs::path& folder, ScenarioMeter& meter) {
   const bool is_name = map.find('/') == std::string::npos && !map.ends_with(".toml");
   meter.map = is_name ? std::string(BESS_METER_DIR) + "/" + map + ".toml"
                       : fs::absolute(folder / map).lexically_normal().string();
-  if (!fs::exists(meter.map)) table.fail("map", "names no register map: " + meter.map);
+  if (!fs::exists(meter.map))
+    table.fail("map", "names no register map: " + meter.map + kMapsOfTheBuild);
 }
 
 void read_meter_fault(TomlTable table, Scenario& scenario) {
