@@ -33,7 +33,7 @@ TEST_F(OperatorProcesses, AHoldIsFollowedByTheRunningControllerUntilItIsReleased
   ASSERT_NE(await_line(running, "mode=running"), "");
   const ProgramOutput hold = ask({"hold", "-1000", "--for", "6h"});
   EXPECT_EQ(hold.exit_code, 0);
-  EXPECT_THAT(hold.text, AllOf(Names("-1000 W"), HasSubstr(" 2023-03-26T")));
+  EXPECT_THAT(hold.text, AllOf(Names("-1000 W"), HasSubstr(" 2023-03-26 ")));
   EXPECT_THAT(await_line(running, "reason=held"), Names("ordered_power_w=-1000 written=1"));
   EXPECT_THAT(ask({"status"}).text, Names("held -1000 W 2023-03-26"));
   EXPECT_THAT(ask({"status", "--prometheus"}).text,
