@@ -175,7 +175,7 @@ RunStages::Names RunStages::files() {
 std::string RunStages::help() {
   std::string text;
   for (const Stage& stage : stages()) {
-    if (stage.when == StageCondition::kAfterFailedProof) continue;  // the same files
+    if (stage.condition == StageCondition::kAfterFailedProof) continue;  // the same files
     text +=
         fmt::format("  {}  {:<26}  {}\n", stage.number, stage.name, fmt::join(stage.outputs, ", "));
   }

@@ -108,7 +108,7 @@ TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
   EXPECT_TRUE(site.meter_check.judges);
   EXPECT_EQ(site.meter_check.power_w, 3'000);
   EXPECT_EQ(site.meter_check.settle_s, loaded.config->battery.map.response.settle_s);
-  const Loaded told(meter("judged = false\npv_w_max = 6000\n"));
+  const Loaded reported(meter("judged = false\npv_w_max = 6000\n"));
   ASSERT_TRUE(reported.is_good) << reported.error;
   EXPECT_FALSE(reported.config->site.settings.meter_check.judges);
   EXPECT_EQ(reported.config->site.settings.pv_w_max, 6'000);

@@ -38,7 +38,7 @@ void expect_told(const char* map, const std::function<void(RegisterDevice&)>& fi
       t.device.set(c.address, c.registers);
     }
     ASSERT_EQ(t.read(), Status::kOk) << map << " " << c.address;
-    EXPECT_EQ(told_by(t.measured), c.told) << map << " " << c.address << " " << c.registers[0];
+    EXPECT_EQ(told_by(t.measured), c.reported) << map << " " << c.address << " " << c.registers[0];
   }
 }
 
