@@ -35,7 +35,7 @@ double usual(int minute) { return 85 + 60 * std::sin(minute / 7.0) + 0.01 * (min
 
 TEST(UnitWatch, KilowattHoursAreFoundWithinAnHourAndASwitchToThemWithinMinutes) {
   for (const auto& [from_minute, last_minute] : {std::pair{0, 60}, {720, 725}}) {
-    const int found = minutes_until_doubtful(from_minute + 300, [from_minute](int m) {
+    const int found = minutes_until_doubtful(from_minute + 300, [from_minute = from_minute](int m) {
       return m < from_minute ? usual(m) : usual(m) / 1'000;
     });
     EXPECT_GT(found, from_minute);
