@@ -7,15 +7,13 @@ const kHourMs = 3600000;
 const kDayMs = 24 * kHourMs;
 /** Reasons whose cycle had no price, or not a current one: it is not drawn as a price. */
 const kWithoutPrice = new Set(["no_price", "price_age", "price_qh", "frozen_price", "stand_in"]);
-const charts = {};  // by canvas: {chart, draw}
+Chart.defaults.plugins.legend.position = "bottom";
 let shownCycle = null;
 let state = null;  // newest answer of api/status
 let shownDay = null;  // "2026-11-23", or null: the last 24 hours
 let isAsking = false;  // one request at a time, also when it hangs
 
 const byId = (id) => document.getElementById(id);
-const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 const clock = (time) => new Date(time).toLocaleTimeString(
   "en-GB", {timeZone: "Europe/Brussels", hour: "2-digit", minute: "2-digit"});
 const moment = (time) =>
@@ -185,22 +183,12 @@ function showMonth(month) {
     }))));
 }
 
-/** Draws a chart; kept for redrawing in another colour scheme. */
-function drawChart(id, draw) {
-  charts[id]?.chart.destroy();
-  const config = draw();
-  Object.assign(config.options, {maintainAspectRatio: false, animation: false, parsing: false});
-  config.options.plugins = {...config.options.plugins, legend: {
-    position: "bottom", labels: {color: colour("ink"), boxWidth: 14}}};
-  charts[id] = {chart: new Chart(byId(id), config), draw};
-}
-
-const axis = (title, options) => ({
-  type: "linear", title: {display: true, text: title, color: colour("muted")},
-  grid: {color: colour("grid"), borderColor: colour("muted")}, ...options,
-  ticks: {color: colour("muted"), maxTicksLimit: 7, maxRotation: 0, ...options?.ticks}});
+/** Linear axis with a title, or without where it is empty. */
+const scale = (title, options) => axis({
+  type: "linear", title: title ? axisTitle(title) : {}, ...options,
+  ticks: {...kFewTicks, ...options?.ticks}});
 const strip = (title, stackWeight, options) =>
-  axis(title, {axis: "y", stack: "day", stackWeight, offset: true, ...options});
+  scale(title, {axis: "y", stack: "day", stackWeight, offset: true, ...options});
 const line = (label, name, data, more) => ({
   label, data, borderColor: colour(name), backgroundColor: colour(name), borderWidth: 1.6,
   pointRadius: 0, ...more});
@@ -267,9 +255,9 @@ function drawDay(csv) {
             fill: {target: "origin", above: colour("charge"), below: colour("discharge")}}),
       line("discharging", "discharge", [], {yAxisID: "power"})]},
     options: {
-      interaction: {mode: "index", intersect: false},
+      parsing: false, normalized: false,
       scales: {
-        x: axis("", {title: {}, bounds: "data", afterBuildTicks: hours, ticks: {callback: clock}}),
+        x: scale("", {bounds: "data", afterBuildTicks: hours, ticks: {callback: clock}}),
         power: strip("kW", 2), soc: strip("%", 2, {min: 0, max: 100}), price: strip("EUR/MWh", 4),
       },
       plugins: {tooltip: {callbacks: {title: ([item]) => clock(item.parsed.x)}}},
@@ -308,9 +296,10 @@ function drawMap({columns}) {
       line("discharges above", "discharge", points("discharge_from_eur_per_mwh"),
            {fill: "end", stepped: "middle", backgroundColor: colour("discharge") + "55"})]},
     options: {
+      parsing: false, normalized: false,
       interaction: {mode: "nearest", axis: "x", intersect: false},
-      scales: {x: axis("state of charge, %", {min: 0, max: 100}),
-               y: axis("price, EUR/MWh", {min, max})},
+      scales: {x: scale("state of charge, %", {min: 0, max: 100}),
+               y: scale("price, EUR/MWh", {min, max})},
       plugins: {tooltip: {callbacks: {title: ([item]) => percent(item.parsed.x)}}},
     },
   }));
@@ -358,9 +347,7 @@ async function renew() {
   document.documentElement.dataset.ready = "true";
 }
 
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const [id, {draw}] of Object.entries(charts)) drawChart(id, draw);
-});
+onColourScheme(redrawCharts);
 byId("day-before").addEventListener("click", () => turnTo(-1));
 byId("day-after").addEventListener("click", () => turnTo(1));
 document.addEventListener("visibilitychange", renew);

@@ -131,6 +131,7 @@ void PageServer::add_files() {
   add("/page.css", "page.css", "text/css; charset=utf-8");
   add("/page.js", "page.js", "text/javascript; charset=utf-8");
   add("/chart.min.js", "chart.min.js", "text/javascript; charset=utf-8");
+  add("/charts.js", "charts.js", "text/javascript; charset=utf-8");
 }
 
 namespace {

@@ -17,7 +17,7 @@ program="#!/bin/sh
 echo \"\$*\" >>$folder/asked
 case \"\$1\" in
   --version) exit 0 ;;
-  status) cat $folder/status; echo somebody else speaks >&2; exit 1 ;;
+  status) cat $folder/status; echo battery in use >&2; exit 1 ;;
 esac
 exit \$(cat $folder/check_code)"
 spoil="mkdir ../bin; printf '%s\n' '$program' >../bin/bess-edge; chmod 755 ../bin/bess-edge"
@@ -38,7 +38,7 @@ look_ahead
 echo 'bess-edge: edge.toml:3: no such key' >status
 look_ahead
 [ $code -eq 1 ] || fail "refused settings: exit code $code"
-grep -q "somebody else speaks" err || fail "the new program's output is lost: $(cat err)"
+grep -q "battery in use" err || fail "the new program's output is lost: $(cat err)"
 rm runs  # no controller: the new program connects to battery and price itself, which may be absent
 echo 1 >check_code
 look_ahead

@@ -6,6 +6,6 @@ file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js
      ${CMAKE_CURRENT_LIST_DIR}/*.css
      ${CMAKE_CURRENT_LIST_DIR}/*.html)
 # Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
-list(APPEND page_files ${BESS_PAGE_FILES} ${CMAKE_SOURCE_DIR}/shared/host/embed/charts.js
+list(APPEND page_files ${BESS_PAGE_FILES}
      ${CMAKE_CURRENT_LIST_DIR}/answers.schema.json)
 bess_embed(figures workstation/report/figures/page_files.h ${page_files})

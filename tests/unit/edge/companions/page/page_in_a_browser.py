@@ -41,7 +41,7 @@ class PageInABrowser(unittest.TestCase):
                   c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some(Boolean))"""),
                                  [True, True])
                 # Of the log's prices, some 280 EUR/MWh at most.
-                self.assertGreater(page.run("charts.day.chart.scales.price.max"), 200)
+                self.assertGreater(page.run("shownCharts.get('day').chart.scales.price.max"), 200)
                 self.assertGreater(page.run("document.querySelectorAll('#days tr').length"), 0)
                 self.assertEqual(page.run("""[...document.querySelectorAll(".trouble")]
                   .map((e) => e.textContent).join("")"""), "")

@@ -113,6 +113,7 @@ TEST_F(PageServerTest, FilesAreThereAndNothingElseIs) {
       {"/document.css", "text/css; charset=utf-8"},
       {"/page.css", "text/css; charset=utf-8"},
       {"/page.js", "text/javascript; charset=utf-8"},
+      {"/charts.js", "text/javascript; charset=utf-8"},
       {"/chart.min.js", "text/javascript; charset=utf-8"}};
   for (const auto& [path, type] : files) {
     const Got file = get(path);
