@@ -243,11 +243,14 @@ void create_parent(const fs::path& path) {
   require_a_name(path);
   if (!path.has_parent_path()) return;
   std::error_code error;
-  if (fs::exists(path.parent_path(), error) && !fs::is_directory(path.parent_path(), error)) {
-    fail("{}: is a file, not a folder; choose another name", path.parent_path().string());
-  }
   fs::create_directories(path.parent_path(), error);
-  if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
+  if (!error) return;
+  for (fs::path at = path.parent_path(); at.has_relative_path(); at = at.parent_path()) {
+    std::error_code ignored;
+    if (!fs::exists(at, ignored) || fs::is_directory(at, ignored)) continue;
+    fail("{}: is a file, not a folder; choose another name", at.string());
+  }
+  fail("{}: cannot create: {}", path.parent_path().string(), error.message());
 }
 
 /// Content of a plain or gzip file (one or more members) during reading, bounded: a small gzip file

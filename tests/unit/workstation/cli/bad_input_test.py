@@ -32,6 +32,9 @@ CASES = [
     ("runs compare loop", 1, "loop"),
     ("run --prices market.csv --out new --from-teacher loop", 1, "loop"),
     ("train --prices market.csv --out loop", 1, "loop"),
+    # A file where a folder is needed, also further up: it is the one to name.
+    ("train --prices market.csv --out market.csv/teacher.bin", 1, "market.csv"),
+    ("run --prices market.csv --out few.csv/runs/first", 1, "few.csv"),
     (f"config --config {LONG}", 1, LONG[:50]),
     (f"evaluate --prices market.csv --policy {LONG}", 1, LONG[:50]),
     (f"train --prices market.csv --out {LONG}", 1, LONG[:50]),
