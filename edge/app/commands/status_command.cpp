@@ -40,7 +40,7 @@ constexpr const char* kFooter =
 prints the next decision at constant price and SoC, planned reserves and full charges, and settings
 without effect. Health is ok, degraded (with reasons) or not running. A status older than two
 control cycles is WARN, older than four CRITICAL. Old training days, or days of another price
-regime, give a WARN to retrain that does not affect health.
+regime, give a note to retrain that does not affect health.
 Exit codes:
   0 ok
   1 degraded, or files unreadable
@@ -71,7 +71,7 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
 
 void print_health(const Health& health, const EdgeConfig& config) {
   std::printf("health     %s\n", health_name(health.level).data());
-  for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
+  for (const HealthAlert& alert : health.alerts) std::printf("           %s\n", alert.line.c_str());
   if (!config.contact.view().empty()) std::printf("call       %s\n", config.contact.c_str());
 }
 
@@ -261,7 +261,7 @@ void print_run(const EdgeConfig& config, const RunStatus& status, bool is_runnin
   print_controller(status, is_running);
   std::printf("trained    %s\n", training_days_text(training_of(id)).c_str());
   const std::string note = retraining_note(config, id);
-  if (!note.empty()) std::printf("           WARN: %s\n", note.c_str());
+  if (!note.empty()) std::printf("           note: %s\n", note.c_str());
   const char* const part = id.control ? "driving" : "reading";
   std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at", id.battery.c_str(),
               id.map.c_str(), id.variant.empty() ? "" : ", variant ", id.variant.c_str());
@@ -297,10 +297,15 @@ void print_json(const EdgeConfig& config, const PublishedStatus& published, cons
   const bool is_known = published.unknown.empty() && published.status.has_value();
   Json status = is_known ? json_of(*published.status) : Json::object();
   if (!published.unknown.empty()) status.set("unknown", published.unknown);
-  Json reasons = Json::list();
-  for (const std::string& reason : health.reasons) reasons.add(reason);
+  Json alerts = Json::list();
+  Json lines = Json::list();
+  for (const HealthAlert& alert : health.alerts) {
+    alerts.add(Json::object({{"code", alert.code}, {"line", alert.line}}));
+    lines.add(alert.line);
+  }
   status.set("health", health_name(health.level));
-  status.set("health_reasons", std::move(reasons));
+  status.set("alerts", std::move(alerts));
+  status.set("health_reasons", std::move(lines));
   if (!config.contact.view().empty()) status.set("contact", config.contact.view());
   if (is_known) status.set("retrain", retraining_note(config, published.status->identity));
   NextDecision next;

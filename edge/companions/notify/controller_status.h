@@ -8,6 +8,7 @@
 
 #include "edge/companions/common/controller_places.h"
 #include "edge/companions/notify/notifier_state.h"
+#include "edge/records/log/alerts.h"
 #include "shared/host/json.h"
 
 namespace bess {
@@ -24,7 +25,10 @@ ControllerStatus ask_controller(const ControllerPlaces& controller);
 /// or without records of that day.
 Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words);
 
-/// Each health reason unchanged, so that reasons of a later version are reported too.
+/// `found`: as of `alert_line`.
+Trouble trouble_of(Alert alert, const std::string& found = "");
+
+/// Each alert of `status --json` unchanged, so that alerts of a later version are reported too.
 std::vector<Trouble> troubles_of(const ControllerStatus& status);
 
 /// Why the settled prices in `file` are late; empty if they are not.

@@ -96,15 +96,14 @@ void Notifier::serve(TimePoint until, const std::stop_token& stop, bool is_for_c
 
 void Notifier::notify_of_alarms(const ControllerStatus& status, std::int64_t now_utc_s) {
   std::vector<Trouble> troubles = troubles_of(status);
-  if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
+  if (!memory_trouble_.empty())
+    troubles.push_back(trouble_of(Alert::kNotifyState, memory_trouble_));
   if (!settings_.settled_file.empty()) {
     const std::string trouble = settled_trouble(settings_.settled_file, now_utc_s);
-    if (!trouble.empty()) troubles.push_back({.key = "settled", .text = trouble});
+    if (!trouble.empty()) troubles.push_back(trouble_of(Alert::kSettledPrices, trouble));
   }
   if (mqtt_ != nullptr && mqtt_->is_cut_off()) {
-    troubles.push_back({.key = "mqtt_cut_off",
-                        .text = "the MQTT broker ends each connection: check for another client "
-                                "with the same id, such as a copied machine"});
+    troubles.push_back(trouble_of(Alert::kMqttCutOff));
   }
   for (const auto& [is_over, alarm] :
        observe(state_.alarms, troubles, settings_.after_s, now_utc_s)) {

@@ -6,6 +6,7 @@
 
 #include "edge/core/control/reasons.h"
 #include "edge/core/control/tick.h"
+#include "edge/records/log/alerts.h"
 #include "edge/records/log/log_text.h"
 #include "shared/local_text.h"
 #include "shared/units_and_limits.h"
@@ -22,106 +23,103 @@ constexpr std::int64_t kUnplannedSMax = kSecondsPerDay;
 /// A quarter of the trip level (../core/supervision/energy_balance.h).
 constexpr std::int64_t kWrongEnergyE6Max = 50'000;
 
+using Alerts = std::vector<HealthAlert>;
+
+void warn(Alerts& alerts, Alert alert, const std::string& found = "") {
+  alerts.push_back({info_of(alert).code, alert_line(alert, found)});
+}
+void warn_critically(Alerts& alerts, Alert alert, const std::string& found = "") {
+  alerts.push_back({info_of(alert).code, alert_line(alert, found, true)});
+}
+
 std::string since(std::int64_t utc_s) { return " since " + std::string(local_text(utc_s).view()); }
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
+std::string price_text(double eur_per_mwh) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.2f EUR/MWh", eur_per_mwh);
+  return text;
+}
+
 /// Common practice: warning at twice the cadence, critical at four times.
-void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
+void check_age(const HealthInputs& in, Alerts& alerts) {
   const std::int64_t cadence_ms = in.status->identity.cadence_ms;
   if (in.age_ms <= 2 * cadence_ms) return;
-  const bool is_critical = in.age_ms > 4 * cadence_ms;
-  const std::string level = is_critical ? "CRITICAL" : "WARN";
-  reasons.push_back(level + ": the last control cycle ended " + seconds(in.age_ms) +
-                    " ago, expected every " + seconds(cadence_ms) + ": check its journal");
+  const std::string found = "the last control cycle ended " + seconds(in.age_ms) +
+                            " ago, expected every " + seconds(cadence_ms);
+  if (in.age_ms > 4 * cadence_ms) {
+    warn_critically(alerts, Alert::kOverdue, found);
+  } else {
+    warn(alerts, Alert::kOverdue, found);
+  }
 }
 
-std::string held_row(double eur_per_mwh) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "WARN: prices: jump to %.2f EUR/MWh, more than 2300 EUR/MWh: waiting for the next "
-                "row to confirm it",
-                eur_per_mwh);
-  return text;
-}
-
-std::string frozen_price(const CycleRecord& last) {
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "WARN: prices: frozen_price, %.2f EUR/MWh unchanged for %d min with new time "
-                "stamps, or only four values for hours: check that the source updates",
-                eur_of(last.price.price_centi_eur_per_mwh), last.standing_price.unchanged_s / 60);
-  return text;
-}
-
-std::string unusual_price(double eur_per_mwh) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "WARN: prices: %.2f EUR/MWh is beyond %d EUR/MWh: rare but possible; the price "
-                "thresholds decide",
-                eur_per_mwh, kUnusualPriceMaxEurPerMwh);
-  return text;
-}
-
-void check_prices(const CycleRecord& last, std::vector<std::string>& reasons) {
+void check_prices(const CycleRecord& last, Alerts& alerts) {
   const double eur_per_mwh = eur_of(last.price.price_centi_eur_per_mwh);
   if (last.price.step_held) {
-    reasons.push_back(held_row(eur_of(last.price.held_centi_eur_per_mwh)));
+    warn(alerts, Alert::kPriceStep,
+         "jump to " + price_text(eur_of(last.price.held_centi_eur_per_mwh)) +
+             ", more than 2300 EUR/MWh");
   }
-  if (last.price_frozen) reasons.push_back(frozen_price(last));
+  if (last.price_frozen) {
+    warn(alerts, Alert::kFrozenPrice,
+         price_text(eur_per_mwh) + " unchanged for " +
+             std::to_string(last.standing_price.unchanged_s / 60) +
+             " min with new time stamps, or only four values for hours");
+  }
   if (last.price.has_row && std::fabs(eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
-    reasons.push_back(unusual_price(eur_per_mwh));
+    warn(alerts, Alert::kUnusualPrice,
+         price_text(eur_per_mwh) + " is beyond " + std::to_string(kUnusualPriceMaxEurPerMwh) +
+             " EUR/MWh: rare but possible; the price thresholds decide");
   }
   const bool has_outlook = last.outlook.source != OutlookSource::kNone;
   if (has_outlook && last.utc_s - last.outlook.planned_utc_s > kUnplannedSMax) {
-    reasons.push_back("WARN: outlook: no day-ahead price for more than a day (last answer: " +
-                      std::string(status_name(last.outlook.feed)) +
-                      "); planning with typical prices, which earns less: check [outlook]");
+    warn(alerts, Alert::kNoDayAhead,
+         "no day-ahead price for more than a day (last answer: " +
+             std::string(status_name(last.outlook.feed)) +
+             "); planning with typical prices, which earns less");
   }
 }
 
 /// Findings of the supervision that stop nothing.
-void check_findings(const CycleRecord& last, std::vector<std::string>& reasons) {
+void check_findings(const CycleRecord& last, Alerts& alerts) {
   const ResponseFindings& found = last.findings;
   if (last.unanswered_orders > kUnansweredOrdersMax) {
-    reasons.push_back("WARN: no power after " + std::to_string(last.unanswered_orders) +
-                      " orders: is the battery full, empty, cold or in standby?");
+    warn(alerts, Alert::kNoPower,
+         "no power after " + std::to_string(last.unanswered_orders) + " orders");
   }
   if (last.weak_answers > kWeakAnswersMax) {
-    reasons.push_back("WARN: less power than ordered in " + std::to_string(last.weak_answers) +
-                      " readings: check power_w and the battery's own limits");
+    warn(alerts, Alert::kLowPower,
+         "less power than ordered in " + std::to_string(last.weak_answers) + " readings");
   }
   if (found.energy_share_percent != 0) {
-    reasons.push_back("WARN: the SoC change is about " +
-                      std::to_string(found.energy_share_percent) +
-                      " % of the measured energy: check capacity_wh and the measured power");
+    warn(alerts, Alert::kEnergyMismatch,
+         "the SoC change is about " + std::to_string(found.energy_share_percent) +
+             " % of the measured energy");
   }
   if (found.wrong_energy_e6 >= kWrongEnergyE6Max) {
-    reasons.push_back("WARN: the battery sometimes does not follow its set point: " +
-                      std::to_string(found.wrong_energy_e6 / 10'000) +
-                      " % of its capacity flowed against or beyond orders; trips at 20 %");
+    warn(alerts, Alert::kSetPointIgnored,
+         "the battery sometimes does not follow its set point: " +
+             std::to_string(found.wrong_energy_e6 / 10'000) +
+             " % of its capacity flowed against or beyond orders; trips at 20 %");
   }
   if (found.rest_loss_w != 0) {
-    reasons.push_back("WARN: the battery " +
-                      std::string(found.rest_loss_w > 0 ? "loses" : "gains") + " about " +
-                      std::to_string(std::abs(found.rest_loss_w)) +
-                      " W at 0 W or in addition to its orders: what else drives it?");
+    warn(alerts, Alert::kUnexplainedPower,
+         "the battery " + std::string(found.rest_loss_w > 0 ? "loses" : "gains") + " about " +
+             std::to_string(std::abs(found.rest_loss_w)) +
+             " W at 0 W or in addition to its orders");
   }
   if (found.locked_readings > kLockedReadingsMax) {
-    reasons.push_back("WARN: the battery's own limits allow no power in " +
-                      std::to_string(found.locked_readings) + " readings: check its display");
+    warn(alerts, Alert::kOwnLimits,
+         "the battery's own limits allow no power in " + std::to_string(found.locked_readings) +
+             " readings");
   }
   if (found.ramp_w_per_s != 0) {
-    reasons.push_back("WARN: the battery is slower than its map, at most " +
-                      std::to_string(found.ramp_w_per_s) +
-                      " W/s after an order: bess-edge commission measures lag and ramp, and prints "
-                      "the settings");
+    warn(alerts, Alert::kSlowResponse,
+         "the battery is slower than its map, at most " + std::to_string(found.ramp_w_per_s) +
+             " W/s after an order");
   }
-}
-
-std::string meaning_of(Reason reason) {
-  const ReasonInfo& info = info_of(reason);
-  return std::string(": ") + info.meaning + "; look at " + info.look_at;
 }
 
 /// `number`: 1 + index, 0 = none.
@@ -130,139 +128,144 @@ std::string point_name(const RunIdentity& identity, int number) {
   return is_known ? std::string(identity.point_names[number - 1].view()) : "";
 }
 
-/// One line per outage: outside mode running, the line of the mode names what failed.
-void check_answers(const RunStatus& status, std::vector<std::string>& reasons) {
+/// Code of an outage: the same while the mode is still running and after it has changed.
+std::string_view outage_code(Reason reason) {
+  switch (reason) {
+    case Reason::kLink:
+      return info_of(Alert::kBattery).code;
+    case Reason::kNoPrice:
+    case Reason::kPriceAge:
+    case Reason::kPriceQuarterHour:
+      return info_of(Alert::kPrices).code;
+    default:
+      return reason_name(reason);
+  }
+}
+
+/// One alert per outage: outside mode running, that of the mode says what failed.
+void check_answers(const RunStatus& status, Alerts& alerts) {
   const CycleRecord& last = status.totals.last;
-  std::vector<std::string> failed;
+  Alerts failed;
+  std::string causes;
+  const auto fail = [&](Alert alert, const char* what, const std::string& found) {
+    warn(failed, alert, found);
+    causes += std::string("; ") + what + found;
+  };
   if (last.battery_status != Status::kOk) {
-    failed.push_back("battery: no usable answer, " + std::string(status_name(last.battery_status)) +
-                     since(status.totals.battery_since_utc_s));
+    fail(Alert::kBattery, "battery: ",
+         "no usable answer, " + std::string(status_name(last.battery_status)) +
+             since(status.totals.battery_since_utc_s));
   }
   const std::string lost = point_name(status.identity, last.measurement.lost_point);
-  if (!lost.empty()) failed.push_back("battery: " + lost + " could not be read");
+  if (!lost.empty()) fail(Alert::kPointLost, "battery: ", lost + " could not be read");
   if (last.price.status != Status::kOk) {
-    failed.push_back("prices: no usable answer, " + std::string(status_name(last.price.status)) +
-                     since(status.totals.price_since_utc_s));
+    fail(Alert::kPrices, "prices: ",
+         "no usable answer, " + std::string(status_name(last.price.status)) +
+             since(status.totals.price_since_utc_s));
   }
   if (last.mode == Mode::kRunning) {
-    for (const std::string& what : failed) reasons.push_back("WARN: " + what);
+    alerts.insert(alerts.end(), failed.begin(), failed.end());
     return;
   }
-  std::string line = "WARN: mode is " + std::string(mode_name(last.mode)) + ", reason " +
-                     std::string(reason_name(last.reason)) +
-                     since(status.totals.reason_since_utc_s) + meaning_of(last.reason);
-  for (const std::string& what : failed) line += "; " + what;
-  reasons.push_back(line);
+  const ReasonInfo& reason = info_of(last.reason);
+  const std::string_view code = outage_code(last.reason);
+  alerts.push_back({code, "WARN " + std::string(code) + ": mode is " +
+                              std::string(mode_name(last.mode)) + ", reason " +
+                              std::string(reason.name) + since(status.totals.reason_since_utc_s) +
+                              ": " + reason.meaning + "; look at " + reason.look_at + causes});
 }
 
-void check_site(const CycleRecord& last, std::vector<std::string>& reasons) {
+void check_site(const CycleRecord& last, Alerts& alerts) {
   const SiteReport& site = last.site;
   if (site.meter_status != Status::kOk) {
-    reasons.push_back("WARN: meter: " + std::string(status_name(site.meter_status)));
+    warn(alerts, Alert::kMeter,
+         "meter could not be read, " + std::string(status_name(site.meter_status)));
   }
-  if (site.trust.is_mismatch) {
-    reasons.emplace_back(
-        "WARN: meter: does not respond to battery steps and is ignored: frozen, inverted, wrong "
-        "phase or ratio, or wrong battery power?");
-  }
+  if (site.trust.is_mismatch) warn(alerts, Alert::kMeterMismatch);
   if (site.house_is_implausible) {
-    reasons.push_back(
-        "WARN: meter: house " + std::to_string(house_w_of(last)) +
-        " W is implausible: check signs, phase and position of the meter, and [meter] "
-        "pv_w_max");
+    warn(alerts, Alert::kHousePower,
+         "house power of " + std::to_string(house_w_of(last)) + " W is implausible");
   }
   if (site.limit_status == Status::kTimeout) {
-    reasons.emplace_back(
-        "WARN: external limit expired or never set: 0 W until a new limit (bess-edge limit)");
+    warn(alerts, Alert::kLimitExpired);
   } else if (site.limit_status != Status::kOk) {
-    reasons.emplace_back("WARN: [limits] file unreadable or malformed: 0 W until corrected");
+    warn(alerts, Alert::kLimitFile);
   }
 }
 
-void check_cycle(const RunStatus& status, std::vector<std::string>& reasons) {
+void check_cycle(const RunStatus& status, Alerts& alerts) {
   const CycleRecord& last = status.totals.last;
   if (last.is_tripped) {
-    reasons.push_back("CRITICAL: tripped, " + std::string(reason_name(last.trip.reason)) +
-                      since(last.trip.utc_s) +
-                      ": check the cause (bess-edge log), then bess-edge clear --yes");
+    warn_critically(alerts, Alert::kTripped,
+                    std::string(reason_name(last.trip.reason)) + since(last.trip.utc_s));
   }
-  check_answers(status, reasons);
+  check_answers(status, alerts);
   const std::string cut = point_name(status.identity, last.measurement.cut_point);
-  if (!cut.empty()) {
-    reasons.push_back("WARN: battery: " + cut + " is out of range and was clamped");
-  }
-  if (last.measurement.warning) {
-    reasons.emplace_back("WARN: the battery reports a warning: check its display");
-  }
-  check_findings(last, reasons);
+  if (!cut.empty()) warn(alerts, Alert::kPointClamped, cut + " is out of range and was clamped");
+  if (last.measurement.warning) warn(alerts, Alert::kBatteryWarning);
+  check_findings(last, alerts);
   if (last.lost_orders.is_found) {
-    reasons.push_back("WARN: " + std::to_string(last.lost_orders.lost) + " of the last " +
-                      std::to_string(last.lost_orders.judged) +
-                      " orders were replaced or ended early: is another controller active?");
+    warn(alerts, Alert::kLostOrders,
+         std::to_string(last.lost_orders.lost) + " of the last " +
+             std::to_string(last.lost_orders.judged) + " orders were replaced or ended early");
   }
-  check_prices(last, reasons);
-  if (last.hold.unreadable) {
-    reasons.emplace_back("WARN: hold file unreadable, hold ignored: repeat bess-edge hold");
-  }
-  check_site(last, reasons);
+  check_prices(last, alerts);
+  if (last.hold.unreadable) warn(alerts, Alert::kHoldFile);
+  check_site(last, alerts);
 }
 
 /// Of the state folder's device.
-void check_wear(const StorageWear& wear, std::vector<std::string>& reasons) {
+void check_wear(const StorageWear& wear, Alerts& alerts) {
   if (wear.used_life_percent > kUsedLifePercentMax) {
-    reasons.push_back("WARN: storage has used up to " + std::to_string(wear.used_life_percent) +
-                      " % of its life: replace it soon");
+    warn(alerts, Alert::kStorageLife,
+         "storage has used up to " + std::to_string(wear.used_life_percent) + " % of its life");
   }
-  if (wear.spare_level >= 2) {
-    reasons.emplace_back(wear.spare_level >= 3
-                             ? "CRITICAL: storage has used 90 % of its spare blocks: replace it now"
-                             : "WARN: storage has used 80 % of its spare blocks: replace it soon");
+  if (wear.spare_level >= 3) {
+    warn_critically(alerts, Alert::kStorageSpare, "storage has used 90 % of its spare blocks");
+  } else if (wear.spare_level == 2) {
+    warn(alerts, Alert::kStorageSpare, "storage has used 80 % of its spare blocks");
   }
   if (wear.file_system_errors > 0) {
-    reasons.push_back("WARN: the kernel has counted " + std::to_string(wear.file_system_errors) +
-                      " errors in the state folder's file system: check the storage (dmesg)");
+    warn(alerts, Alert::kFileSystem,
+         "the kernel has counted " + std::to_string(wear.file_system_errors) +
+             " errors in the state folder's file system");
   }
 }
 
 }  // namespace
 
 Health assess_health(const HealthInputs& in) {
-  if (!in.is_running) {
-    return {HealthLevel::kNotRunning,
-            {"CRITICAL: no controller runs with this configuration: systemctl start bess-edge"}};
-  }
   Health health;
+  if (!in.is_running) {
+    warn_critically(health.alerts, Alert::kNoController);
+    health.level = HealthLevel::kNotRunning;
+    return health;
+  }
   const RunTotals totals = in.status != nullptr ? in.status->totals : RunTotals{};
   if (!in.unknown.empty()) {
-    health.reasons.push_back("CRITICAL: unknown: " + std::string(in.unknown));
+    warn_critically(health.alerts, Alert::kUnknown, std::string(in.unknown));
   } else if (!in.is_of_this_run || totals.cycles == 0) {
-    health.reasons.emplace_back("WARN: started; first control cycle not complete");
+    warn(health.alerts, Alert::kStarting);
   } else {
-    check_cycle(*in.status, health.reasons);
-    check_age(in, health.reasons);
+    check_cycle(*in.status, health.alerts);
+    check_age(in, health.alerts);
   }
   if (!in.update_trouble.empty()) {
-    health.reasons.push_back("WARN: update: " + std::string(in.update_trouble));
+    warn(health.alerts, Alert::kUpdate, std::string(in.update_trouble));
   }
-  if (totals.disk_is_slow) {
-    health.reasons.emplace_back("WARN: log records dropped: disk too slow");
-  }
-  if (totals.run_folder_is_failing) {
-    health.reasons.emplace_back(
-        "WARN: files of [state] run_folder cannot be written: check its permissions");
-  }
-  check_wear(in.wear, health.reasons);
+  if (totals.disk_is_slow) warn(health.alerts, Alert::kDiskSlow);
+  if (totals.run_folder_is_failing) warn(health.alerts, Alert::kRunFolder);
+  check_wear(in.wear, health.alerts);
   // Between log record and status, one control cycle behind is normal.
   if (in.cycles_behind > 1) {
-    health.reasons.push_back("WARN: the status is " + std::to_string(in.cycles_behind) +
-                             " control cycles behind the log: is the disk full or read-only?");
+    warn(health.alerts, Alert::kStatusBehind,
+         "the status is " + std::to_string(in.cycles_behind) + " control cycles behind the log");
   } else if (totals.disk_is_failing) {
-    health.reasons.emplace_back("WARN: the log cannot be written: is the disk full or read-only?");
+    warn(health.alerts, Alert::kLogUnwritable);
   } else if (in.disk_is_full) {
-    health.reasons.emplace_back(
-        "WARN: the disk of [state] folder is full or read-only: free space or remount it");
+    warn(health.alerts, Alert::kDiskFull);
   }
-  if (!health.reasons.empty()) health.level = HealthLevel::kDegraded;
+  if (!health.alerts.empty()) health.level = HealthLevel::kDegraded;
   return health;
 }
 

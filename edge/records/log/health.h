@@ -1,4 +1,4 @@
-// Health of the controller, a pure function of its published status: one word and its reasons.
+// Health of the controller, a pure function of its published status: one word and its alerts.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,14 @@ struct HealthInputs {
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes
 
+struct HealthAlert {
+  std::string_view code;  ///< static; one outage has one code from its first failure on
+  std::string line;
+};
+
 struct Health {
   HealthLevel level = HealthLevel::kOk;
-  std::vector<std::string> reasons;  ///< one each; empty when ok
+  std::vector<HealthAlert> alerts;  ///< empty when ok
 };
 
 Health assess_health(const HealthInputs& in);

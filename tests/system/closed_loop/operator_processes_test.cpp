@@ -123,9 +123,9 @@ TEST_F(Notify, AKilledControllerIsReportedOnceAndItsReturn) {
     killed.signal(SIGKILL);
     killed.wait();
   }
-  EXPECT_TRUE(is_mailed("ALERT: CRITICAL: "));
+  EXPECT_TRUE(is_mailed("ALERT: CRITICAL "));
   ChildProcess running = controller();
-  EXPECT_TRUE(is_mailed("over: CRITICAL: "));
+  EXPECT_TRUE(is_mailed("over: CRITICAL "));
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
   EXPECT_EQ(SimulatedSite::stop(running), 0);
 }

@@ -73,7 +73,7 @@ class StateFiles : public SiteTest {
     add_notifier();
     ASSERT_EQ(ask({"hold", "0", "--for", "7d"}).exit_code, 0);
     ASSERT_THAT(run_controller(), AllOf(HasSubstr("reason=held"), Not(HasSubstr("commissioned"))));
-    ASSERT_THAT(notify(), HasSubstr("ALERT: CRITICAL: "));
+    ASSERT_THAT(notify(), HasSubstr("ALERT: CRITICAL "));
     newest_utc_ = edge_log().back().at("utc");
     newest_local_ = local_text_of(newest_utc_);
     for (const char* folder : kFolders) {
@@ -245,8 +245,8 @@ TEST_F(StateFiles, AWornCardIsReportedByAllPrograms) {
   unsetenv("BESS_ROOT");
   for (const std::string& text : {status, reported}) {
     EXPECT_THAT(text,
-                AllOf(ContainsRegex("WARN: [^\n]* 100 %"), ContainsRegex("CRITICAL: [^\n]* 90 %"),
-                      ContainsRegex("WARN: [^\n]* 7 ")));
+                AllOf(ContainsRegex("WARN [^\n]* 100 %"), ContainsRegex("CRITICAL [^\n]* 90 %"),
+                      ContainsRegex("WARN [^\n]* 7 ")));
   }
   EXPECT_THAT(metrics, AllOf(ContainsRegex("bess_card_used_life_ratio[{].*[}] 1\n"),
                              ContainsRegex("bess_card_spare_level[{].*[}] 3\n"),

@@ -71,8 +71,8 @@ TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
   EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
   last.utc_s = 86'520;
   const Health health = assess_health(in);
-  ASSERT_EQ(health.reasons.size(), 1U);
-  EXPECT_THAT(health.reasons[0], Names("outlook malformed"));
+  ASSERT_EQ(health.alerts.size(), 1U);
+  EXPECT_THAT(health.alerts[0].line, Names("no_day_ahead malformed"));
 }
 
 }  // namespace

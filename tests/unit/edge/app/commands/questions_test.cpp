@@ -185,7 +185,7 @@ TEST_F(Questions, StatusShowsTheTrainingDays) {
   EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
   published("2023-01-01", "2023-05-22");
   const ProgramOutput old = ask({"status"});
-  EXPECT_THAT(old.out, Names("2023-05-22 WARN"));
+  EXPECT_THAT(old.out, Names("2023-05-22 note:"));
   EXPECT_EQ(old.exit_code, fresh.exit_code);
   const Json json = Json::parse(ask({"status", "--json"}).out);
   EXPECT_STREQ(json.value()["trained_from"].text(), "2023-01-01");

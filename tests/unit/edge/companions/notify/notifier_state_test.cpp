@@ -6,8 +6,8 @@
 namespace bess {
 namespace {
 
-const Trouble kLink{.key = "not running: link", .text = "WARN: mode is holding, reason link"};
-const Trouble kPrices{.key = "prices: timeout", .text = "WARN: prices: timeout"};
+const Trouble kLink{.key = "battery", .text = "WARN battery: found"};
+const Trouble kPrices{.key = "prices", .text = "WARN prices: found"};
 
 class AlarmList {
  public:

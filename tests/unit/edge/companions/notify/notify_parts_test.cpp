@@ -193,23 +193,19 @@ std::vector<std::string> keys_of(const ControllerStatus& status) {
   return keys;
 }
 
-TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
+TEST(ControllerStatus, EachAlertIsATroubleWithItsCode) {
   const TemporaryFolder folder;
   const std::string program = write_program(
-      folder, R"(echo '{"health": "degraded", "last": {"reason": "alarm"}, "health_reasons": [)"
-              R"("WARN: mode is holding, reason alarm", )"
-              R"("CRITICAL: the last control cycle ended 601 s ago", )"
-              R"("WARN: a rule of next year"]}'; exit 1)");
+      folder, R"(echo '{"health": "degraded", "alerts": [{"code": "overdue", "line": "601 s"}, )"
+              R"({"code": "of_next_year", "line": "new"}]}'; exit 1)");
   const ControllerStatus status = ask(program);
   EXPECT_EQ(status.trouble, "");
-  EXPECT_THAT(keys_of(status),
-              ElementsAre("not running: alarm", "the last control cycle ended # s ago",
-                          "a rule of next year"));
+  EXPECT_THAT(keys_of(status), ElementsAre("overdue", "of_next_year"));
 }
 
 /// From the first failed answer to the resulting safe mode.
 TEST(ControllerStatus, AnOutageIsOneTrouble) {
-  const auto keys_at = [](Mode mode, Reason reason, bool battery_fails) {
+  const auto codes_at = [](Mode mode, Reason reason, bool battery_fails) {
     RunStatus run;
     run.totals.cycles = 9;
     CycleRecord& last = run.totals.last;
@@ -218,29 +214,26 @@ TEST(ControllerStatus, AnOutageIsOneTrouble) {
     last.battery_status = battery_fails ? Status::kTimeout : Status::kOk;
     last.price.status = battery_fails ? Status::kOk : Status::kHttpError;
     const HealthInputs in{.is_running = true, .status = &run, .is_of_this_run = true};
-    ControllerStatus status;
-    Json reasons = Json::list();
-    for (const std::string& line : assess_health(in).reasons) reasons.add(line);
-    status.json.set("last", Json::object({{"reason", reason_name(reason)}}));
-    status.json.set("health_reasons", std::move(reasons));
-    return keys_of(status);
+    std::vector<std::string> codes;
+    for (const HealthAlert& alert : assess_health(in).alerts) codes.emplace_back(alert.code);
+    return codes;
   };
-  EXPECT_THAT(keys_at(Mode::kRunning, Reason::kStudent, false), ElementsAre("prices"));
+  EXPECT_THAT(codes_at(Mode::kRunning, Reason::kStudent, false), ElementsAre("prices"));
   for (const Reason reason : {Reason::kNoPrice, Reason::kPriceAge, Reason::kPriceQuarterHour}) {
-    EXPECT_THAT(keys_at(Mode::kSafe, reason, false), ElementsAre("prices")) << reason_name(reason);
+    EXPECT_THAT(codes_at(Mode::kSafe, reason, false), ElementsAre("prices")) << reason_name(reason);
   }
-  EXPECT_THAT(keys_at(Mode::kRunning, Reason::kStudent, true), ElementsAre("battery"));
-  EXPECT_THAT(keys_at(Mode::kHolding, Reason::kLink, true), ElementsAre("battery"));
-  EXPECT_THAT(keys_at(Mode::kSafe, Reason::kLink, true), ElementsAre("battery"));
+  EXPECT_THAT(codes_at(Mode::kRunning, Reason::kStudent, true), ElementsAre("battery"));
+  EXPECT_THAT(codes_at(Mode::kHolding, Reason::kLink, true), ElementsAre("battery"));
+  EXPECT_THAT(codes_at(Mode::kSafe, Reason::kLink, true), ElementsAre("battery"));
 }
 
 TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
   const TemporaryFolder folder;
-  EXPECT_THAT(keys_of(ask("/no/such")), ElementsAre("no status"));
+  EXPECT_THAT(keys_of(ask("/no/such")), ElementsAre("no_status"));
   for (const char* body : {"exit 1", "echo nonsense", "echo '{}'", "echo '[1]'"}) {
     const ControllerStatus status = ask(write_program(folder, body));
     EXPECT_THAT(status.trouble, HasSubstr("gives no status")) << body;
-    EXPECT_THAT(keys_of(status), ElementsAre("no status"));
+    EXPECT_THAT(keys_of(status), ElementsAre("no_status"));
   }
   ControllerStatus well;
   well.json.set("health", "ok");
@@ -248,7 +241,7 @@ TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
 }
 
 const Message kAlarm{.severity = "alarm",
-                     .key = "not running: link",
+                     .key = "battery",
                      .text = "WARN: mode is safe, reason link\nBcc: evil@example.org",
                      .utc_s = 1'679'875'320,
                      .since_utc_s = 1'679'875'020};

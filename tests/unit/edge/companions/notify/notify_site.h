@@ -45,13 +45,20 @@ class Rounds : public ::testing::Test {
   void use_command() {
     settings_.command = "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + folder_.file("told");
   }
-  void set_status(const std::string& health, const std::string& reasons = "",
+  /// `alerts`: their codes.
+  void set_status(const std::string& health, const std::vector<std::string>& alerts = {},
                   std::int64_t utc_s = kNow) {
-    const std::string beside = folder_.write(
-        "status.new", R"({"health": ")" + health + R"(", "health_reasons": [)" + reasons +
-                          R"(], "last": {"utc": ")" + utc_text(utc_s).c_str() +
-                          R"(", "mode": "safe", "reason": "no_price"},)" +
-                          R"( "totals": {"cycles": 9}})");
+    Json list = Json::list();
+    for (const std::string& code : alerts) {
+      list.add(Json::object({{"code", code}, {"line", "WARN " + code + ": found"}}));
+    }
+    const Json status = Json::object(
+        {{"health", health},
+         {"alerts", std::move(list)},
+         {"last", Json::object(
+                      {{"utc", utc_text(utc_s).view()}, {"mode", "safe"}, {"reason", "no_price"}})},
+         {"totals", Json::object({{"cycles", 9}})}});
+    const std::string beside = folder_.write("status.new", status.line());
     std::filesystem::rename(beside, folder_.file("status.json"));  // a round may look at any time
   }
   /// The retry queue as stored.
@@ -64,8 +71,6 @@ class Rounds : public ::testing::Test {
   const TemporaryFolder folder_;
   NotifySettings settings_;
 };
-
-inline constexpr const char* kReason = R"("WARN: mode is safe, reason no_price")";
 
 /// A round, and the result of the channels.
 inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {
