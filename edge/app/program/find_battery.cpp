@@ -73,7 +73,7 @@ std::string missing_model_text(const RegisterMap& map, int model) {
 
 std::string raw_text(const RegisterPoint& point, const std::uint16_t* raw) {
   std::string text;
-  for (int i = 0; i < point.register_count(); ++i) {
+  for (int i = 0; i < point.registers; ++i) {
     text += formatted(i == 0 ? "0x%04X" : " 0x%04X", raw[i]);
   }
   return text;

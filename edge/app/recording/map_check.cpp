@@ -38,7 +38,7 @@ std::string decimal_factor(double factor) {
 
 std::string raw_text(const RegisterPoint& p, const std::uint16_t* raw) {
   std::string text = "[";
-  for (int i = 0; i < p.register_count(); ++i) {
+  for (int i = 0; i < p.registers; ++i) {
     text.append(i == 0 ? "" : " ").append(std::to_string(raw[i]));
   }
   return text + "]";
@@ -53,7 +53,7 @@ std::string what_would_fit(const RegisterPoint& point, const std::uint16_t* raw,
     return decode(other, raw, value, scaling) && value != 0;
   };
   RegisterPoint other = point;
-  if (point.register_count() > 1) {
+  if (point.registers > 1) {
     const bool is_high_first = point.word_order == WordOrder::kHighFirst;
     other.word_order = is_high_first ? WordOrder::kLowFirst : WordOrder::kHighFirst;
     if (fits(other)) {
@@ -158,7 +158,7 @@ void MapCheck::take(const BusExchange& exchange, int point, int offset) {
   PointStatistics& seen = seen_[point];
   ++seen.asked;
   // One refused register refuses its whole block: only a point read separately counts as refused.
-  const bool is_alone = exchange.count == map_.points[point].register_count();
+  const bool is_alone = exchange.count == map_.points[point].registers;
   if (exchange.outcome == BusOutcome::kException && is_alone) seen.exception = exchange.exception;
   if (exchange.outcome != BusOutcome::kAnswered) return;
   ++seen.answers;
@@ -180,7 +180,7 @@ void MapCheck::take_value(int point, const std::uint16_t* raw) {
     ++seen.unscaled;
   } else if (!decode(p, raw, value, scaling)) {
     if (++seen.bad > 1) return;
-    std::copy_n(raw, p.register_count(), seen.bad_raw.begin());
+    std::copy_n(raw, p.registers, seen.bad_raw.begin());
     seen.bad_scaling = scaling;
   } else {
     seen.value_min = seen.good == 0 ? value : std::min(seen.value_min, value);

@@ -33,7 +33,7 @@ void RecordingMask::apply(BusExchange& exchange) {
     if (point.type == RegisterType::kText) {
       keep_text(exchange, i, offset, kept);
     } else {
-      std::copy_n(exchange.registers.begin() + offset, point.register_count(),
+      std::copy_n(exchange.registers.begin() + offset, point.registers,
                   kept.registers.begin() + offset);
     }
   }
@@ -41,7 +41,7 @@ void RecordingMask::apply(BusExchange& exchange) {
   for (int i = 0; i < map_.points.size(); ++i) {
     const int offset = map_.points[i].is_private ? places_.offset_in(exchange, i) : -1;
     if (offset < 0) continue;
-    std::fill_n(kept.registers.begin() + offset, map_.points[i].register_count(), std::uint16_t{0});
+    std::fill_n(kept.registers.begin() + offset, map_.points[i].registers, std::uint16_t{0});
   }
   exchange = kept;
 }
@@ -50,8 +50,8 @@ void RecordingMask::keep_text(const BusExchange& exchange, int point, int offset
                               BusExchange& kept) const {
   const RegisterPoint& p = map_.points[point];
   const int asked = asked_characters(map_, point);
-  for (int i = 0; i < p.register_count(); ++i) {
-    const int word = p.word_order == WordOrder::kHighFirst ? i : p.register_count() - 1 - i;
+  for (int i = 0; i < p.registers; ++i) {
+    const int word = p.word_order == WordOrder::kHighFirst ? i : p.registers - 1 - i;
     const auto at = static_cast<std::size_t>(offset) + static_cast<std::size_t>(word);
     const std::uint16_t raw = exchange.registers[at];
     auto high = static_cast<std::uint16_t>(raw >> 8);

@@ -289,7 +289,6 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 
 void read_full_charge(TomlTable& battery, ControlSettings& control) {
   battery.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);
-  control.guard.full_charge_power_w = control.guard.power_w / 2;
 }
 
 void check_full_charge(TomlTable& battery, const ControlSettings& control) {

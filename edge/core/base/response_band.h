@@ -7,6 +7,9 @@
 
 namespace bess {
 
+/// An order is read about 117 s after it was given, and must have settled by then.
+inline constexpr std::int32_t kSettleSMax = 100;
+
 struct ResponseBand {
   std::int32_t settle_s = 20;           ///< from an order until the power has settled
   std::int32_t tolerance_percent = 15;  ///< of the ordered power

@@ -25,9 +25,9 @@ OutlookSource source_of(const OutlookPlanRows& plan_rows, std::int64_t tick_utc_
 
 }  // namespace
 
-OutlookReport outlook_at(OutlookExchange& exchange, std::int64_t tick_utc_s, std::int32_t soc_e4,
-                         std::int32_t level_centi) {
-  const OutlookPlanRows& plan_rows = exchange.latest_rows.latest();
+OutlookReport outlook_at(const OutlookExchange& exchange, std::int64_t tick_utc_s,
+                         std::int32_t soc_e4, std::int32_t level_centi) {
+  const OutlookPlanRows& plan_rows = exchange.plan_rows;
   const std::int64_t ahead_s = tick_utc_s - plan_rows.first_tick_utc_s;
   const std::int64_t tick = ahead_s / kSecondsPerStep;
   if (ahead_s < 0 || ahead_s % kSecondsPerStep != 0 || tick >= plan_rows.ticks) {

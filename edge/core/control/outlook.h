@@ -1,13 +1,12 @@
 // Outlook input of the student: break-even price of the plan on day-ahead prices (shared/outlook)
-// for this tick and SoC. A thread of its own (edge/prices/fetch) plans and offers the rows of the
-// next ticks; a control cycle takes what is available.
+// for this tick and SoC. bess-prices plans the rows of the next ticks; a control cycle takes what
+// is available.
 //   planned   plan for this tick, with the published price of its quarter-hour
 //   usual     plan for this tick, with the usual price of this hour and level
-//   late      plan for an earlier tick or another level: the thread is behind
+//   late      plan for an earlier tick or another level: bess-prices is behind
 //   missing   no row for this tick: the usual day, computed at start
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <string_view>
 
@@ -15,35 +14,6 @@
 #include "shared/outlook/outlook_plan.h"
 
 namespace bess {
-
-// Newest value from one thread to another, larger than a word. Of three places one is being
-// written, one is being read, and one holds the last posted value. Wait-free on both sides.
-
-template <typename Value>
-class LatestValue {
- public:
-  /// The writer's place, with the value of an earlier post.
-  Value& draft() { return places_[writing_]; }
-  void post() {
-    writing_ = handed_over_.exchange(static_cast<std::uint8_t>(writing_ | kNew),
-                                     std::memory_order_acq_rel) &
-               kPlace;
-  }
-  /// The reader's place: the last posted value, default-constructed before the first.
-  const Value& latest() {
-    if ((handed_over_.load(std::memory_order_relaxed) & kNew) != 0) {
-      reading_ = handed_over_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
-    }
-    return places_[reading_];
-  }
-
- private:
-  static constexpr std::uint8_t kPlace = 3, kNew = 4;
-
-  Value places_[3]{};
-  std::atomic<std::uint8_t> handed_over_{0};
-  std::uint8_t writing_ = 1, reading_ = 2;
-};
 
 enum class OutlookSource : std::uint8_t { kNone, kPlanned, kUsual, kLate, kMissing };
 inline constexpr int kOutlookSourceCount = 5;
@@ -71,7 +41,7 @@ struct OutlookReport {
 
 /// Rows of the next ticks, at the two levels that enclose the next decision's level.
 struct OutlookPlanRows {
-  static constexpr int kTicks = 15;  ///< the planning thread may be half an hour late
+  static constexpr int kTicks = 15;  ///< bess-prices may be half an hour late
   static constexpr int kLevels = 2;
 
   std::int64_t first_tick_utc_s = 0;
@@ -91,15 +61,15 @@ struct UsualDay {
   BreakEvenRow rows[kQuarterHourCount] = {};
 };
 
-/// Data exchange between planning thread and control thread.
+/// Plan from the published record, for the control loop.
 struct OutlookExchange {
   const OutlookModel* model = nullptr;
-  UsualDay usual{};  ///< written before the loop starts
-  LatestValue<OutlookPlanRows> latest_rows{};
+  UsualDay usual{};
+  OutlookPlanRows plan_rows{};
 };
 
 /// At a tick, at the level of its decision. Sets all fields but `planned_utc_s`.
-OutlookReport outlook_at(OutlookExchange& exchange, std::int64_t tick_utc_s, std::int32_t soc_e4,
-                         std::int32_t level_centi);
+OutlookReport outlook_at(const OutlookExchange& exchange, std::int64_t tick_utc_s,
+                         std::int32_t soc_e4, std::int32_t level_centi);
 
 }  // namespace bess

@@ -13,90 +13,90 @@ namespace bess {
 
 #define BESS_REASONS(ROW)                                                                          \
   ROW(kStopRequested, 0, "stop_requested", kRests, "SIGTERM, or `--cycles` are done: released",    \
-      "who stopped it: `journalctl -u bess-edge`", "until bess-edge is started again")             \
+      "`journalctl -u bess-edge`", "until bess-edge is started again")                             \
   ROW(kHandOver, 15, "hand_over", kRests, "SIGHUP: the order stays in force",                      \
-      "who stopped it: `journalctl -u bess-edge`", "until bess-edge is started again")             \
+      "`journalctl -u bess-edge`", "until bess-edge is started again")                             \
   ROW(kClock, 1, "clock", kRests, "clock not synchronised by NTP",                                 \
-      "`timedatectl`: NTP service running, server reachable",                                      \
+      "check `timedatectl`: NTP service running, server reachable",                                \
       "until NTP has synchronised the clock of this machine")                                      \
   ROW(kLink, 2, "link", kRests, "battery could not be read",                                       \
-      "`battery=` of that line; cable, address, unit id; a second Modbus client",                  \
+      "check cable, address and unit id; a second Modbus client?",                                 \
       "until the battery can be read")                                                             \
   ROW(kAlarm, 3, "alarm", kRests, "the battery or its inverter reports a fault",                   \
-      "its own display; the map's `alarms`. Warnings stop nothing: see `status` and "              \
-      "`bess_battery_warning`",                                                                    \
+      "check its own display; the map's `alarms`. Warnings stop nothing: see `status`",            \
       "until the battery's own alarm clears")                                                      \
   ROW(kTemperature, 4, "temperature", kRests,                                                      \
-      "battery outside `temperature_min_c` to `temperature_max_c`", "temperature of the room",     \
+      "battery outside `temperature_min_c` to `temperature_max_c`",                                \
+      "check the temperature of the room",                                                         \
       "until all cells are between {temperature_min_c} and {temperature_max_c} °C")                \
   ROW(kOffGrid, 5, "off_grid", kReleases,                                                          \
-      "off-grid: released at once, so that the battery can supply the house",                      \
-      "the grid; no action needed", "until the battery is back on the grid")                       \
+      "off-grid: released at once, so that the battery can supply the house", "no action",         \
+      "until the battery is back on the grid")                                                     \
   ROW(kGridUnknown, 41, "grid_unknown", kReleases,                                                 \
       "grid state unknown: released at once, as if off-grid",                                      \
-      "`status` names the register; gateway, cable, the device's own display",                     \
+      "`status` names the register: check gateway, cable and the device's own display",            \
       "until that register can be read")                                                           \
   ROW(kProtectionLost, 42, "protection_lost", kRests,                                              \
       "an alarm, limit or temperature that was readable before could not be read",                 \
-      "`status` names the register; gateway, cable, the device's own display; after a change "     \
-      "of the device `bess-edge commission`",                                                      \
+      "as `grid_unknown`; after a change of the device `bess-edge commission`",                    \
       "until that register can be read")                                                           \
   ROW(kWrongDirection, 16, "wrong_direction", kReleases, "trip: power against the order",          \
-      "meter, sign, map; `bess-edge commission` again, then `bess-edge clear --yes`",              \
+      "check meter, sign and map; `bess-edge commission` again, then `bess-edge clear --yes`",     \
       "until a person checks the battery and runs `bess-edge clear --yes`")                        \
   ROW(kUncontrolledPower, 19, "uncontrolled_power", kReleases,                                     \
       "trip: more power than ordered, or power at 0 W",                                            \
-      "another controller; `power_w`; the map's scale; then `clear`",                              \
+      "look for another controller; check `power_w` and the map's scale; then `bess-edge "         \
+      "clear --yes`",                                                                              \
       "until a person checks the battery and runs `bess-edge clear --yes`")                        \
   ROW(kSocMismatch, 20, "soc_mismatch", kReleases,                                                 \
       "trip: the SoC does not change, or does not match the measured power",                       \
-      "frozen values, capacity, power measurement; then `clear`",                                  \
+      "check for frozen values, capacity and power measurement; then `bess-edge clear --yes`",     \
       "until a person checks the battery and runs `bess-edge clear --yes`")                        \
   ROW(kStateLost, 39, "state_lost", kReleases, "trip: state of earlier runs lost",                 \
-      "the disk under `[state] folder`; then `clear`",                                             \
+      "check the disk under `[state] folder`; then `bess-edge clear --yes`",                       \
       "until a person checks the battery and runs `bess-edge clear --yes`")                        \
   ROW(kOtherMaster, 21, "other_master", kReleases,                                                 \
       "another controller replaces orders (two in a row, or every second or third): released, "    \
       "retried",                                                                                   \
-      "a second controller, the manufacturer's app, a schedule in the device; `on_other_master`",  \
+      "look for a second controller: the manufacturer's app, a schedule in the device; "           \
+      "`on_other_master`",                                                                         \
       "retried after 10 minutes, then 20, up to 6 hours, until it succeeds")                       \
   ROW(kOrdersFail, 22, "orders_fail", kReleases,                                                   \
-      "three orders in a row failed while the battery was readable, or it cannot be read while "   \
-      "it follows one; retried",                                                                   \
-      "`battery=` of those lines; external control switched off on the device",                    \
+      "three orders in a row failed while the battery was readable, or it cannot be read "         \
+      "while it follows one; retried",                                                             \
+      "check that external control is enabled on the device",                                      \
       "retried after 10 minutes, then 20, up to 6 hours, until it succeeds")                       \
   ROW(kNoAnswer, 23, "no_answer", kReleases,                                                       \
-      "no power at mid SoC although ordered, or orders end early (two in a row, or every second "  \
-      "or third); retried",                                                                        \
-      "standby, a blocked battery, orders acknowledged without effect; another controller that "   \
-      "writes only a stop",                                                                        \
+      "no power at mid SoC although ordered, or orders end early (two in a row, or every "         \
+      "second or third); retried",                                                                 \
+      "check for standby, a blocked battery, orders acknowledged without effect, another "         \
+      "controller that writes only a stop",                                                        \
       "retried after 10 minutes, then 20, up to 6 hours, until it succeeds")                       \
   ROW(kBatteryCare, 37, "battery_care", kReleases,                                                 \
-      "charges by itself below 12 %, or balances above 95 %: released, retried after 10 min; a "   \
-      "trip (uncontrolled_power) after a day",                                                     \
-      "none; its own display if it recurs daily",                                                  \
+      "charges by itself below 12 %, or balances above 95 %: released, retried after 10 min; "     \
+      "a trip (uncontrolled_power) after a day",                                                   \
+      "no action; if it recurs daily, check the battery's own display",                            \
       "retried after 10 minutes, then 20, up to 6 hours, until it succeeds")                       \
-  ROW(kCapacity, 24, "capacity", kReleases,                                                        \
-      "capacity differs from the configured one; `battery=` may say implausible: the identity "    \
-      "check fails too",                                                                           \
-      "identity of the battery; `capacity_wh`", "until it reports the configured capacity")        \
+  ROW(kCapacity, 24, "capacity", kReleases, "capacity differs from the configured one",            \
+      "check the identity of the battery and `capacity_wh`",                                       \
+      "until it reports the configured capacity")                                                  \
   ROW(kSocJump, 25, "soc_jump", kRests,                                                            \
       "SoC changed by more than power explains; 0 W until three readings agree",                   \
-      "the battery's display", "until three readings of the SoC agree")                            \
+      "check the battery's own display", "until three readings of the SoC agree")                  \
   ROW(kNoPrice, 6, "no_price", kRests, "no price yet",                                             \
-      "`prices=` of that line, table below; `--check`",                                            \
+      "check network and `[price] url`: `bess-prices --check`",                                    \
       "until a price is at most {price_age_s_max} s old")                                          \
   ROW(kPriceAge, 7, "price_age", kRests, "the newest price is older than `price_age_s_max`",       \
-      "`prices=` of that line, table below; `--check`",                                            \
+      "check network and `[price] url`: `bess-prices --check`",                                    \
       "until a price is at most {price_age_s_max} s old")                                          \
   ROW(kPriceQuarterHour, 8, "price_qh", kRests,                                                    \
-      "the newest price is from before the previous quarter-hour", "as price_age",                 \
+      "the newest price is from before the previous quarter-hour",                                 \
+      "check network and `[price] url`: `bess-prices --check`",                                    \
       "until a price is at most {price_age_s_max} s old")                                          \
   ROW(kFrozenPrice, 36, "frozen_price", kRests,                                                    \
       "the newest price has not changed for `frozen_price_s_max` under new time stamps, or "       \
       "alternated between four values for 2.5 times as long",                                      \
-      "the price source; ends with the first price that differs, or the fifth value",              \
-      "until the price changes")                                                                   \
+      "check the price source", "until the price changes")                                         \
   ROW(kSocFull, 9, "soc_full", kGoesOn, "at `soc_max`", "none",                                    \
       "until the SoC is below {soc_below_full} %")                                                 \
   ROW(kSocEmpty, 10, "soc_empty", kGoesOn, "at `soc_min`", "none",                                 \
@@ -107,38 +107,40 @@ namespace bess {
       "passes at local midnight", "until local midnight")                                          \
   ROW(kReversalCap, 26, "reversal_cap", kGoesOn,                                                   \
       "one more change between charging and discharging than `reversals_per_hour_max`",            \
-      "the price source: correct prices do not do this",                                           \
+      "check the price source: correct prices do not do this",                                     \
       "until the last hour has fewer than {reversals_per_hour_max} changes of direction")          \
   ROW(kPowerLimit, 11, "power_limit", kGoesOn, "the order was cut to the battery's limit", "none", \
       "as long as the battery's own limit is this low")                                            \
   ROW(kOutsideLimit, 30, "outside_limit", kGoesOn,                                                 \
       "another program's limit is in force, has lapsed or cannot be parsed",                       \
-      "`bess-edge status`; the file of `[limits]` and the program that writes it",                 \
+      "check `bess-edge status`, the file of `[limits]` and the program that writes it",           \
       "until the limit from outside lapses or is removed")                                         \
   ROW(kMeterLost, 31, "meter_lost", kGoesOn, "no reading of the meter for 30 s: 0 W",              \
-      "`meter=` of that line; cable, address, unit", "until the meter can be read")                \
+      "check cable, address and unit", "until the meter can be read")                              \
   ROW(kMeterMismatch, 38, "meter_mismatch", kGoesOn,                                               \
       "the meter does not step with the battery and is treated as lost: 0 W; after a pause a "     \
       "test at an eighth of the power",                                                            \
-      "meter frozen, inverted, late, on another phase or with another ratio; the battery's own "   \
-      "power; if another device regulates the grid power: `judged = false`",                       \
+      "check whether the meter is frozen, inverted, late, on another phase or has another "        \
+      "ratio; the battery's own power; if another device regulates the grid power: `judged = "     \
+      "false`",                                                                                    \
       "retried at an eighth of the power at {meter_pause_end}")                                    \
   ROW(kImportLimit, 32, "import_limit", kGoesOn,                                                   \
-      "the house load leaves the battery no more import capacity of the connection",               \
-      "none; `[meter]`", "as long as the house leaves no more capacity of the connection")         \
+      "the house load leaves the battery no more import capacity of the connection", "`[meter]`",  \
+      "as long as the house leaves no more capacity of the connection")                            \
   ROW(kExportLimit, 33, "export_limit", kGoesOn,                                                   \
-      "the house leaves the battery no more export capacity of the connection", "none; `[meter]`", \
+      "the house leaves the battery no more export capacity of the connection", "`[meter]`",       \
       "as long as the house leaves no more capacity of the connection")                            \
   ROW(kQuarterHourPeak, 34, "quarter_hour_peak", kGoesOn,                                          \
-      "the mean of the quarter-hour would exceed `peak_w_max`; discharging: the charged energy "   \
-      "is returned",                                                                               \
-      "none; `[meter]`", "until the quarter-hour is over at {quarter_hour_end}")                   \
+      "the mean of the quarter-hour would exceed `peak_w_max`; discharging: the charged "          \
+      "energy is returned",                                                                        \
+      "`[meter]`", "until the quarter-hour is over at {quarter_hour_end}")                         \
   ROW(kRamp, 18, "ramp", kGoesOn, "the order was cut to `ramp_w_max`", "none",                     \
       "{ramp_w_max} W more each control cycle")                                                    \
-  ROW(kHeld, 27, "held", kGoesOn, "operator's `bess-edge hold`", "`status`: power and end time",   \
+  ROW(kHeld, 27, "held", kGoesOn, "operator's `bess-edge hold`",                                   \
+      "`bess-edge status` shows power and end time",                                               \
       "until {hold_end}; `bess-edge hold --release` ends it earlier")                              \
   ROW(kRule, 35, "rule", kGoesOn, "operator's rule exported with the student",                     \
-      "`--check` lists them", "as long as the rule applies: {rules}")                              \
+      "`bess-edge why` names it", "as long as the rule applies: {rules}")                          \
   ROW(kPriceLow, 12, "price_low", kGoesOn,                                                         \
       "at or below `low_price_eur_per_mwh`, against the student's action", "none",                 \
       "until the price is above {low_price} EUR/MWh")                                              \
@@ -146,12 +148,12 @@ namespace bess {
       "at or above `high_price_eur_per_mwh`, against the student's action", "none",                \
       "until the price is below {high_price} EUR/MWh")                                             \
   ROW(kFullCharge, 29, "full_charge", kGoesOn, "full charge due: charging, or no discharge",       \
-      "none; it ends at 99.5 %", "until the SoC is at 99.5 %")                                     \
+      "none; ends at 99.5 %", "until the SoC is at 99.5 %")                                        \
   ROW(kStudent, 14, "student", kGoesOn, "the student's action", "none", "")                        \
   ROW(kStandIn, 40, "stand_in", kGoesOn,                                                           \
       "the student's action at an estimate of the price: the newest is older than "                \
       "`price_age_s_max`, within `stand_in_s_max`",                                                \
-      "as price_age",                                                                              \
+      "as `price_age`",                                                                            \
       "until a price is at most {price_age_s_max} s old, or for at most {stand_in_s_max} s "       \
       "beyond that")
 

@@ -98,7 +98,7 @@ GuardDecision SafetyGuard::find_price_action(const GuardInputs& in) const {
 
 GuardDecision SafetyGuard::find_student_action(const GuardInputs& in) const {
   if (in.full_charge == FullChargeRequest::kCharge) {
-    return {.power_w = settings_.full_charge_power_w, .reason = Reason::kFullCharge};
+    return {.power_w = settings_.power_w / 2, .reason = Reason::kFullCharge};  // gentle
   }
   if (in.full_charge == FullChargeRequest::kNoDischarge &&
       in.student_action == Action::kDischarge) {
@@ -150,9 +150,10 @@ void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) c
 }
 
 /// Applied before the limits: an empty or limited battery gives no relief.
-void SafetyGuard::apply_relief(const SiteRange& site, GuardDecision& decision) {
-  if (site.relief_w > 0 && decision.power_w > -site.relief_w) {
-    decision = {.power_w = -site.relief_w, .reason = Reason::kQuarterHourPeak};
+void SafetyGuard::apply_relief(const SiteRange& site, GuardDecision& decision) const {
+  const std::int32_t relief_w = std::min(site.relief_w, settings_.power_w);
+  if (relief_w > 0 && decision.power_w > -relief_w) {
+    decision = {.power_w = -relief_w, .reason = Reason::kQuarterHourPeak};
   }
 }
 

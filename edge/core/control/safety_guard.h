@@ -29,7 +29,6 @@ struct GuardSettings {
   std::int32_t stand_in_s_max = 0;
   std::int32_t temperature_min_deci_c = 0;
   std::int32_t temperature_max_deci_c = 500;
-  std::int32_t full_charge_power_w = 0;  ///< power of a full charge
 };
 
 struct GuardInputs {
@@ -88,7 +87,7 @@ class SafetyGuard {
   void update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
-  static void apply_relief(const SiteRange& site, GuardDecision& decision);
+  void apply_relief(const SiteRange& site, GuardDecision& decision) const;
   static void apply_site(const SiteRange& site, GuardDecision& decision);
 
   GuardSettings settings_;

@@ -12,7 +12,7 @@ namespace bess {
 
 // Modes of the controller and all transitions: a pure function, tested as a table.
 //
-//   start     no order yet; waits for battery, price and clock              -> running, holding
+//   start     no order yet; waits for battery, price and clock          -> running, holding, safe
 //   running   orders follow student and guard                               -> holding, safe
 //   holding   a stop reason is present: 0 W is held for a while             -> running, safe
 //   safe      released: the battery is in its own mode, the loop continues  -> running

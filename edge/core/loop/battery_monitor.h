@@ -120,8 +120,7 @@ class BatteryMonitor {
     GuardInputs in{
         .now_utc_s = now_utc_s(), .measurement = measurement, .previous_power_w = order_.power_w()};
     CycleRecord between;  // belongs to no cycle
-    parts_.put({.is_tick = false, .margin = margin, .power_w = settings_.guard.power_w}, between,
-               in);
+    parts_.put({.is_tick = false, .margin = margin}, between, in);
     return {.power_w = guard_.rechecked_power_w(in), .reserve_soc_e4 = in.reserve_soc_e4};
   }
 

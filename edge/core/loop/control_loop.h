@@ -121,6 +121,7 @@ class ControlLoop {
     if (!settings_.has_watchdog || !order_.exists()) return false;
     record = final_record(Reason::kHandOver);
     record.ordered_power_w = order_.power_w();
+    record.followed = {.is_judged = true, .power_w = order_.power_w(), .age_s = order_.age_s()};
     return true;
   }
 
@@ -157,7 +158,7 @@ class ControlLoop {
         guard_inputs(record, decision_utc_s(record.utc_s), settings_.guard.price_age_s_max);
     in.clock_ok = clock_.is_synchronised();
     in.previous_power_w = order_.power_w();
-    parts_.put({.power_w = settings_.guard.power_w}, record, in);
+    parts_.put({}, record, in);
     allow_stand_in(guard_, of<FullChargePart>().level, record, in);
     ask_student(of<FullChargePart>().level, of<OutlookPart>(), record, in);
     const GuardDecision decision = guard_.decide(in);
@@ -176,7 +177,9 @@ class ControlLoop {
   }
 
   void advance_mode(CycleRecord& record) {
-    const bool hold_elapsed = record.utc_s - hold_start_utc_s_ >= settings_.hold_s;
+    const std::int64_t held_s = record.utc_s - hold_start_utc_s_;
+    // A clock step backwards does not extend it.
+    const bool hold_elapsed = held_s >= settings_.hold_s || held_s < 0;
     const Mode before = mode_;
     mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
                               .stop_reason = is_stop_reason(record.reason),

@@ -92,7 +92,6 @@ struct Reading {
 struct Moment {
   bool is_tick = true;  ///< false: the present limits are applied to the order in force
   Margin margin = Margin::kWhole;
-  std::int32_t power_w = 0;  ///< rated
 };
 
 struct CyclePart {
@@ -124,7 +123,7 @@ struct SitePart : CyclePart {
                  {.is_driven = now.is_read && response.is_driven, .age_s = response.order_age_s});
   }
   void put(const Moment& now, CycleRecord&, GuardInputs& in) {
-    in.site = site.range(in.now_utc_s, now.power_w, now.margin);
+    in.site = site.range(in.now_utc_s, now.margin);
   }
   void report(CycleRecord& record) const { record.site = site.report(record.utc_s); }
 

@@ -35,6 +35,9 @@ class OrderInForce {
 
   /// An order may be in force at the battery.
   [[nodiscard]] bool exists() const { return exists_; }
+  [[nodiscard]] std::int32_t age_s() const {
+    return static_cast<std::int32_t>(time_.now_s() - since_s_);
+  }
   [[nodiscard]] std::int32_t power_w() const { return power_w_; }
   [[nodiscard]] bool drives() const { return exists_ && power_w_ != 0; }
   /// The first reading has shown whether an earlier run left an order in force.

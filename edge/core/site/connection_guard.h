@@ -84,7 +84,6 @@ struct ConnectionSettings {
 struct ConnectionState {
   std::int32_t grid_w = 0;
   std::int32_t battery_w = 0;
-  std::int32_t relief_w_max = 0;  ///< maximum discharge of the battery
   QuarterHourEnergy::Sums quarter_hour{};
 };
 

@@ -51,7 +51,7 @@ struct NoSite {
   [[nodiscard]] std::int32_t check_every_s() const { return 0; }
   [[nodiscard]] bool needs_battery() const { return false; }
   void observe(std::int64_t, bool, const BatteryMeasurement&, const ObservedOrder&) {}
-  [[nodiscard]] SiteRange range(std::int64_t, std::int32_t, Margin) const { return {}; }
+  [[nodiscard]] SiteRange range(std::int64_t, Margin) const { return {}; }
   [[nodiscard]] SiteReport report(std::int64_t) const { return {}; }
 };
 
@@ -98,16 +98,15 @@ class SiteLimits {
         {.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
   }
 
-  /// Range of an order from `now_utc_s` on; `relief_w_max`: maximum discharge of the battery.
-  [[nodiscard]] SiteRange range(std::int64_t now_utc_s, std::int32_t relief_w_max,
-                                Margin margin) const {
+  /// Range of an order from `now_utc_s` on.
+  [[nodiscard]] SiteRange range(std::int64_t now_utc_s, Margin margin) const {
     SiteRange range;
     limit_from_outside(now_utc_s, range);
     if (!has_meter()) return range;
     if (meter_check_.is_mismatch() && !settings_.idle_without_meter) return range;
     if (is_recent(now_utc_s)) {
       const std::int32_t trusted_w = limit_by_trust(now_utc_s, range);
-      limit_at_connection_by_ratios(now_utc_s, relief_w_max, margin, range);
+      limit_at_connection_by_ratios(now_utc_s, margin, range);
       if (trusted_w != kAnyPowerW) range.relief_w = 0;
     } else if (settings_.idle_without_meter) {
       range.forbid(Reason::kMeterLost);
@@ -147,14 +146,12 @@ class SiteLimits {
   }
 
   /// Applies the meter's reading, and its corrections by the ratios of the last steps.
-  void limit_at_connection_by_ratios(std::int64_t now_utc_s, std::int32_t relief_w_max,
-                                     Margin margin, SiteRange& range) const {
+  void limit_at_connection_by_ratios(std::int64_t now_utc_s, Margin margin,
+                                     SiteRange& range) const {
     const std::int32_t margin_w = settings_.connection.margin_w;
     const std::int32_t kept_w = margin == Margin::kWhole ? margin_w : margin_w / 2;
-    ConnectionState state{.grid_w = grid_w_,
-                          .battery_w = battery_w_,
-                          .relief_w_max = relief_w_max,
-                          .quarter_hour = energy_.at(now_utc_s)};
+    ConnectionState state{
+        .grid_w = grid_w_, .battery_w = battery_w_, .quarter_hour = energy_.at(now_utc_s)};
     const MeterRatios ratios = meter_check_.possible_ratios(now_utc_s);
     // Ratio 1 is last: relief follows from the reading itself.
     for (const std::int32_t permille : {ratios.least_permille, ratios.most_permille, kTrueRatio}) {

@@ -43,7 +43,7 @@ struct EnergyRange {
 
 class EnergyPath {
  public:
-  /// Two for each reading and each cut; a window is 620 s at most.
+  /// Two for each reading and each cut; a window is 700 s at most.
   static constexpr std::size_t kPoints = 64;
 
   /// The energy before this is unknown.

@@ -17,7 +17,7 @@ namespace bess {
 struct LeakyCount {
   static constexpr std::int16_t kBadWeight = 3;
   static constexpr std::int16_t kFound = 5;
-  /// A day of faults is forgiven as soon as two are.
+  /// Capped: a day of bad readings is forgiven as fast as two.
   static constexpr std::int16_t kMost = 2 * kBadWeight;
 
   constexpr void bad() {
@@ -28,10 +28,6 @@ struct LeakyCount {
   }
   [[nodiscard]] constexpr bool is_found() const { return level >= kFound; }
   constexpr void forget() { level = 0; }
-  /// Restores a logged level of an earlier run, clamped to its valid range.
-  constexpr void restore(std::int16_t logged) {
-    level = std::clamp<std::int16_t>(logged, 0, kMost);
-  }
 
   std::int16_t level = 0;
 

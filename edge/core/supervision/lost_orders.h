@@ -89,8 +89,6 @@ class LostOrders {
   /// Distance from the ends of the ordered SoC range at which a battery may be done.
   static constexpr std::int32_t kDoneBelowCeilingE4 = 500;
   static constexpr std::int32_t kDoneAboveFloorE4 = 1'000;
-  /// Below this, in 0.1 degC, charging may be refused.
-  static constexpr std::int32_t kColdDeciC = 80;
 
   static bool is_lost(const BatteryMeasurement& m) { return m.order_replaced || m.order_ended; }
 

@@ -9,6 +9,11 @@
 
 namespace bess {
 
+/// Below this, in 0.1 degC, charging may be reduced or refused.
+inline constexpr std::int32_t kColdDeciC = 80;
+/// One lost reading, and the intervals of both; beyond it, the power in between is unknown.
+inline constexpr std::int64_t kReadingGapMaxS = 300;
+
 /// Negation; INT32_MIN, which a device may send, saturates.
 constexpr std::int32_t opposite_power_w(std::int32_t power_w) {
   return -std::max(power_w, -INT32_MAX);

@@ -11,8 +11,6 @@ namespace {
 /// Above this SoC, and up to this much above the orders' floor, a battery may reduce power.
 constexpr std::int32_t kSlowFromE4 = 8'000;
 constexpr std::int32_t kSlowAboveFloorE4 = 2'000;
-/// Below this, in 0.1 degC, charging may be reduced or refused.
-constexpr std::int32_t kColdDeciC = 80;
 /// Up to here a battery protects itself from deep discharge; from there on it balances its cells.
 constexpr std::int32_t kSavesItselfE4 = 1'200;
 constexpr std::int32_t kBalancesFromE4 = 9'500;
@@ -22,7 +20,6 @@ constexpr std::int32_t kFullRampS = 180;
 /// A device may start later than its map says: after a cut, or in a cycle shortened by a clock
 /// step, it still follows the previous order.
 constexpr std::int32_t kLateS = 10;
-constexpr std::int64_t kReadingGapMaxS = 300;  ///< one lost reading, and the intervals of both
 
 }  // namespace
 

@@ -18,7 +18,6 @@ constexpr std::int64_t kExcusedE4Max = 2'000;
 constexpr std::int32_t kShownFullE4 = 9'990;
 constexpr std::int32_t kShownEmptyE4 = 10;
 
-constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond it, the energy in between is unknown
 constexpr std::int32_t kReadingsUntilSettled = 3;
 constexpr std::int32_t kStillReadings = 2;
 constexpr std::int64_t kStillSlackE4 = 50;

@@ -68,13 +68,12 @@ class SocMonitor {
   bool has_before_ = false;
   Response before_;
   std::int64_t capacity_wh_ = 1;
-  std::int64_t measured_energy_ws_ =
-      0;  ///< from then until `flow_s_`, with `flow_power_w_` at its end
-  std::int64_t late_ws_ = 0;
+  std::int64_t measured_energy_ws_ = 0;  ///< from `before_` until `flow_s_`
+  std::int64_t late_ws_ = 0;             ///< the same, as late as permitted
   std::int64_t flow_s_ = 0;
-  std::int32_t flow_power_w_ = 0;
+  std::int32_t flow_power_w_ = 0;  ///< at `flow_s_`
 
-  std::int32_t shown_step_e4_ = 0;  ///< smallest observed change; 0 = none yet
+  std::int32_t shown_step_e4_ = 0;  ///< greatest common divisor of the SoC values; 0 = none yet
   std::int32_t unsettled_readings_ = 0;
   LeakyCount jumps_;                ///< under power; at rest a recalibration is possible
   std::int64_t excused_e4_ = 0;     ///< at this end, since it was reached

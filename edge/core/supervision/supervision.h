@@ -62,7 +62,7 @@ class Supervision {
   explicit Supervision(const SupervisionSettings& settings)
       : settings_(settings), response_(settings.response), lost_(settings.response) {}
 
-  /// Every reading of a controlled battery. `holds_nothing`: no order of ours is in force.
+  /// Each reading at the end of a step. `holds_nothing`: no order of ours is in force.
   void observe(const Response& now, bool holds_nothing) {
     note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);

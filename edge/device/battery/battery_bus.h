@@ -183,7 +183,9 @@ class BatteryBus {
     if (status != Status::kBusException || link_.last_exception() > kExceptionNoAddress) {
       return status;
     }
-    if (send(writes_by_other_ ? write.function : other) != Status::kOk) return status;
+    const Status second = send(writes_by_other_ ? write.function : other);
+    // The exception of the second answer may hide a permanent first one, but not a time-out.
+    if (second != Status::kOk) return is_temporary(second) ? second : status;
     writes_by_other_ = !writes_by_other_;
     return Status::kOk;
   }

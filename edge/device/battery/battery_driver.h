@@ -44,7 +44,10 @@ class BatteryDriver {
       return status;
     }
     const Status came = read_registers();
-    const bool is_complete = came == Status::kOk || !reader_.lacks_required_values(bus_.live());
+    // After a restart, an order of the previous run must not be overlooked.
+    const bool knows_order = ours_.was_ours() || has_read_order_state();
+    const bool is_complete =
+        came == Status::kOk || (knows_order && !reader_.lacks_required_values(bus_.live()));
     const Status status =
         is_complete ? reader_.translate(bus_.live(), bus_.time().now_ns(), measurement) : came;
     if (status != Status::kOk) {
@@ -226,7 +229,7 @@ class BatteryDriver {
     });
   }
 
-  /// True if writing is permitted; flash is compared with the device first.
+  /// kOk if writing is permitted; flash is compared with the device first.
   Status check(const CommandSequence& sequence, const PowerOrder& order) {
     return retried(bus_.time(), kReadPatienceNs, [&] { return runner_.check(sequence, order); });
   }
@@ -243,21 +246,29 @@ class BatteryDriver {
     return bus_.last_read_ns() == read_ns ? status : Status::kOk;
   }
 
-  /// Order that the device follows, including one from an earlier run.
+  /// The newest reading had the registers that show whether an order is in force.
+  [[nodiscard]] bool has_read_order_state() const {
+    return std::none_of(map_.active.begin(), map_.active.end(),
+                        [&](const Condition& c) { return bus_.live().failed[c.point]; });
+  }
+
+  /// Order that the device follows, including one from an earlier run. Old registers would describe
+  /// the previous order.
   void note_order_in_force(BatteryMeasurement& m) {
-    const bool visible = shows_end();
-    const bool active = live_all(map_, map_.active, bus_.live());
+    const bool visible = shows_end() && has_read_order_state();  // else by time
+    const PointValues now = bus_.live().received();
+    const bool active = live_all(map_, map_.active, now);
     // An order of a killed process: its expiry is not visible, but the external control that it
     // enabled remains until the release.
     const bool left_behind = !visible && !ours_.was_ours() && active;
     m.dispatch_active = visible ? active : ours_.may_last(now_ns()) || left_behind;
     std::int64_t power_w = 0;
-    m.has_order_power = m.dispatch_active && !left_behind &&
-                        live_power(map_, map_.order_power, bus_.live(), power_w);
+    m.has_order_power =
+        m.dispatch_active && !left_behind && live_power(map_, map_.order_power, now, power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
-    const bool is_shown = remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s);
+    const bool is_shown = remaining >= 0 && live_value(map_, now, remaining, left_s);
     ours_.note_seconds_left(is_shown ? left_s : INT64_MAX);
   }
 

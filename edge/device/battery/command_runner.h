@@ -62,7 +62,6 @@ class CommandRunner {
 
   [[nodiscard]] FlashBudget& budget() { return budget_; }
   [[nodiscard]] const FlashBudget& budget() const { return budget_; }
-  [[nodiscard]] const PointValues& written() const { return written_; }
   [[nodiscard]] PointValues& saved() { return saved_; }
   void forget() { written_.forget(); }
 
@@ -92,7 +91,7 @@ class CommandRunner {
         const bool counts =
             value.argument != Argument::kHeartbeat && !is_written_later(sequence, i, value.point);
         if (counts && !holds(written_, value.point, block.data(), offset)) return false;
-        offset += map_.points[value.point].register_count();
+        offset += map_.points[value.point].registers;
       }
     }
     return true;
@@ -178,7 +177,7 @@ class CommandRunner {
       if (status == Status::kOk && write.read_back == ReadBack::kNone) {
         written_.keep(map_, value.point, block.data() + offset);
       }
-      offset += map_.points[value.point].register_count();
+      offset += map_.points[value.point].registers;
     }
     return status;
   }
@@ -197,7 +196,7 @@ class CommandRunner {
     int offset = 0;
     for (const WriteValue& value : write.values) {
       same = same && holds(written_, value.point, block.data(), offset);
-      offset += map_.points[value.point].register_count();
+      offset += map_.points[value.point].registers;
     }
     return Status::kOk;
   }
@@ -205,7 +204,7 @@ class CommandRunner {
   bool holds(const PointValues& registers, int point, const std::uint16_t* block,
              int offset) const {
     if (!registers.known[point]) return false;
-    const int count = map_.points[point].register_count();
+    const int count = map_.points[point].registers;
     return std::equal(registers.raw[point], registers.raw[point] + count, block + offset);
   }
 
@@ -261,7 +260,7 @@ class CommandRunner {
       int offset = 0;
       for (const WriteValue& value : write.values) {
         if (value.point == point && holds(now, point, block.data(), offset)) return true;
-        offset += map_.points[value.point].register_count();
+        offset += map_.points[value.point].registers;
       }
     }
     return false;
@@ -295,7 +294,7 @@ class CommandRunner {
         return Status::kNotApplied;
       }
       if (last) written_.keep(map_, value.point, block.data() + offset);
-      offset += map_.points[value.point].register_count();
+      offset += map_.points[value.point].registers;
     }
     return Status::kOk;
   }

@@ -10,8 +10,7 @@ namespace bess {
 
 namespace {
 
-constexpr double kSettleSMax = 100;  ///< maximum in a map
-constexpr int kReadingsLate = 3;     ///< noise causes fewer
+constexpr int kReadingsLate = 3;  ///< noise causes fewer
 /// Margin of a proposed setting.
 constexpr double kSpare = 1.2;
 constexpr std::int32_t kStepToW = 100;
@@ -59,7 +58,7 @@ void propose(const StepResponse& small, const StepResponse& larger, const StepFi
   const double needed_s = std::max(speed.has_two ? speed.largest.most : speed.largest.least,
                                    static_cast<double>(seen_ms) / 1e3);
   const double wanted_s = std::floor(needed_s * kSpare) + 1;
-  speed.wanted_settle_s = static_cast<std::int32_t>(std::min(wanted_s, kSettleSMax));
+  speed.wanted_settle_s = static_cast<std::int32_t>(std::min<double>(wanted_s, kSettleSMax));
   if (speed.largest.best > kSettleSMax / kSpare && wanted_s > kSettleSMax) {
     speed.wanted_ramp_w_max = manageable_step_w(fit, criteria);
   }

@@ -20,7 +20,7 @@ struct IdentityFailure {
   /// True for a device that is still starting: all zeros or all ones, or no models yet.
   [[nodiscard]] bool is_blank(const RegisterMap& map) const {
     if (missing_model != 0) return true;
-    const int count = map.points[map.identity[check].point].register_count();
+    const int count = map.points[map.identity[check].point].registers;
     const auto all = [&](int word) { return std::count(raw, raw + count, word) == count; };
     return all(0) || all(0xFFFF);
   }

@@ -117,7 +117,7 @@ Status MeasurementReader::translate(const PointValues& live, std::int64_t now_ns
     m.alarm = false;
     m.warning = true;
   }
-  m.has_grid_power = live_power(map_, map_.grid_power, live, power_w);
+  m.has_grid_power = live_power(map_, map_.grid_power, live.received(), power_w);
   if (m.has_grid_power) m.grid_power_w = clamp_to_int32(power_w);
   return alive_.is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
 }

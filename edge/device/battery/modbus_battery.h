@@ -31,7 +31,8 @@ class GridMeter {
   /// Import is positive. One attempt only: the next check is seconds away, and the battery waits.
   /// kImplausible: another device, a value out of range, or a frozen one.
   Status read(std::int32_t& grid_power_w) {
-    if (!identified_) {
+    // Its address may have passed to another device.
+    if (!identified_ || bus_.link().counters().reconnects != identified_connections_) {
       IdentityFailure failure;
       if (const Status status = check_identity(failure); status != Status::kOk) return status;
     }
@@ -47,6 +48,7 @@ class GridMeter {
   Status check_identity(IdentityFailure& failure) {
     const Status status = check_identity_of(map_, bus_, failure);
     identified_ = status == Status::kOk;
+    identified_connections_ = bus_.link().counters().reconnects;
     return status;
   }
 
@@ -55,6 +57,7 @@ class GridMeter {
   BatteryBus<Link, Time> bus_;
   HeartbeatCheck alive_;
   bool identified_ = false;
+  std::int64_t identified_connections_ = 0;
 };
 
 /// Time base of the device: in simulation seconds pass faster; it never jumps.

@@ -28,7 +28,7 @@ struct LinkTiming {
   std::int32_t response_timeout_ms = 1'000;  ///< wall time, also for connecting
   std::int32_t minimum_gap_ms = 0;           ///< from the end of a request to the next, in `clock`
   std::int32_t connect_delay_ms = 0;         ///< from connecting to the first request, in `clock`
-  // RTU, in `clock`, at least 1 and 5 response time-outs:
+  // RTU, in `clock`; raised to at least one (quiet) and five (late reply) response time-outs:
   std::int32_t quiet_ms = 1'000;            ///< after a failed request, before the next
   std::int32_t late_reply_ms_max = 10'000;  ///< maximum delay of a reply
 };

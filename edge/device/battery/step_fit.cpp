@@ -153,7 +153,7 @@ double StepFit::misfit(const StepDynamics& dynamics) const {
     for (const StepReading& r : curve->readings()) {
       const double seconds = static_cast<double>(r.begin_ms + r.end_ms) / 2'000;
       const double model_w = step_response_w(dynamics, step_w, seconds);
-      const double read_w = curve->step_response_w(r);
+      const double read_w = curve->risen_w(r);
       both += weight * model_w * read_w;
       model += weight * model_w * model_w;
       read += weight * read_w * read_w;

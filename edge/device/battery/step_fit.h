@@ -51,9 +51,7 @@ class StepResponse {
   [[nodiscard]] std::int32_t step_w() const { return ordered_w_ - from_w_; }
   [[nodiscard]] std::int32_t band_w() const { return band_w_; }
   /// Rise since the start of the step.
-  [[nodiscard]] std::int32_t step_response_w(const StepReading& r) const {
-    return r.along_w - from_w_;
-  }
+  [[nodiscard]] std::int32_t risen_w(const StepReading& r) const { return r.along_w - from_w_; }
   /// The last instant at which the power was certainly outside its band.
   [[nodiscard]] std::int64_t outside_until_ms() const { return outside_until_ms_; }
   [[nodiscard]] bool has_come() const { return came_ms_ >= 0; }
@@ -75,7 +73,7 @@ class StepResponse {
     std::int64_t longest_ms = 0;
     const StepReading* first = nullptr;
     for (const StepReading& r : readings_) {
-      const bool is_on_its_way = !is_within(r.along_w) && step_response_w(r) * 10 >= step_w();
+      const bool is_on_its_way = !is_within(r.along_w) && risen_w(r) * 10 >= step_w();
       if (!is_on_its_way || first == nullptr || first->along_w != r.along_w) first = &r;
       if (is_on_its_way) longest_ms = std::max(longest_ms, r.end_ms - first->begin_ms);
     }

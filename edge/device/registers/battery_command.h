@@ -38,7 +38,6 @@ enum class ReadBack : std::uint8_t { kExact, kTolerance, kNone };
 /// Contiguous points written in one request: the device receives all of them or none.
 struct BlockWrite {
   StaticVector<WriteValue, 12> values;
-  std::uint16_t address = 0;  ///< of the first point (an offset when it belongs to a model)
   std::uint8_t function = 16;
   ReadBack read_back = ReadBack::kExact;
   bool eeprom = false;         ///< at least one of its registers has limited write endurance

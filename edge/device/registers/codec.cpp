@@ -58,7 +58,7 @@ std::int64_t fallback_of(const RegisterMap& map, int point) {
 /// The register's raw words: restored exactly as found.
 Status append_saved(const RegisterMap& map, int point, const PointValues& saved,
                     RegisterBlock& out) {
-  for (int i = 0; i < map.points[point].register_count(); ++i) {
+  for (int i = 0; i < map.points[point].registers; ++i) {
     if (!out.try_push_back(saved.raw[point][i])) return Status::kTooLarge;
   }
   return Status::kOk;

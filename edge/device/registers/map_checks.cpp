@@ -195,7 +195,7 @@ void check_saved(TomlTable& root, const RegisterMap& map) {
     }
   }
   for (const SavedPoint& saved : map.saved) {
-    if (map.points[saved.point].register_count() <= kPointRegistersMax) continue;
+    if (map.points[saved.point].registers <= kPointRegistersMax) continue;
     root.fail("command", "cannot save text");
   }
 }
@@ -203,7 +203,7 @@ void check_saved(TomlTable& root, const RegisterMap& map) {
 void check_addresses(TomlTable& root, const RegisterMap& map) {
   for (int i = 0; i < map.points.size(); ++i) {
     const RegisterPoint& p = map.points[i];
-    const std::int64_t end = std::int64_t{p.address} + p.register_count();
+    const std::int64_t end = std::int64_t{p.address} + p.registers;
     if (end > 65'536) root.fail("point", quoted(p.name.view()) + " is beyond address 65535");
   }
 }

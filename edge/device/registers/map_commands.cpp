@@ -91,7 +91,7 @@ bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
   const RegisterPoint& point = map.points[value.point];
   if (!write.values.empty()) {
     const RegisterPoint& before = map.points[write.values[write.values.size() - 1].point];
-    if (point.address != before.address + before.register_count() || point.model != before.model ||
+    if (point.address != before.address + before.registers || point.model != before.model ||
         point.unit_group != before.unit_group) {
       table.fail_at(at, quoted(point.name.view()) +
                             " does not follow the previous point: a block write needs "
@@ -114,12 +114,11 @@ void finish_write(TomlTable& table, const TomlValue& at, const RegisterMap& map,
   int registers = 0;
   for (const WriteValue& value : write.values) {
     const RegisterPoint& point = map.points[value.point];
-    registers += point.register_count();
+    registers += point.registers;
     write.eeprom = write.eeprom || point.eeprom;
   }
   if (registers == 0) return table.fail_at(at, "a write needs at least one \"point = value\"");
   if (registers > kBlockRegistersMax) table.fail_at(at, "too many registers for one write");
-  write.address = map.points[write.values[0].point].address;
   if (write.function == 6 && registers != 1) table.fail_at(at, "function 6 writes one register");
 }
 
@@ -144,8 +143,7 @@ void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map
 /// A default of 6 means: single registers by function 6, blocks by 16.
 std::uint8_t default_function(const RegisterMap& map, const BlockWrite& write,
                               const MapDefaults& defaults) {
-  const bool single =
-      write.values.size() == 1 && map.points[write.values[0].point].register_count() == 1;
+  const bool single = write.values.size() == 1 && map.points[write.values[0].point].registers == 1;
   return defaults.write_function == 6 && single ? 6 : 16;
 }
 

@@ -51,7 +51,7 @@ std::int32_t soc_register_step_e4(const RegisterMap& map) {
 void read_response(TomlTable& root, RegisterMap& map) {
   TomlTable table = map_child(root, "response");
   map.response.soc_step_e4 = soc_register_step_e4(map);
-  table.integer("settle_s", map.response.settle_s, 1, 600);
+  table.integer("settle_s", map.response.settle_s, 1, kSettleSMax);
   table.integer("tolerance_percent", map.response.tolerance_percent, 1, 50);
   table.integer("tolerance_w", map.response.tolerance_w, 1, 1'000'000);
   table.integer("soc_step_e4", map.response.soc_step_e4, 1, 1'000);

@@ -56,7 +56,7 @@ namespace {
 
 /// Bits that a reading of the point can contain, given its mask, registers and range.
 std::uint64_t readable_bits(const RegisterPoint& point) {
-  const int width = 16 * point.register_count();
+  const int width = 16 * point.registers;
   const std::uint64_t all = point.mask != 0 ? point.mask >> std::countr_zero(point.mask)
                             : width >= 64   ? ~0ULL
                                             : (1ULL << width) - 1;

@@ -60,8 +60,8 @@ Rounding mirrored(Rounding rounding) {
 std::uint64_t bits_of(const RegisterPoint& point, const std::uint16_t* raw) {
   std::uint64_t bits = 0;
   const bool high_first = point.word_order == WordOrder::kHighFirst;
-  for (int i = 0; i < point.register_count(); ++i) {
-    bits = bits << 16 | raw[high_first ? i : point.register_count() - 1 - i];
+  for (int i = 0; i < point.registers; ++i) {
+    bits = bits << 16 | raw[high_first ? i : point.registers - 1 - i];
   }
   return bits;
 }
@@ -131,7 +131,7 @@ bool fits(const RegisterPoint& point, std::int64_t raw) {
 }
 
 Status append(const RegisterPoint& point, std::uint64_t bits, RegisterBlock& out) {
-  const int count = point.register_count();
+  const int count = point.registers;
   for (int i = 0; i < count; ++i) {
     const int word = point.word_order == WordOrder::kHighFirst ? count - 1 - i : i;
     if (!out.try_push_back(static_cast<std::uint16_t>(bits >> 16 * word))) {
@@ -209,8 +209,8 @@ Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding,
 FixedText<2 * kTextRegistersMax> decode_text(const RegisterPoint& point, const std::uint16_t* raw) {
   char text[2 * kTextRegistersMax];
   int size = 0;
-  for (int i = 0; i < point.register_count(); ++i) {
-    const int word = point.word_order == WordOrder::kHighFirst ? i : point.register_count() - 1 - i;
+  for (int i = 0; i < point.registers; ++i) {
+    const int word = point.word_order == WordOrder::kHighFirst ? i : point.registers - 1 - i;
     text[size++] = static_cast<char>(raw[word] >> 8);
     text[size++] = static_cast<char>(raw[word] & 0xFF);
   }

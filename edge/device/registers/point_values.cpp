@@ -50,7 +50,7 @@ int PointPlaces::offset_in(const BusExchange& exchange, int point) const {
                            (is_written_[point] && (exchange.is_write() || exchange.function == 3));
   if (!is_of_table || !is_placed(point) || exchange.unit != unit_of(point)) return -1;
   const int offset = address_of(point) - exchange.address;
-  return offset >= 0 && offset + p.register_count() <= exchange.count ? offset : -1;
+  return offset >= 0 && offset + p.registers <= exchange.count ? offset : -1;
 }
 
 bool PointPlaces::is_placed(int point) const {
@@ -69,7 +69,7 @@ std::int32_t PointPlaces::unit_of(int point) const {
 }
 
 void PointValues::keep(const RegisterMap& map, int point, const std::uint16_t* registers) {
-  const int count = map.points[point].register_count();
+  const int count = map.points[point].registers;
   if (count > kPointRegistersMax) return;  // text
   std::copy(registers, registers + count, raw[point]);
   known[point] = true;

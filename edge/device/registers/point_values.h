@@ -52,6 +52,12 @@ struct PointValues {
   bool failed[kPointsMax] = {};  ///< the newest reading failed: the known value is older
   bool absent[kPointsMax] = {};  ///< optional, and not present on this device
 
+  /// Without the values whose newest reading failed.
+  [[nodiscard]] PointValues received() const {
+    PointValues values = *this;
+    for (int i = 0; i < kPointsMax; ++i) values.known[i] = known[i] && !failed[i];
+    return values;
+  }
   void keep(const RegisterMap& map, int point, const std::uint16_t* registers);
   void forget() { *this = PointValues{}; }
 };
@@ -63,8 +69,8 @@ struct PointValues {
                               std::int64_t& value);
 
 /// Power of the first case that applies, among those whose points this device has; `cases` is the
-/// map's measured_power or order_power. False if there is none, or a register is unknown or
-/// implausible.
+/// map's measured_power, order_power or grid_power. False if there is none, or a register is
+/// unknown or implausible.
 [[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                               const PointValues& live, std::int64_t& power_w);
 

@@ -59,8 +59,6 @@ struct RegisterPoint {
   std::int32_t raw_at_max = 0;  ///< raw value written for the maximum: no limit; 0 = none
   bool unknown_is_max = false;  ///< "not implemented" is read as the maximum
   StaticVector<std::uint64_t, 3> not_implemented;  ///< raw values that mean: no value
-
-  [[nodiscard]] constexpr int register_count() const { return registers; }
 };
 
 /// Condition on the value of `point`.

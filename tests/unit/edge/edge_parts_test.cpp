@@ -22,17 +22,5 @@ TEST(Ticks, AreOnTheTwoMinuteGridStrictlyAhead) {
   EXPECT_EQ(next_tick_utc_s(120), 240);
 }
 
-TEST(LogText, CsvLineHasAsManyFieldsAsItsHeader) {
-  CycleRecord record;
-  record.utc_s = 1'679'788'800;
-  record.price.has_row = true;
-  record.price.minute_utc_s = 1'679'788'740;
-  char line[kLogLineBytes];
-  const std::string csv(line, format_csv_line(record, line));
-  const std::string header(line, format_csv_header(line));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), std::count(header.begin(), header.end(), ','));
-  EXPECT_TRUE(csv.starts_with("2023-03-26T00:00:00Z,0,start,2023-03-25T23:59:00Z,")) << csv;
-}
-
 }  // namespace
 }  // namespace bess

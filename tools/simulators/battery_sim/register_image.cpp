@@ -21,7 +21,7 @@ constexpr int kCommonModelRegisters = 66;
 int model_registers(const RegisterMap& map, int model) {
   int registers = 0;
   for (const RegisterPoint& p : map.points) {
-    if (p.model == model) registers = std::max(registers, p.address + p.register_count() - 2);
+    if (p.model == model) registers = std::max(registers, p.address + p.registers - 2);
   }
   return registers;
 }
@@ -74,7 +74,7 @@ void RegisterImage::identify(const IdentityCheck& check) {
 int RegisterImage::address_end(const RegisterMap& map) {
   int end = 0;
   for (const RegisterPoint& p : map.points) {
-    if (p.model < 0) end = std::max(end, p.address + p.register_count());
+    if (p.model < 0) end = std::max(end, p.address + p.registers);
   }
   if (map.models.empty()) return end;
   int chain_end = first_model_address(map);
@@ -252,7 +252,7 @@ void RegisterImage::change_mode_from_outside() {
   std::int64_t other = (is_named ? mode.value : value(mode.point)) - 1;
   if (other < p.value_min || (!is_named && other == mode.value)) other += 2;
   set(mode.point, other);
-  apply_write(address_of(mode.point), p.register_count());
+  apply_write(address_of(mode.point), p.registers);
 }
 
 bool RegisterImage::is_order_ignored(int address, int count) const {
@@ -319,7 +319,7 @@ void RegisterImage::set(int point, std::int64_t value) {
   if (is_scaled && !live_scaling(map_, snapshot(), point, scaling)) return;
   if (encode(p, value, Rounding::kNearest, block, scaling) != Status::kOk) return;
   const std::span<std::uint16_t> registers = p.read_function == 4 ? input_ : holding_;
-  if (p.mask != 0 && p.register_count() == 1) {  // other points share this register
+  if (p.mask != 0 && p.registers == 1) {  // other points share this register
     const auto others = registers[address_of(point)] & ~p.mask;
     const auto own = static_cast<std::uint64_t>(value) << std::countr_zero(p.mask);
     registers[address_of(point)] = static_cast<std::uint16_t>(others | (own & p.mask));
@@ -342,7 +342,7 @@ void RegisterImage::assign(const Assignment& assignment) {
 
 bool RegisterImage::covers(int address, int count, int point) const {
   const int begin = address_of(point);
-  return address <= begin && begin + map_.points[point].register_count() <= address + count;
+  return address <= begin && begin + map_.points[point].registers <= address + count;
 }
 
 }  // namespace bess

@@ -28,7 +28,7 @@ bool load_pieces(const Pieces& pieces, EdgeConfig& config, std::string& error) {
   return load_edge_config(folder.write("edge.toml", toml_of(pieces)), config, error);
 }
 
-TEST(PeopleConfig, WithoutKeysNothingIsRequested) {
+TEST(OperatorConfig, WithoutKeysNothingIsRequested) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_pieces({}, config, error)) << error;
@@ -36,7 +36,7 @@ TEST(PeopleConfig, WithoutKeysNothingIsRequested) {
   EXPECT_EQ(config.control.full_charge_every_days, 0);
 }
 
-TEST(PeopleConfig, ReadsTheRequestsOfTheOperator) {
+TEST(OperatorConfig, ReadsTheRequestsOfTheOperator) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\n",
@@ -46,7 +46,6 @@ TEST(PeopleConfig, ReadsTheRequestsOfTheOperator) {
                           config, error))
       << error;
   EXPECT_EQ(config.control.full_charge_every_days, 14);
-  EXPECT_EQ(config.control.guard.full_charge_power_w, 2'000);
   ASSERT_EQ(config.control.reserve.size(), 2);
   EXPECT_EQ(config.control.reserve[0].from_minute, 1'020);
   EXPECT_EQ(config.control.reserve[0].to_minute, 1'440);
@@ -59,14 +58,14 @@ TEST(PeopleConfig, ReadsTheRequestsOfTheOperator) {
 }
 
 /// bess-notify reads its own section: a mistake in it must not stop the controller.
-TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
+TEST(OperatorConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
   EdgeConfig config;
   std::string error;
   EXPECT_TRUE(load_pieces({.rest = "[notify]\nno_such_key = 1\n"}, config, error)) << error;
   EXPECT_TRUE(load_pieces({.rest = "[settled]\nno_such_key = 1\n"}, config, error)) << error;
 }
 
-TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
+TEST(OperatorConfig, EveryMistakeIsOneClearLine) {
   const auto reserve = [](const std::string& keys) {
     return Pieces{.rest = "[[reserve]]\n" + keys};
   };
@@ -102,7 +101,7 @@ TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
   }
 }
 
-TEST(WishesNote, ListsTheRequestsAndNothingElse) {
+TEST(OperatorNote, ListsTheRequestsAndNothingElse) {
   set_market_time_zone();
   constexpr std::int64_t kNow = 1'679'875'320;  // 02:02 in Brussels
   ControlSettings control;
@@ -110,7 +109,6 @@ TEST(WishesNote, ListsTheRequestsAndNothingElse) {
   EXPECT_EQ(operator_note(control, {.power_w = -5, .until_utc_s = kNow}, kNow), "");  // over
   control.reserve.push_back({.from_minute = 0, .to_minute = 180, .soc_e4 = 1'550});
   control.full_charge_every_days = 7;
-  control.guard.full_charge_power_w = 2'000;
   EXPECT_THAT(operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
               Names("-500 W 2023-03-27T00:03:00Z 15.5 % 7 2000"));
   EXPECT_THAT(operator_note({}, {.unreadable = true}, kNow), Names("hold"));

@@ -20,7 +20,6 @@ SiteRange range_of(const ConnectionSettings& settings, const ConnectionState& st
 ConnectionState at_3_kw(std::int64_t import_ws = 0, std::int32_t left_s = 900) {
   return {.grid_w = 3'000,
           .battery_w = 1'000,
-          .relief_w_max = kBatteryW,
           .quarter_hour = {.import_ws = import_ws, .left_s = left_s}};
 }
 
@@ -70,7 +69,7 @@ TEST(ConnectionGuard, WhatIsLeftOfAQuarterHourIsNotSpentInTheNext) {
 
 TEST(ConnectionGuard, ReliefGivesBackWhatTheBatteryTookAndNoMore) {
   const ConnectionSettings settings{.peak_w_max = 3'000, .margin_w = 0};
-  ConnectionState state{.grid_w = 6'000, .relief_w_max = kBatteryW};
+  ConnectionState state{.grid_w = 6'000};
   state.quarter_hour = {.import_ws = 450 * 2'500, .battery_ws = 90'000, .left_s = 450};
   SiteRange range = range_of(settings, state);
   EXPECT_EQ(range.charge_w_max, 0);
@@ -99,7 +98,6 @@ Draw drawn(std::mt19937_64& random) {
   d.settings.peak_shave = any(0, 3) == 0;
   d.state.battery_w = any(-kBatteryW, kBatteryW);
   d.state.grid_w = d.state.battery_w + any(-8'000, 12'000);
-  d.state.relief_w_max = any(0, 5'000);
   const std::int32_t left_s = any(1, 900);
   d.state.quarter_hour = {.import_ws = std::int64_t{any(0, 12'000)} * (900 - left_s),
                           .battery_ws = std::int64_t{any(0, 4'000)} * (900 - left_s),

@@ -52,7 +52,7 @@ TEST(GuardRules, OverrideThresholdsAndFullCharges) {
   expect(in, 0, Reason::kRule);
   in.price_centi_eur_per_mwh = 5'000;
   in.full_charge = FullChargeRequest::kCharge;
-  expect(in, 0, Reason::kRule, {.full_charge_power_w = 2'000});
+  expect(in, 0, Reason::kRule);
 }
 
 TEST(GuardRules, YieldToHoldsLimitsAndStopReasons) {

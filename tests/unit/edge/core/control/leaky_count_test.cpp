@@ -51,19 +51,11 @@ TEST(LeakyCount, WhatWasBadForADayIsForgivenLikeWhatWasBadTwice) {
   EXPECT_FALSE(day.is_found());
 }
 
-TEST(LeakyCount, ForgetsAndTakesUpWhatWasWrittenDown) {
+TEST(LeakyCount, ForgetsItsLevel) {
   LeakyCount count;
   count.bad();
-  count.bad();
-  LeakyCount restored;
-  restored.restore(count.level);
-  EXPECT_EQ(restored, count);
   count.forget();
   EXPECT_EQ(count.level, 0);
-  for (const auto& [logged, level] : {std::pair{-1, 0}, {32'767, 6}, {-32'768, 0}, {4, 4}}) {
-    restored.restore(static_cast<std::int16_t>(logged));
-    EXPECT_EQ(restored.level, level) << logged;
-  }
 }
 
 }  // namespace

@@ -57,18 +57,6 @@ TEST(Hold, IsTakenUpAtATickAndNotBetweenTwo) {
   EXPECT_EQ(in.held_power_w, 1'500);
 }
 
-TEST(LatestValue, WhatWasPostedLastStaysUntilAnotherIsPosted) {
-  LatestValue<int> latest_hold;
-  for (int i = 1; i < 6; ++i) {
-    for (int posts = 0; posts < i % 3; ++posts) {
-      latest_hold.draft() = 10 * i + posts;
-      latest_hold.post();
-    }
-    const int last = i % 3 == 0 ? 21 : 10 * i + i % 3 - 1;
-    for (int purpose = 0; purpose < 4; ++purpose) EXPECT_EQ(latest_hold.latest(), last) << i;
-  }
-}
-
 TEST(Hold, HoldsUntilItsEndAndNotLongerThanAllowed) {
   const Hold hold{.power_w = -2'000, .until_utc_s = kSoon};
   EXPECT_TRUE(hold_at(hold, kNow).held);
@@ -163,7 +151,7 @@ TEST(FullCharge, ARestartContinuesTheCount) {
   EXPECT_EQ(charge.days_since_full(), 0);
 }
 
-constexpr GuardSettings kSettings{.full_charge_power_w = 2'000};
+constexpr GuardSettings kSettings{};
 
 GuardDecision decide(const GuardInputs& in, const GuardSettings& settings = kSettings) {
   return SafetyGuard(settings).decide(in);

@@ -16,12 +16,12 @@ TEST(Reasons, TheManualHasTheTable) {
   std::ostringstream text;
   text << file.rdbuf();
   for (const ReasonEffect effect : {ReasonEffect::kRests, ReasonEffect::kGoesOn}) {
-    std::string table = "| code | meaning | remedy |\n|---|---|---|\n";
+    std::string table = "|code|meaning|remedy|\n|---|---|---|\n";
     for (const ReasonInfo& reason : kReasons) {
       const bool drives = reason.effect == ReasonEffect::kGoesOn;
       if (drives != (effect == ReasonEffect::kGoesOn)) continue;
-      table.append("| `").append(reason.name).append("` | ").append(reason.meaning);
-      table.append(" | ").append(reason.look_at).append(" |\n");
+      table.append("|`").append(reason.name).append("`|").append(reason.meaning);
+      table.append("|").append(reason.look_at).append("|\n");
     }
     const bool is_there = text.str().find("\n\n" + table + "\n") != std::string::npos;
     EXPECT_TRUE(is_there) << "troubleshooting.md must have exactly this:\n" << table;

@@ -267,7 +267,7 @@ TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
   EXPECT_EQ(monitor.trip(), std::nullopt);
 }
 
-TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThereToo) {
+TEST(ResponseMonitor, DischargingAgainstAnOrderToChargeIsTheWrongDirectionThereToo) {
   ResponseSettings settings;
   settings.band.charges_by_itself = true;
   MonitoredSite site{ResponseMonitor{settings}};

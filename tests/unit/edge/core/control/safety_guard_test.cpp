@@ -241,6 +241,8 @@ TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
   GuardInputs in = healthy(Action::kCharge);
   in.site.relief_w = 1'200;
   expect(decide_once(in), -1'200, Reason::kQuarterHourPeak);
+  in.site.relief_w = 9'000;  // a house of 9 kW, a battery of 4
+  expect(decide_once(in), -4'000, Reason::kQuarterHourPeak);
   in.measurement.discharge_w_max = 500;
   EXPECT_EQ(decide_once(in).power_w, -500);
   in.measurement.soc_e4 = 1'000;

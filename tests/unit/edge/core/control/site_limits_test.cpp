@@ -105,7 +105,7 @@ struct SiteUnderTest {
     site.observe(utc_s, is_read, m, {});
   }
   [[nodiscard]] SiteRange range(std::int64_t utc_s, Margin margin = Margin::kWhole) const {
-    return site.range(utc_s, 4'000, margin);
+    return site.range(utc_s, margin);
   }
   StubMeter meter;
   StubLimits limits;

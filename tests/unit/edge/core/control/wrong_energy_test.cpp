@@ -134,7 +134,7 @@ struct WatchedSite {
   CycleRecord record;
 
   static std::int32_t ordered_w(std::int64_t s) { return s / 2'400 % 2 == 0 ? 4'000 : -4'000; }
-  void purpose(std::int64_t s, std::int32_t power_w, int every_s) {
+  void read(std::int64_t s, std::int32_t power_w, int every_s) {
     Reading now{.purpose = s % 120 == 100 ? ReadingPurpose::kTick : ReadingPurpose::kCheck,
                 .is_read = true,
                 .is_under_control = true,
@@ -153,7 +153,7 @@ TEST(WrongEnergy, ReadingsBetweenTicksCount) {
   while (s < 12 * 3'600 && !site.record.is_tripped) {
     s += 20;
     const std::int32_t ordered_w = WatchedSite::ordered_w(s);
-    site.purpose(s, s % 900 < 60 ? -ordered_w : ordered_w, 20);
+    site.read(s, s % 900 < 60 ? -ordered_w : ordered_w, 20);
   }
   EXPECT_EQ(site.record.trip.reason, Reason::kWrongDirection);
   EXPECT_NEAR(static_cast<double>(s) / 900, 12 / 0.5, 4);  // 67 Wh of 8 kWh each, 0.83 %
@@ -164,7 +164,7 @@ TEST(WrongEnergy, ABatteryOnItsWayBetweenTicksIsNotWrong) {
   std::int32_t power_w = 4'000;
   for (std::int64_t s = 10; s < 12 * 3'600; s += 10) {
     power_w += std::clamp(WatchedSite::ordered_w(s) - power_w, -300, 300);  // 30 W/s
-    site.purpose(s, power_w, 10);
+    site.read(s, power_w, 10);
     ASSERT_EQ(site.record.findings.wrong_energy_e6, 0) << s;
     ASSERT_FALSE(site.record.is_tripped) << s;
   }

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "edge/device/registers/map_file.h"
 #include "tests/support/register_device.h"
 #include "tests/support/temporary_folder.h"
 
@@ -113,6 +114,36 @@ TEST_F(DriverTest, AFailedRefreshIsTriedAgainByTheNextOrder) {
   EXPECT_THAT(t.writes_of(1'000), SizeIs(2));
 }
 
+/// One lost reading after a reversal would otherwise look like power against the order.
+TEST_F(DriverTest, AnOrderIsNotJudgedByTheRegistersOfThePreviousOne) {
+  MapUnderTest& t = with_order();
+  ASSERT_TRUE(t.reading().has_order_power);
+  ASSERT_EQ(t.order(-1'000), Status::kOk);
+  for (const int address : {10, 11, 12}) t.device.missing.push_back({.address = address});
+  EXPECT_TRUE(t.reading().dispatch_active);
+  EXPECT_FALSE(t.measured.has_order_power);
+}
+
+TEST_F(DriverTest, AnOrderOfThePreviousRunIsNotOverlooked) {
+  MapUnderTest& t = with();
+  t.device.set(10, {1, 1'000});
+  t.device.missing = {{.address = 10}};
+  EXPECT_NE(t.read(), Status::kOk);
+  t.device.missing.clear();
+  EXPECT_TRUE(t.reading().dispatch_active);
+}
+
+TEST_F(DriverTest, AGridPowerThatWasNotReadIsNone) {
+  MapUnderTest& t =
+      with({{"point = [\n",
+             "point = [\n  { name = \"grid_power\", address = 40, type = \"s16\", min = -10000, "
+             "max = 10000 },\n"}});
+  ASSERT_TRUE(measure_grid_power(t.map));
+  ASSERT_TRUE(t.reading().has_grid_power);
+  t.device.missing = {{.address = 40}};
+  EXPECT_FALSE(t.reading().has_grid_power);
+}
+
 TEST_F(DriverTest, AnExpiredOrOverwrittenOrderIsWrittenAgain) {
   MapUnderTest& t = with_order();
   t.device.set(10, {0});  // the device shows that its timer has expired
@@ -189,7 +220,7 @@ TEST_F(DriverTest, AnotherModeThanTheReleasesComesFromAnotherController) {
 }
 
 /// Where the end of an order is invisible, its enabling register still shows it.
-TEST_F(DriverTest, AModeThatEnabledTheOrderIsLookedAfter) {
+TEST_F(DriverTest, AModeThatEnabledTheOrderIsWatched) {
   MapUnderTest& t = with_order({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
                                 {"refresh_s = 120", "refresh_s = 120\nexpiry_visible = false"}});
   t.device.pass_s(110);
@@ -320,7 +351,7 @@ TEST_F(DriverTest, BehindANewConnectionTheDeviceIsProvedAgain) {
   EXPECT_EQ(t.read(), Status::kOk);
 }
 
-TEST_F(DriverTest, AndEveryTenMinutes) {
+TEST_F(DriverTest, TheDeviceIsProvedAgainEveryTenMinutes) {
   MapUnderTest& t = with(kIdentity);
   ASSERT_EQ(t.read(), Status::kOk);
   t.device.set(20, {8});
@@ -330,7 +361,7 @@ TEST_F(DriverTest, AndEveryTenMinutes) {
   EXPECT_EQ(t.read(), Status::kImplausible);
 }
 
-TEST_F(DriverTest, ItCanAlwaysLetGoOfWhatItKnew) {
+TEST_F(DriverTest, AKnownDeviceIsReleasedDespiteAFailedCheck) {
   MapUnderTest& t = with_order(kIdentity);
   t.device.set(20, {8});
   ++t.device.reconnects;

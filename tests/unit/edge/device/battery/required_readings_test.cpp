@@ -29,7 +29,7 @@ TEST(RequiredReading, IsAskedForAgainWhileTheTroubleMayPass) {
   }
 }
 
-TEST(RequiredReading, ThatStaysAwayIsNamed) {
+TEST(RequiredReading, OneThatStaysAwayIsNamed) {
   for (const int exception : {2, 4, 6, 10, 11, -1}) {
     MapUnderTest t(shipped_map("victron_ess3"), fill_victron);
     ASSERT_EQ(t.read(), Status::kOk);

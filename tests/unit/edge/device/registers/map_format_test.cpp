@@ -237,7 +237,7 @@ address = 201
   map = loaded(child, "large");
   EXPECT_EQ(map.charge_w_max, 900);
   EXPECT_EQ(map.points[find_point(map, "power")].address, 200);
-  EXPECT_EQ(map.sequence(Command::kCharge).writes[1].address, 200);
+  EXPECT_EQ(map.sequence(Command::kCharge).writes[1].values[0].point, find_point(map, "power"));
 }
 
 TEST_F(MapFormat, AWriteOfItsOwnFunctionIsReadBackExactlyUnlessSaid) {
