@@ -107,6 +107,17 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   return value;
 }
 
+std::int64_t CsvTable::whole(std::size_t row, std::size_t column, std::int64_t low,
+                             std::int64_t high) const {
+  const double value = number(row, column);
+  if (value >= static_cast<double>(low) && value <= static_cast<double>(high) &&
+      value == std::floor(value)) {
+    return static_cast<std::int64_t>(value);
+  }
+  fail("{}:{}: {} \"{}\" is not a whole number from {} to {}", name_, line(row), header_[column],
+       text(row, column), low, high);
+}
+
 std::int64_t CsvTable::utc_s(std::size_t row, std::size_t column) const {
   std::int64_t value = 0;
   if (!parse_utc(text(row, column), value)) {

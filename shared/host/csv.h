@@ -46,6 +46,9 @@ class CsvTable {
   [[nodiscard]] std::size_t line(std::size_t row) const { return rows_[row].line; }
   /// Field as a number, or as a UTC instant in seconds; throws UserError naming file and line.
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;
+  /// Whole number from `low` to `high`.
+  [[nodiscard]] std::int64_t whole(std::size_t row, std::size_t column, std::int64_t low,
+                                   std::int64_t high) const;
   [[nodiscard]] std::int64_t utc_s(std::size_t row, std::size_t column) const;
 
  private:

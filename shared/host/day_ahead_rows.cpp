@@ -19,31 +19,6 @@ namespace {
 constexpr double kFirstMilliseconds = 1e11;  // in seconds: year 5138
 constexpr double kLastMilliseconds = 1e14;
 
-/// Replaces NaN and Infinity by null, outside of text.
-std::string without_nan(std::string_view json) {
-  std::string text;
-  bool is_inside = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const std::string_view rest = json.substr(i);
-    if (is_inside && json[i] == '\\') {
-      text += rest.substr(0, 2);
-      ++i;
-      continue;
-    }
-    is_inside = is_inside != (json[i] == '"');
-    const std::string_view words[] = {"NaN", "-Infinity", "Infinity"};
-    const auto* const word =
-        std::ranges::find_if(words, [&](std::string_view w) { return rest.starts_with(w); });
-    if (is_inside || word == std::end(words)) {
-      text += json[i];
-      continue;
-    }
-    text += "null";
-    i += word->size() - 1;
-  }
-  return text;
-}
-
 /// cJSON keeps duplicate members and returns the first.
 JsonValue only_member(JsonValue object, std::string_view name) {
   JsonValue found;
@@ -57,12 +32,6 @@ JsonValue only_member(JsonValue object, std::string_view name) {
 }
 
 }  // namespace
-
-Json parse_answer(std::string_view text) {
-  Json json = Json::parse(text);
-  const bool has_words = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
-  return json.value().exists() || !has_words ? std::move(json) : Json::parse(without_nan(text));
-}
 
 JsonValue value_at(JsonValue object, std::string_view path) {
   while (object.exists() && !path.empty()) {

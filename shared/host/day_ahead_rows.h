@@ -17,14 +17,8 @@
 
 namespace bess {
 
-// JSON answers of price servers, in addition to cJSON: duplicate names in an object are ambiguous
-// and count as absent; NaN and Infinity count as null.
-
-/// Does not exist unless `text` is one JSON value. Also accepts NaN and Infinity, as Python and
-/// JavaScript write them.
-Json parse_answer(std::string_view text);
-
-/// Value at "a.b.c" below an object; "": the object itself.
+/// Value at "a.b.c" below an object; "": the object itself. Duplicate names are ambiguous and count
+/// as absent.
 JsonValue value_at(JsonValue object, std::string_view path);
 
 /// UTC seconds: text with an offset (2023-03-26T01:02:00+00:00), or a number of seconds or

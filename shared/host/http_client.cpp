@@ -139,8 +139,6 @@ TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail
 
 namespace {
 
-using Kind = HttpOutcome::Kind;
-
 constexpr double kConnectTimeout_s = 20;
 constexpr std::size_t kReasonMax = 200;  // of a server message
 constexpr std::size_t kHeaderBytesMax = 100'000;
@@ -215,23 +213,29 @@ Place place_of(const std::string& url) {
   return {part(CURLUPART_SCHEME), part(CURLUPART_HOST), part(CURLUPART_PORT)};
 }
 
-/// Last working address of a host: a dual-stack host with one dead address costs one timeout, not
-/// one per request.
+/// Last working address of a host: a dual-stack host with one dead address costs one timeout in ten
+/// minutes, not one per request. Then the resolver is asked again, because hosts move.
 class ReachableAddresses {
  public:
   std::string find(const Place& place) {
+    constexpr auto kValid = std::chrono::minutes(10);
     const std::lock_guard lock(mutex_);
     const auto found = addresses_.find(place.key());
-    return found == addresses_.end() ? "" : found->second;
+    const bool is_valid = found != addresses_.end() && Clock::now() < found->second.since + kValid;
+    return is_valid ? found->second.address : "";
   }
   void set(const Place& place, const std::string& address) {
     const std::lock_guard lock(mutex_);
-    addresses_[place.key()] = address;
+    addresses_[place.key()] = {address, Clock::now()};
   }
 
  private:
+  struct Entry {
+    std::string address;
+    Clock::time_point since;
+  };
   std::mutex mutex_;
-  std::map<std::string, std::string> addresses_;
+  std::map<std::string, Entry> addresses_;
 };
 
 ReachableAddresses& reachable_addresses() {
@@ -255,12 +259,10 @@ std::vector<std::string> addresses_of(const Place& place) {
   return addresses;
 }
 
-/// Outcome of an incomplete transfer.
+/// Outcome of an incomplete transfer. `is_over`: the time of the request is used up.
 HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& received,
-                               const HttpRequest& request, const char* error_text) {
+                               const HttpRequest& request, const char* error_text, bool is_over) {
   const HttpLimits& limits = request.limits;
-  double took_s = 0;
-  curl_easy_getinfo(curl, CURLINFO_TOTAL_TIME, &took_s);
   // libcurl reports a single header of 100 kB as out of memory.
   if (received.header_bytes > kHeaderBytesMax || code == CURLE_OUT_OF_MEMORY) {
     return {Kind::kRefused,
@@ -273,7 +275,7 @@ HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& receiv
             formatted("the answer exceeds the limit of %zu bytes", limits.bytes_max)};
   }
   const bool has_begun = !received.body.empty();
-  if (code == CURLE_OPERATION_TIMEDOUT && took_s >= 0.95 * limits.deadline_s) {
+  if (code == CURLE_OPERATION_TIMEDOUT && is_over) {
     const std::string waited = formatted("%g s", limits.deadline_s);
     return {Kind::kSlow,
             {},
@@ -304,10 +306,10 @@ bool is_whole(CURL* curl, std::string_view body) {
                          header(curl, "Transfer-Encoding") == "chunked";
   const bool is_safe = is_framed && header(curl, "Content-Encoding").empty();
   if (!looks_like_json(body)) return body.ends_with('\n') || is_safe;
-  // Servers may write NaN, which is not JSON; a truncated answer ends without a bracket.
+  // A truncated answer ends without a bracket.
   const bool is_closed = body.find_last_of("]}") != body.npos &&
                          body.find_last_of("]}") == body.find_last_not_of(" \t\r\n");
-  return Json::parse(body).value().exists() || (is_safe && is_closed);
+  return parse_answer(body).value().exists() || (is_safe && is_closed);
 }
 
 HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received received) {
@@ -374,6 +376,8 @@ struct Transfer {
     curl_easy_setopt(c, CURLOPT_URL, url.c_str());
     curl_easy_setopt(c, CURLOPT_PROTOCOLS_STR, "http,https");
     curl_easy_setopt(c, CURLOPT_RESOLVE, resolve.get());
+    // A connection kept from the previous transfer leads to another address.
+    curl_easy_setopt(c, CURLOPT_FRESH_CONNECT, address.empty() ? 0L : 1L);
     curl_easy_setopt(c, CURLOPT_HTTPHEADER, headers.get());
     if (request.post) curl_easy_setopt(c, CURLOPT_POSTFIELDS, request.post->c_str());
     // Like the curl command: a TLS-intercepting proxy has its own authority.
@@ -406,7 +410,8 @@ struct Transfer {
     long status = 0;
     curl_easy_getinfo(c, CURLINFO_RESPONSE_CODE, &status);
     if (code != CURLE_OK) {
-      outcome = outcome_of_failure(c, code, received, request, error_text);
+      const bool is_over = left_s() <= 0.05 * request.limits.deadline_s;
+      outcome = outcome_of_failure(c, code, received, request, error_text, is_over);
     } else {
       outcome = outcome_of_status(c, status, request.post.has_value(), std::move(received));
     }
@@ -441,6 +446,13 @@ struct Transfer {
     }
   }
 
+  /// Timed out before the name was resolved.
+  [[nodiscard]] bool is_unresolved(const HttpOutcome& outcome) const {
+    curl_off_t lookup_us = 0;
+    curl_easy_getinfo(curl.get(), CURLINFO_NAMELOOKUP_TIME_T, &lookup_us);
+    return outcome.transfer_code == CURLE_OPERATION_TIMEDOUT && lookup_us == 0;
+  }
+
   /// Tries all addresses, the last working one first.
   HttpOutcome perform_at_addresses(const std::string& url, const List& headers) {
     constexpr double kFirstShare = 0.5;
@@ -450,12 +462,21 @@ struct Transfer {
     // libcurl itself tries the next address after a refused connection.
     const bool has_tried_all = known.empty() && outcome.transfer_code == CURLE_COULDNT_CONNECT;
     if (has_tried_all || !may_be_the_address(outcome)) return outcome;
+    if (known.empty() && is_unresolved(outcome)) {
+      outcome.kind = Kind::kUnreachable;
+      outcome.transfer_code = CURLE_COULDNT_RESOLVE_HOST;
+      outcome.reason = "no name server answers: check the network and the resolver";
+      return outcome;
+    }
     const std::string failed = address_used();
     std::vector<std::string> others = addresses_of(place);
-    const auto end = std::remove(others.begin(), others.end(), failed.empty() ? known : failed);
+    const auto at = std::ranges::find(others, failed.empty() ? known : failed);
     // A proxy, or a host with one address, has no other.
-    if (end == others.end() && !failed.empty()) return outcome;
-    others.erase(end, others.end());
+    if (at == others.end() && !failed.empty()) return outcome;
+    if (at != others.end()) {  // the addresses behind it first, so that each is tried in turn
+      std::rotate(others.begin(), at + 1, others.end());
+      others.pop_back();
+    }
     for (std::size_t i = 0; i < others.size() && may_be_the_address(outcome); ++i) {
       // The next request begins with this address, even if no time is left now.
       reachable_addresses().set(place, others[i]);
@@ -481,9 +502,13 @@ struct Transfer {
       HttpOutcome outcome = perform_at_addresses(url, header_list(request, origin, url));
       const bool is_redirect = outcome.status / 100 == 3 && !request.post;
       const std::string target = is_redirect ? redirect_target(url) : "";
+      if (is_redirect && target.empty()) {
+        outcome.reason += "; it redirects to no https:// address: set the url to the final address";
+      }
       if (target.empty()) return outcome;
       if (i == request.redirects_max) {
-        outcome.reason = formatted("more than %d redirects", request.redirects_max);
+        outcome.reason = formatted("more than %d redirects: set the url to the final address",
+                                   request.redirects_max);
         return outcome;
       }
       url = target;

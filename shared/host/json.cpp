@@ -1,6 +1,7 @@
 #include "shared/host/json.h"
 
 #include <cjson/cJSON.h>
+#include <algorithm>
 
 #include <charconv>
 #include <cmath>
@@ -93,6 +94,41 @@ Json Json::parse(std::string_view text) {
   const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
   if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos) json.item_.reset();
   return json;
+}
+
+namespace {
+
+/// Replaces NaN and Infinity by null, outside of text.
+std::string without_nan(std::string_view json) {
+  std::string text;
+  bool is_inside = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::string_view rest = json.substr(i);
+    if (is_inside && json[i] == '\\') {
+      text += rest.substr(0, 2);
+      ++i;
+      continue;
+    }
+    is_inside = is_inside != (json[i] == '"');
+    const std::string_view words[] = {"NaN", "-Infinity", "Infinity"};
+    const auto* const word =
+        std::ranges::find_if(words, [&](std::string_view w) { return rest.starts_with(w); });
+    if (is_inside || word == std::end(words)) {
+      text += json[i];
+      continue;
+    }
+    text += "null";
+    i += word->size() - 1;
+  }
+  return text;
+}
+
+}  // namespace
+
+Json parse_answer(std::string_view text) {
+  Json json = Json::parse(text);
+  const bool has_words = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
+  return json.value().exists() || !has_words ? std::move(json) : Json::parse(without_nan(text));
 }
 
 Json::Json(std::string_view text) : Json(made(cJSON_CreateString(std::string(text).c_str()))) {}

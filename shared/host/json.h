@@ -132,4 +132,8 @@ struct JsonMember {
   mutable Json value;  ///< mutable, to move from an initializer list
 };
 
+/// Answer of a server: does not exist unless `text` is one JSON value, where NaN and Infinity, as
+/// Python and JavaScript write them, count as null.
+Json parse_answer(std::string_view text);
+
 }  // namespace bess

@@ -102,7 +102,9 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
              "dates of url)";
     case Status::kImplausible:
       return "refused: contradicts published prices, repeats the previous day, or is constant all "
-             "day";
+             "day (check the zone and dates of url or file; it is requested again)";
+    case Status::kDoubtfulUnit:
+      return "a day of prices within 5 EUR/MWh: another unit? [outlook] needs EUR/MWh";
     default:
       break;
   }
@@ -155,7 +157,10 @@ DayAheadReply ask_day_ahead(const OutlookSettings& settings, std::int64_t now_ut
     const DayAheadUrl url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
     FetchResult fetched =
         fetch(settings.http, url.c_str(), settings.http.timeout_ms, stop_requested);
-    if (fetched.status != Status::kOk) return {fetched.status, std::move(fetched.reason)};
+    if (fetched.status != Status::kOk) {
+      return {
+          .status = fetched.status, .reason = std::move(fetched.reason), .wait_s = fetched.wait_s};
+    }
     return read_day_ahead(fetched.body, settings.fields);
   }
   constexpr std::size_t kAnswerBytesMax = 256 * 1024;
@@ -177,10 +182,12 @@ std::int64_t due_utc_s(const DayAheadStore& store, const OutlookSettings& settin
 }
 
 std::int64_t next_ask_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
-                            std::int64_t now_utc_s, std::int64_t last_utc_s, int tries) {
+                            std::int64_t now_utc_s, std::int64_t last_utc_s, int tries,
+                            double wait_s) {
   const std::int64_t due = due_utc_s(store, settings, now_utc_s);
-  const std::int64_t pause_s =
-      std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax));
+  const std::int64_t pause_s = std::max(
+      std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax)),
+      static_cast<std::int64_t>(wait_s));
   // A clock step backwards must not block requests.
   const bool may_ask_at_once = last_utc_s == 0 || last_utc_s > now_utc_s;
   return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
@@ -190,7 +197,10 @@ bool DayAheadFetchState::take(const DayAheadReply& reply, const OutlookSettings&
                               std::int64_t now_utc_s) {
   const std::uint32_t changes_before = store.changes();
   status = reply.status == Status::kOk ? store.take(reply.days, now_utc_s) : reply.status;
+  reason =
+      reply.reason.empty() ? std::string(day_ahead_status_text(status, settings)) : reply.reason;
   last_utc_s = now_utc_s;
+  wait_s = reply.wait_s;
   tries = due_utc_s(store, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
   return store.changes() != changes_before;
 }

@@ -20,7 +20,6 @@ namespace bess {
 //   # bess day-ahead 1: quarter-hour, hundredths of EUR/MWh, received
 //   2026-11-23T23:00:00Z 4150 2026-11-23T11:57:12Z
 //   # crc32=0123abcd
-// No allocation.
 
 inline constexpr const char* kDayAheadFileName = "day_ahead";
 
@@ -41,6 +40,7 @@ struct DayAheadReply {
   Status status = Status::kNotConnected;
   std::string reason{};  ///< for other statuses: one line, if there is more to say
   std::vector<DayAheadDay> days{};
+  double wait_s = 0;  ///< requested by the server
 };
 DayAheadReply read_day_ahead(std::string_view answer, const PriceFields& fields);
 /// Requests the days around now, within the time-out.
@@ -51,21 +51,25 @@ DayAheadReply ask_day_ahead(const OutlookSettings& settings, std::int64_t now_ut
 std::int64_t due_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
                        std::int64_t now_utc_s);
 /// Time of the next request: when due; after an incomplete answer one minute, two, up to half an
-/// hour later. `last_utc_s`: 0 = no request yet; `tries`: incomplete requests so far.
+/// hour later. `last_utc_s`: 0 = no request yet; `tries`: incomplete requests so far; `wait_s`:
+/// requested by the server.
 std::int64_t next_ask_utc_s(const DayAheadStore& store, const OutlookSettings& settings,
-                            std::int64_t now_utc_s, std::int64_t last_utc_s, int tries);
+                            std::int64_t now_utc_s, std::int64_t last_utc_s, int tries,
+                            double wait_s = 0);
 
 /// State of the requests.
 struct DayAheadFetchState {
   DayAheadStore store{};
   Status status = Status::kNoRow;  ///< of the last answer
+  std::string reason{};            ///< for other statuses than kOk: one line
   std::int64_t last_utc_s = 0;
   int tries = 0;
+  double wait_s = 0;
 
   [[nodiscard]] bool is_due(const OutlookSettings& settings, std::int64_t now_utc_s) const {
-    return next_ask_utc_s(store, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
+    return next_ask_utc_s(store, settings, now_utc_s, last_utc_s, tries, wait_s) <= now_utc_s;
   }
-  /// Takes an answer or its failure. True if the book has changed.
+  /// Takes an answer or its failure. True if the store has changed.
   bool take(const DayAheadReply& reply, const OutlookSettings& settings, std::int64_t now_utc_s);
 };
 

@@ -1,7 +1,7 @@
 #include "edge/prices/fetch/day_ahead_store.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "shared/local_time.h"
 
@@ -29,16 +29,13 @@ void for_each_quarter_hour(const OutlookDays& days, int day, const Take& take) {
 }
 
 /// Prices as in EUR/kWh: no auction day stays within this.
-bool is_in_another_unit(const OutlookDays& days) {
-  constexpr std::int32_t kNoDayStaysWithinCenti = 500;
-  constexpr int kDayOfPrices = 92;
-  int known = 0;
-  for (const std::int32_t centi : days.day_ahead_centi) {
-    if (centi == kDayAheadUnknown) continue;
-    if (std::abs(centi) >= kNoDayStaysWithinCenti) return false;
-    ++known;
-  }
-  return known >= kDayOfPrices;
+bool is_in_another_unit(const DayAheadDay& day) {
+  constexpr double kNoDayStaysWithinEur = 5;
+  constexpr std::size_t kDayOfPrices = 92;
+  return day.quarter_hours.size() >= kDayOfPrices &&
+         std::ranges::all_of(day.quarter_hours, [](const DayAheadQuarterHour& q) {
+           return std::fabs(q.eur_per_mwh) < kNoDayStaysWithinEur;
+         });
 }
 
 std::size_t place_of(std::int64_t utc_s) {
@@ -79,6 +76,24 @@ bool DayAheadStore::disagrees(const Answer& answer, std::int64_t now_utc_s) cons
     });
   }
   return different * kDisagreeingShare > shared;
+}
+
+/// A server that repeats what contradicts the stored prices for three hours has corrected them.
+bool DayAheadStore::is_repeated(const Answer& answer, std::int64_t now_utc_s) {
+  if (!refused_ || !(*refused_ == answer)) {
+    refused_ = answer;
+    refused_utc_s_ = now_utc_s;
+  }
+  return now_utc_s >= refused_utc_s_ + kBelievedAfterS;
+}
+
+/// Of the days that the answer has.
+void DayAheadStore::forget(const Answer& answer) {
+  for (int day = 0; day < kDays; ++day) {
+    for_each_quarter_hour(answer, day, [&](std::int64_t t, std::int32_t centi) {
+      if (centi != kDayAheadUnknown) prices_[place_of(t)] = {};
+    });
+  }
 }
 
 /// Compares only days of equal length.
@@ -124,7 +139,12 @@ Status DayAheadStore::take(std::span<const DayAheadDay> days, std::int64_t now_u
   Answer answer{outlook_days_around(now_utc_s)};
   Status status = Status::kNoRow;
   bool is_refused = false;
+  bool has_other_unit = false;
   for (const DayAheadDay& day : days) {
+    if (!day.is_constant() && is_in_another_unit(day)) {
+      has_other_unit = true;
+      continue;
+    }
     for (const DayAheadQuarterHour& q : day.quarter_hours) {
       if (q.utc_s < answer.yesterday_utc_s || q.utc_s >= answer.end_utc_s) continue;
       is_refused = is_refused || day.is_constant();
@@ -137,8 +157,11 @@ Status DayAheadStore::take(std::span<const DayAheadDay> days, std::int64_t now_u
       status = Status::kOk;
     }
   }
-  if (status == Status::kOk && is_in_another_unit(answer)) return Status::kDoubtfulUnit;
-  if (disagrees(answer, now_utc_s)) return Status::kImplausible;
+  if (disagrees(answer, now_utc_s)) {
+    if (!is_repeated(answer, now_utc_s)) return Status::kImplausible;
+    forget(answer);
+  }
+  refused_.reset();
   for (int day = 0; day < kDays; ++day) {
     if (day > 0 && repeats_day_before(answer, day, now_utc_s)) {
       is_refused = true;
@@ -146,6 +169,7 @@ Status DayAheadStore::take(std::span<const DayAheadDay> days, std::int64_t now_u
       keep_day(answer, day, now_utc_s);
     }
   }
+  if (has_other_unit) return Status::kDoubtfulUnit;
   return is_refused ? Status::kImplausible : status;
 }
 

@@ -1,18 +1,20 @@
 // Day-ahead prices received so far, by quarter-hour, with their time of receipt. Known at an
 // instant is what was received by then; tomorrow's prices not before 13:00 local time, as on the
-// workstation (market/series/day_ahead.h), which rejects earlier prices.
+// workstation (workstation/data/market/series/day_ahead.h), which rejects earlier prices.
 //
 // Of a whole day the first answer is kept. Refused is an answer, or a day of it, that is
 //   different   from a tenth of the stored prices: shifted by an hour or a day, or another market
 //   repeated    from the previous day, price by price: an old answer
 //   constant    all day: zeros published until the auction
-// Stored prices then stay valid until the end of their day. Prices assumed by the layout
+// Stored prices then stay valid until the end of their day, unless a server repeats the same
+// different answer for three hours. Prices assumed by the layout
 // (day_ahead_rows.h) are planned on, but their day is incomplete: it is requested again, and a
 // later answer replaces them; if unchanged after hours, they are accepted.
 #pragma once
 
 #include <cstdint>
 #include <iterator>
+#include <optional>
 #include <span>
 
 #include "edge/core/base/status.h"
@@ -53,14 +55,19 @@ class DayAheadStore {
  private:
   struct Answer : OutlookDays {
     bool is_assumed[std::size(OutlookDays{}.day_ahead_centi)] = {};
+    friend bool operator==(const Answer&, const Answer&) = default;
   };
   [[nodiscard]] const KnownPrice* find(std::int64_t utc_s, std::int64_t now_utc_s) const;
   [[nodiscard]] bool disagrees(const Answer& answer, std::int64_t now_utc_s) const;
   [[nodiscard]] bool repeats_day_before(const OutlookDays& answer, int day,
                                         std::int64_t now_utc_s) const;
   void keep_day(const Answer& answer, int day, std::int64_t now_utc_s);
+  bool is_repeated(const Answer& answer, std::int64_t now_utc_s);
+  void forget(const Answer& answer);
 
   std::uint32_t changes_ = 0;
+  std::optional<Answer> refused_;  ///< newest answer that contradicts the stored prices
+  std::int64_t refused_utc_s_ = 0;
   KnownPrice prices_[kPricesMax] = {};  ///< index: number of the quarter-hour modulo the size
 };
 

@@ -39,11 +39,10 @@ Status status_of(const HttpOutcome& outcome) {
 }  // namespace
 
 FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
-                  const StopRequested& stop_requested) {
-  constexpr std::size_t kAnswerBytesMax = 4 * 1024 * 1024;  // 100 rows of ods161 are 27 kB
+                  const StopRequested& stop_requested, std::size_t bytes_max) {
   HttpRequest request{.url = url,
                       .limits = {.deadline_s = std::min(timeout_ms, settings.timeout_ms) / 1'000.0,
-                                 .bytes_max = kAnswerBytesMax},
+                                 .bytes_max = bytes_max},
                       .user_agent = "bess-prices",
                       .ca_file = settings.ca_file.c_str(),
                       .authorities = "install ca-certificates, or set ca_file"};
@@ -51,7 +50,8 @@ FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int
   while (!lines.empty()) request.headers.emplace_back(take_line(lines));
   HttpOutcome outcome = http_request(request, stop_requested);
   const Status status = status_of(outcome);
-  if (status == Status::kHttpError) {
+  const bool may_be_the_key = outcome.status / 100 == 4 || outcome.status == 0;
+  if (status == Status::kHttpError && may_be_the_key) {
     outcome.reason += " (check url and the key in header_file)";
   }
   return {.status = status,

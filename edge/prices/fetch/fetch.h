@@ -61,6 +61,7 @@ struct FetchResult {
 
 /// GET of `url` with the settings' headers and CA file, and the smaller of both time-outs.
 FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
-                  const StopRequested& stop_requested);
+                  const StopRequested& stop_requested,
+                  std::size_t bytes_max = 4 * 1024 * 1024);  // 100 rows of ods161 are 27 kB
 
 }  // namespace bess

@@ -71,9 +71,9 @@ Status fetch_history(Prices& prices, const PriceFeedSettings& price,
       if (left_ms <= 0 || clock.stop_requested()) return Status::kTimeout;
       more = pages.fetch_next(prices, static_cast<std::int32_t>(
                                           std::min<std::int64_t>(left_ms, price.http.timeout_ms)));
-      const bool has_failed = pages.status() != Status::kOk;
-      more =
-          more || (has_failed && ++failures < HistoryPages::kFailuresMax);  // the same page again
+      const bool may_repeat =
+          pages.status() != Status::kOk && pages.status() != Status::kServerBusy;
+      more = more || (may_repeat && ++failures < HistoryPages::kFailuresMax);
     }
     if (pages.status() != Status::kOk || pages.has_all_hours()) return pages.status();
   }

@@ -144,7 +144,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   InstanceLock lock;
   FileMessage error;
   const bool is_folder = make_folder(folder_of(path.c_str()).c_str());
-  if (!is_folder) return complain(path + ": cannot create its folder");
+  if (!is_folder) return complain(path + ": cannot create its folder (check [state] run_folder)");
   if (!lock.take((path + ".lock").c_str(), "bess-prices", error)) {
     return complain(error.c_str());
   }
@@ -201,7 +201,8 @@ int main(int argc, char** argv) {
               "controller settings; sections [price], [outlook] and [settled]")
       .with_default()
       .value_name("FILE");
-  root.flag("--check", options.check, "ask each server once and print the answers");
+  root.flag("--check", options.check,
+            "ask the servers of [price] and [outlook] once and print the answers");
   root.flag("--settle", options.settle, "fetch the settled prices of past days now")
       .excludes("--check");
   root.footer(bess::kFooter);

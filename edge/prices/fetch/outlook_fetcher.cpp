@@ -75,7 +75,7 @@ const OutlookPlanner::CachedPlan& OutlookPlanner::plan_of(const OutlookDays& day
 int OutlookPlanner::plan(const PlanRequest& request, const OutlookDays& days) {
   const int made_before = plans_made_;
   const std::int64_t tick_utc_s = request.tick_utc_s;
-  OutlookPlanRows& plan_rows = exchange_.latest_rows.draft();
+  OutlookPlanRows& plan_rows = exchange_.plan_rows;
   plan_rows.first_tick_utc_s = tick_utc_s;
   plan_rows.feed = request.feed;
   const std::int64_t left = (days.tomorrow_utc_s - tick_utc_s) / kSecondsPerStep;
@@ -96,7 +96,6 @@ int OutlookPlanner::plan(const PlanRequest& request, const OutlookDays& days) {
     }
   }
   describe(days, tick_utc_s, plan_rows);
-  exchange_.latest_rows.post();
   return plans_made_ - made_before;
 }
 
@@ -127,8 +126,7 @@ void OutlookFetcher::start(std::int32_t start_centi) {
   const int kept = restore_day_ahead(kept_path_.c_str(), fetch_state_.store);
   fetch(now);
   say(JournalLevel::kNotice,
-      std::to_string(kept) + " stored day-ahead prices; request for more: " +
-          std::string(day_ahead_status_text(fetch_state_.status, config_.outlook)));
+      std::to_string(kept) + " stored day-ahead prices; request for more: " + fetch_state_.reason);
   const Decision decision = next_decision();
   planner_.plan_usual_day(now, decision.level_centi);
   plan(decision);
@@ -190,14 +188,13 @@ void OutlookFetcher::fetch_until_stopped() {
   while (!stop_.stop_requested()) {
     wait(kLookNs);
     const std::int64_t now = now_utc_s();
-    // From here on only this thread writes the inquiry, so it reads without the lock.
+    // From here on only this thread writes the fetch state, so it reads without the lock.
     if (!fetch_state_.is_due(config_.outlook, now)) continue;
     const Status before = fetch_state_.status;
     fetch(now);
     if (fetch_state_.status != before) {
       say(fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
-          "day-ahead prices: " +
-              std::string(day_ahead_status_text(fetch_state_.status, config_.outlook)));
+          "day-ahead prices: " + fetch_state_.reason);
     }
   }
 }

@@ -18,22 +18,22 @@
 namespace bess {
 
 // Outlook planner: plans for the next ticks with the day-ahead prices known at the first of them,
-// and offers the rows to the control thread (../core/control/outlook.h). The next level is within
-// one decision's change of the last one, so at most two plans are needed, and mostly those of the
-// previous tick serve. No allocation; one thread at a time.
+// for the published record (../record/published_prices.h). The next level is within one decision's
+// change of the last one, so at most two plans are needed, and mostly those of the previous tick
+// serve. One thread at a time.
 
 class OutlookPlanner {
  public:
   OutlookPlanner(const OutlookModel& model, OutlookExchange& exchange);
 
-  /// Plans the day without day-ahead prices, as fallback. Must run before the loop starts.
+  /// Plans the day without day-ahead prices, as fallback.
   void plan_usual_day(std::int64_t utc_s, std::int32_t level_centi);
   struct PlanRequest {
     std::int64_t tick_utc_s = 0;
     std::int32_t level_centi = 0;  ///< level of the previous decision
     Status feed = Status::kOk;     ///< status of the last day-ahead request
   };
-  /// Offers the rows from a tick on. `days`: prices known at that tick. Returns the number of new
+  /// Plans the rows from a tick on. `days`: prices known at that tick. Returns the number of new
   /// plans.
   int plan(const PlanRequest& request, const OutlookDays& days);
 
@@ -93,9 +93,9 @@ class OutlookFetcher {
   OutlookExchange exchange_;
   OutlookPlanner planner_;
   std::int32_t start_centi_ = 0;
-  std::mutex mutex_;  ///< protects the inquiry between the two threads
+  std::mutex mutex_;  ///< protects the fetch state between the two threads
   DayAheadFetchState fetch_state_;
-  std::uint64_t answers_ = 0;  ///< number of changes of the inquiry
+  std::uint64_t answers_ = 0;  ///< number of its changes
   bool is_kept_ = true;        ///< false: the file is out of date, and is retried
 };
 

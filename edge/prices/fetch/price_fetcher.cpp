@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "edge/core/control/policy.h"
 #include "edge/prices/fetch/history_pages.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
@@ -13,10 +14,14 @@
 
 namespace bess {
 
-void PricePublisher::publish_outlook(OutlookExchange& exchange) {
+PricePublisher::PricePublisher(std::string path) : path_(std::move(path)) {
+  if (const OutlookModel* const model = student_outlook()) prices_.model_hash = model->hash();
+}
+
+void PricePublisher::publish_outlook(const OutlookExchange& exchange) {
   const std::lock_guard lock(mutex_);
   if (outlook_ == nullptr) outlook_ = std::make_unique<PublishedOutlook>();
-  outlook_->plan_rows = exchange.latest_rows.latest();
+  outlook_->plan_rows = exchange.plan_rows;
   outlook_->usual = exchange.usual;
   ++prices_.outlook_number;
   write();
@@ -40,7 +45,7 @@ void PricePublisher::write() {
 namespace {
 
 constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
-constexpr double kPauseOfTheBusyS = 60;  ///< if a busy server gives no time
+constexpr double kBusyPauseS = 60;  ///< if a busy server gives no time
 
 std::string text_of(const std::string& reason, Status status) {
   return reason.empty() ? std::string(status_text(status)) : reason;
@@ -110,6 +115,7 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
 
 void PriceFetcher::serve(std::int64_t tick_utc_s) {
   const std::int64_t minute_utc_s = tick_utc_s - 60;
+  if (source_.now_utc_s() < busy_utc_s_) not_before_utc_s_ = 0;  // the clock was stepped back
   bool is_refused = false;
   bool is_found = false;
   for (int i = 0; i < kPriceRequests && !is_found; ++i) {
@@ -129,14 +135,16 @@ void PriceFetcher::serve(std::int64_t tick_utc_s) {
 }
 
 PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64_t begin_ns) {
+  if (stop_.stop_requested()) return answer;
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
   if (answer.status == Status::kOk && unit_.is_doubtful()) {
     answer.status = Status::kDoubtfulUnit;
     answer.reason = status_text(answer.status);
   }
   if (answer.status == Status::kServerBusy) {
-    const double pause_s = answer.wait_s > 0 ? answer.wait_s : kPauseOfTheBusyS;
-    not_before_utc_s_ = source_.now_utc_s() + static_cast<std::int64_t>(pause_s) + 1;
+    const double pause_s = answer.wait_s > 0 ? answer.wait_s : kBusyPauseS;
+    busy_utc_s_ = source_.now_utc_s();
+    not_before_utc_s_ = busy_utc_s_ + static_cast<std::int64_t>(pause_s) + 1;
   }
   if (answer.status != reported_) {
     const bool is_well = answer.status == Status::kOk;
@@ -148,7 +156,6 @@ PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64
   publisher_.publish([&](PublishedPrices& prices) {
     ++prices.answers;
     prices.status = answer.status;
-    prices.rows_passed_over = answer.passed_over;
     if (answer.status != Status::kOk) return;
     prices.row = answer.newest;
     prices.received_monotonic_ns = now_ns;

@@ -22,7 +22,7 @@ namespace bess {
 
 class PricePublisher {
  public:
-  explicit PricePublisher(std::string path) : path_(std::move(path)) {}
+  explicit PricePublisher(std::string path);
 
   /// Applies `change(prices)`, then writes the file. A write failure is logged once.
   template <typename Change>
@@ -31,7 +31,7 @@ class PricePublisher {
     change(prices_);
     write();
   }
-  void publish_outlook(OutlookExchange& exchange);
+  void publish_outlook(const OutlookExchange& exchange);
 
  private:
   void write();
@@ -102,6 +102,7 @@ class PriceFetcher {
   UnitWatch unit_;
   Status reported_ = Status::kOk;      ///< status of the last line in the journal
   std::int64_t not_before_utc_s_ = 0;  ///< requested by the server
+  std::int64_t busy_utc_s_ = 0;        ///< time of that request
 };
 
 /// Price level of the hours before now; for a first start.

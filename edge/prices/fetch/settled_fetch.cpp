@@ -28,23 +28,6 @@ void say(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: settled prices: " + text);
 }
 
-/// The answer; empty with a line in `trouble`.
-std::string ask(const SettledSource& source, const std::string& url, std::string& trouble,
-                const std::stop_token& stop) {
-  HttpOutcome outcome = http_request(
-      {.url = url,
-       .limits = {.deadline_s = source.timeout_ms / 1'000.0, .bytes_max = kAnswerBytesMax},
-       .user_agent = "bess-prices",
-       .ca_file = source.ca_file,
-       .authorities = "install ca-certificates, or set ca_file to the file of its authority"},
-      [&] { return stop.stop_requested(); });
-  if (outcome.kind == HttpOutcome::Kind::kDone) return std::move(outcome.body);
-  trouble = outcome.status == 0 || outcome.status == 200
-                ? outcome.reason
-                : "HTTP error " + std::to_string(outcome.status);
-  return "";
-}
-
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
   for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
     text.replace(at, what.size(), by);
@@ -138,7 +121,7 @@ std::string settled_url(const SettledSource& source, std::int64_t from_utc_s,
 
 std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& trouble) {
   std::vector<SettledQuarter> quarters;
-  const Json json = Json::parse(text);
+  const Json json = parse_answer(text);
   const JsonValue rows = json.value().is_list() ? json.value() : json.value()["results"];
   if (!rows.is_list()) {
     trouble = "the answer is not a list of quarter-hours: check [settled] url";
@@ -149,12 +132,14 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
     if (parse_row(row, quarter)) quarters.push_back(quarter);
   }
   if (quarters.empty() && rows.size() > 0) {
-    trouble = "no row of the answer has the datetime and imbalanceprice of a quarter-hour";
+    trouble =
+        "no row of the answer has the datetime and imbalanceprice of a quarter-hour: "
+        "check [settled] url";
   }
   return quarters;
 }
 
-void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole) {
+void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole, double wait_s) {
   constexpr std::int64_t kFirstPauseS = 900, kLongestPauseS = 4 * 3'600;
   pause_s_ = is_whole ? 0 : std::clamp(2 * pause_s_, kFirstPauseS, kLongestPauseS);
   // After the next midnight, when another day may be available; not at the peak load of midnight.
@@ -162,7 +147,9 @@ void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole) {
   const std::int64_t tomorrow_utc_s =
       midnight_before(midnight_before(now_utc_s) + kSecondsPerDay + kSecondsPerDay / 4) +
       kBehindMidnightS;
-  next_utc_s_ = is_whole ? tomorrow_utc_s : now_utc_s + pause_s_;
+  last_utc_s_ = now_utc_s;
+  next_utc_s_ =
+      is_whole ? tomorrow_utc_s : now_utc_s + std::max(pause_s_, static_cast<std::int64_t>(wait_s));
 }
 
 SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
@@ -174,9 +161,15 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   const std::int64_t until_utc_s = midnight_before(now_utc_s);
   const std::int64_t oldest_utc_s = until_utc_s - source.days * kSecondsPerDay;
   const std::string url = settled_url(source, prices.first_open(oldest_utc_s), until_utc_s);
-  const std::string text = ask(source, url, result.trouble, stop);
-  if (!result.trouble.empty()) return result;
-  const std::vector<SettledQuarter> fetched = parse_settled(text, result.trouble);
+  HttpSettings http;
+  http.ca_file = source.ca_file.c_str();
+  http.timeout_ms = source.timeout_ms;
+  const FetchResult answer = fetch(
+      http, url, source.timeout_ms, [&] { return stop.stop_requested(); }, kAnswerBytesMax);
+  result.wait_s = answer.wait_s;
+  result.trouble = answer.reason;
+  if (answer.status != Status::kOk) return result;
+  const std::vector<SettledQuarter> fetched = parse_settled(answer.body, result.trouble);
   if (!result.trouble.empty()) return result;
   result.fetched = static_cast<int>(fetched.size());
   const std::vector<SettledQuarter> before = prices.quarters();
@@ -195,7 +188,7 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
     const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
     if (schedule.is_due(now_utc_s)) {
       const SettledResult result = fetch_settled(source, now_utc_s, stop);
-      schedule.tried(now_utc_s, result.is_whole && result.trouble.empty());
+      schedule.tried(now_utc_s, result.is_whole && result.trouble.empty(), result.wait_s);
       if (!result.trouble.empty() && result.trouble != trouble_before) {
         say(JournalLevel::kWarning, result.trouble + "; retrying");
       } else if (result.trouble.empty() && !trouble_before.empty()) {

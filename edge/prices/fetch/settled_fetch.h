@@ -39,11 +39,15 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
 /// Schedule of the requests.
 class SettledSchedule {
  public:
-  [[nodiscard]] bool is_due(std::int64_t now_utc_s) const { return now_utc_s >= next_utc_s_; }
-  /// `is_whole`: yesterday is complete.
-  void tried(std::int64_t now_utc_s, bool is_whole);
+  /// Also after a step of the clock backwards.
+  [[nodiscard]] bool is_due(std::int64_t now_utc_s) const {
+    return now_utc_s >= next_utc_s_ || now_utc_s < last_utc_s_;
+  }
+  /// `is_whole`: yesterday's last quarter-hour is known; `wait_s`: requested by the server.
+  void tried(std::int64_t now_utc_s, bool is_whole, double wait_s = 0);
 
  private:
+  std::int64_t last_utc_s_ = 0;
   std::int64_t next_utc_s_ = 0;
   std::int64_t pause_s_ = 0;
 };
@@ -51,7 +55,8 @@ class SettledSchedule {
 struct SettledResult {
   int fetched = 0;        ///< quarter-hours in the answer
   bool is_whole = false;  ///< up to the last quarter-hour of yesterday
-  std::string trouble;    ///< empty: fetched and stored
+  std::string trouble{};  ///< empty: fetched and stored
+  double wait_s = 0;      ///< requested by the server
 };
 /// Fetches now; waits as long as the settings say.
 SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,

@@ -27,6 +27,7 @@ int ms_until(std::int64_t monotonic_ns, int most) {
 PriceReader::PriceReader(const Settings& settings, const ScaledClock& clock)
     : settings_(settings), clock_(clock), notices_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
   exchange_.model = settings.model;
+  if (settings.model != nullptr) model_hash_ = settings.model->hash();
 }
 
 PriceReader::~PriceReader() {
@@ -73,8 +74,8 @@ bool PriceReader::await(std::int64_t patience_ns, const IsThere& is_there) {
 }
 
 Status PriceReader::first_answer(std::int64_t patience_ns) {
-  static_cast<void>(await(patience_ns, [&] { return published_.answers > 0; }));
-  return latest().status;
+  const bool is_there = await(patience_ns, [&] { return published_.answers > 0; });
+  return is_there ? refusal_of(published_) : latest().status;
 }
 
 PublishedHistory PriceReader::await_history(std::int64_t patience_ns) {
@@ -99,9 +100,12 @@ void PriceReader::await_change(std::int64_t until_monotonic_ns) {
   const int most_ms = watch_ < 0 ? kUnwatchedMs : kWatchedMs;
   if (poll(&waiting, 1, ms_until(until_monotonic_ns, most_ms)) <= 0) return;
   alignas(inotify_event) char events[1'024];
-  while (::read(notices_, events, sizeof events) > 0) {
-    const auto* const event = reinterpret_cast<const inotify_event*>(events);
-    if ((event->mask & IN_IGNORED) != 0) watch_ = -1;  // the folder was replaced
+  for (ssize_t size; (size = ::read(notices_, events, sizeof events)) > 0;) {
+    for (ssize_t at = 0; at < size;) {
+      const auto* const event = reinterpret_cast<const inotify_event*>(events + at);
+      if ((event->mask & IN_IGNORED) != 0) watch_ = -1;  // the folder was replaced
+      at += static_cast<ssize_t>(sizeof *event + event->len);
+    }
   }
 }
 
@@ -115,14 +119,21 @@ void PriceReader::read() {
   PublishedPrices published;
   reading_ = decode_published(bytes, published);
   if (reading_ != Status::kOk) return;
+  if (settings_.model != nullptr && published.model_hash != model_hash_) {
+    reading_ = Status::kOtherVersion;  // its plan is of another student
+    return;
+  }
+  take_plan(bytes, published.outlook_number);
   take(published);
-  const bool has_plan = settings_.model != nullptr && published.outlook_number != 0 &&
-                        published.outlook_number != taken_outlook_;
-  if (!has_plan || decode_outlook(bytes, outlook_) != Status::kOk) return;
-  taken_outlook_ = published.outlook_number;
+}
+
+void PriceReader::take_plan(std::span<const char> bytes, std::int64_t outlook_number) {
+  const bool is_new =
+      settings_.model != nullptr && outlook_number != 0 && outlook_number != taken_outlook_;
+  if (!is_new || decode_outlook(bytes, outlook_) != Status::kOk) return;
+  taken_outlook_ = outlook_number;
   exchange_.usual = outlook_.usual;
-  exchange_.latest_rows.draft() = outlook_.plan_rows;
-  exchange_.latest_rows.post();
+  exchange_.plan_rows = outlook_.plan_rows;
 }
 
 /// Rejects rows that a healthy bess-prices never publishes.
@@ -139,7 +150,9 @@ Status PriceReader::refusal_of(const PublishedPrices& published) const {
 
 void PriceReader::take(const PublishedPrices& published) {
   published_ = published;
-  if (published.answers == 0 || published.answers == taken_answers_) return;
+  // A price without any plan cannot be decided on.
+  const bool lacks_plan = settings_.model != nullptr && taken_outlook_ == 0;
+  if (lacks_plan || published.answers == 0 || published.answers == taken_answers_) return;
   taken_answers_ = published.answers;
   // A receipt time in the future is wrong: it counts as now at most.
   const std::int64_t received_ns =

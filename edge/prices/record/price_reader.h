@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "edge/core/control/control_types.h"
 #include "edge/core/control/outlook.h"
@@ -40,6 +41,7 @@ class PriceReader {
  private:
   void read();
   void take(const PublishedPrices& published);
+  void take_plan(std::span<const char> bytes, std::int64_t outlook_number);
   [[nodiscard]] Status refusal_of(const PublishedPrices& published) const;
   void await_change(std::int64_t until_monotonic_ns);
   template <typename IsThere>
@@ -51,6 +53,7 @@ class PriceReader {
   OutlookExchange exchange_;
   PublishedPrices published_;
   PublishedOutlook outlook_;
+  std::uint32_t model_hash_ = 0;
   Status reading_ = Status::kNoFetcher;  ///< kOk: there is a valid record
   std::int64_t wanted_minute_utc_s_ = 0;
   std::int64_t taken_answers_ = -1;

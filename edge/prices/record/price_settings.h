@@ -39,7 +39,11 @@ constexpr std::string_view price_status_text(Status status) {
     case Status::kNotConnected:
       return "no connection, or lost (check host and port of url, and the network)";
     case Status::kTimeout:
-      return "no complete answer in time";
+      return "no complete answer in time (check the network, or request fewer rows in url)";
+    case Status::kTooLarge:
+      return "answer larger than 4 MB (request fewer rows in url)";
+    case Status::kServerBusy:
+      return "rate limited by the price server; retried when it permits";
     default:
       return status_text(status);
   }

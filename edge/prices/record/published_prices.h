@@ -24,7 +24,7 @@ struct PublishedHistory {
 };
 
 struct PublishedPrices {
-  static constexpr std::uint32_t kFormat = 1;
+  static constexpr std::uint32_t kFormat = 2;
 
   std::uint32_t format = kFormat;
   std::int64_t written_monotonic_ns = 0;
@@ -33,7 +33,7 @@ struct PublishedPrices {
   PriceRow row{};  ///< newest usable one of the last good answer; minute 0: none yet
   std::int64_t received_monotonic_ns = 0;  ///< of that answer
   std::int32_t fetch_us = 0;
-  std::int32_t rows_passed_over = 0;  ///< rows of the last answer without a numeric price
+  std::uint32_t model_hash = 0;  ///< outlook model of bess-prices' student; 0: none
   /// Newest minute whose row was received, or is no longer requested.
   std::int64_t served_minute_utc_s = 0;
   PublishedHistory history{};

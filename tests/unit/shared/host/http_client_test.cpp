@@ -55,13 +55,13 @@ std::string url_of(const TestServer& server) {
 /// Accepts a request and gives no answer until a time-out.
 class SilentServer {
  public:
-  explicit SilentServer(std::uint16_t port = 0)
+  explicit SilentServer(std::uint16_t port = 0, const char* address = "127.0.0.1")
       : server_(
             [this](TestConnection&, const std::string&) {
               server_.wait_for_end();
               return false;
             },
-            tls_at("127.0.0.1", port)) {}
+            tls_at(address, port)) {}
   [[nodiscard]] const TestServer& server() const { return server_; }
 
  private:
@@ -114,6 +114,29 @@ TEST_F(HostOfManyAddresses, OneThatTakesTheRequestAndIsSilentIsLeftByTheNext) {
   const SilentServer silent(good_.port());
   EXPECT_NE(get(request_of(good_)).kind, Kind::kDone);
   EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+}
+
+/// The address of a kept connection would answer again.
+TEST_F(HostOfManyAddresses, OneThatIsAGatewayWithoutServerIsSkipped) {
+  use({"127.0.0.1", "127.0.0.3"});
+  TestServer gateway(
+      [](TestConnection& connection, const std::string&) {
+        return connection.answer("", "HTTP/1.1 502 Bad Gateway\r\n");
+      },
+      tls_at("127.0.0.1", good_.port()));
+  EXPECT_EQ(get(request_of(good_)).kind, Kind::kDone);
+  EXPECT_EQ(gateway.requests(), 1);
+}
+
+TEST_F(HostOfManyAddresses, EachIsTriedInTurn) {
+  use({"127.0.0.1", "127.0.0.2", "127.0.0.3"});
+  const SilentServer first(good_.port());
+  const SilentServer second(good_.port(), "127.0.0.2");
+  HttpRequest request = request_of(good_);
+  request.limits.deadline_s = 1;
+  EXPECT_NE(get(request).kind, Kind::kDone);
+  EXPECT_NE(get(request).kind, Kind::kDone);
+  EXPECT_EQ(get(request).kind, Kind::kDone);
 }
 
 TEST_F(HostOfManyAddresses, AHostThatMovedIsFound) {

@@ -75,7 +75,7 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
   }
   const std::string_view price = fields[*columns.price];
   row.eur_per_mwh = kNotPublished;
-  if (!price.empty() && !parse_decimal(price, columns.separator, row.eur_per_mwh)) {
+  if (!is_absent(price) && !parse_decimal(price, columns.separator, row.eur_per_mwh)) {
     fail("{}: \"{}\" is not a price", place, one_line(price, 40));
   }
   double resolution = 0;
@@ -94,7 +94,6 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
 }  // namespace
 
 std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string_view name) {
-  text = plain_text(text, name);
   std::optional<TidyColumns> columns;
   std::vector<DayAheadRow> rows;
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
@@ -123,6 +122,7 @@ std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_
 }
 
 DayAheadFile parse_day_ahead_text(std::string_view text, std::string_view name) {
+  text = plain_text(text, name);
   if (looks_like_xml(text)) return parse_entsoe_day_ahead(text, name);
   if (looks_like_json(text)) return {.rows = parse_energy_charts(text, name)};
   return {.rows = parse_tidy_day_ahead(text, name)};

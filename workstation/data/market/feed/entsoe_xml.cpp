@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/market/feed/entsoe_element.h"
 
@@ -67,11 +68,15 @@ struct Prices {
     if (point.category != kShort) long_eur_per_mwh = point.eur_per_mwh;
     if (point.category != kLong) short_eur_per_mwh = point.eur_per_mwh;
   }
-  /// The common price; NaN if there are two different ones.
+  [[nodiscard]] bool are_different() const {
+    return is_published(long_eur_per_mwh) && is_published(short_eur_per_mwh) &&
+           long_eur_per_mwh != short_eur_per_mwh;
+  }
+  /// The common price; NaN if there are two different ones, or none.
   [[nodiscard]] double single() const {
     if (!is_published(long_eur_per_mwh)) return short_eur_per_mwh;
     if (!is_published(short_eur_per_mwh)) return long_eur_per_mwh;
-    return long_eur_per_mwh == short_eur_per_mwh ? long_eur_per_mwh : kNotPublished;
+    return are_different() ? kNotPublished : long_eur_per_mwh;
   }
 };
 using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
@@ -106,14 +111,19 @@ void add_series(const EntsoeElement& series, QuarterHourPrices& prices) {
   }
 }
 
-QuarterHourPrices prices_of(const EntsoeSource& source) {
+QuarterHourPrices prices_of(const EntsoeSource& source, std::string& zone) {
   pugi::xml_document document;
   load_entsoe_document(document, source, "Balancing_MarketDocument", "balancing document (A85)");
   QuarterHourPrices prices;
-  for (const pugi::xml_node& root : document) {
-    for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
-      add_series(series, prices);
+  for (const pugi::xml_node& node : document) {
+    const EntsoeElement root{node, source};
+    const std::string_view own = root.child("area_Domain.mRID").text();
+    if (!zone.empty() && !own.empty() && own != zone) {
+      fail("{}: prices of the zone {} after those of {}; import one zone at a time", root.place(),
+           one_line(own, 20), one_line(zone, 20));
     }
+    if (!own.empty()) zone = own;
+    for (const EntsoeElement& series : root.children("TimeSeries")) add_series(series, prices);
   }
   if (prices.empty()) fail("{}: has no imbalance prices; choose other days", source.name);
   return prices;
@@ -129,13 +139,11 @@ bool looks_like_xml(std::string_view text) {
 MarketRows parse_entsoe_xml(std::string_view text, std::string_view name) {
   MarketRows rows;
   rows.sources = {MarketSource::kEntsoe};
-  for (const auto& [utc_s, prices] : prices_of({text, name})) {
+  for (const auto& [utc_s, prices] : prices_of({text, name}, rows.zone)) {
     QuarterHour quarter_hour;
     quarter_hour.utc_s = utc_s;
     quarter_hour.price_eur_per_mwh = prices.single();
-    if (!is_published(quarter_hour.price_eur_per_mwh)) {
-      rows.dual_priced_quarter_hours.insert(utc_s);
-    }
+    if (prices.are_different()) rows.dual_priced_quarter_hours.insert(utc_s);
     rows.quarter_hours.push_back(quarter_hour);
   }
   return rows;

@@ -46,12 +46,12 @@ constexpr std::array<std::string_view, 8> kUnits{"eurpermwh", "eurmwh", "mwh", "
 
 constexpr std::size_t kQuotedMax = 40;
 
+}  // namespace
+
 bool is_absent(std::string_view text) {
   constexpr std::array<std::string_view, 7> kAbsent{"", "null", "NaN", "nan", "n/a", "N/A", "NA"};
   return std::ranges::find(kAbsent, text) != kAbsent.end();
 }
-
-}  // namespace
 
 /// "Alpha'" must not become "alpha": the apostrophe is spelled as in the API (alpha_prime).
 std::string plain_name(std::string_view label) {
@@ -170,6 +170,10 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
 }
 
 void append_rows(MarketRows& all, const MarketRows& rows) {
+  if (!all.zone.empty() && !rows.zone.empty() && rows.zone != all.zone) {
+    fail("prices of the zone {} and of {}; import one zone at a time", all.zone, rows.zone);
+  }
+  if (all.zone.empty()) all.zone = rows.zone;
   all.minutes.insert(all.minutes.end(), rows.minutes.begin(), rows.minutes.end());
   all.quarter_hours.insert(all.quarter_hours.end(), rows.quarter_hours.begin(),
                            rows.quarter_hours.end());

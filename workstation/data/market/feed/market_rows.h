@@ -18,6 +18,9 @@
 
 namespace bess {
 
+/// Text that stands for a missing value: "", null, NaN, NA and the like.
+bool is_absent(std::string_view text);
+
 /// Indicative price computed at the END of the minute that starts at `utc_s`.
 struct MinuteRow {
   std::int64_t utc_s;
@@ -44,10 +47,12 @@ struct MarketRows {
   /// Times of the rows that lost their price because it was not unique.
   std::set<std::int64_t> dual_priced_minutes{}, dual_priced_quarter_hours{};
   std::set<MarketSource> sources{};
+  std::string zone{};               ///< EIC of the area; empty: unknown
   bool is_minute_file = false;      ///< written by this program: overlaps must agree
   std::vector<Finding> findings{};  ///< contradictions between files
 };
 
+/// Throws UserError for rows of another zone.
 void append_rows(MarketRows& all, const MarketRows& rows);
 
 enum class MarketField {

@@ -128,6 +128,7 @@ TEST_F(Schedule, AsksAgainAfterAMinuteThenTwoToHalfAnHour) {
     EXPECT_EQ(next(last, last, tries), last + pauses_s[tries]) << tries;
   }
   EXPECT_EQ(next(last, last, 1'000'000), last + 1'800);
+  EXPECT_EQ(next_ask_utc_s(store_, settings_, last, last, 1, 3'600), last + 3'600);
 }
 
 TEST_F(Schedule, AfterTenToOneItIsDueUntilTomorrowIsWhole) {

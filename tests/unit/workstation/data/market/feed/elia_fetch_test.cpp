@@ -20,7 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using Ask = EliaAsk;
+using Ask = EliaRequest;
 using Answer = EliaAnswer;
 using Rows = std::vector<EliaRow>;
 using Quirk = FakeElia::Quirk;

@@ -164,7 +164,7 @@ void expect_all(const std::string& url, ServedAnswer& said, bool may_close) {
   }
 }
 
-TEST(HttpWhole, ByHttp1) {
+TEST(HttpCompleteness, ByHttp1) {
   ServedAnswer said;
   const TestServer server([&said](TestConnection& connection, const std::string& request) {
     return said.answer(connection, request);
@@ -172,7 +172,7 @@ TEST(HttpWhole, ByHttp1) {
   expect_all("http://127.0.0.1:" + std::to_string(server.port()), said, true);
 }
 
-TEST(HttpWhole, ByHttp2) {
+TEST(HttpCompleteness, ByHttp2) {
   if (access(Http2Front::kProgram, X_OK) != 0) {
     GTEST_SKIP() << "no nghttp2-proxy here; tools/setup --test installs it";
   }

@@ -75,7 +75,7 @@ class KilledFetch : public testing::Test {
   }
 
   Gate gate_;
-  FakeElia elia_{[this](const EliaAsk& ask, EliaAnswer&) {
+  FakeElia elia_{[this](const EliaRequest& ask, EliaAnswer&) {
     if (!ask.wants_total) gate_.pass();
   }};
   ScratchFolder folder_;
