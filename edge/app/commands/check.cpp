@@ -34,7 +34,10 @@ PriceCheck check_prices(const std::string& config_path) {
   const std::string program = (self.parent_path() / name).string();
   const ProgramResult result =
       run_and_capture({program, "--check", "--config", config_path}, kPatienceS);
-  PriceCheck check{.is_well = result.is_well(), .lines = result.output + result.errors};
+  // The cause of a failure comes first: the self-test prints one line.
+  PriceCheck check{
+      .is_well = result.is_well(),
+      .lines = result.is_well() ? result.output + result.errors : result.errors + result.output};
   if (!result.trouble.empty()) check.lines += program + ": " + result.trouble + "\n";
   return check;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "edge/app/settings/edge_config.h"
+#include "edge/records/log/log_reader.h"
 #include "shared/host/command_line.h"
 
 namespace bess {
@@ -59,6 +60,9 @@ int load_settings(SettingsFile& settings);
 
 /// Reports one line on stderr or in the journal. Returns exit code 1.
 int failed(const std::string& message);
+
+/// False after one line if no log can be read; a note if only the last hours can.
+bool open_log(const EdgeConfig& config, LogReader& log);
 
 // Commands in the order of the help.
 

@@ -70,6 +70,19 @@ void EdgeCommand::set_action(Action action, Complaint complaint) {
       std::move(complaint));
 }
 
+bool open_log(const EdgeConfig& config, LogReader& log) {
+  FileMessage error;
+  if (!log.open(config.log, error)) {
+    failed(error.c_str());
+    return false;
+  }
+  if (!error.empty()) {
+    report(JournalLevel::kWarning, "note: %s: only the last 8 hours, of [state] run_folder",
+           error.c_str());
+  }
+  return true;
+}
+
 int failed(const std::string& message) {
   report(JournalLevel::kError, "%s", message.c_str());
   return 1;

@@ -55,8 +55,7 @@ int run_earned(const EarnedOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
-  FileMessage error;
-  if (!log.open(config.log, error)) return failed(error.c_str());
+  if (!open_log(config, log)) return 1;
   const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   Period period{today, today};
   if (!options.period.empty()) parse_period(options.period, today, period);

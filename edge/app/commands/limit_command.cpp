@@ -101,8 +101,10 @@ void add_limit(EdgeCommand root) {
   command.set_action(
       [options](SettingsFile& settings) { return run_limit(*options, settings); },
       [options] {
-        const bool is_complete = options->clear || options->for_s > 0;
-        return std::string(is_complete ? "" : "--for DURATION or --clear is missing");
+        const bool has_power = !options->charge_w.empty() || !options->discharge_w.empty();
+        if (options->clear) return std::string(has_power ? "--clear takes no power" : "");
+        if (options->for_s <= 0) return std::string("--for DURATION or --clear is missing");
+        return std::string(has_power ? "" : "--charge W or --discharge W is missing");
       });
 }
 

@@ -106,8 +106,9 @@ int run_log(const LogOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
-  FileMessage error;
-  if (!log.open(config.log, error)) return failed(error.c_str());
+  if (!open_log(config, log)) return 1;
+  const LogSpan span = span_of(options, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  if (!options.at.empty() && span.last == 0) return failed("no control cycle at " + options.at);
   if (options.csv) {
     char header[kLogLineBytes];
     format_csv_header(header);
@@ -116,7 +117,6 @@ int run_log(const LogOptions& options, SettingsFile& settings) {
   }
   if (options.is_short) std::puts(kShortLineHead);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
-  const LogSpan span = span_of(options, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   CycleRecord record;
   for (std::uint64_t n = span.first; n <= span.last; ++n) {
     if (!log.read(n, record)) continue;

@@ -91,7 +91,7 @@ void test_seal(Table& table) {
   if (child == 0) try_seal_and_exit();
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    return table.add("seal", false, "the seal test timed out");
+    return table.add("seal", false, "the process of the seal test did not start, or crashed");
   }
   switch (static_cast<SealExit>(WEXITSTATUS(status))) {
     case SealExit::kHeld:
@@ -187,8 +187,9 @@ int run_self_test(const EdgeConfig& config, const std::string& config_path) {
   test_network(config_path, table);
   test_storage(config, table);
   test_battery(config, clock, table);
-  std::printf("self-test  %s\n",
-              table.failures() == 0 ? "passed" : text("%d parts failed", table.failures()).c_str());
+  std::printf("self-test  %s\n", table.failures() == 0
+                                     ? "passed"
+                                     : text("%d part(s) failed", table.failures()).c_str());
   return table.failures() == 0 ? 0 : 1;
 }
 

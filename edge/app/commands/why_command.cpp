@@ -50,8 +50,7 @@ int run_why(const WhyOptions& options, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
-  FileMessage error;
-  if (!log.open(config.log, error)) return failed(error.c_str());
+  if (!open_log(config, log)) return 1;
   std::string trouble;
   const std::uint64_t number = find_cycle(options, config, log, trouble);
   if (!trouble.empty()) return failed(trouble);

@@ -1,4 +1,4 @@
-// Status of the controller as bess-edge prints it, and the troubles in it. Takes no lock, so it
+// Status of the controller as bess-edge prints it, and the alerts in it. Takes no lock, so it
 // cannot delay the controller.
 #pragma once
 

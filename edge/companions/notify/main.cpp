@@ -1,5 +1,5 @@
 // Alert program bess-notify, outside the control process: it reads bess-edge status and reports
-// troubles by a command and MQTT. Killed, hanging or absent, it does not affect the controller.
+// alerts by a command and MQTT. Killed, hanging or absent, it does not affect the controller.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -99,7 +99,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   bess::CommandLine line("bess-notify",
-                         "report troubles of a battery controller by a command and MQTT",
+                         "report alerts of a battery controller by a command and MQTT",
                          "bess-notify " BESS_VERSION);
   bess::Options options;
   bess::ProgramCommand root = line.root();

@@ -165,10 +165,15 @@ void Notifier::note_connection() {
 
 void Notifier::publish(const ControllerStatus& status) {
   if (mqtt_ == nullptr) return;
-  is_held_ = status.json.value()["last"]["held"].boolean().value_or(false);
-  mqtt_->retain(topic(settings_.name, "state"),
-                state_json(status, state_.alarms, today_.value(),
-                           settings_.mqtt.orders ? std::optional(hold_power_w_) : std::nullopt));
+  const JsonValue last = status.json.value()["last"];
+  is_held_ = last["held"].boolean().value_or(false);
+  held_power_w_ =
+      is_held_ ? static_cast<std::int32_t>(last["hold_power_w"].number().value_or(0)) : 0;
+  mqtt_->retain(
+      topic(settings_.name, "state"),
+      state_json(status, state_.alarms, today_.value(),
+                 settings_.mqtt.orders ? std::optional(hold_power_w_.value_or(held_power_w_))
+                                       : std::nullopt));
   mqtt_->retain(topic(settings_.name, "alarms"), alarms_json(state_.alarms));
 }
 
@@ -191,7 +196,8 @@ void Notifier::follow(const Order& order) {
   if (order.payload == "OFF") {
     words.emplace_back("--release");
   } else {
-    words.insert(words.end(), {std::to_string(hold_power_w_), "--for", "60m"});
+    words.insert(words.end(),
+                 {std::to_string(hold_power_w_.value_or(held_power_w_)), "--for", "60m"});
   }
   words.insert(words.end(), {"--config", settings_.config_path});
   constexpr std::int64_t kOrderSMax = 10;

@@ -62,13 +62,14 @@ class Notifier {
   const NotifySettings settings_;
   const std::stop_token stop_;
   NotifierState state_;
-  std::string kept_;               ///< state text written last
-  std::string memory_trouble_;     ///< why the state cannot be stored, or empty
-  Json today_ = Json::object();    ///< from bess-edge earned
-  std::string newest_utc_;         ///< control cycle of the last `earned` query
-  bool is_held_ = false;           ///< in the newest status
-  std::int32_t hold_power_w_ = 0;  ///< for the next ordered hold
-  int rounds_apart_ = 0;           ///< rounds in a row without a connection to the broker
+  std::string kept_;                          ///< state text written last
+  std::string memory_trouble_;                ///< why the state cannot be stored, or empty
+  Json today_ = Json::object();               ///< from bess-edge earned
+  std::string newest_utc_;                    ///< control cycle of the last `earned` query
+  bool is_held_ = false;                      ///< in the newest status
+  std::optional<std::int32_t> hold_power_w_;  ///< ordered since the start, for the next hold
+  std::int32_t held_power_w_ = 0;             ///< of the hold in force; 0 = none
+  int rounds_apart_ = 0;  ///< rounds in a row without a connection to the broker
   bool is_command_running_ = false;
   std::string command_trouble_;  ///< logged once, not every round
 

@@ -67,7 +67,7 @@ function showStatus(status) {
   showFlow(last);
   const facts = {
     mode: last.mode, version: status.version, battery: status.battery, map: status.map,
-    since: status.start_utc && moment(status.start_utc), update: status.update?.phase,
+    since: status.start_utc && moment(status.start_utc), update: status.update,
     "trained on prices of":
       status.trained_from && `${status.trained_from} to ${status.trained_until}`,
     retrain: status.retrain, student: status.student, training: status.provenance};
@@ -134,8 +134,10 @@ function showWhy(why) {
     ? `${why.meaning} (${why.reason}) since ${moment(why.since_utc)}`
     : `the price of ${price(why.price_eur_per_mwh)} is ` +
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
-  byId("sentence").textContent =
-    `The battery ${does(why.ordered_power_w)}: ${cause}${why.ends && ", " + why.ends}.`;
+  const what = why.mode !== "running" ? `No control, mode ${why.mode}`
+    : state.control ? `The battery ${does(why.ordered_power_w)}`
+    : `Read-only, nothing is written; decided: ${say(why.ordered_power_w, 0, "W")}`;
+  byId("sentence").textContent = `${what}: ${cause}${why.ends && ", " + why.ends}.`;
   const texts = [
     `${why.local}: price ${price(why.price_eur_per_mwh)}, state of charge ` +
     `${percent(why.soc_percent)}. ` +

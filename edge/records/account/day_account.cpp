@@ -13,7 +13,7 @@ namespace bess {
 void DayAccount::add(const CycleRecord& record) {
   if (record.mode == Mode::kStopping) return;  // no control cycle
   const auto reason = static_cast<std::size_t>(record.reason);
-  const bool is_driven = record.mode == Mode::kRunning;
+  const bool is_driven = record.mode == Mode::kRunning && record.written;
   ++cycles_;
   ++cycles_by_reason_[reason];
   if (is_driven) ++driven_cycles_;

@@ -122,6 +122,7 @@ void DayAccounts::add(const CycleRecord& as_logged) {
   CycleRecord record = as_logged;
   if (record.measurement.capacity_wh <= 0) record.measurement.capacity_wh = capacity_wh_;
   const std::int32_t day = local_day_at(record.utc_s);
+  if (day < first_day_) last_utc_s_ = DayAccount(first_day_).start_utc_s() - kSecondsPerStep;
   if (day >= first_day_ && day <= last_day_) {
     DayAccount& account = days_.try_emplace(day, day).first->second;
     account.add(record);

@@ -113,7 +113,7 @@ std::string Earnings::text() const {
     add_formatted(text, "; %d control cycles without a record", together_.missing_cycles());
   }
   const std::string others = together_.interventions_text();
-  if (!others.empty()) text += "\ncontrol cycles without a student decision: " + others;
+  if (!others.empty()) text += "\ncontrol cycles by other reasons: " + others;
   return text + "\n";
 }
 

@@ -15,38 +15,40 @@ namespace bess {
       "start it: `systemctl start bess-edge`")                                                     \
   ROW(kUnknown, "unknown", "a process holds the lock, but publishes no status",                    \
       "check whether the disk is full or read-only")                                               \
-  ROW(kStarting, "starting", "started; first control cycle not complete", "wait")                  \
-  ROW(kOverdue, "overdue", "no control cycle for two of them; CRITICAL after four",                \
-      "`journalctl -u bess-edge`")                                                                 \
+  ROW(kStarting, "starting", "the first control cycle is not complete", "wait for it")             \
+  ROW(kOverdue, "overdue", "no control cycle for twice its period; CRITICAL after four times",     \
+      "see `journalctl -u bess-edge`")                                                             \
   ROW(kTripped, "tripped", "not driving until a person clears the trip",                           \
-      "check the cause (`bess-edge log`), then `bess-edge clear --yes`")                           \
-  ROW(kBattery, "battery", "battery could not be read", "battery status; cable, address, unit id") \
-  ROW(kPrices, "prices", "no usable price arrived", "price status; network, `[price] url`")        \
+      "check the cause (`bess-edge why`, `bess-edge log`), then `bess-edge clear --yes`")          \
+  ROW(kBattery, "battery", "the battery could not be read, or an order not be written",            \
+      "check cable, address and unit id")                                                          \
+  ROW(kPrices, "prices", "no usable price arrived",                                                \
+      "check network and `[price] url`: `bess-prices --check`")                                    \
   ROW(kPointLost, "point_lost", "one register could not be read",                                  \
-      "gateway; the device's own display")                                                         \
+      "check the gateway and the device's own display")                                            \
   ROW(kPointClamped, "point_clamped", "a value is out of range and was clamped",                   \
-      "`min` and `max` of the map")                                                                \
-  ROW(kBatteryWarning, "battery_warning", "the battery reports a warning; nothing stops",          \
-      "its own display")                                                                           \
+      "check `min` and `max` of this point in the map")                                            \
+  ROW(kBatteryWarning, "battery_warning",                                                          \
+      "the battery reports a warning, which does not stop control", "check its own display")       \
   ROW(kNoPower, "no_power", "no power after several orders",                                       \
-      "is the battery full, empty, cold or in standby?")                                           \
+      "check whether the battery is full, empty, cold or in standby")                              \
   ROW(kLowPower, "low_power", "less power than ordered in several readings",                       \
-      "`power_w`; the battery's own limits; a module off?")                                        \
+      "check `power_w`, the battery's own limits, and whether a module is off")                    \
   ROW(kEnergyMismatch, "energy_mismatch", "SoC change and measured energy differ",                 \
-      "`capacity_wh`; the measured power")                                                         \
+      "check `capacity_wh` and the measured power")                                                \
   ROW(kSetPointIgnored, "set_point_ignored",                                                       \
-      "energy flowed against or beyond orders; trips at 20 % of the capacity",                     \
-      "another controller; wiring")                                                                \
+      "energy flowed against or beyond orders (trip at 20 % of the capacity)",                     \
+      "look for another controller; check the wiring")                                             \
   ROW(kUnexplainedPower, "unexplained_power", "power at 0 W or in addition to orders",             \
-      "other loads or controllers")                                                                \
+      "look for other loads and controllers")                                                      \
   ROW(kOwnLimits, "own_limits", "the battery's own limits allow no power for an hour",             \
-      "its own display")                                                                           \
+      "check its own display")                                                                     \
   ROW(kSlowResponse, "slow_response", "the battery is slower than its map",                        \
-      "`bess-edge commission` measures lag and ramp, and prints the settings")                     \
+      "run `bess-edge commission`: it measures lag and ramp, and prints the settings")             \
   ROW(kLostOrders, "lost_orders", "orders were replaced or ended early",                           \
-      "another controller: as for `other_master`")                                                 \
-  ROW(kPriceStep, "price_step", "a price step above 2300 EUR/MWh waits for the next row",          \
-      "none; the next row decides")                                                                \
+      "look for another controller: the manufacturer's app, a schedule in the device")             \
+  ROW(kPriceStep, "price_step", "a price step of more than 2300 EUR/MWh waits for the next row",   \
+      "no action: the next row decides")                                                           \
   ROW(kFrozenPrice, "frozen_price",                                                                \
       "price unchanged for 30 minutes with new time stamps, or only four values for hours",        \
       "compare with the source")                                                                   \
@@ -54,26 +56,32 @@ namespace bess {
       "compare with the source")                                                                   \
   ROW(kNoDayAhead, "no_day_ahead",                                                                 \
       "no day-ahead price for more than a day: planning with typical prices earns less",           \
-      "`[outlook]`; `bess-prices --check`")                                                        \
+      "check `[outlook]` with `bess-prices --check`")                                              \
   ROW(kHoldFile, "hold_file", "hold file unreadable, hold ignored", "repeat `bess-edge hold`")     \
-  ROW(kMeter, "meter", "meter could not be read", "meter status; address and map of `[meter]`")    \
+  ROW(kMeter, "meter", "meter could not be read", "check cable, and address and map of `[meter]`") \
   ROW(kMeterMismatch, "meter_mismatch",                                                            \
       "the meter does not respond to battery steps and is ignored",                                \
-      "frozen, inverted, wrong phase or ratio, or wrong battery power?")                           \
+      "check whether the meter is frozen, inverted, on another phase or has another ratio; "       \
+      "check the battery's measured power")                                                        \
   ROW(kHousePower, "house_power", "the power of the house is implausible",                         \
-      "signs, phase and position of the meter; `[meter] pv_w_max`")                                \
+      "check signs, phase and position of the meter, and `[meter] pv_w_max`")                      \
   ROW(kLimitExpired, "limit_expired", "external limit expired or never set: 0 W",                  \
-      "the program that writes limits; `bess-edge limit`")                                         \
+      "check the program that writes limits, or use `bess-edge limit`")                            \
   ROW(kLimitFile, "limit_file", "`[limits] file` unreadable or malformed: 0 W",                    \
-      "its format and owner")                                                                      \
-  ROW(kUpdate, "update", "an upgrade was refused, reverted or failed", "`bess-probation history`") \
-  ROW(kDiskSlow, "disk_slow", "log records dropped: disk too slow", "replace the disk")            \
+      "check its format and owner")                                                                \
+  ROW(kUpdate, "update", "an upgrade was refused, reverted or failed",                             \
+      "see `sudo bess-probation history`; the next upgrade, or `sudo bess-probation allow "        \
+      "VERSION`, ends this alert")                                                                 \
+  ROW(kDiskSlow, "disk_slow", "log records dropped: disk too slow",                                \
+      "check the disk (`dmesg`); replace it if this recurs")                                       \
   ROW(kRunFolder, "run_folder", "files of `[state] run_folder` cannot be written",                 \
-      "its permissions")                                                                           \
+      "check its permissions")                                                                     \
   ROW(kStatusBehind, "status_behind", "the status is older than the log",                          \
-      "is the disk full or read-only?")                                                            \
-  ROW(kLogUnwritable, "log_unwritable", "the log cannot be written; control continues",            \
-      "is the disk full or read-only?")                                                            \
+      "check whether the disk is full or read-only")                                               \
+  ROW(kLogUnwritable, "log_unwritable",                                                            \
+      "files of `[state]`, `[log]` or `[metrics]` cannot be written, which does not stop "         \
+      "control",                                                                                   \
+      "check whether the disk is full or read-only, and the permissions of these folders")         \
   ROW(kDiskFull, "disk_full", "the disk of `[state] folder` is full or read-only",                 \
       "free space or remount it")                                                                  \
   ROW(kStorageLife, "storage_life", "storage has used most of its life", "replace it soon")        \
@@ -83,11 +91,11 @@ namespace bess {
       "check the storage: `dmesg`")                                                                \
   ROW(kNoStatus, "no_status", "bess-notify gets no status", "run `bess-edge status`")              \
   ROW(kNotifyState, "notify_state", "bess-notify cannot keep its state; alerts may come twice",    \
-      "`[notify] folder`")                                                                         \
+      "check `[notify] folder`")                                                                   \
   ROW(kSettledPrices, "settled_prices", "settled prices are four days late",                       \
       "`bess-prices --settle` shows the cause")                                                    \
   ROW(kMqttCutOff, "mqtt_cut_off", "the MQTT broker ends each connection",                         \
-      "another client with the same id, such as a copied machine?")
+      "look for another client with the same id, such as a copied machine")
 
 enum class Alert : std::uint8_t {
 #define BESS_ROW(enumerator, ...) enumerator,

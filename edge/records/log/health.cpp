@@ -59,14 +59,15 @@ void check_prices(const CycleRecord& last, Alerts& alerts) {
   const double eur_per_mwh = eur_of(last.price.price_centi_eur_per_mwh);
   if (last.price.step_held) {
     warn(alerts, Alert::kPriceStep,
-         "jump to " + price_text(eur_of(last.price.held_centi_eur_per_mwh)) +
-             ", more than 2300 EUR/MWh");
+         "a step of more than 2300 EUR/MWh, to " +
+             price_text(eur_of(last.price.held_centi_eur_per_mwh)) + ", waits for the next row");
   }
   if (last.price_frozen) {
+    const std::int32_t unchanged_min = last.standing_price.unchanged_s / 60;
     warn(alerts, Alert::kFrozenPrice,
-         price_text(eur_per_mwh) + " unchanged for " +
-             std::to_string(last.standing_price.unchanged_s / 60) +
-             " min with new time stamps, or only four values for hours");
+         unchanged_min >= 30 ? price_text(eur_per_mwh) + " unchanged for " +
+                                   std::to_string(unchanged_min) + " min with new time stamps"
+                             : "the price has alternated between at most four values for hours");
   }
   if (last.price.has_row && std::fabs(eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
     warn(alerts, Alert::kUnusualPrice,
@@ -102,7 +103,7 @@ void check_findings(const CycleRecord& last, Alerts& alerts) {
     warn(alerts, Alert::kSetPointIgnored,
          "the battery sometimes does not follow its set point: " +
              std::to_string(found.wrong_energy_e6 / 10'000) +
-             " % of its capacity flowed against or beyond orders; trips at 20 %");
+             " % of its capacity flowed against or beyond orders (trip at 20 %)");
   }
   if (found.rest_loss_w != 0) {
     warn(alerts, Alert::kUnexplainedPower,
@@ -117,8 +118,8 @@ void check_findings(const CycleRecord& last, Alerts& alerts) {
   }
   if (found.ramp_w_per_s != 0) {
     warn(alerts, Alert::kSlowResponse,
-         "the battery is slower than its map, at most " + std::to_string(found.ramp_w_per_s) +
-             " W/s after an order");
+         "the battery follows orders with at most " + std::to_string(found.ramp_w_per_s) +
+             " W/s, slower than its map states");
   }
 }
 
@@ -153,7 +154,8 @@ void check_answers(const RunStatus& status, Alerts& alerts) {
   };
   if (last.battery_status != Status::kOk) {
     fail(Alert::kBattery, "battery: ",
-         "no usable answer, " + std::string(status_name(last.battery_status)) +
+         std::string(last.has_measurement ? "order not written, " : "no usable answer, ") +
+             std::string(status_name(last.battery_status)) +
              since(status.totals.battery_since_utc_s));
   }
   const std::string lost = point_name(status.identity, last.measurement.lost_point);
@@ -167,12 +169,13 @@ void check_answers(const RunStatus& status, Alerts& alerts) {
     alerts.insert(alerts.end(), failed.begin(), failed.end());
     return;
   }
+  if (last.is_tripped && last.reason == last.trip.reason) return;  // check_cycle has it
   const ReasonInfo& reason = info_of(last.reason);
   const std::string_view code = outage_code(last.reason);
-  alerts.push_back({code, "WARN " + std::string(code) + ": mode is " +
+  alerts.push_back({code, "WARN " + std::string(code) + ": mode " +
                               std::string(mode_name(last.mode)) + ", reason " +
                               std::string(reason.name) + since(status.totals.reason_since_utc_s) +
-                              ": " + reason.meaning + "; look at " + reason.look_at + causes});
+                              ": " + reason.meaning + causes + "; " + reason.look_at});
 }
 
 void check_site(const CycleRecord& last, Alerts& alerts) {
@@ -197,7 +200,8 @@ void check_cycle(const RunStatus& status, Alerts& alerts) {
   const CycleRecord& last = status.totals.last;
   if (last.is_tripped) {
     warn_critically(alerts, Alert::kTripped,
-                    std::string(reason_name(last.trip.reason)) + since(last.trip.utc_s));
+                    std::string(reason_name(last.trip.reason)) + since(last.trip.utc_s) + ": " +
+                        info_of(last.trip.reason).meaning);
   }
   check_answers(status, alerts);
   const std::string cut = point_name(status.identity, last.measurement.cut_point);

@@ -18,7 +18,9 @@ namespace bess {
 void describe_damage(const RingDamage& damage, const char* path, TextBuffer& line) {
   line.add("%s is damaged", path);
   if (damage.is_set_aside) {
-    line.add(": unreadable; renamed to .old, starting a new log");
+    line.add(damage.is_read_only
+                 ? ": unreadable; the first start on a writable disk renames it to .old"
+                 : ": unreadable; renamed to .old, starting a new log");
     return;
   }
   if (damage.header == RingDamage::Header::kFromCopy) {
@@ -129,6 +131,7 @@ bool RingLog::open_read_only(const char* path, std::int64_t capacity, FileMessag
     fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
     damage_.was_absent = fd_ < 0;
     damage_.is_set_aside = fd_ >= 0 && !understand(capacity);
+    damage_.is_read_only = damage_.is_set_aside;
     if (damage_.is_set_aside) close_file();
     is_read_only_ = fd_ >= 0;
   }

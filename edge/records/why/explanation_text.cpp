@@ -17,7 +17,10 @@ const char* doing(std::int32_t power_w) {
   return power_w > 0 ? "charging" : power_w < 0 ? "discharging" : "idle at";
 }
 
-bool is_students(const CycleRecord& record) { return record.reason == Reason::kStudent; }
+/// Also at an estimated price.
+bool is_students(const CycleRecord& record) {
+  return record.reason == Reason::kStudent || record.reason == Reason::kStandIn;
+}
 
 void add_head(const CycleRecord& record, std::string& text) {
   add_formatted(text, "%s local time, control cycle %lld: ", local_text(record.utc_s).c_str(),
@@ -32,11 +35,7 @@ void add_head(const CycleRecord& record, std::string& text) {
 
 void add_decider(const Explanation& explanation, const std::string& end, std::string& text) {
   const CycleRecord& record = explanation.record;
-  if (is_students(record)) {
-    text += "decided by student";
-  } else {
-    add_formatted(text, "decided by guard: %s", reason_name(record.reason).data());
-  }
+  add_formatted(text, "decided by %s", reason_name(record.reason).data());
   add_formatted(text, ", %d control cycle%s in a row since %s", explanation.cycles,
                 explanation.cycles == 1 ? "" : "s", local_text(explanation.since_utc_s).c_str());
   if (!end.empty()) text.append("; ").append(end);

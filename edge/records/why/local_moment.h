@@ -13,6 +13,12 @@
 
 namespace bess {
 
+/// Noon of the previous local day, also where the clock changed.
+inline std::int64_t yesterday_utc_s(std::int64_t now_utc_s) {
+  const LocalMinute today = local_minute_of(now_utc_s);
+  return utc_from_local({today.year, today.month, today.day, 0, 0, 0}) - kSecondsPerDay / 2;
+}
+
 /// False for any other text.
 inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int64_t& utc_s) {
   if (parse_utc(text, utc_s)) return true;
@@ -26,7 +32,8 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   for (const std::string_view day : {"today ", "yesterday "}) {
     if (!text.starts_with(day)) continue;
     std::string_view clock = text.substr(day.size());
-    const LocalMinute date = local_minute_of(now_utc_s - (day[0] == 'y' ? kSecondsPerDay : 0));
+    const LocalMinute date =
+        local_minute_of(day[0] == 'y' ? yesterday_utc_s(now_utc_s) : now_utc_s);
     wall.year = date.year;
     wall.month = date.month;
     wall.day = date.day;
@@ -36,7 +43,7 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   }
   std::string_view clock = text;
   if (detail::take_clock(clock, wall) && clock.empty()) {
-    for (const std::int64_t day_of : {now_utc_s, now_utc_s - kSecondsPerDay}) {
+    for (const std::int64_t day_of : {now_utc_s, yesterday_utc_s(now_utc_s)}) {
       const LocalMinute day = local_minute_of(day_of);
       wall.year = day.year;
       wall.month = day.month;

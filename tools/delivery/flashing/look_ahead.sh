@@ -9,12 +9,10 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 dpkg-deb -x "$package" "$work" && chmod 755 "$work"
 edge=$work/usr/lib/bess-edge/bin/bess-edge
 "$edge" --version >/dev/null 2>&1 || exit 0   # its libraries come with the installation
-if systemctl is-active --quiet bess-edge; then
-  # A running controller owns the battery, so only status is possible. Its exit code describes the
-  # controller, and stderr has other messages too: only the answer counts.
-  status=$($as_root "$edge" status --config "$settings" --json --no-lock 2>"$work/said" || true)
-  case $status in *'"health"'*) ;; *) cat "$work/said" >&2; exit 1 ;; esac
-else
-  $as_root "$edge" --config "$settings" --check >&2 || echo "note: --check reports problems" >&2
-fi
+# A running controller owns the battery, so only status is possible. Its exit code describes the
+# controller, and stderr has other messages too: only the answer counts.
+status=$($as_root "$edge" status --config "$settings" --json --no-lock 2>"$work/said" || true)
+case $status in *'"health"'*) ;; *) cat "$work/said" >&2; exit 1 ;; esac
+systemctl is-active --quiet bess-edge || $as_root "$edge" --config "$settings" --check >&2 ||
+  echo "note: --check reports problems" >&2
 exit 0

@@ -36,7 +36,7 @@ CycleRecord decided(std::int64_t utc_s, std::int32_t break_even_centi) {
   return r;
 }
 
-class OutlookWords : public InMarketZone, public testing::Test {
+class OutlookTexts : public InMarketZone, public testing::Test {
  protected:
   static std::string text_of(const CycleRecord& record) {
     Explanation explanation{.record = record, .since_utc_s = record.utc_s};
@@ -46,19 +46,19 @@ class OutlookWords : public InMarketZone, public testing::Test {
   std::int64_t noon_utc_s_ = utc_from_civil({2025, 6, 11, 13, 0, 0});  // 15:00 local
 };
 
-TEST_F(OutlookWords, WhyNamesTheHighestAndTheLowestHourAhead) {
+TEST_F(OutlookTexts, WhyNamesTheHighestAndTheLowestHourAhead) {
   EXPECT_THAT(text_of(decided(noon_utc_s_, 9'240)),
               Names("planned 92.40 EUR/MWh 07:00 180.20 16:00 2.10"));
 }
 
-TEST_F(OutlookWords, WithoutPublishedPricesItIsWhatIsUsual) {
+TEST_F(OutlookTexts, WithoutPublishedPricesItIsWhatIsUsual) {
   CycleRecord record = decided(noon_utc_s_, 9'240);
   record.outlook.source = OutlookSource::kUsual;
   record.outlook.known_quarter_hours = 0;
   EXPECT_THAT(text_of(record), AllOf(Names("usual 92.40"), Not(Names("180.20"))));
 }
 
-TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
+TEST_F(OutlookTexts, ADayWithoutPublishedPricesIsATrouble) {
   RunStatus status;
   status.totals.cycles = 10;
   CycleRecord& last = status.totals.last;

@@ -28,7 +28,7 @@ ProgramOutput said_to(const std::vector<std::string>& words) {
   return {exit_code, text + testing::internal::GetCapturedStderr()};
 }
 
-TEST(EdgeWords, EveryCommandHasHelpWithExitCodes) {
+TEST(EdgeCommandLine, EveryCommandHasHelpWithExitCodes) {
   const std::string general = said_to({"--help"}).text;
   std::istringstream commands(general.substr(general.find("Subcommands:\n")));
   std::string line;
@@ -46,7 +46,7 @@ TEST(EdgeWords, EveryCommandHasHelpWithExitCodes) {
   EXPECT_THAT(said_to({"--version"}).text, StartsWith("bess-edge "));
 }
 
-TEST(EdgeWords, ATypingErrorIsReportedWithASuggestion) {
+TEST(EdgeCommandLine, ATypingErrorIsReportedWithASuggestion) {
   const std::pair<std::vector<std::string>, const char*> slips[] = {
       {{"stat"}, "stat status --help bess-edge"},
       {{"stauts"}, "stauts status"},
@@ -75,7 +75,7 @@ TEST(EdgeWords, ATypingErrorIsReportedWithASuggestion) {
   }
 }
 
-TEST(EdgeWords, MissingArgumentsAreReportedBeforeAFileIsRead) {
+TEST(EdgeCommandLine, MissingArgumentsAreReportedBeforeAFileIsRead) {
   const std::pair<std::vector<std::string>, const char*> incomplete[] = {
       {{"status", "--json", "--prometheus"}, "--json --prometheus"},
       {{"hold", "100"}, "--for --release"},
@@ -84,6 +84,8 @@ TEST(EdgeWords, MissingArgumentsAreReportedBeforeAFileIsRead) {
       {{"hold", "-100", "--for", "1m"}, "--for 2m 7d 2h 1h30m 1m"},
       {{"limit"}, "--for --clear"},
       {{"limit", "--clear", "--for", "1s"}, "--for --clear"},
+      {{"limit", "--for", "15m"}, "--charge --discharge"},
+      {{"limit", "--clear", "--charge", "0"}, "--clear"},
       {{"record"}, "--for --help bess-edge record"},
       {{"record", "--for", "0s"}, "--for 1s 7d"},
       {{"map", "check"}, "--against --help bess-edge map check"},
@@ -100,25 +102,6 @@ TEST(EdgeWords, MissingArgumentsAreReportedBeforeAFileIsRead) {
     const ProgramOutput said = said_to(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
     EXPECT_THAT(said.text.substr(said.text.find("bess-edge: ")), Names(complaint));
-  }
-}
-
-/// No connection: prints what it would write, the unreachable parts, and an unhealthy result.
-TEST(EdgeWords, ACheckRunsInThisProcess) {
-  const TemporaryFolder folder;
-  const std::string config = folder.write("edge.toml", R"([battery]
-map = ")" BESS_SOURCE_DIR R"(/edge/device/maps/simulator.toml"
-host = "127.0.0.1"
-port = 1
-[price]
-url = "http://127.0.0.1:1/prices"
-timeout_ms = 100
-)");
-  for (int i = 0; i < 2; ++i) {
-    const ProgramOutput said = said_to({"--check", "--config", config});
-    EXPECT_EQ(said.exit_code, 1);
-    EXPECT_THAT(said.text, AllOf(Names("student simulator 127.0.0.1:1 http://127.0.0.1:1/prices"),
-                                 HasSubstr(" 0x0")));
   }
 }
 

@@ -73,6 +73,7 @@ url = "http://127.0.0.1:1/prices"
       r.student_action = decided(r);
       r.reason = Reason::kStudent;
       r.ordered_power_w = 3'000;
+      r.written = true;
       ASSERT_TRUE(ring_.append(r));
     }
   }
@@ -144,7 +145,7 @@ TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
   const std::string one = ask({"log", "--at", ago(7), "--local"}).out;
   EXPECT_EQ(lines(one), 1);
   // 3 kW for two minutes, at 40 EUR/MWh.
-  EXPECT_THAT(one, StartsWith(ago(7) + "    +100.0 Wh   -0.0040 EUR  utc="));
+  EXPECT_THAT(one, AllOf(StartsWith(ago(7)), Names("+100.0 Wh -0.0040 EUR")));
   const std::string csv = ask({"log", "--csv", "--local", "--at", ago(7)}).out;
   EXPECT_THAT(csv, HasSubstr(",local,energy_wh,earned_eur\n"));
   EXPECT_THAT(csv, HasSubstr("," + ago(7) + ",100.00,-0.004000\n"));
@@ -258,6 +259,15 @@ TEST_F(Questions, AMomentIsTheNewestThatHasBeen) {
   EXPECT_EQ(utc_text(found).view(), "2026-07-01T06:30:00Z");
   ASSERT_TRUE(parse_moment("2026-10-25T00:30:00Z", noon_utc_s, found));
   EXPECT_EQ(utc_text(found).view(), "2026-10-25T00:30:00Z");
+  // Half past midnight after a day of 23 hours, and late on a day of 25.
+  const std::int64_t monday_utc_s = utc_from_local({2026, 3, 30, 0, 30, 0});
+  for (const char* text : {"yesterday 14:32", "14:32"}) {
+    ASSERT_TRUE(parse_moment(text, monday_utc_s, found));
+    EXPECT_EQ(found, utc_from_local({2026, 3, 29, 14, 32, 0})) << text;
+  }
+  const std::int64_t sunday_utc_s = utc_from_local({2026, 10, 25, 23, 30, 0});
+  ASSERT_TRUE(parse_moment("yesterday 14:32", sunday_utc_s, found));
+  EXPECT_EQ(found, utc_from_local({2026, 10, 24, 14, 32, 0}));
 }
 
 }  // namespace

@@ -131,8 +131,10 @@ TEST_F(TwoHolds, TheWatchNamesALossOnce) {
   ::testing::internal::CaptureStderr();
   watch->start(paths_, {}, 900);
   put(paths_.state, "nonsense", 3);
-  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 10);
-  EXPECT_EQ(watch->latest_hold().latest(), kHold);
+  put(paths_.run, line_of(other_), 4);
+  EXPECT_TRUE(is_published(*watch, other_));  // a look at both
+  put(paths_.run, line_of(kHold), 5);
+  EXPECT_TRUE(is_published(*watch, kHold));  // the look before this one has ended
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_THAT(said, Names("hold " + folder_.file("state") + " " + folder_.file("run")));
   EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;

@@ -32,7 +32,7 @@ TEST(LevelNote, NamesTheSourceOfTheLevel) {
         .status = Status::kTimeout},
        "-84.20 2400 40 72"},
       {{.start = {kLevel, kSetting}}, "-84.20 level_start_eur_per_mwh history_hours"},
-      {{.hours_wanted = 72}, ""},
+      {{.hours_wanted = 0}, "history_hours"},
       {{.start = {.level = kLevel, .source = kSetting, .refused_log = true}},
        "-84.20 level_start_eur_per_mwh history_hours"},
   };

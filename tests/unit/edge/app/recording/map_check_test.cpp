@@ -190,7 +190,7 @@ TEST_F(MapCheckTest, WhatWasNeverAnsweredIsNamed) {
 TEST_F(MapCheckTest, AFailedIdentityCheckIsReportedWithItsHint) {
   load("min = 0, max = 10000, hint", "min = 5000, max = 10000, hint");
   add(3, 0, {435, 0, 0, 8'000});
-  EXPECT_THAT(finding("soc"), Names("4350"));
+  EXPECT_THAT(finding("soc"), AllOf(Names("4350"), HasSubstr("is this the battery?")));
 }
 
 TEST_F(MapCheckTest, WhatCannotBeJudgedIsSaid) {

@@ -64,7 +64,7 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
   EXPECT_EQ(reported.size(), 5U) << "two of them are of another name";
 }
 
-TEST_F(MqttTrouble, BrokersThatAreNone) {
+TEST_F(MqttTrouble, ServersThatAreNoBrokers) {
   const std::string nobody = send(Broker::free_port(), "");
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   Broker plain(folder_, Broker::free_port());

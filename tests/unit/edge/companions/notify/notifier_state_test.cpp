@@ -69,18 +69,6 @@ TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
   EXPECT_EQ(reported, 1);
 }
 
-TEST(Alarms, ARestartRepeatsNothingAndReportsTheEnd) {
-  AlarmList before(300);
-  before.observe({kLink, kPrices}, 0);
-  EXPECT_EQ(before.observe({kLink, kPrices}, 300).size(), 2U);
-  AlarmList after(300, before.alarms());
-  EXPECT_TRUE(after.observe({kLink, kPrices}, 330).empty());
-  const std::vector<AlarmEvent> events = after.observe({kLink}, 86'400);  // away for a day
-  ASSERT_EQ(events.size(), 1U);
-  EXPECT_TRUE(events[0].is_over);
-  EXPECT_EQ(events[0].alarm.key, kPrices.key);
-}
-
 TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
   AlarmList list(300);
   list.observe({kLink}, 1'000'000);
@@ -88,13 +76,6 @@ TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
   EXPECT_EQ(list.observe({kLink}, 1'300).size(), 1U);
   list.observe({}, 500);
   EXPECT_EQ(list.observe({}, 800).size(), 1U);
-}
-
-TEST(Alarms, WithoutADelayEverythingIsReportedImmediately) {
-  AlarmList list(0);
-  EXPECT_EQ(list.observe({kLink}, 10).size(), 1U);
-  EXPECT_TRUE(list.observe({kLink}, 10).empty());
-  EXPECT_EQ(list.observe({}, 11).size(), 1U);
 }
 
 TEST(Alarms, TheTextIsTheNewest) {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/child_process.h"
-#include "shared/scaled_clock.h"
 #include "tests/support/program_output.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/edge/companions/notify/notify_site.h"
@@ -13,8 +12,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-double seconds_now() { return static_cast<double>(clock_ns(CLOCK_MONOTONIC)) / 1e9; }
 
 class Channels : public Mqtt {
  protected:
@@ -42,12 +39,9 @@ class Channels : public Mqtt {
           notify({BESS_NOTIFY_PROGRAM, "--config", at.config()}) {
       EXPECT_EQ(all->await("/status", "online"), "online");
     }
-    /// Seconds until it ends.
-    double stop() {
-      const double begin_s = seconds_now();
+    void stop() {
       notify.signal(SIGTERM);
       EXPECT_EQ(notify.wait(), 0);
-      return seconds_now() - begin_s;
     }
     Broker broker;
     std::unique_ptr<Listener> all;
@@ -63,34 +57,18 @@ class Channels : public Mqtt {
   }
 };
 
-TEST_F(Channels, AnAlarmReachesTheGoodChannelWithinARoundWhateverTheCommandIsAt) {
+TEST_F(Channels, AnAlarmReachesTheGoodChannelWhateverTheCommandDoes) {
   use_stuck_command();
   Running running(*this);
   set_status("degraded", {"first"});
   ASSERT_NE(running.all->await("/event", "WARN first"), "");
   ASSERT_TRUE(await_lines("command_began", 1));  // and it stays at it
   for (const char* name : {"second", "third"}) {
-    const double begin_s = seconds_now();
     set_status("degraded", {name});
     ASSERT_NE(running.all->await("/event", std::string("WARN ") + name), "");
-    EXPECT_LT(seconds_now() - begin_s, 1 + 5) << "a round, and what a busy machine adds";
   }
-  EXPECT_LT(running.stop(), 10);
+  running.stop();
   EXPECT_EQ(running.all->await("/status", "offline"), "offline");
-}
-
-/// In moved time, exactly: seen from 5 to 45 s, it lasted between 40 and 50 s.
-TEST_F(Channels, FortyFiveSecondsAreFortyFiveSeconds) {
-  Broker broker(folder_, port());
-  Listener all(port(), "bess/#");
-  settings_.every_s = 5;
-  Notifier notifier(settings_);
-  whole_round(notifier, kNow);
-  set_status("degraded", {"outage"});
-  for (int s = 5; s <= 45; s += 5) whole_round(notifier, kNow + s);
-  set_status("ok");
-  whole_round(notifier, kNow + 50);
-  EXPECT_THAT(all.await("/event", "over"), HasSubstr("an outage (lasted 45 s)"));
 }
 
 /// The broker hangs, disappears and returns: each event arrives once and in order, and the command
@@ -105,8 +83,11 @@ TEST_F(Channels, AnIntermittentBrokerReceivesEverythingOnce) {
   std::this_thread::sleep_for(std::chrono::seconds(3));  // several tries
   running.broker.thaw();
   ASSERT_NE(running.all->await("/event", "WARN one"), "");
-  // Without an acknowledgement it is repeated.
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  // Without an acknowledgement it is repeated; later publications are acknowledged after it.
+  for (const int s : {1, 2}) {
+    set_status("degraded", {"one"}, kNow + s);
+    ASSERT_NE(running.all->await("/state", std::string(utc_text(kNow + s).view())), "");
+  }
   running.broker.stop();
   set_status("ok");
   for (int i = 0; i < 600 && count_of(told(), "over: WARN one") == 0; ++i) usleep(50'000);
@@ -120,7 +101,7 @@ TEST_F(Channels, AnIntermittentBrokerReceivesEverythingOnce) {
   running.broker.freeze();                      // which does not delay the end
   set_status("degraded", {"three"});
   EXPECT_TRUE(await_lines("told", 4));
-  EXPECT_LT(running.stop(), 20);
+  running.stop();
   running.broker.thaw();
 }
 

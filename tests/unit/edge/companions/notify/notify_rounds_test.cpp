@@ -7,6 +7,7 @@
 #include "edge/records/account/settled_prices.h"
 #include "shared/host/child_process.h"
 #include "shared/host/text.h"
+#include "tests/support/tokens.h"
 #include "tests/unit/edge/companions/notify/notify_site.h"
 
 namespace bess {
@@ -24,7 +25,7 @@ TEST_F(Rounds, AnAlarmIsReportedOnceAndItsEndOnceAlsoOverRestarts) {
   set_status("ok");
   for (int s = 1'230; s <= 2'400; s += 30) round_of_its_own(settings_, kNow + s);
   EXPECT_EQ(count_of(told(), "Subject: "), 2U);
-  EXPECT_THAT(told(), HasSubstr("over: WARN no_price: found (lasted 20 min)"));
+  EXPECT_THAT(told(), Names("over: no_price 20 min"));
 }
 
 /// Raised and cleared in a drawn order, while the command fails and the notifier restarts at
@@ -118,7 +119,7 @@ TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   settings_.after_s = 0;
   settings_.settled_file = folder_.file("notify/settled.csv");
   round_of_its_own(settings_, kNow);
-  EXPECT_THAT(told(), HasSubstr("ALERT: no settled price received yet: bess-prices --settle"));
+  EXPECT_THAT(told(), Names("ALERT: bess-prices --settle"));
   const auto settle_until = [&](std::int64_t utc_s) {
     SettledPrices prices;
     prices.put(std::vector<SettledQuarter>{{utc_s / 900 * 900 - 900, 80}});
@@ -126,10 +127,10 @@ TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
   };
   settle_until(kNow - 2 * 86'400);
   round_of_its_own(settings_, kNow + 600);
-  EXPECT_THAT(told(), HasSubstr("over: no settled price received yet"));
+  EXPECT_THAT(told(), Names("over:"));
   settle_until(kNow - 4 * 86'400);
   round_of_its_own(settings_, kNow + 1'200);
-  EXPECT_THAT(told(), HasSubstr("ALERT: no settled price is newer than 2023-03-22T23:45:00Z"));
+  EXPECT_THAT(told(), Names("ALERT: 2023-03-22T23:45:00Z"));
   EXPECT_EQ(count_of(told(), "Subject: "), 3U);
 }
 
@@ -236,17 +237,26 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   ASSERT_NE(all.await("/state", "\"hold_power_w\":0"), "");
   all.publish("bess/v1/garage/hold_power/set", "-1500");
   EXPECT_NE(all.await("/state", "\"hold_power_w\":-1500"), "") << "stored for the next hold";
+  // At most eight orders wait: a state of this time shows that those before are done.
+  std::int64_t utc_s = kNow;
+  const auto settle = [&] {
+    set_status("ok", {}, ++utc_s);
+    all.publish("bess/v1/garage/hold_power/set", "no number");
+    EXPECT_NE(all.await("/state", std::string(utc_text(utc_s).view())), "");
+  };
   for (const char* bad : {"on", "", "ON; rm -rf /", "{\"power_w\":1}"}) {
     all.publish("bess/v1/garage/hold/set", bad);
     all.publish("bess/v1/garage/hold_power/set", bad);
+    settle();
   }
   for (const char* power :
        {"1.5", "1e3", " 1", "99999999999", "5001", "-5001", "NaN", "--release"}) {
     all.publish("bess/v1/garage/hold_power/set", power);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // at most eight wait
+    settle();
   }
   all.publish("bess/v1/garage/hold_power/set", std::string(100'000, '9'));
   all.publish("bess/v1/garage/release/set", "ON");
+  settle();
   const auto await_calls = [&](const std::string& wanted) {
     for (int i = 0; i < 500 && text_of_file(calls) != wanted; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -254,7 +264,6 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
     return text_of_file(calls);
   };
   const std::string end = " --config " + config + "\n";
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // at most eight wait
   all.publish("bess/v1/garage/hold/set", "ON");
   EXPECT_EQ(await_calls("hold -1500 --for 60m" + end), "hold -1500 --for 60m" + end);
   all.publish("bess/v1/garage/hold/set", "OFF");
@@ -276,12 +285,12 @@ TEST_F(Program, CommandLine) {
   EXPECT_EQ(run({"--config"}).first, 2);
   EXPECT_EQ(run({"--help"}).first, 0);
   EXPECT_EQ(run({"--config", "/no/such"}).first, 1);
-  EXPECT_EQ(run({"--config", config, "--check"}),
-            std::pair(0, "node       garage, every 30 s, reported after 300 s\nasks       " +
-                             std::filesystem::path(BESS_NOTIFY_PROGRAM).parent_path().string() +
-                             "/bess-edge status --config " + config +
-                             "\ncommand    none\nmqtt       none\n"));
-  EXPECT_THAT(run({"--config", config, "--once"}).second, HasSubstr("names no channel"));
+  const std::pair<int, std::string> check = run({"--config", config, "--check"});
+  EXPECT_EQ(check.first, 0);
+  const std::string beside = std::filesystem::path(BESS_NOTIFY_PROGRAM).parent_path().string();
+  EXPECT_THAT(check.second, Names("garage 30 300 command mqtt " + beside +
+                                  "/bess-edge status --config " + config));
+  EXPECT_THAT(run({"--config", config, "--once"}).second, Names("[notify] command mqtt_host"));
 }
 
 TEST_F(Program, ATestMessageGoesToEveryChannelAndSaysWhichFails) {
@@ -289,12 +298,12 @@ TEST_F(Program, ATestMessageGoesToEveryChannelAndSaysWhichFails) {
   const std::string keys = "[notify]\ncommand = '";
   const std::string good = folder_.write("good.toml", keys + settings_.command + "'\n");
   ChildProcess sent({BESS_NOTIFY_PROGRAM, "--config", good, "--test"});
-  EXPECT_EQ(sent.read_all(), "bess-notify: command: sent\n");
+  EXPECT_THAT(sent.read_all(), Names("command:"));
   EXPECT_EQ(sent.wait(), 0);
-  EXPECT_THAT(told(), HasSubstr("test: bess-notify can reach you by command"));
+  EXPECT_THAT(told(), Names("test: command"));
   const std::string bad = folder_.write("bad.toml", keys + "/bin/false'\n");
   ChildProcess refused({BESS_NOTIFY_PROGRAM, "--config", bad, "--test"});
-  EXPECT_THAT(refused.read_all(), HasSubstr("command: failed with exit code 1"));
+  EXPECT_THAT(refused.read_all(), Names("command: 1"));
   EXPECT_EQ(refused.wait(), 1);
 }
 

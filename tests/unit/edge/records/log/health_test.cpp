@@ -119,10 +119,10 @@ TEST(Health, EveryTroubleHasItsReason) {
 TEST(Health, TheManualHasTheTableOfAlerts) {
   std::ifstream file(BESS_SOURCE_DIR "/shared/manual/guides/troubleshooting.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
-  std::string table = "| code | meaning | remedy |\n|---|---|---|\n";
+  std::string table = "|code|meaning|remedy|\n|---|---|---|\n";
   for (const AlertInfo& alert : kAlerts) {
-    table.append("| `").append(alert.code).append("` | ").append(alert.meaning);
-    table.append(" | ").append(alert.remedy).append(" |\n");
+    table.append("|`").append(alert.code).append("`|").append(alert.meaning);
+    table.append("|").append(alert.remedy).append("|\n");
   }
   EXPECT_NE(text.find("\n\n" + table + "\n"), text.npos)
       << "troubleshooting.md must have exactly this:\n"
