@@ -215,7 +215,7 @@ void run_backtest(const BacktestArguments& options) {
   write_file(folder / "backtest_days.csv", backtest_days_csv(results));
   write_file(folder / "backtest.json", backtest_json(results).text());
   write_backtest_page(results, folder);
-  const std::string run = folder.parent_path().string();
+  const std::string run = folder.has_parent_path() ? folder.parent_path().string() : ".";
   if (folder.filename() == kRunsBacktest && fs::exists(RunFolder{run}.record())) {
     fmt::print(stderr, "'bess-train report --run {}' adds it to the run's report\n", run);
   }

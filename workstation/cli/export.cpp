@@ -71,7 +71,7 @@ void add_export_command(ProgramCommand& app) {
   command.option("--out", options->out,
                  "output header (default: edge/generated/student_weights.h of the source tree "
                  "around the current folder or this program)");
-  options->common.add_seed_and_threads(command);
+  options->common.add_threads(command);
   command.footer(
       "Examples:\n"
       "  bess-train export --student runs/a/student.json\n"

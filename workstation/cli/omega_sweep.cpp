@@ -81,6 +81,11 @@ struct SweepContext {
   const MarketSteps& market;
   std::vector<MarketDay> days;
   EvaluationOptions evaluation;
+
+  [[nodiscard]] Evaluation carried_over(Policy& policy) const {
+    return evaluate_carried_over(market, days, policy, evaluation.battery,
+                                 evaluation.initial_soc_frac);
+  }
 };
 
 OmegaPoint measure(const SweepContext& context, const DistilOptions& options) {
@@ -91,7 +96,7 @@ OmegaPoint measure(const SweepContext& context, const DistilOptions& options) {
   evaluate(context.market, context.days, counter, context.evaluation);
   StudentPolicy policy(student.net);
   return {options.omega, student.certificate, result.curve.back().visited_loss, counter.share(),
-          evaluate(context.market, context.days, policy, context.evaluation)};
+          context.carried_over(policy)};
 }
 
 void print_json(const OmegaPoint& point, const Evaluation& teacher) {
@@ -135,7 +140,7 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
     fail("{}: no complete validation or test day (21 to the end of a month)", options.prices);
   }
   TeacherPolicy teacher_policy(teacher);
-  const Evaluation of_teacher = evaluate(market, context.days, teacher_policy, context.evaluation);
+  const Evaluation of_teacher = context.carried_over(teacher_policy);
   std::vector<OmegaPoint> points;
   for (const double omega : omegas) {
     config.distil.omega = omega;

@@ -65,11 +65,9 @@ class Pricing {
   }
 
   ResetAndCarried run(Policy& policy) const {
-    const auto evaluated = [&](bool carry_soc) {
-      return evaluate(market_, days_, policy,
-                      {config_.battery, config_.initial_soc_frac, carry_soc});
-    };
-    return {evaluated(false), evaluated(true)};
+    return {
+        evaluate(market_, days_, policy, {config_.battery, config_.initial_soc_frac, false}),
+        evaluate_carried_over(market_, days_, policy, config_.battery, config_.initial_soc_frac)};
   }
 
   void print_head(const ResetAndCarried& base, const std::string& name) const {

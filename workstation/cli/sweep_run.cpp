@@ -25,12 +25,13 @@ struct SweepRunArguments {
   const SweepFolder folder{options.folder};
   load_own_sweep(folder);
   if (options.again) std::filesystem::remove(folder.joblog());
-  std::vector<std::string> words = parallel_command(folder, options.jobs);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execvp(arguments[0], arguments.data());
-  fail("cannot run GNU parallel: {}; install it (Debian package 'parallel')", std::strerror(errno));
+  // The exit code of parallel is the number of failed tasks, which would read as another error.
+  const std::string line =
+      "command -v parallel >/dev/null || "
+      "{ echo \"bess-train: install GNU parallel (Debian package 'parallel')\" >&2; exit 1; }; " +
+      shell_line(parallel_command(folder, options.jobs)) + " || exit 1";
+  execlp("sh", "sh", "-c", line.c_str(), nullptr);
+  fail("cannot run sh: {}", std::strerror(errno));
 }
 
 }  // namespace

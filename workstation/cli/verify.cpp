@@ -63,16 +63,17 @@ void run_verify(const VerifyArguments& options) {
     require_consistent(claimed.certificate.rules, claimed.certificate.thresholds,
                        claimed.net.context.kind);
   }
+  MarketSteps market;  // first, because a proof may take minutes
+  if (!options.prices.empty()) {
+    if (options.json) fail("--prices has no effect with --json; remove one");
+    market = market_of(options.price_input.read(options.prices), config.market, options.prices);
+  }
   const Verdict verdict = prove(std::move(claimed), config.train.threads, options.exhaustive);
   const StudentFile& student = student_of(verdict);
   if (options.json) {
     print_json(name, student, options.exhaustive);
   } else {
     print_text(name, student);
-    MarketSteps market;
-    if (!options.prices.empty()) {
-      market = market_of(options.price_input.read(options.prices), config.market, options.prices);
-    }
     fmt::print("{}", broken_rule_lines(student, market, config));
   }
   if (!std::holds_alternative<ProvedStudent>(verdict)) {
@@ -97,7 +98,7 @@ void add_verify_command(ProgramCommand& app) {
                "evaluate every state instead of proving boxes by bounds (takes minutes)");
   command.flag("--json", options->json, "one JSON object");
   options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  options->common.add_threads(command);
   command.footer(
       "Examples:\n"
       "  bess-train verify\n"

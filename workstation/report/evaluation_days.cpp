@@ -60,12 +60,25 @@ JudgedDays judged_days(const MarketSteps& market, Split split) {
   return judged;
 }
 
+namespace {
+
+/// On one fold every traded day is a test day.
+const char* local_days_of(const JudgedDays& judged) {
+  const bool is_fold = judged.split == Split::kTest &&
+                       std::ranges::any_of(judged.dates, [](const std::string& date) {
+                         return date.substr(8) < "26";
+                       });
+  return is_fold ? "1 to the end" : meaning_of(judged.split).local_days;
+}
+
+}  // namespace
+
 std::string judged_days_text(const JudgedDays& judged) {
   const SplitMeaning& meaning = meaning_of(judged.split);
   const std::size_t days = judged.dates.size();
   std::string text =
       fmt::format("{}: local days {} of each month, {} in {} from {} to {}.", meaning.name,
-                  meaning.local_days, counted(days, "day"), counted(judged.months(), "month"),
+                  local_days_of(judged), counted(days, "day"), counted(judged.months(), "month"),
                   judged.dates.front(), judged.dates.back());
   if (judged.last_learnt.empty()) return text;
   const std::size_t earlier = judged.before_last_learnt();
@@ -82,7 +95,7 @@ std::string judged_days_text(const JudgedDays& judged) {
 
 Json judged_days_json(const JudgedDays& judged) {
   Json json = Json::object({{"split", split_name(judged.split)},
-                            {"local_days", meaning_of(judged.split).local_days},
+                            {"local_days", local_days_of(judged)},
                             {"days", judged.dates.size()},
                             {"months", judged.months()},
                             {"from", judged.dates.front()},
@@ -133,7 +146,7 @@ std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
     const std::string& policy = table.text(row, 0);
     const std::string& carry_soc = table.text(row, 6);
     if (carry_soc != truth(true) && carry_soc != truth(false)) {
-      fail("{}: carry_soc \"{}\" is neither true nor false", name, carry_soc);
+      fail("{}:{}: carry_soc \"{}\" is neither true nor false", name, table.line(row), carry_soc);
     }
     if (evaluations.empty() || evaluations.back().name != policy) {
       evaluations.push_back({policy, none, none});

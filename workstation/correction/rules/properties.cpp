@@ -10,8 +10,12 @@ RuleSet with_outlook_rule(const RuleSet& rules) {
   constexpr std::string_view kName = "break-even price";
   const Direction direction{RuleInput::kContextClass, 1};
   RuleSet all = rules;
+  bool has_direction = false;
   for (const Rule& rule : rules.rules) {
-    if (rule.demand->direction() == direction) return all;
+    if (rule.demand->direction() == direction) {
+      has_direction = true;
+      continue;
+    }
     if (rule.name == kName) {
       fail("{}: the name \"{}\" is reserved with context = \"outlook\"; rename the rule",
            rule.place, kName);
@@ -23,8 +27,10 @@ RuleSet with_outlook_rule(const RuleSet& rules) {
           rule.place, rule.name);
     }
   }
-  all.rules.push_back(
-      {.name = std::string(kName), .box = {}, .demand = direction_demand(direction)});
+  if (!has_direction) {
+    all.rules.push_back(
+        {.name = std::string(kName), .box = {}, .demand = direction_demand(direction)});
+  }
   return all;
 }
 

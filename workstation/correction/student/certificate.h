@@ -49,7 +49,7 @@ struct DemandCount {
   std::string text;           ///< readable form of the demand
   bool is_rule = false;       ///< else a property
   bool binds_student = true;  ///< false: guard only, not counted
-  std::int64_t states = 0;    ///< checked states, or pairs of neighbours
+  std::int64_t states = 0;    ///< properties: all checked states; rules: states or pairs of the box
   std::int64_t violations = 0;
   std::vector<Rule> rules = {};  ///< its rules; property 3 has two
 

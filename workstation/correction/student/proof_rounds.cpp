@@ -66,13 +66,16 @@ std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std:
   const CsvTable table(text, name, kHeader);
   std::vector<ProofRound> rounds;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const auto number = static_cast<std::size_t>(table.number(row, 0));
+    const auto number = static_cast<std::size_t>(table.whole(row, 0, 1, 1'000'000));
     const std::string& looked_at = table.text(row, 1);
     if (looked_at != kLattice && looked_at != kCorners) {
-      fail("{}: looked_at \"{}\" is neither {} nor {}", name, looked_at, kLattice, kCorners);
+      fail("{}:{}: looked_at \"{}\" is neither {} nor {}", name, table.line(row), looked_at,
+           kLattice, kCorners);
     }
     if (number != rounds.size()) rounds.push_back({looked_at == kLattice, {}});
-    if (number != rounds.size()) fail("{}: round {} follows {}", name, number, rounds.size() - 1);
+    if (number != rounds.size()) {
+      fail("{}:{}: round {} follows {}", name, table.line(row), number, rounds.size() - 1);
+    }
     rounds.back().left.push_back(
         {table.text(row, 2), static_cast<std::int64_t>(table.number(row, 3))});
   }

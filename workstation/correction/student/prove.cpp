@@ -174,18 +174,32 @@ std::vector<LatticeState> parse_counterexamples_csv(std::string_view text,
   if (text == fmt::format("{}\n", kHeader)) return states;
   const CsvTable table(text, name, kHeader);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const auto whole = [&](std::size_t column) {
-      return static_cast<std::int16_t>(table.number(row, column));
+    const auto whole = [&](std::size_t column, std::int64_t low, std::int64_t high) {
+      return static_cast<std::int16_t>(table.whole(row, column, low, high));
     };
-    states.push_back({whole(0), whole(1), whole(2), whole(3), whole(4)});
+    states.push_back({whole(0, 0, kMinuteOfQuarterHourCount - 1),
+                      whole(1, 0, kQuarterHourCount - 1), whole(2, 1, kContextClassCount),
+                      whole(3, 0, kSocCount - 1),
+                      whole(4, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh)});
   }
   return states;
 }
 
 static_assert(std::gcd(kSampleStride, kContextCount) == 1);
 
+namespace {
+
+/// A student by outlook owes the demand on its classes, whatever rules its file or a user names.
+void require_outlook_rule(StudentFile& student) {
+  if (!student.net.context.is_outlook()) return;
+  student.certificate.rules = with_outlook_rule(student.certificate.rules);
+}
+
+}  // namespace
+
 Verdict prove(StudentFile student, int threads, bool exhaustive) {
   check_net(student.net, "the student");
+  require_outlook_rule(student);
   student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
                                                      .rules = student.certificate.rules,
                                                      .exhaustive = exhaustive,
@@ -196,6 +210,7 @@ Verdict prove(StudentFile student, int threads, bool exhaustive) {
 
 StudentFile sample_violations(StudentFile student, int threads) {
   check_net(student.net, "the student");
+  require_outlook_rule(student);
   student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
                                                      .rules = student.certificate.rules,
                                                      .context_stride = kSampleStride,

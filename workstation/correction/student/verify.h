@@ -29,6 +29,8 @@ struct VerifyOptions {
   int threads = 2;
 };
 
+/// Counts every demand on the whole lattice, or on every `context_stride`-th context. check_net()
+/// must accept the net; threads >= 1. The counts do not depend on the threads.
 Certificate verify_student(const StudentNet& net, const VerifyOptions& options);
 
 /// Context `index` of kContextCount, with SoC and price 0.

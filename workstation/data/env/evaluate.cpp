@@ -172,7 +172,8 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
 }
 
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b) {
-  if (a.days.size() != b.days.size() || a.days.empty()) {
+  if (a.days.empty() ||
+      !std::ranges::equal(a.days, b.days, {}, &DayResult::date, &DayResult::date)) {
     throw std::logic_error("paired difference needs the same days on both sides");
   }
   std::vector<DayValue> differences;

@@ -97,6 +97,7 @@ struct PairedDifference {
     return {standard_error, standard_error_by_month, months, days};
   }
 };
+/// Throws std::logic_error unless both have the same days.
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b);
 
 }  // namespace bess

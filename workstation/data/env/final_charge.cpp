@@ -35,4 +35,12 @@ void value_charge_left(Evaluation& carried_over, const BatteryParameters& batter
   carried_over.charge_price_eur_per_mwh = price_eur_per_mwh;
 }
 
+Evaluation evaluate_carried_over(const MarketSteps& market, const std::vector<MarketDay>& days,
+                                 Policy& policy, const BatteryParameters& battery,
+                                 double initial_soc_frac, std::vector<StepRecord>* records) {
+  Evaluation done = evaluate(market, days, policy, {battery, initial_soc_frac, true}, records);
+  value_charge_left(done, battery, mean_settled_eur_per_mwh(market, days));
+  return done;
+}
+
 }  // namespace bess

@@ -25,4 +25,10 @@ double mean_settled_eur_per_mwh(const MarketSteps& market, const std::vector<Mar
 void value_charge_left(Evaluation& carried_over, const BatteryParameters& battery,
                        double price_eur_per_mwh);
 
+/// Evaluates `days`, which must not be empty, with the SoC carried over; values the final charge.
+Evaluation evaluate_carried_over(const MarketSteps& market, const std::vector<MarketDay>& days,
+                                 Policy& policy, const BatteryParameters& battery,
+                                 double initial_soc_frac,
+                                 std::vector<StepRecord>* records = nullptr);
+
 }  // namespace bess

@@ -62,7 +62,7 @@ void TabularPolicy::count_market(const MarketSteps& market, const std::vector<Ma
       visits[cell] += 1;
       import_[cell] += battery_.costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh);
       export_[cell] += battery_.costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh);
-      if (i + 1 < steps.size()) {
+      if (i + 1 < steps.size() && steps[i + 1].utc_s == steps[i].utc_s + kSecondsPerStep) {
         next[cell * kBins + price_bin(steps[i + 1].observed_eur_per_mwh)] += 1;
       }
     }

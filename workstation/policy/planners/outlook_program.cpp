@@ -80,7 +80,7 @@ struct MeanByQuarterHour {
   }
 };
 
-/// Quarter-hours whose prices pay the step's two minutes: 2 does not divide 15.
+/// Starts of the two minutes of a step, which may lie in different quarter-hours.
 std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
   return {step_utc_s, step_utc_s + 60};
 }

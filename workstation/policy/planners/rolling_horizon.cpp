@@ -172,10 +172,6 @@ RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& s
   return next;
 }
 
-RollingHorizonPolicy::Values RollingHorizonPolicy::values(const MarketStep& step) const {
-  return plan_rest(step, deviation_now(step), steps_left(step));
-}
-
 Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
   const double deviation = deviation_now(step);
   const Values next = plan_rest(step, deviation, steps_left(step) - 1);

@@ -29,11 +29,9 @@ class RollingHorizonPolicy final : public Policy {
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
-  /// Expected profit of the plan in the next 24 hours from this step, EUR, at `kSocPoints` even
-  /// points of the SoC window.
+  /// Expected profit, EUR, at `kSocPoints` even points of the SoC window.
   static constexpr int kSocPoints = 121;
   using Values = std::array<float, kSocPoints>;
-  [[nodiscard]] Values values(const MarketStep& step) const;
 
   static constexpr int kQuarterHours = 96;
   static constexpr int kQuarterHourMinutes = 15;

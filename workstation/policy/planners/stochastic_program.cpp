@@ -101,7 +101,7 @@ int step_of_day(const MarketStep& step) {
 /// Quarter-hour in which the step begins.
 int quarter_hour_of(int step) { return step * kMinutesPerStep / kMinutesPerQuarterHour; }
 
-/// Quarter-hours whose prices pay the step's two minutes: 2 does not divide 15.
+/// Starts of the two minutes of a step, which may lie in different quarter-hours.
 std::array<int, 2> paid_quarter_hours(int step) {
   const int minute = step * kMinutesPerStep;
   return {minute / kMinutesPerQuarterHour, (minute + 1) / kMinutesPerQuarterHour};

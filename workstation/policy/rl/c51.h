@@ -52,7 +52,6 @@ struct Support {
 // a scattered store. Measured 2026-11 (AVX-512) against the formula by atom: 5 times as fast at
 // gamma 0.999, 2.3 to 2.7 times at 0.9; at 0.5, with half as many distances as atoms, equal for 51
 // atoms and 1.6 times slower for 101.
-// faster for 51 atoms and 1.6 times slower for 101.
 
 class CategoricalProjection {
  public:

@@ -328,7 +328,13 @@ class Training {
 
   void run(const std::function<bool()>& interrupted, const CheckpointOptions& checkpoint) {
     const auto start = std::chrono::steady_clock::now();
-    if (checkpoint.resume) restore(checkpoint);
+    if (checkpoint.resume) {
+      try {
+        restore(checkpoint);
+      } catch (const UserError& error) {
+        throw CheckpointUnusable(error.what());
+      }
+    }
     Progress progress(fmt::format("train {}", method_name(options_.method)), "steps",
                       static_cast<double>(options_.steps), static_cast<double>(step_));
     bool stopped = false;

@@ -1,7 +1,7 @@
 // Training of the teacher: one loop of draw, learn, blend the target, validate. Differences from
 // the paper: Adam; by default the network adds to the stochastic program, from counterfactual
 // experience and over a continuing horizon (the `paper` preset trains a network only, from a replay
-// of daily episodes). Validation days, SoC carried over, select the kept weights (KeptStep).
+// of daily episodes). Validation days, SoC carried over, select the kept weights (kept_point).
 #pragma once
 
 #include <atomic>
@@ -121,10 +121,16 @@ struct CheckpointOptions {
   std::string identity;        ///< configuration and prices; must equal the checkpoint's
 };
 
+/// The checkpoint is damaged, or of another run.
+struct CheckpointUnusable : UserError {
+  using UserError::UserError;
+};
+
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` is
 /// called before every gradient step and every day of a validation: true ends training with the
 /// best result so far; resuming starts with an interrupted validation. Throws UserError for missing
-/// days; option ranges are checked where they are read (cli/run_config.cpp).
+/// days, CheckpointUnusable; option ranges are checked where they are read
+/// (runs/chain/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::function<bool()>& interrupted,
                           const CheckpointOptions& checkpoint = {});

@@ -19,8 +19,7 @@ void CommonOptions::add_config(ProgramCommand& command) {
       .value_name("FILE");
 }
 
-void CommonOptions::add_seed_and_threads(ProgramCommand& command) {
-  command.option("--seed", seed, "random seed (default 1)").non_negative();
+void CommonOptions::add_threads(ProgramCommand& command) {
   command.option("--threads", threads, "threads (default: all cores)").range(1, kThreadsMax);
 }
 

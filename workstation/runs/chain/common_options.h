@@ -18,12 +18,13 @@ struct CommonOptions {
   std::optional<double> initial_soc_frac;
 
   void add_config(ProgramCommand& command);
-  void add_seed_and_threads(ProgramCommand& command);
+  void add_threads(ProgramCommand& command);
   void add_market(ProgramCommand& command);
   void add_all(ProgramCommand& command) {
     add_market(command);
     add_config(command);
-    add_seed_and_threads(command);
+    command.option("--seed", seed, "random seed (default 1)").non_negative();
+    add_threads(command);
   }
 
   /// Configuration file overlaid with the command line's options.

@@ -66,6 +66,9 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
     }
   }
   if (broken.empty() || market.days.empty()) return text;
+  if (student.net.context.is_outlook()) {
+    return text + "  shares of decisions are not counted: this student needs day-ahead prices\n";
+  }
   RuleWatch watch(std::make_shared<StudentPolicy>(student.net), broken, student.net.context, 0,
                   config.train.seed);
   evaluate(market, market.days, watch, {config.battery, config.initial_soc_frac, true});

@@ -128,7 +128,8 @@ void KeyList::list(RunConfig& c) {
          "initial learning rate of Adam");
   number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1,
          "final learning rate of the cosine schedule");
-  number("gamma", kLearning, c.train.gamma, 0, 0.999999, "discount per step");
+  number("gamma", kLearning, c.train.gamma, 0, 0.999999,
+         "discount per step; no effect with residual");
   boolean("residual", kLearning, c.train.residual,
           "c51, dqn: learn a residual on the SDP, initialised to zero");
   number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
@@ -167,7 +168,7 @@ void KeyList::list(RunConfig& c) {
       "epochs of 16 Adam steps (construction), or 64 lattices and 32,768 visited states (layer)");
   integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64, "Adam steps per epoch");
   number("learning_rate", kLearning, c.distil.learning_rate, 1e-7, 1,
-         "initial learning rate of Adam, falling to a tenth");
+         "initial learning rate of Adam, falling to a hundredth (construction) or a tenth (layer)");
   integer("repair_rounds", kLearning, c.distil.repair_rounds, 0, 1000,
           "maximum failed proofs; each retrains on its counterexamples");
   integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000,
@@ -183,9 +184,9 @@ void KeyList::list(RunConfig& c) {
   number("logit_margin", kLearning, c.distil.correction.logit_margin, 0.01, 100,
          "logit margin at the thresholds");
   number("price_slope", kLearning, c.distil.correction.price_slope, 0, 100,
-         "minimum logit slope over the price range");
+         "layer: minimum logit slope over the price range");
   number("soc_slope", kLearning, c.distil.correction.soc_slope, 0, 100,
-         "minimum logit slope over the SoC range");
+         "layer: minimum logit slope over the SoC range");
 }
 
 void check_relations(const RunConfig& config, const std::string& name) {

@@ -41,7 +41,8 @@ double price_of(PriceFormula formula, const ImbalanceState& state) {
   return mean_price(state) + sign * alpha;
 }
 
-/// One battery of a part, run as in ../data/env/evaluate.cpp.
+/// One battery of a part: the run of workstation/data/env/evaluate.cpp without minimum run time and
+/// fade.
 class PartRunner {
  public:
   PartRunner(const FleetPart& part, const FleetOptions& options)

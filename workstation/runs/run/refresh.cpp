@@ -38,13 +38,10 @@ std::string change_of(const DifferingDecision& d) {
 CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
                          const MarketSteps& market, const RunConfig& config) {
   const std::vector<MarketDay> days = market.days_of(Split::kTest);
-  const double price = mean_settled_eur_per_mwh(market, days);
   std::vector<StepRecord> path;
   const auto traded = [&](Policy& policy, std::vector<StepRecord>* records) {
-    Evaluation done =
-        evaluate(market, days, policy, {config.battery, config.initial_soc_frac, true}, records);
-    value_charge_left(done, config.battery, price);
-    return done;
+    return evaluate_carried_over(market, days, policy, config.battery, config.initial_soc_frac,
+                                 records);
   };
   const auto own = exported_policy(before);
   const auto refit = exported_policy(now);

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "shared/crc32.h"
 #include "shared/host/embed/build_info.h"
 #include "shared/host/file.h"
 #include "shared/host/run_program.h"
@@ -80,18 +79,15 @@ std::string stage_times(const fs::path& path) {
   return text;
 }
 
-/// "FILE: crc32 1234abcd, 4711 bytes"
+/// The file and its mark.
 std::string prices_text(const RunFolder& folder) {
   const Json run = Json::parse(read_file(folder.path / "run.json"));
   const fs::path named = run.value()["prices"].text_or("");
   const fs::path path = named.has_parent_path() ? named : folder.path / named;
-  const std::optional<std::string> bytes = bytes_of(path);
   if (named.empty()) return "not in run.json";
-  if (!bytes) return named.string() + ": missing";
-  Crc32 crc;
-  crc.add_bytes(bytes->data(), bytes->size());
-  return fmt::format("{}: crc32 {:08x}, {} bytes", path.filename().string(), crc.value(),
-                     bytes->size());
+  const std::string mark = file_mark(path);
+  if (mark.empty()) return named.string() + ": missing";
+  return path.filename().string() + ": " + mark;
 }
 
 std::string span_text(const MarketSteps& market) {
@@ -351,15 +347,14 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
 namespace {
 
 NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
-  EvaluationOptions options{run.config.battery, run.config.initial_soc_frac, false};
+  const RunConfig& config = run.config;
   const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
   NamedEvaluation named;
   named.name = name;
-  named.day_reset = evaluate(run.market, days, policy, options);
-  options.carry_soc = true;
-  named.carried_over = evaluate(run.market, days, policy, options);
-  value_charge_left(named.carried_over, run.config.battery,
-                    mean_settled_eur_per_mwh(run.market, days));
+  named.day_reset =
+      evaluate(run.market, days, policy, {config.battery, config.initial_soc_frac, false});
+  named.carried_over =
+      evaluate_carried_over(run.market, days, policy, config.battery, config.initial_soc_frac);
   return named;
 }
 

@@ -315,7 +315,8 @@ RunStages::Names RunStages::train_teacher_here() {
     if (!fs::exists(path(kCheckpoint))) return train(false);
     try {
       return train(true);
-    } catch (const UserError&) {  // damaged: train from the start
+    } catch (const CheckpointUnusable& error) {
+      report_line(fmt::format("{}: training from the start", error.what()));
       fs::remove(path(kCheckpoint));
       return train(false);
     }

@@ -29,10 +29,6 @@ Entries with_defaults(Entries there, const Entries& here) {
   return there;
 }
 
-std::string date_of(std::int64_t utc_s) {
-  return std::string(utc_text(utc_s).view().substr(0, 10));
-}
-
 }  // namespace
 
 Entries learnt_for(const RunConfig& config, const MinuteSeries& series) {
@@ -79,7 +75,7 @@ std::string unknown_regimes(const Entries& there, const MarketSteps& market,
   if (regimes.empty()) return {};
   return fmt::format(
       "trained on prices of {} to {}, but these days are in another price regime: {}",
-      date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
+      local_date_text(learnt->from_s).view(), local_date_text(learnt->until_s - 1).view(), regimes);
 }
 
 std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {

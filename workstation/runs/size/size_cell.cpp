@@ -139,10 +139,8 @@ std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& 
 double foresight_profit(const MarketSteps& market, const RunConfig& config,
                         const std::vector<MarketDay>& days) {
   const auto policy = make_baseline(kForesightName, market, config.battery);
-  Evaluation bound =
-      evaluate(market, days, *policy, {config.battery, config.initial_soc_frac, true});
-  value_charge_left(bound, config.battery, mean_settled_eur_per_mwh(market, days));
-  return bound.profit_eur_per_day_per_mwh();
+  return evaluate_carried_over(market, days, *policy, config.battery, config.initial_soc_frac)
+      .profit_eur_per_day_per_mwh();
 }
 
 SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {

@@ -11,8 +11,8 @@
 
 namespace bess {
 
-// Size plan: powers x capacities x contracts, purchase costs and ageing. A TOML file; README.md has
-// an example with every key.
+// Size plan: powers x capacities x contracts, purchase costs and ageing. A TOML file;
+// shared/manual/guides/which_battery.md has an example.
 
 /// Trading costs and the aggregator's share.
 struct SizeContract {
@@ -135,8 +135,8 @@ struct BatteryLifetime {
 };
 BatteryLifetime lifetime_of(const SizeCell& cell, const Ageing& ageing);
 
-/// Shortest payback; if none pays back, the highest lifetime result; without prices, the highest
-/// yearly earnings per kWh.
+/// Shortest payback; if none pays back, the highest lifetime result per EUR of price; without
+/// prices, the highest yearly earnings per kWh.
 const SizeCell& best_of(const std::vector<SizeCell>& cells);
 
 }  // namespace bess

@@ -50,9 +50,10 @@ std::string kilo(double value) { return fmt::format("{:g}", value / 1e3); }
 
 std::string best_text(const SizeCells& weighed) {
   const SizeCell& best = best_of(weighed.cells);
-  const std::string what = std::isnan(best.pay_back_years)
-                               ? std::string("none pays back; best lifetime result")
-                               : fmt::format("shortest payback, {:.1f} years", best.pay_back_years);
+  const std::string what =
+      std::isnan(best.pay_back_years)
+          ? std::string("none pays back; best lifetime result per EUR of price")
+          : fmt::format("shortest payback, {:.1f} years", best.pay_back_years);
   return fmt::format("{}: {} kW, {} kWh, {}",
                      best.price_eur > 0 ? what : "highest yearly earnings per kWh",
                      kilo(best.power_w), kilo(best.capacity_wh), best.contract->name);

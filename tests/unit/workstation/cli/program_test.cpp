@@ -26,21 +26,6 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(program.wait(), 1);
 }
 
-TEST(Program, BrokenTomlIsOneClearLine) {
-  const TemporaryFolder folder;
-  for (const TomlMistake& mistake : toml_mistakes()) {
-    SCOPED_TRACE(mistake.text.substr(0, 40));
-    const std::string config = folder.write("broken.toml", mistake.text);
-    const auto [exit_code, text] = run_train({"config", "--config", config});
-    EXPECT_EQ(exit_code, 1) << text;
-    // Input over the limit is not read to its end.
-    const bool is_too_long = mistake.text.size() > kTomlBytesMax;
-    const std::string place = "broken.toml:" + std::to_string(mistake.line);
-    EXPECT_THAT(text, Names(is_too_long ? "broken.toml 256 KiB" : place));
-    EXPECT_EQ(std::ranges::count(text, '\n'), 1) << text;
-  }
-}
-
 TEST(Program, AByteOrderMarkBeforeTheConfigurationIsSkipped) {
   const TemporaryFolder folder;
   const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");

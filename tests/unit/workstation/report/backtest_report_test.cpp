@@ -67,8 +67,7 @@ TEST(BacktestReport, ShowsErrorsByMonthNextToThePlainOnes) {
     sdp.total.days[d].profit_eur = profit_eur;
     sdp.by_month[d / 3].days[d % 3].profit_eur = profit_eur;
   }
-  EXPECT_THAT(format_backtest_table(fitted),
-              AllOf(HasSubstr("  +15.0   2.2       5.0"), Names("2 71 %")));
+  EXPECT_THAT(format_backtest_table(fitted), Names("+15.0 2.2 5.0 2 71 %"));
   EXPECT_THAT(backtest_csv(fitted), HasSubstr("all,sdp,6,25.0000,15.0000,2.2361,"));
   EXPECT_THAT(backtest_csv(fitted), HasSubstr(",,2.2361,5.0000,5.0000,1.0000\n"));
   EXPECT_THAT(backtest_json(fitted).line(), HasSubstr("\"gain_standard_error_by_month\":5.0000"));
@@ -76,37 +75,6 @@ TEST(BacktestReport, ShowsErrorsByMonthNextToThePlainOnes) {
   write_backtest_page(fitted, folder.file(""));
   EXPECT_THAT(read_file(folder.file("backtest.html")),
               HasSubstr("<td data-label=\"Gain by month\">5.0</td>"));
-}
-
-TEST(BacktestReport, DaysFromTheSameSocAreInAllThreeOnRequest) {
-  BacktestResults asked = results(5);
-  const TemporaryFolder folder;
-  write_backtest_page(asked, folder.file(""));
-  EXPECT_THAT(backtest_json(asked).line(), HasSubstr("\"day_reset\":null"));
-  EXPECT_THAT(read_file(folder.file("backtest.html")), Not(HasSubstr("+13.7")));
-  for (WalkForward& policy : asked.policies) {
-    policy.day_reset = policy.total;
-    for (DayResult& day : policy.day_reset.days) day.profit_eur += policy.name == "sdp" ? 3 : 1;
-  }
-  write_backtest_page(asked, folder.file(""));
-  EXPECT_THAT(backtest_json(asked).line(),
-              HasSubstr("\"day_reset\":{\"profit_eur_per_day_per_mwh\":23.0000,"));
-  EXPECT_THAT(backtest_json(asked).line(), HasSubstr("\"gain_eur_per_day_per_mwh\":13.6667,"));
-  EXPECT_THAT(format_backtest_table(asked), HasSubstr("+13.7"));
-  EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("+13.7"));
-}
-
-TEST(BacktestReport, ThePageDrawsAFallWhereThereIsOne) {
-  const TemporaryFolder folder;
-  for (const double second_day_eur : {-30.0, 5.0}) {
-    write_backtest_page(results(second_day_eur), folder.file(""));
-    const std::string page = read_file(folder.file("backtest.html"));
-    const int falls = second_day_eur < 0 ? 1 : 0;
-    EXPECT_EQ(count_of(page, "<canvas id=\"falls\""), falls) << "an empty picture";
-    EXPECT_EQ(count_of(page, "{\"id\":\"falls\",\"kind\":\"lines\""), falls);
-    EXPECT_THAT(page, AllOf(HasSubstr("<li>2023-02 "), Names("31 120"),
-                            HasSubstr("[[\"rbc\",\"muted\",[")));
-  }
 }
 
 /// The second month is traded although the first is on the other side of a boundary.
@@ -146,27 +114,6 @@ TEST(BacktestReport, MarksAreWhereARegimeBeginsAmongTheDays) {
             R"([[1,"PICASSO"],[2,"day-ahead in quarter-hours"]])");
   EXPECT_EQ(regime_marks({"2024-11-26", "2024-11-27"}).line(), "[]") << "it began before";
   EXPECT_EQ(regime_marks({}).line(), "[]");
-}
-
-TEST(BacktestReport, ThePictureHasTheSumsOfTheDays) {
-  const TemporaryFolder folder;
-  const BacktestResults fitted = results(5);
-  write_backtest_page(fitted, folder.file(""));
-  const std::string page = read_file(folder.file("backtest.html"));
-  EXPECT_THAT(page, HasSubstr("href=\"backtest_days.csv\""));
-  constexpr std::string_view kData = "id=\"data\">";
-  const std::size_t begin = page.find(kData) + kData.size();
-  const Json charts = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
-  const JsonValue chart = *charts.value().begin();
-  EXPECT_EQ(chart["labels"].size(), 6U);
-  auto policy = fitted.policies.begin();
-  for (const JsonValue line : chart["series"]) {
-    std::vector<double> drawn;
-    for (const JsonValue part : line) {
-      for (const JsonValue value : part) drawn.push_back(value.number().value_or(NAN));
-    }
-    EXPECT_EQ(drawn, (policy++)->cumulative_eur_per_mwh());
-  }
 }
 
 }  // namespace

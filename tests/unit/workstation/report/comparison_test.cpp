@@ -69,18 +69,6 @@ TEST(Comparison, WithoutForesightThereIsNoShare) {
   EXPECT_FALSE(rows[1].foresight_share.has_value());
 }
 
-TEST(Comparison, TerminalColumnsAlign) {
-  const std::string table = format_comparison_table(three_policies());
-  std::size_t line_at = table.find('\n') + 1, width = 0;
-  for (int line = 0; line < 3; ++line) {
-    const std::size_t end = table.find('\n', line_at);
-    if (line == 0) width = end - line_at;
-    EXPECT_EQ(end - line_at, width) << table;
-    line_at = end + 1;
-  }
-  EXPECT_THAT(table, HasSubstr("+133.3"));
-}
-
 TEST(Comparison, NothingToCompareIsNoTable) {
   EXPECT_EQ(format_comparison_table({}), "");
   EXPECT_EQ(format_comparison_table({{"empty", {}, {}}}), "");

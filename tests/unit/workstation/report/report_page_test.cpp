@@ -76,23 +76,6 @@ TEST(ReportTables, AFailedProofNamesDemandStateAndRemedy) {
   EXPECT_EQ(failure_html({}), "");
 }
 
-TEST(ReportTables, NumbersHaveMinusSignsAndNamesKeepTheirHyphens) {
-  const std::string html = format_table(
-      {"",
-       {"policy", "gain"},
-       {{"rbc-tuned", "-3.5"}, {"a", "318 (-89)"}, {"b", "2023-04"}, {"c", "-"}, {"d", "no-one"}}});
-  for (const char* said :
-       {">rbc-tuned<", ">\u22123.5<", ">318 (\u221289)<", ">2023-04<", ">-<", ">no-one<"}) {
-    EXPECT_THAT(html, HasSubstr(said));
-  }
-}
-
-TEST(ReportTables, FactsAreEscaped) {
-  const std::string html = provenance_html({{"command", "a <b> & c"}}, "x<y");
-  EXPECT_THAT(html, HasSubstr("<dt>command</dt><dd>a &lt;b&gt; &amp; c</dd>"));
-  EXPECT_THAT(html, HasSubstr("<pre>x&lt;y</pre>"));
-}
-
 NamedEvaluation earning(const std::string& name, double eur) {
   Evaluation evaluation;
   evaluation.capacity_mwh = 8;

@@ -153,42 +153,6 @@ TEST(Report, NoTestDaysAreRefused) {
   EXPECT_THROW(write_report({.market = market}, folder.file("run")), UserError);
 }
 
-/// Numbers of a table have a true minus.
-std::string with_minus(std::string cells) {
-  for (std::size_t at = cells.find(">-"); at != cells.npos; at = cells.find(">-", at)) {
-    cells.replace(at, 2, ">\u2212");
-  }
-  return cells;
-}
-
-TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
-  const TemporaryFolder folder;
-  const FinishedRun run;
-  const ReportInputs in = run.inputs();
-  const std::string html = html_of(in, folder.file("run"));
-  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
-    const Evaluation& teacher = in.evaluations[1].*field;
-    const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
-    const std::string cells = with_minus(fmt::format(
-        "teacher</th><td data-label=\"Profit, EUR/day/MWh\">{:.1f}</td><td "
-        "data-label=\"s.e.\">{:.1f}</td><td data-label=\"By month\">{:.1f}</td><td "
-        "data-label=\"Gain, EUR/day/MWh\">{:+.1f}</td>"
-        "<td data-label=\"Its s.e.\">{:.1f}</td><td data-label=\"Gain by month\">{:.1f}</td>"
-        "<td data-label=\"Worst day, EUR/MWh of capacity\">{:.1f}</td><td "
-        "data-label=\"Cycles/day\">{:.2f}</td><td data-label=\"Switches/day\">{:.1f}</td>",
-        teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,
-        d.mean, d.standard_error, d.standard_error_by_month, teacher.worst_day_eur_per_mwh(),
-        teacher.cycles_per_day(), teacher.switches_per_day()));
-    EXPECT_THAT(html, testing::HasSubstr(cells));
-  }
-  EXPECT_THAT(html, testing::HasSubstr("<th scope=\"col\">At wear 10, EUR/day/MWh</th>"));
-  const double at_wear =
-      in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
-  EXPECT_THAT(html, testing::HasSubstr(with_minus(fmt::format(
-                        "<td data-label=\"At wear 10, EUR/day/MWh\">{:.1f}</td></tr>", at_wear))));
-  EXPECT_THAT(html, testing::HasSubstr("<td data-label=\"Pairs out of order\">42</td></tr>"));
-}
-
 TEST(Report, TitleAndHeadingNameRunPricesBatteryAndDate) {
   const TemporaryFolder folder;
   const FinishedRun run;

@@ -45,13 +45,12 @@ grep -q 'signature=[0-9a-f]\{16\}$' edge/generated/decision_signature.txt ||
 grep -q '^#define BESS_STUDENT_TRAINED_FROM "2023-01-01"$' edge/generated/student_weights.h &&
   grep -q '^#define BESS_STUDENT_TRAINED_UNTIL "2023-05-22"$' edge/generated/student_weights.h ||
   fail "the header lacks its training days"
-grep -q '^expect about [0-9.]* full cycles a day.* wear_eur_per_mwh or cycles_per_day_max$' \
+grep -q '[0-9]\.[0-9] .*wear_eur_per_mwh.*cycles_per_day_max' \
   runs/first/summary.txt || fail "the summary lacks the cycles"
-grep -q 'warning: the newest day of these prices, 2023-05-22, was ' said ||
-  fail "no warning of old prices"
+grep -q 'warning:.*2023-05-22' said || fail "no warning of old prices"
 [ "$(build/bess-edge signature)" != "$("$build/bess-edge" signature)" ] ||
   fail "bess-edge makes the old decisions"
-grep -q 'low_price_eur_per_mwh: -500 | -300' said ||
+grep -q 'low_price_eur_per_mwh.*-500.*-300' said ||
   fail "'runs compare' does not tell what differs"
 grep -q '"low_price_eur_per_mwh":[[:space:]]*-300' runs/mine/student.json ||
   fail "the student is not bound to the new thresholds"

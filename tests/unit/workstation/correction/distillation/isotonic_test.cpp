@@ -154,68 +154,6 @@ TEST(Isotonic, EveryLatticeIsOptimal) {
         }
       }
     }
-    for (int direction = 0; direction < 50; ++direction) {  // towards random feasible points
-      Values z(x.size());
-      for (int i = 0; i < rows; ++i) {
-        for (int j = 0; j < columns; ++j) {
-          double value = random.normal() + 1 - 2.0 * i / rows;
-          if (i > 0) value = std::min(value, z[(i - 1) * columns + j]);
-          if (j > 0) value = std::min(value, z[i * columns + j - 1]);
-          z[i * columns + j] = value;
-        }
-      }
-      for (int c = 0; c < rows * columns; ++c) {
-        if (c / columns < bounds.lower_rows) z[c] = std::max(z[c], bounds.lower);
-        if (c / columns >= rows - bounds.upper_rows) z[c] = std::min(z[c], bounds.upper);
-      }
-      ASSERT_TRUE(feasible(rows, columns, z, bounds));
-      double along = 0;
-      for (std::size_t c = 0; c < x.size(); ++c) along += (x[c] - y[c]) * (z[c] - x[c]);
-      ASSERT_GE(along, -1e-9);
-    }
-  }
-}
-
-struct AdjointCase {
-  const char* name;
-  int rows, columns;
-  RowBounds bounds;
-};
-
-TEST(Isotonic, BackwardIsTheDerivative) {
-  const AdjointCase cases[] = {
-      {"free", 6, 5, {}},
-      {"lower", 6, 5, {2, 1.0, 0, 0}},
-      {"upper", 6, 5, {0, 0, 2, -0.6}},
-      {"both", 7, 4, {2, 0.6, 3, -0.4}},
-      {"one row", 1, 9, {}},
-      {"one column", 9, 1, {1, 0.5, 1, -0.5}},
-  };
-  constexpr double kStep = 1e-6;
-  Random random(105);
-  for (const AdjointCase& c : cases) {
-    for (int round = 0; round < 5; ++round) {
-      SCOPED_TRACE(c.name);
-      const int cells = c.rows * c.columns;
-      const Values y = random_lattice(cells, random);
-      const Values g = random_lattice(cells, random);
-      IsotonicProjection projection(c.rows, c.columns);
-      Values x(y.size());
-      projection.project(y, c.bounds, x);
-      Values gradient = g;
-      projection.backward(gradient, gradient);  // in place
-      for (int k = 0; k < cells; ++k) {
-        double loss[2];
-        for (const int side : {0, 1}) {
-          Values moved = y;
-          moved[k] += side == 1 ? kStep : -kStep;
-          const Values there = project(c.rows, c.columns, moved, c.bounds);
-          loss[side] = 0;
-          for (int n = 0; n < cells; ++n) loss[side] += g[n] * there[n];
-        }
-        EXPECT_NEAR(gradient[k], (loss[1] - loss[0]) / (2 * kStep), 1e-7) << "cell " << k;
-      }
-    }
   }
 }
 

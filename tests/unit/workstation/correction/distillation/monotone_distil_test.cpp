@@ -46,7 +46,7 @@ const School& school() {
   return school;
 }
 
-TEST(TrainingBatch, HaveTheTeachersActionAndTheLossOfOthers) {
+TEST(TrainingBatch, HasTheTeachersActionAndTheLossOfOthers) {
   const TrainingBatch& batch = school().batch;
   ASSERT_EQ(batch.inputs.cols(), batch.teacher_frac.cols());
   ASSERT_GT(batch.inputs.cols(), school().visited.cols());
@@ -63,7 +63,8 @@ TEST(TrainingBatch, HaveTheTeachersActionAndTheLossOfOthers) {
 }
 
 /// States in which the teacher's first choice violates the rules.
-int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOptions& options) {
+int broken_training_states(const Teacher& teacher, const RuleSet& rules,
+                           const DistilOptions& options) {
   const RuleSamples samples(rules, teacher.context.kind);
   const TrainingBatch batch = make_training_states(teacher, school().visited, options);
   int broken = 0;
@@ -76,7 +77,7 @@ int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOpt
   return broken;
 }
 
-TEST(TrainingBatch, ObeyTheRulesForAnyTeacher) {
+TEST(TrainingBatch, ObeysTheRulesForAnyTeacher) {
   const RuleSet rules = load_rules({example_rule_path("quiet_hours")});
   for (const Method method : {Method::kSdp, Method::kC51, Method::kDqn}) {
     SCOPED_TRACE(method_name(method));
@@ -91,9 +92,10 @@ TEST(TrainingBatch, ObeyTheRulesForAnyTeacher) {
       teacher.program = nullptr;
     }
     DistilOptions options = school().options;
-    EXPECT_GT(broken_lessons(teacher, rules, options), 1000) << "the teacher ignores the rules";
+    EXPECT_GT(broken_training_states(teacher, rules, options), 1000)
+        << "the teacher ignores the rules";
     options.rules = rules;
-    EXPECT_EQ(broken_lessons(teacher, rules, options), 0);
+    EXPECT_EQ(broken_training_states(teacher, rules, options), 0);
   }
 }
 

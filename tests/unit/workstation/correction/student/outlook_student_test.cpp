@@ -138,6 +138,14 @@ TEST(OutlookStudent, ADamagedPlanIsRefused) {
   EXPECT_THAT(refusal_of([&] { parse_student(text, "mine.json"); }), Names("mine.json"));
 }
 
+TEST(OutlookStudent, OwesTheDemandOnItsClassesWhateverItsFileSays) {
+  StudentFile claimed = student();
+  claimed.certificate.rules = {};
+  const RuleSet owed = sample_violations(claimed, 2).certificate.rules;
+  ASSERT_EQ(owed.rules.size(), 1U);
+  EXPECT_EQ(owed.rules[0].demand->direction(), (Direction{RuleInput::kContextClass, 1}));
+}
+
 TEST(OutlookStudent, WhatItCannotDoIsSaid) {
   const auto never = [] { return false; };
   MarketSteps blind = school().market;

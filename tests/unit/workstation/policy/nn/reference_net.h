@@ -240,23 +240,6 @@ inline double max_relative_error(const float* a, const Doubles& b) {
   return error / scale;
 }
 
-/// Central differences of `loss` over all parameters.
-template <typename Loss>
-Doubles finite_differences(const MlpShape& shape, const Doubles& parameters, const Loss& loss) {
-  constexpr double kStep = 1e-6;
-  Doubles gradient(parameters.size());
-  ReferenceNet net(shape, parameters);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    net.parameters[i] = parameters[i] + kStep;
-    const double above = loss(net);
-    net.parameters[i] = parameters[i] - kStep;
-    const double below = loss(net);
-    net.parameters[i] = parameters[i];
-    gradient[i] = (above - below) / (2 * kStep);
-  }
-  return gradient;
-}
-
 /// Parameters with a stronger head than at the start, so that distributions have a shape.
 inline Parameters random_parameters(const MlpShape& shape, std::uint64_t seed, float head_scale) {
   Parameters parameters = initial_parameters(shape, seed);

@@ -49,7 +49,7 @@ TEST_F(OutlookIntegers, DivideChargingFromDischargingWhereTheProgramDoes) {
   EXPECT_GT(at_stake_eur, 1000);
 }
 
-TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
+TEST_F(OutlookIntegers, ThePlanCacheAnswersTheSameInAnyOrderAndFromThreads) {
   const MarketDay& day = steps_.days[29];  // of a change of clocks
   std::vector<std::int32_t> forward;
   for (const MarketStep& step : steps_.of(day)) {
@@ -93,7 +93,7 @@ TEST_F(OutlookIntegers, WhatTheProgramKeepsIsOfTheVeryStepThatIsAsked) {
 }
 
 // A run's teacher and students plan once.
-TEST_F(OutlookIntegers, OneModelHasOneBookWhileItIsInUse) {
+TEST_F(OutlookIntegers, OneModelHasOnePlanCacheWhileItIsInUse) {
   const auto plan_cache = PlanCache::of(model_);
   EXPECT_EQ(PlanCache::of(model_), plan_cache);
   OutlookModel other = model_;

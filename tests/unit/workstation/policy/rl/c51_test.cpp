@@ -176,21 +176,5 @@ TEST(C51Gradient, OfTheRealShapeIsAlgorithm1) {
   }
 }
 
-TEST(C51Reference, GradientIsTheDifferenceQuotientOfItsLoss) {
-  const Support support{-3, 3, 5};
-  const MlpShape shape{5, 7, 6, kActionCount * support.count};
-  const ReferenceNet online(shape, to_doubles(random_parameters(shape, 47, 3)));
-  const ReferenceNet target(shape, to_doubles(random_parameters(shape, 48, 3)));
-  Random random(49);
-  const auto batch = random_transitions({{5, 4, 3}, 2}, support, online, target, random);
-  const Doubles differences = finite_differences(shape, online.parameters, [&](const auto& net) {
-    return reference_c51(support, 0.9, net, target, batch).loss;
-  });
-  const Doubles gradient = reference_c51(support, 0.9, online, target, batch).gradient;
-  for (std::size_t i = 0; i < gradient.size(); ++i) {
-    EXPECT_NEAR(gradient[i], differences[i], 1e-7) << i;
-  }
-}
-
 }  // namespace
 }  // namespace bess

@@ -8,6 +8,7 @@
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "workstation/runs/log/log_comparison.h"
 #include "workstation/runs/log/log_replay.h"
@@ -15,8 +16,6 @@
 
 namespace bess {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr std::int64_t kStart = 1'795'341'600;  // 2026-11-22T10:00:00Z, a quarter-hour begins
 const char* const kHead =
@@ -69,13 +68,7 @@ TEST_F(Log, EarnsByQuarterHoursLessTheContract) {
   EXPECT_NEAR(day.money.earned_eur, 0.5 - 0.1, 1e-9);
   EXPECT_NEAR(day.money.contract_eur, 2 * 0.045 + 2 * 0.005 + 4 * 0.010, 1e-9);
   EXPECT_NEAR(day.money.estimated_eur, 0.4, 1e-9);
-  const std::string page = statement_page(log.days, battery_);
-  EXPECT_THAT(page, HasSubstr("<title>Battery: 2026-11-22 to 2026-11-22</title>"));
-  const std::string total = page.substr(page.find(">total</th>"));
-  for (const char* cell : {", kWh\">2.000</td>", ", EUR\">0.40</td>", ", EUR\">0.14</td>",
-                           ", EUR\">0.26</td>", ">45 EUR per MWh"}) {
-    EXPECT_THAT(total, HasSubstr(cell));
-  }
+  EXPECT_THAT(statement_page(log.days, battery_), Names("2026-11-22 2.000 0.40 0.14 0.26 45"));
 }
 
 /// The first quarter-hour at 90 instead of 50: 1 kWh, 4 cents less.
@@ -140,8 +133,8 @@ TEST_F(Log, ReplayCountsWhatAnotherStudentWouldHaveDecided) {
   EXPECT_EQ(replay.compared, 20);
   EXPECT_EQ(replay.differing, 3);
   EXPECT_NEAR(replay.gained_eur, 3 * (500 + 600) / 7'500.0, 1e-9);
-  EXPECT_THAT(replay.text(), HasSubstr("changes 3 of 20 decisions (15.00 %), worth about +0.44"));
-  EXPECT_THAT(replay.text(), HasSubstr("idle      -> charge         3\n"));
+  EXPECT_THAT(replay.text(), Names("3 20 15.00 % +0.44"));
+  EXPECT_THAT(replay.text(), Names("idle charge 3"));
   EXPECT_EQ(replay.others.front().utc_s, kStart + kSecondsPerStep);
   EXPECT_EQ(replay.others.front().now, Action::kCharge);
   student.context.kind = ContextKind::kOutlook;  // which this log does not cover
@@ -163,16 +156,14 @@ TEST_F(Log, WhatIsSkippedIsCounted) {
 }
 
 TEST_F(Log, ABadLogIsNamedByLineAndColumn) {
-  EXPECT_THAT(complaint("utc,mode\n2026-11-22T10:00:00Z,running\n"),
-              HasSubstr("has no column \"price_minute_utc\""));
+  EXPECT_THAT(complaint("utc,mode\n2026-11-22T10:00:00Z,running\n"), Names("price_minute_utc"));
   EXPECT_THAT(complaint(kHead + row(1, 50, 0, 0) + "2026-11-22T10:04:00Z,running\n"),
-              HasSubstr("log.csv:3: 2 fields, the header has 17"));
+              Names("log.csv:3 2 17"));
   EXPECT_THAT(complaint(kHead + row(1, 50, 0, 0, "dance")),
-              HasSubstr("log.csv:2: student_action \"dance\""));
+              Names("log.csv:2 student_action \"dance\""));
   std::string no_number = row(1, 50, 0, 0);
   no_number.replace(no_number.find("5000,0,idle"), 4, "half");
-  EXPECT_THAT(complaint(kHead + no_number),
-              HasSubstr("log.csv:2: soc_e4 \"half\" is not a number"));
+  EXPECT_THAT(complaint(kHead + no_number), Names("log.csv:2 soc_e4 \"half\""));
   const CycleLog log = read(hour_of_trade()).log;
   EXPECT_THROW(require_same_battery(log, BatteryParameters{}, ""), UserError) << "megawatts";
   EXPECT_NO_THROW(require_same_battery(log, battery_, ""));
