@@ -20,7 +20,7 @@
 namespace bess {
 
 /// Request of the program.
-struct EliaAsk {
+struct EliaRequest {
   std::string dataset;
   std::int64_t from_utc_s = 0, until_utc_s = 0;
   bool wants_total = false;  ///< the server's count instead of rows
@@ -41,14 +41,14 @@ struct EliaAnswer {
   std::string status = "200 OK";
   std::string headers;
   /// Text of the rows; `body` when that is not empty.
-  std::function<std::string(const EliaAsk&, const std::vector<EliaRow>&)> format;
+  std::function<std::string(const EliaRequest&, const std::vector<EliaRow>&)> format;
   std::string body;
   bool has_length = true;
   std::size_t sent_max = std::string::npos;  ///< bytes of the body, the length notwithstanding
   int drip_ms = 0;                           ///< between single bytes of the body
 };
 
-inline std::string elia_csv(const EliaAsk& ask, const std::vector<EliaRow>& rows) {
+inline std::string elia_csv(const EliaRequest& ask, const std::vector<EliaRow>& rows) {
   std::string text = "datetime;resolutioncode;imbalanceprice\n";
   for (const EliaRow& row : rows) {
     text += std::string(utc_text(row.utc_s).view().substr(0, 19)) + "+00:00;" +
@@ -58,7 +58,7 @@ inline std::string elia_csv(const EliaAsk& ask, const std::vector<EliaRow>& rows
 }
 
 /// The rows of [from, until): settled prices oscillate, minute prices converge to them.
-inline std::vector<EliaRow> elia_rows(const EliaAsk& ask, std::int64_t from_utc_s,
+inline std::vector<EliaRow> elia_rows(const EliaRequest& ask, std::int64_t from_utc_s,
                                       std::int64_t until_utc_s) {
   std::vector<EliaRow> rows;
   for (std::int64_t utc_s = from_utc_s; utc_s < until_utc_s; utc_s += ask.minutes() ? 60 : 900) {
@@ -71,9 +71,9 @@ inline std::vector<EliaRow> elia_rows(const EliaAsk& ask, std::int64_t from_utc_
 
 class FakeElia {
  public:
-  using Quirk = std::function<void(const EliaAsk&, EliaAnswer&)>;
+  using Quirk = std::function<void(const EliaRequest&, EliaAnswer&)>;
 
-  explicit FakeElia(Quirk quirk = [](const EliaAsk&, EliaAnswer&) {})
+  explicit FakeElia(Quirk quirk = [](const EliaRequest&, EliaAnswer&) {})
       : quirk_(std::move(quirk)),
         server_([this](TestConnection& connection, const std::string& request) {
           return answer(connection, request);
@@ -99,8 +99,8 @@ class FakeElia {
     return plain;
   }
 
-  EliaAsk parse(const std::string& request) {
-    EliaAsk ask;
+  EliaRequest parse(const std::string& request) {
+    EliaRequest ask;
     const std::string line = decoded(request.substr(0, request.find('\n')));
     ask.dataset = line.substr(line.find("/ods") + 1, 6);
     ask.wants_total = line.find("/records?") != line.npos;
@@ -112,10 +112,10 @@ class FakeElia {
   }
 
   bool answer(TestConnection& connection, const std::string& request) {
-    const EliaAsk ask = parse(request);
+    const EliaRequest ask = parse(request);
     EliaAnswer answer;
     answer.rows = elia_rows(ask, ask.from_utc_s, ask.until_utc_s);
-    answer.format = [](const EliaAsk& of, const std::vector<EliaRow>& rows) {
+    answer.format = [](const EliaRequest& of, const std::vector<EliaRow>& rows) {
       return of.wants_total ? fmt::format("{{\"total_count\": {}, \"results\": []}}", rows.size())
                             : elia_csv(of, rows);
     };

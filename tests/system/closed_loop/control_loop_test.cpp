@@ -16,67 +16,12 @@ using Plant = FakePlant;
 
 ControlSettings in_control() { return {.control = true, .guard = {}}; }
 
-TEST(ClosedLoop, ADayEndsWhereTheOrdersLead) {
-  set_market_time_zone();
-  Plant plant;
-  double soc = 0.5;
-  for (int i = 0; i < kStepsPerDay; ++i) {
-    const CycleRecord record = plant.cycle();
-    EXPECT_EQ(record.mode, Mode::kRunning);
-    EXPECT_EQ(record.price_age_s, 0);
-    EXPECT_EQ(record.missed_ticks, 0);
-    soc = battery_step(kHouse, soc, record.ordered_power_w, kHoursPerStep).soc_frac;
-  }
-  plant.battery.physics.advance((plant.clock.now_ns / 120'000'000'000 + 1) * 120'000'000'000);
-  EXPECT_NEAR(plant.battery.physics.soc_frac(), soc, 1e-9);
-  EXPECT_EQ(plant.battery.orders.size(), std::size_t{kStepsPerDay});
-}
-
-TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
-  Plant plant;
-  plant.set_price(-20'000);
-  EXPECT_EQ(plant.cycle().ordered_power_w, 4'000);
-  plant.prices.outage = true;
-  std::vector<Mode> modes;
-  std::vector<std::int32_t> powers;
-  for (int i = 0; i < 270; ++i) {  // nine hours, as in January 2024
-    const CycleRecord record = plant.cycle();
-    modes.push_back(record.mode);
-    powers.push_back(record.ordered_power_w);
-  }
-  // The row of the last good minute is 2, then 4 minutes old: still valid; then the safe state.
-  EXPECT_EQ(powers[1], 4'000);
-  EXPECT_EQ(modes[2], Mode::kHolding);
-  EXPECT_EQ(powers[2], 0);
-  EXPECT_EQ(modes[4], Mode::kHolding);  // 240 s held
-  EXPECT_EQ(modes[5], Mode::kSafe);     // 360 s: released
-  EXPECT_EQ(modes.back(), Mode::kSafe);
-  EXPECT_EQ(plant.battery.releases, 1);  // once, not every control cycle
-  EXPECT_FALSE(plant.battery.physics.dispatch_active());
-  plant.prices.outage = false;
-  const CycleRecord record = plant.cycle();
-  EXPECT_EQ(record.mode, Mode::kRunning);
-  EXPECT_EQ(record.ordered_power_w, 4'000);
-}
-
 TEST(ClosedLoop, ReadOnlyNeverWrites) {
   Plant plant(0.5, ControlSettings{});
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(plant.cycle().written);
   EXPECT_EQ(plant.stop().battery_status, Status::kOk);
   EXPECT_TRUE(plant.battery.orders.empty());
   EXPECT_EQ(plant.battery.releases, 0);
-}
-
-TEST(ClosedLoop, StopOrdersZeroAndReleases) {
-  Plant plant;
-  plant.set_price(-20'000);
-  plant.cycle();
-  const CycleRecord record = plant.stop();
-  EXPECT_EQ(record.battery_status, Status::kOk);
-  EXPECT_EQ(plant.battery.orders.back().power_w, 0);
-  EXPECT_EQ(plant.battery.releases, 1);
-  EXPECT_EQ(record.mode, Mode::kStopping);
-  EXPECT_EQ(record.reason, Reason::kStopRequested);
 }
 
 TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
@@ -189,31 +134,6 @@ TEST(ClosedLoop, NothingIsRefreshedWithoutAnOrderOrInReadOnly) {
   }
   EXPECT_TRUE(reader.battery.refreshed_ns.empty());
   EXPECT_TRUE(safe.battery.refreshed_ns.empty());
-}
-
-TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
-  set_market_time_zone();
-  ControlSettings settings = in_control();
-  settings.cycles_per_day_max_e4 = 5'000;  // half a full cycle: 100 % of charge moved
-  Plant plant(0.5, settings);
-  plant.prices.price = [&](std::int64_t minute_utc_s) {
-    return minute_utc_s / 7'200 % 2 == 0 ? kCheapCenti : kDearCenti;  // two hours each way
-  };
-  std::int32_t moved_e4_max = 0;
-  bool spent = false, reopened = false;
-  for (int i = 0; i < 2 * kStepsPerDay; ++i) {
-    const CycleRecord record = plant.cycle();
-    moved_e4_max = std::max(moved_e4_max, record.throughput.soc_moved_e4);
-    if (record.reason == Reason::kCycleBudget) {
-      EXPECT_EQ(record.ordered_power_w, 0);
-      spent = true;
-    }
-    reopened = reopened || (spent && record.ordered_power_w != 0);
-  }
-  EXPECT_TRUE(spent);
-  EXPECT_TRUE(reopened);
-  EXPECT_GE(moved_e4_max, 10'000);
-  EXPECT_LE(moved_e4_max, 10'000 + 350);  // at most one 2-minute step of 4 kW
 }
 
 TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {

@@ -7,6 +7,8 @@
 #include <sys/mount.h>
 #include <sys/stat.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "tests/support/edge_answer.h"
@@ -337,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
                          [](const auto& info) { return std::string(info.param.name); });
 
 /// Operator commands while the disk refuses writes.
-class DyingDiskWords : public DyingDisk {
+class DyingDiskCommands : public DyingDisk {
  protected:
   ProgramOutput hold(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "hold");
@@ -347,7 +349,7 @@ class DyingDiskWords : public DyingDisk {
   void mend_disk(bool is_full) { is_full ? disk_.free_again() : disk_.come_back(); }
 };
 
-TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne) {
+TEST_F(DyingDiskCommands, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne) {
   commission(false);
   std::ofstream(config_, std::ios::app) << "[limits]\nfile = \"" << disk_.file("limit") << "\"\n";
   const auto limit = [&](const std::string& power_w) {
@@ -362,7 +364,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne)
     break_disk(is_full);
     for (const ProgramOutput& said : {hold({"2000", "--for", "1h"}), limit("1000")}) {
       EXPECT_EQ(said.exit_code, 1) << said.text;
-      EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
+      EXPECT_THAT(said.text, HasSubstr(std::strerror(is_full ? ENOSPC : EROFS)));
     }
     EXPECT_EQ(hold({"--release"}).exit_code, is_full ? 0 : 1) << "a removal needs no room";
     EXPECT_EQ(text_of_file(disk_.file("hold")), is_full ? "" : hold_before);
@@ -371,7 +373,7 @@ TEST_F(DyingDiskWords, WithoutARunFolderWhatCannotBeWrittenLeavesThePreviousOne)
   }
 }
 
-TEST_F(DyingDiskWords, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
+TEST_F(DyingDiskCommands, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
   for (const bool is_full : {true, false}) {
     lose_folder(site_.folder.file("run"));
     ASSERT_NO_FATAL_FAILURE(start_and_run(true));
@@ -380,7 +382,7 @@ TEST_F(DyingDiskWords, WithARunFolderTheNewestCommandCountsUntilTheBoot) {
     break_disk(is_full);
     const ProgramOutput other = hold({"-2000", "--for", "6h"});
     EXPECT_EQ(other.exit_code, 0) << other.text;
-    EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
+    EXPECT_THAT(other.text, AllOf(HasSubstr(std::strerror(is_full ? ENOSPC : EROFS)),
                                   HasSubstr(site_.folder.file("run/hold"))));
     EXPECT_NE(await_cycle("ordered_power_w", "-2000", 8), "") << said_;
     const ProgramOutput released = hold({"--release"});

@@ -27,7 +27,7 @@ class EdgeCommands : public SiteTest {
   int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
 };
 
-/// Exit codes of shared/manual/reference/exit_codes.md; 2 (command line) is above.
+/// Exit codes of shared/manual/reference/exit_codes.md.
 TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   config_ = site_.write_config();  // no listener
   EXPECT_EQ(code_of({"--check"}), 1);
@@ -40,7 +40,7 @@ TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
   EXPECT_EQ(code_of({"clear", "--yes"}), 1);  // there is no log yet
   EXPECT_EQ(code_of({"log"}), 1);
   EXPECT_EQ(code_of({"status"}), 3);
-  EXPECT_EQ(code_of({"limit", "--for", "15m"}), 1);  // no [limits]
+  EXPECT_EQ(code_of({"limit", "--charge", "0", "--for", "15m"}), 1);  // no [limits]
   EXPECT_EQ(code_of({"hold", "5000", "--for", "2h"}), 1);
   EXPECT_EQ(code_of({"hold", "-4001", "--for", "2h"}), 1);
   EXPECT_EQ(code_of({"record", "--for", "1s", "--out", site_.folder.file("none.jsonl")}), 1);

@@ -40,7 +40,7 @@ class HeldDevice {
   }
   void lack(int point) {
     const RegisterPoint& p = map().points[point];
-    for (int i = 0; i < p.register_count(); ++i) {
+    for (int i = 0; i < p.registers; ++i) {
       device().missing.push_back(
           {.function = p.read_function, .address = simulated_.image.address_of(point) + i});
     }
@@ -58,9 +58,9 @@ class HeldDevice {
     const RegisterPoint& p = map().points[point];
     const auto& table = p.read_function == 4 ? well_.test.device.input : well_.test.device.holding;
     std::uint64_t bits = 0;
-    for (int i = 0; i < p.register_count(); ++i) {
+    for (int i = 0; i < p.registers; ++i) {
       const bool high_first = p.word_order == WordOrder::kHighFirst;
-      const int word = high_first ? i : p.register_count() - 1 - i;
+      const int word = high_first ? i : p.registers - 1 - i;
       bits = bits << 16 | table[static_cast<std::size_t>(address_of(point) + word)];
     }
     return bits;
@@ -68,9 +68,9 @@ class HeldDevice {
   void write(const Held& held) {
     const RegisterPoint& p = map().points[held.point];
     auto& table = p.read_function == 4 ? device().input : device().holding;
-    for (int i = 0; i < p.register_count(); ++i) {
+    for (int i = 0; i < p.registers; ++i) {
       const bool high_first = p.word_order == WordOrder::kHighFirst;
-      const int word = high_first ? p.register_count() - 1 - i : i;
+      const int word = high_first ? p.registers - 1 - i : i;
       table[static_cast<std::size_t>(address_of(held.point) + i)] =
           static_cast<std::uint16_t>(held.bits >> 16 * word);
     }
@@ -193,8 +193,8 @@ TEST_P(EveryMapState, PresentRegistersAreReadNextToMissingOnes) {
       HeldDevice device(GetParam());
       const int first = device.address_of(lacking);
       const int begin = device.address_of(alarm.point);
-      const bool is_apart = begin + map.points[alarm.point].register_count() <= first ||
-                            first + map.points[lacking].register_count() <= begin;
+      const bool is_apart = begin + map.points[alarm.point].registers <= first ||
+                            first + map.points[lacking].registers <= begin;
       if (!is_apart) continue;
       device.lack(lacking);
       device.hold(alarm);

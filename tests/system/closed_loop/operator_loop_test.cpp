@@ -40,20 +40,6 @@ TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
   EXPECT_TRUE(site.battery.orders.empty());
 }
 
-TEST(LoopWithAReserve, KeepsItAtAnyPriceAndSetsItOnTheBattery) {
-  ControlSettings settings{.control = true, .guard = {}};
-  settings.reserve.push_back({.soc_e4 = 4'000});
-  Site site(settings);
-  site.set_price(200'000);
-  CycleRecord record;
-  for (int i = 0; i < 60; ++i) record = site.cycle();
-  EXPECT_EQ(record.reason, Reason::kReserve);
-  EXPECT_EQ(record.reserve_soc_e4, 4'000);
-  EXPECT_EQ(record.ordered_power_w, 0);
-  EXPECT_NEAR(site.battery.physics.soc_frac(), 0.4, 1e-6);  // the device stops there itself
-  for (const PowerOrder& order : site.battery.orders) EXPECT_EQ(order.soc_min_e4, 4'000);
-}
-
 TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
   ControlSettings settings{.control = true, .guard = {}};
   settings.reserve.push_back({.soc_e4 = 500});
@@ -64,7 +50,7 @@ TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
 
 /// Waves that never fill it: from its due day on, the battery charges to full, once.
 TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
-  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  ControlSettings settings{.control = true, .guard = {}};
   settings.full_charge_every_days = 3;
   settings.guard.soc_max_e4 = 10'000;
   Site site(settings);
@@ -89,7 +75,7 @@ TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
 }
 
 TEST(LoopWithFullCharges, ARestartContinuesTheCount) {
-  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  ControlSettings settings{.control = true, .guard = {}};
   settings.full_charge_every_days = 3;
   Site site(settings);
   site.set_price(5'000);

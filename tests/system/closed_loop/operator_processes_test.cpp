@@ -27,35 +27,6 @@ class OperatorProcesses : public SiteTest {
   OperatorProcesses() : SiteTest(900) {}
 };
 
-TEST_F(OperatorProcesses, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
-  start_site(600);
-  ChildProcess running = controller();
-  ASSERT_NE(await_line(running, "mode=running"), "");
-  const ProgramOutput hold = ask({"hold", "-1000", "--for", "6h"});
-  EXPECT_EQ(hold.exit_code, 0);
-  EXPECT_THAT(hold.text, AllOf(Names("-1000 W"), HasSubstr(" 2023-03-26 ")));
-  EXPECT_THAT(await_line(running, "reason=held"), Names("ordered_power_w=-1000 written=1"));
-  EXPECT_THAT(ask({"status"}).text, Names("held -1000 W 2023-03-26"));
-  EXPECT_THAT(ask({"status", "--prometheus"}).text,
-              AllOf(ContainsRegex("\nbess_hold_watts[{].*[}] -1000\n"),
-                    HasSubstr(",reason=\"held\",mode=\"running\"} 1\n"),
-                    HasSubstr("\nbess_charge_up_to_eur_per_mwh{")));
-  EXPECT_EQ(ask({"hold", "--release"}).exit_code, 0);
-  EXPECT_NE(await_line(running, "reason=student"), "");
-  EXPECT_EQ(SimulatedSite::stop(running), 0);
-}
-
-TEST_F(OperatorProcesses, AHoldOutlastsARestartAndNeedsNoPrice) {
-  start_site(600);
-  EXPECT_EQ(ask({"hold", "+1500", "--for", "6h"}).exit_code, 0);
-  for (int run = 0; run < 2; ++run) {
-    if (run == 1) site_.market->signal(SIGKILL);
-    const ProgramOutput said = ask({"--cycles", "2"});
-    EXPECT_EQ(said.exit_code, 0);
-    EXPECT_THAT(said.text, Names("cycle=1 mode=running reason=held ordered_power_w=1500"));
-  }
-}
-
 /// A lock that would block on opening shows the process that tries.
 TEST_F(OperatorProcesses, StatusWithoutLockTouchesNone) {
   start_site(600);
@@ -111,23 +82,6 @@ TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
     EXPECT_EQ(row.at("written"), "1");
   }
   EXPECT_GE(cycles, 55);
-}
-
-TEST_F(Notify, AKilledControllerIsReportedOnceAndItsReturn) {
-  start_site(3'000);
-  use_mail();
-  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
-  {
-    ChildProcess killed = controller();
-    ASSERT_NE(await_line(killed, "mode=running"), "");
-    killed.signal(SIGKILL);
-    killed.wait();
-  }
-  EXPECT_TRUE(is_mailed("ALERT: CRITICAL "));
-  ChildProcess running = controller();
-  EXPECT_TRUE(is_mailed("over: CRITICAL "));
-  EXPECT_EQ(SimulatedSite::stop(notify), 0);
-  EXPECT_EQ(SimulatedSite::stop(running), 0);
 }
 
 TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {

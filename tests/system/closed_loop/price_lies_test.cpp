@@ -40,21 +40,6 @@ int most_reversals_in_an_hour(const std::vector<CycleRecord>& records) {
   return most;
 }
 
-TEST(PriceLies, ReversalsStayUnderTheCapWhateverThePricesAsk) {
-  Liar liar;
-  std::vector<CycleRecord> records;
-  for (int i = 0; i < 10 * kStepsPerHour; ++i) records.push_back(liar.cycle());
-  EXPECT_EQ(most_reversals_in_an_hour(records), 20);  // the default
-  int capped = 0;
-  for (const CycleRecord& record : records) {
-    if (record.reason != Reason::kReversalCap) continue;
-    EXPECT_EQ(record.ordered_power_w, 0);
-    EXPECT_EQ(record.mode, Mode::kRunning);
-    ++capped;
-  }
-  EXPECT_GT(capped, 20);
-}
-
 TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
   Liar liar;
   std::vector<CycleRecord> records;
@@ -74,26 +59,6 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
 struct Hung : FakePlant {
   Hung() { set_price(9'000); }
 };
-
-TEST(PriceLies, AFrozenPriceIsReportedAndInvalidAfterThreeHours) {
-  Hung hung;
-  CycleRecord record;
-  for (int cycle = 0; cycle < 92; ++cycle) {
-    record = hung.cycle();
-    EXPECT_EQ(record.standing_price.unchanged_s, cycle * kSecondsPerStep);
-    EXPECT_EQ(record.price_frozen, cycle >= 15) << cycle;
-    EXPECT_EQ(record.reason == Reason::kFrozenPrice, cycle >= 90) << cycle;
-    if (cycle >= 90) {
-      EXPECT_EQ(record.ordered_power_w, 0);
-    }
-  }
-  EXPECT_EQ(record.mode, Mode::kHolding);
-  hung.set_price(9'001);
-  record = hung.cycle();
-  EXPECT_EQ(record.mode, Mode::kRunning);
-  EXPECT_FALSE(record.price_frozen);
-  EXPECT_EQ(record.standing_price.unchanged_s, 0);
-}
 
 /// 20 runs of ten minutes: each restores the log of the previous one.
 TEST(PriceLies, ARestartDoesNotResetAFrozenPrice) {

@@ -307,43 +307,8 @@ TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(said.exit_code, 1);
 }
 
-/// One row in ten control cycles has 9,000 EUR/MWh: nothing is ordered by it.
-TEST_F(Processes, ASinglePriceFarFromTheOthersIsNotActedOn) {
-  std::string prices = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
-  for (int minute = -60; minute < 150; ++minute) {
-    const char* const price = minute % 20 == 11 ? "9000" : "100";
-    prices.append(utc_text(SimulatedSite::kStartS + 60 * minute).view())
-        .append(",")
-        .append(price)
-        .append(",100\n");
-  }
-  site_.start_battery();
-  site_.start_market({}, prices);
-  config_ = site_.commission();
-  const ProgramOutput said = ask({"--cycles", "60"});
-  EXPECT_EQ(said.exit_code, 0);
-  EXPECT_THAT(said.text, Names("step_held=1 held_centi=900000"));
-  int held = 0;
-  for (const CsvRow& row : edge_log()) {
-    EXPECT_NE(row.at("reason"), "price_high") << row.at("utc");
-    EXPECT_NE(row.at("price_centi_eur_per_mwh"), "900000") << row.at("utc");
-    if (row.at("step_held") == "1") ++held;
-  }
-  EXPECT_GT(held, 0);
-}
-
 ProgramOutput self_test(const std::string& config) {
   return edge({"--config", config, "--self-test"});
-}
-
-TEST(SelfTest, PassesWhereTheControllerCanWork) {
-  SimulatedSite site(60);
-  site.start_both();
-  const ProgramOutput said = self_test(site.write_config());
-  EXPECT_EQ(said.exit_code, 0) << said.text;
-  EXPECT_THAT(said.text, AllOf(ContainsRegex("student +ok +[0-9]+ of"),
-                               ContainsRegex("signature +ok"), ContainsRegex("network +ok"),
-                               ContainsRegex("storage +ok"), ContainsRegex("battery +ok")));
 }
 
 TEST(SelfTest, NamesWhatFails) {

@@ -60,25 +60,6 @@ class SiteProcesses : public SiteTest {
   }
 };
 
-TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
-  start(own_meter("sunspec"));
-  commission(meter_section("import_w_max = 3000\n", "sunspec"));
-  EXPECT_EQ(ask({"--cycles", "6"}).exit_code, 0);
-  const std::vector<CsvRow> log = edge_log();
-  ASSERT_EQ(log.size(), 7U);
-  for (std::size_t i = 1; i < 6; ++i) {
-    EXPECT_EQ(log[i].at("reason"), "import_limit");
-    EXPECT_NEAR(std::stoi(log[i].at("ordered_power_w")), 1'300, 5);
-    EXPECT_NEAR(std::stoi(log[i].at("grid_power_w")), 2'800, 5);
-    EXPECT_EQ(log[i].at("meter_status"), "ok");
-  }
-  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  for (const CsvRow& row : battery_record()) {
-    EXPECT_NEAR(std::stod(row.at("house_wh")), 25, 1e-6);
-    EXPECT_LE(std::stod(row.at("grid_wh")), 3'000 / 60.0);
-  }
-}
-
 TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   start({});
   commission("[limits]\nfile = \"limit\"\n");

@@ -76,19 +76,6 @@ struct House {
 constexpr int kCharge = 1;
 constexpr int kDischarge = -1;
 
-TEST(Site, AnOrderLeavesTheHouseItsShareOfTheConnection) {
-  House house(metered({.import_w_max = 5'000, .margin_w = 100}), HouseLoad::constant(3'000));
-  house.let_it(kCharge);
-  const CycleRecord record = house.cycle();
-  EXPECT_EQ(record.ordered_power_w, 1'900);
-  EXPECT_EQ(record.reason, Reason::kImportLimit);
-  EXPECT_EQ(record.mode, Mode::kRunning);
-  EXPECT_TRUE(record.site.has_grid_power);
-  const CycleRecord next = house.cycle();
-  EXPECT_EQ(next.ordered_power_w, 1'900);  // steady: the battery's own power is no house load
-  EXPECT_EQ(next.site.grid_power_w, 4'900);
-}
-
 TEST(Site, AHouseThatNeedsMoreIsGivenItBeforeTheNextTick) {
   House house(metered({.import_w_max = 5'000, .margin_w = 0}), HouseLoad::constant(500));
   house.let_it(kCharge);

@@ -189,7 +189,6 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   ControlSettings settings;
   settings.reserve.push_back({.from_minute = 16 * 60, .to_minute = 22 * 60, .soc_e4 = 6'000});
   settings.full_charge_every_days = 1;
-  settings.guard.full_charge_power_w = 2'000;
   SiteSettings meter;
   meter.meter = MeterSource::kMap;
   meter.connection = {.import_w_max = 4'500, .export_w_max = 2'000, .peak_w_max = 3'500};

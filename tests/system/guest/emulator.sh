@@ -25,14 +25,17 @@ on() { ssh "${ssh_options[@]}" root@127.0.0.1 "$@"; }
 # as_root_of_arm64 COMMAND...: root in a user namespace whose programs of arm64 run by qemu's user
 # mode (Linux 6.7).
 as_root_of_arm64() {
-  local child
+  local child i
   mkfifo "$folder/mapped"
   unshare --user --mount --propagation private bash -c 'read -r _ <"$0/mapped" &&
     mkdir -p "$0/binfmt" && mount -t binfmt_misc none "$0/binfmt" &&
     cat /usr/lib/binfmt.d/qemu-aarch64.conf >"$0/binfmt/register" && exec "$@"' \
     "$folder" "$@" &
   child=$!
-  sleep 0.5
+  for ((i = 0; i < 300; ++i)); do
+    [ "$(readlink "/proc/$child/ns/user")" = "$(readlink /proc/$$/ns/user)" ] || break
+    sleep 0.1
+  done
   { echo 0 0 65536 >/proc/$child/uid_map && echo 0 0 65536 >/proc/$child/gid_map; } 2>/dev/null ||
     true
   echo >"$folder/mapped"

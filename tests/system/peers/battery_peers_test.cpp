@@ -75,29 +75,5 @@ INSTANTIATE_TEST_SUITE_P(
              (*info.param.variant == '\0' ? "" : std::string("_") + info.param.variant);
     });
 
-/// 2 kW for 2 h, -1.5 kW for 2 h, 4 kW for 1 h, -3.6 kW for 1 h: 8000 Wh in, 6600 Wh out. The
-/// battery loses the square root of its round trip (90 %) each way: SoC 0.2 + 8000 * 0.948683 /
-/// 8000 - 6600 / 0.948683 / 8000 = 0.279057.
-TEST_F(BatteryPeers, TheEnergyOfADayIsTheHandCalculation) {
-  constexpr MapVariant kMap{"alphaess", "block"};
-  SimulatedSite site(7'200);  // a day in 12 s
-  site.start_battery(options(kMap, "0.2"));
-  ChildProcess peer(master_peer(site, kMap, {"--day"}));
-  EXPECT_THAT(peer.read_all(), HasSubstr("day over"));
-  EXPECT_EQ(peer.wait(), 0);
-  EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
-  double charged_wh = 0;
-  double discharged_wh = 0;
-  double soc = 0;
-  for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
-    const double energy_wh = std::stod(row.at("energy_wh"));
-    (energy_wh > 0 ? charged_wh : discharged_wh) += energy_wh;
-    soc = std::stod(row.at("soc"));
-  }
-  EXPECT_NEAR(charged_wh, 8'000, kTolerance * 8'000);
-  EXPECT_NEAR(discharged_wh, -6'600, kTolerance * 6'600);
-  EXPECT_NEAR(soc, 0.279057, kTolerance * 0.279057);
-}
-
 }  // namespace
 }  // namespace bess

@@ -24,14 +24,11 @@ from pymodbus.client import ModbusTcpClient
 
 RATED_W = 4000
 
-
 def words(value):
     return [value >> 16 & 0xFFFF, value & 0xFFFF]
 
-
 def signed(value, bits):
     return value - (1 << bits) if value >> (bits - 1) else value
-
 
 class Master:
     """Writes and reads of one device, each by two independent programs."""
@@ -70,7 +67,6 @@ class Master:
             found[model] = address
             address += 2 + length
 
-
 class AlphaEss:
     def __init__(self, master, variant):
         self.master, self.variant = master, variant
@@ -102,7 +98,6 @@ class AlphaEss:
     def power(self, read):
         return -signed(read(85, 0x0126)[0], 16)
 
-
 class Simulator:
     def __init__(self, master, _):
         self.master = master
@@ -122,7 +117,6 @@ class Simulator:
     def power(self, read):
         high, low = read(1, 11, 2)
         return signed(high << 16 | low, 32)
-
 
 class SunSpec124:
     """callifo/fronius-modbus-control: a discharging limit below 0 charges (mode 2), and a charging
@@ -157,7 +151,6 @@ class SunSpec124:
     def power(self, read):
         return -signed(read(1, self.inverter + 14)[0], 16)
 
-
 class FroniusGen24(SunSpec124):
     def __init__(self, master, _):
         self.master = master
@@ -168,7 +161,6 @@ class FroniusGen24(SunSpec124):
 
     def power(self, read):
         return read(1, 40314)[0] - read(1, 40334)[0]
-
 
 class SunSpec704:
     def __init__(self, master, _):
@@ -195,7 +187,6 @@ class SunSpec704:
     def power(self, read):
         return -signed(read(1, self.battery + 47)[0], 16)
 
-
 class VictronEss3:
     def __init__(self, master, variant):
         self.master, self.phases = master, 3 if variant == "three_phase" else 1
@@ -217,7 +208,6 @@ class VictronEss3:
 
     def power(self, read):
         return signed(read(100, 842)[0], 16)
-
 
 class SungrowSh:
     def __init__(self, master, variant):
@@ -242,7 +232,6 @@ class SungrowSh:
         low, high = read(1, 5213, 2, table=4)
         return -signed(high << 16 | low, 32)
 
-
 class HuaweiLuna:
     def __init__(self, master, _):
         self.master = master
@@ -266,7 +255,6 @@ class HuaweiLuna:
     def power(self, read):
         high, low = read(1, 37765, 2)
         return signed(high << 16 | low, 32)
-
 
 class Sma:
     def __init__(self, master, variant):
@@ -298,15 +286,12 @@ class Sma:
         charge, discharge = read(3, 31393, 2, table=4), read(3, 31395, 2, table=4)
         return (charge[0] << 16 | charge[1]) - (discharge[0] << 16 | discharge[1])
 
-
 def low_first_float(value):
     high, low = struct.unpack(">HH", struct.pack(">f", value))
     return [low, high]
 
-
 def from_low_first_float(raw):
     return struct.unpack(">f", struct.pack(">HH", raw[1], raw[0]))[0]
-
 
 class SolarEdge:
     """Tables of solaredge-modbus-multi (const.py) and openWB (bat.py)."""
@@ -332,7 +317,6 @@ class SolarEdge:
 
     def power(self, read):
         return from_low_first_float(read(1, 57716, 2))
-
 
 class GoodWe:
     """OpenEMS: EMS mode 11 charges, 12 discharges, mode and power in one write."""
@@ -361,7 +345,6 @@ class GoodWe:
         high, low = read(247, 35182, 2)
         return -signed(high << 16 | low, 32)
 
-
 class Kostal:
     """Kostal's interface description: 1034 is a float, low word first, below 0 charges."""
 
@@ -382,7 +365,6 @@ class Kostal:
 
     def power(self, read):
         return -signed(read(71, 582)[0], 16)
-
 
 class Marstek:
     """openWB: function 6 only; evcc: other registers for the third generation."""
@@ -414,14 +396,12 @@ class Marstek:
         high, low = read(1, 32202, 2)
         return -signed(high << 16 | low, 32)
 
-
 DEVICES = {"alphaess": AlphaEss, "simulator": Simulator, "sunspec_124": SunSpec124,
            "fronius_gen24": FroniusGen24,
            "sunspec_704": SunSpec704, "victron_ess3": VictronEss3, "sungrow_sh": SungrowSh,
            "huawei_luna2000": HuaweiLuna, "sma": Sma, "solaredge": SolarEdge,
            "goodwe_et": GoodWe, "kostal_plenticore": Kostal, "marstek_venus": Marstek}
 DAY = ((1, 2000, 2), (5, -1500, 2), (9, 4000, 1), (13, -3600, 1))  # hour, W, hours
-
 
 def drive(master, device, options, now):
     print("soc", device.soc(master.read), flush=True)
@@ -437,17 +417,6 @@ def drive(master, device, options, now):
         print("order", watts, "from", begin, "to", now(), "pymodbus", seen[0], "mbpoll", seen[1],
               flush=True)
 
-
-def drive_a_day(device, options, now):
-    for hour, watts, hours in DAY:
-        while now() < options.start_s + hour * 3600:
-            time.sleep(60 / options.scale)
-        device.order(watts, hours * 3600)
-    while now() < options.start_s + 24 * 3600:
-        time.sleep(60 / options.scale)
-    print("day over", flush=True)
-
-
 def interfere(device, options, now):
     act = device.stop if options.interfere == "stop" else device.other_mode
     tick = int(now()) // 120 + 1
@@ -458,7 +427,6 @@ def interfere(device, options, now):
         print("tick", tick * 120, flush=True)
         tick += options.every
 
-
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--map", choices=DEVICES, required=True)
@@ -467,7 +435,6 @@ if __name__ == "__main__":
     parser.add_argument("--scale", type=int, required=True)
     parser.add_argument("--anchor-ns", type=int, required=True)
     parser.add_argument("--start-s", type=int, required=True)
-    parser.add_argument("--day", action="store_true")
     parser.add_argument("--interfere", choices=["stop", "mode"])
     parser.add_argument("--every", type=int, default=1)
     chosen = parser.parse_args()
@@ -479,7 +446,5 @@ if __name__ == "__main__":
     battery = DEVICES[chosen.map](bus, chosen.variant)
     if chosen.interfere:
         interfere(battery, chosen, utc_s)
-    elif chosen.day:
-        drive_a_day(battery, chosen, utc_s)
     else:
         drive(bus, battery, chosen, utc_s)

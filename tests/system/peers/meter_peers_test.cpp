@@ -24,7 +24,7 @@ TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
     ChildProcess meter({kPython, BESS_SOURCE_DIR "/tests/system/peers/meter_peer.py", "--map",
                         GetParam(), "--watts", std::to_string(watts)});
     const std::string ready = meter.read_line();
-    ASSERT_THAT(ready, HasSubstr("listening on"));
+    ASSERT_THAT(ready, HasSubstr("127.0.0.1:"));
     const std::string config = site.write_config(
         {.guard_keys = "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/device/meters/" +
                        std::string(GetParam()) +

@@ -124,8 +124,7 @@ class PriceSources : public PeerTest, public ::testing::WithParamInterface<Behav
         std::to_string(kScale), "--anchor-ns", std::to_string(site_.anchor_ns()), "--start-s",
         std::to_string(SimulatedSite::kStartS)});
     ASSERT_EQ(std::sscanf(source_->read_line().c_str(), "port %d", &site_.market_port), 1);
-    config_ = site_.commission({.price_server = behaviour.host,
-                                .price_keys = std::string("timeout_ms = 300\n") + behaviour.keys});
+    config_ = site_.commission({.price_server = behaviour.host, .price_keys = behaviour.keys});
     setenv("LD_PRELOAD", BESS_TWO_ADDRESSES, 1);
     edge_ = std::make_unique<ChildProcess>(std::vector<std::string>{
         edge_program(), "--config", config_, "--cycles", std::to_string(kCycles)});

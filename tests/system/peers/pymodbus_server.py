@@ -41,20 +41,15 @@ async def serve_serial(unit_id, unit, device):
     await asyncio.Event().wait()
 
 
-async def serve_tcp(unit_id, unit, spoil=None):
-    """On a free port; `spoil` may change a response before it is sent."""
+async def serve_tcp(unit_id, unit):
+    """On a free port."""
     context = ModbusServerContext(slaves={unit_id: unit}, single=False)
     if IS_3_8:
-        def trace(sending, pdu):
-            return spoil(pdu) if sending and spoil else pdu
-        server = ModbusTcpServer(context, address=("127.0.0.1", 0), trace_pdu=trace, framer=TCP)
+        server = ModbusTcpServer(context, address=("127.0.0.1", 0), framer=TCP)
         await server.serve_forever(background=True)
         sockets, serving = server.transport.sockets, server.serving
     else:
-        def manipulate(response):
-            return (spoil(response) if spoil else response), False
-        server = ModbusTcpServer(context, address=("127.0.0.1", 0),
-                                 response_manipulator=manipulate, framer=TCP)
+        server = ModbusTcpServer(context, address=("127.0.0.1", 0), framer=TCP)
         serving = asyncio.create_task(server.serve_forever())
         await server.serving
         sockets = server.server.sockets

@@ -160,19 +160,6 @@ RunResult Soak::run(int cycles) {
   return result;
 }
 
-void print(const char* name, const RunResult& result) {
-  std::printf("%s: %d cycles, %d Modbus connections, %ld KiB resident, %d open files, %d threads\n",
-              name, result.cycles, result.connections, result.end.resident_kib,
-              result.end.open_files, result.end.threads);
-  std::printf("  %s\n  modes", result.sealed.c_str());
-  for (const auto& [mode, count] : result.modes) std::printf(" %s=%d", mode.c_str(), count);
-  std::printf(", prices");
-  for (const auto& [status, count] : result.price_statuses) {
-    std::printf(" %s=%d", status.c_str(), count);
-  }
-  std::printf("\n");
-}
-
 void expect_clean(const RunResult& result, int cycles) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.complaints, "");
@@ -192,10 +179,8 @@ void expect_clean(const RunResult& result, int cycles) {
 TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
   setenv("BESS_SECCOMP", "kill", 1);
   const RunResult warm = run(kWarmCycles);
-  print("warm", warm);
   const int cycles = long_run_cycles();
   const RunResult soak = run(cycles);
-  print("soak", soak);
   expect_clean(soak, cycles);
   EXPECT_LE(soak.end.open_files, soak.warm.open_files + 2);  // current sockets
 }

@@ -63,9 +63,7 @@ AuctionAnswer tomorrow(const AuctionView& view, std::string_view now = "2025-03-
 
 TEST(Auction, ADayIsOutFromItsTimeOfTheDayBeforeOn) {
   const AuctionView view = with({});
-  const AuctionAnswer before = tomorrow(view, "2025-03-28T11:56:59Z");
-  EXPECT_EQ(before.status, 404);
-  EXPECT_THAT(before.body, HasSubstr("no content available"));
+  EXPECT_EQ(tomorrow(view, "2025-03-28T11:56:59Z").status, 404);
   const std::vector<Published> after = rows_of(tomorrow(view, "2025-03-28T11:57:00Z"));
   ASSERT_EQ(after.size(), 96u);
   EXPECT_EQ(after.front(), (Published{utc_of("2025-03-28T23:00:00Z"), 96}));

@@ -143,9 +143,9 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
                      BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml", "--utc-start",
                      "2025-03-28T12:05:00Z", "--set", "outlook.allow_http=true"});
   const std::string line = site.read_line();
-  const std::string where = "market at 127.0.0.1:";
-  ASSERT_THAT(line, HasSubstr(where));
-  const int port = std::stoi(line.substr(line.find(where) + where.size()));
+  const std::string host = "127.0.0.1:";  // of the battery, then of the market
+  ASSERT_THAT(line, HasSubstr(host));
+  const int port = std::stoi(line.substr(line.rfind(host) + host.size()));
   const Result result = fetch_from(port);
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(got().eur_per_mwh, two_days().eur_per_mwh);

@@ -43,7 +43,7 @@ rm runs  # no controller: the new program connects to battery and price itself, 
 echo 1 >check_code
 look_ahead
 [ $code -eq 0 ] || fail "no controller: exit code $code"
-grep -q "check reports problems" err || fail "a check that fails is not told: $(cat err)"
+grep -q -- --check err || fail "a check that fails is not told: $(cat err)"
 grep -q -- "^--config edge.toml --check$" asked || fail "it was not checked: $(cat asked)"
 
 settings=absent.toml look_ahead

@@ -96,16 +96,5 @@ TEST(MarketView, PastDaysEndAtMidnightAndGoBackToTheFilesBegin) {
   EXPECT_THAT(view.records(query, utc_ns("2023-03-25T12:00:00Z")), HasSubstr("\"results\":[]"));
 }
 
-TEST(MarketView, TheEdgeUnderstandsWhatItServes) {
-  const MarketView view(parse_minute_csv(kFile, "f"), 0);
-  const std::int64_t now_ns = utc_ns("2023-03-26T00:15:00Z");
-  PriceRow row;
-  ASSERT_EQ(parse_newest_price(view.records({.limit = 20}, now_ns), PriceFields{},
-                               now_ns / kNanosecondsPerSecond, row),
-            Status::kOk);
-  EXPECT_EQ(row.price_centi_eur_per_mwh, 1'050);  // minute 14 is null
-  EXPECT_EQ(row.minute_utc_s * kNanosecondsPerSecond, utc_ns("2023-03-26T00:13:00Z"));
-}
-
 }  // namespace
 }  // namespace bess

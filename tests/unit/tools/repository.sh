@@ -30,7 +30,9 @@ made_up_package packages amd64 2.0 >/dev/null
 repository --key first@example.org --phased 30 || fail "a newer version: $(cat said)"
 code=0
 repository --key second@example.org || code=$?
-[ $code -eq 1 ] && grep -q "is signed with another key" said || fail "another key: $(cat said)"
+known=$(gpg --batch --with-colons --list-keys first@example.org |
+  awk -F: '$1 == "fpr" && !found++ { print $10 }')
+[ $code -eq 1 ] && grep -q "$known" said || fail "another key: $(cat said)"
 # A refused package leaves the served ones unchanged.
 export BESS_PACKAGES=$folder/spoilt
 refuses() {  # refuses WHAT LINE OPTIONS...
@@ -44,17 +46,17 @@ refuses() {  # refuses WHAT LINE OPTIONS...
   rm -rf spoilt
 }
 file=$(made_up_package spoilt amd64 3.0) && truncate -s -200 "$file"
-refuses "a truncated package" "is damaged: its archive cannot be read to the end"
+refuses "a truncated package" "${file##*/}"
 spoil='echo >>student_weights.h' made_up_package spoilt amd64 3.0 >/dev/null
-refuses "a foreign certificate" "not what was proved"
+refuses "a foreign certificate" header_sha256
 spoil='echo other >>notes' made_up_package spoilt amd64 2.0 >/dev/null
 refuses "the same version with other bytes" "2.0"
 made_up_package spoilt amd64 0.9 >/dev/null
-refuses "an older version" "bess-edge_2.0_amd64.deb; --older"
+refuses "an older version" "--older"
 made_up_package spoilt amd64 3.0 >/dev/null
 mkdir no_gpg && printf '#!/bin/sh\ncase "$*" in *--clearsign*) exit 2 ;; esac\nexec %s "$@"\n' \
   "$(command -v gpg)" >no_gpg/gpg && chmod 755 no_gpg/gpg
-PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" "the served index is unchanged"
+PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" gpg
 packages_now() {
   grep -h ^Version: repository/dists/stable/main/binary-amd64/Packages | sort | tr '\n' ' '
 }
@@ -150,7 +152,7 @@ apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(2.0 ' || fail "2.0 is n
 apt install -s bess-edge=1.0 >said 2>&1 || fail "the version before is gone: $(tail -n 1 said)"
 code=0
 for _ in 1 2 3 4 5 6 7 8; do repository --key first@example.org --back || { code=$?; break; }; done
-[ $code -eq 1 ] && grep -q "there is no snapshot before this one" said ||
+[ $code -eq 1 ] && grep -q snapshot said ||
   fail "back beyond the first: $code $(cat said)"
 
 [ $failures -eq 0 ] || exit 1

@@ -24,16 +24,6 @@ LoopbackBattery serial_battery() {
                          LoopbackBattery::kHouse, kTimeScale);
 }
 
-/// mbpoll's output for one holding register.
-std::string poll_register(const LoopbackBattery& loopback, int unit, int address) {
-  ChildProcess mbpoll({kMbpoll, "-m", "rtu", "-b", "115200", "-P", "none", "-o", "0.3", "-1", "-0",
-                       "-t", "4", "-a", std::to_string(unit), "-r", std::to_string(address),
-                       loopback.link().device.c_str()});
-  const std::string said = mbpoll.read_all();
-  mbpoll.wait();
-  return said;
-}
-
 TEST(SerialLine, TheDriverReachesEveryUnitOfTheMap) {
   LoopbackBattery loopback = serial_battery();
   ModbusBattery battery(loopback.link(2'000), loopback.map, loopback.clock);
@@ -46,18 +36,6 @@ TEST(SerialLine, TheDriverReachesEveryUnitOfTheMap) {
   }
   ASSERT_EQ(battery.release(), Status::kOk);
   EXPECT_EQ(battery.counters().failed_requests, 0);
-}
-
-TEST(SerialLine, AnIndependentMasterReachesEveryUnitAndNoOther) {
-  if (const std::string missing = missing_peer("sys", {kMbpoll}); !missing.empty()) {
-    GTEST_SKIP() << missing;
-  }
-  LoopbackBattery loopback = serial_battery();
-  const char* const soc = "[843]: \t50";
-  EXPECT_NE(poll_register(loopback, 100, kSocAddress).find(soc), std::string::npos);
-  EXPECT_NE(poll_register(loopback, 228, kSetpointAddress).find("[37]: \t"), std::string::npos);
-  EXPECT_NE(poll_register(loopback, 5, kSocAddress).find("timed out"), std::string::npos);
-  EXPECT_NE(poll_register(loopback, 100, kSocAddress).find(soc), std::string::npos);
 }
 
 class SerialRequests : public ::testing::Test {

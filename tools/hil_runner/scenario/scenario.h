@@ -1,5 +1,23 @@
-// Scenario: battery, prices, faults and events, expectations. Read from a commented TOML file
-// (format: tests/scenarios/README.md); times are simulated minutes since the start.
+// Scenario: battery, prices, faults and events, expectations. Read from a TOML file; times are
+// simulated minutes since the start. Its keys, by table:
+//   (top)            title, start_utc, minutes (60), time = "both", "virtual" or "wall",
+//                    time_scale (60), witness
+//   [battery]        map (name or path; alphaess), variant, transport, soc, power_w, capacity_wh,
+//                    soc_floor, soc_ceiling (0 to 1), response_delay_ms
+//   [prices]         one of file, steps = [[from_min, EUR/MWh], ...], wave; latency_s,
+//                    history_hours, missing
+//   [house] [meter]  house: one of power_w, steps, seed; meter: map, variant
+//   [battery_fault] [meter_fault]
+//                    kinds (bess-sim battery --help), from_min, to_min, on_s, off_s; battery only:
+//                    every or probability, seed, period_s, late_ms, drip_ms, exception_code
+//   [price_fault]    kind, every, from_min, to_min
+//   [day_ahead]      file, fault, every, from_min, to_min, mend_min
+//   [[event]]        at_min, does; by kind seconds, power_w, for_min, charge_w, discharge_w
+//   [[expect]]       from_min, to_min, command, power_w = [least, most], reason, no_reason,
+//                    outlook, quarter_hours
+//   [edge]           battery, price, guard, meter, limits, other: lines of bess-edge.toml
+//   [judge]          all_but, recovery_min, exit_code
+//   [same_without]   part = reason
 #pragma once
 
 #include <algorithm>

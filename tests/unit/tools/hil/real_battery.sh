@@ -10,7 +10,7 @@ complain() { echo "$*"; cat "$work"/*.txt; exit 1; }
 export TMPDIR=$work/tmp
 mkdir "$TMPDIR"
 
-scale=240
+scale=120
 start=(--time-scale $scale --utc-start 2023-03-26T00:00:00Z --soc 0.5 --events "$work/events.csv")
 if [ "${3:-}" = serial ]; then
   command -v socat >/dev/null || { echo "skipped: socat is not installed"; exit 77; }

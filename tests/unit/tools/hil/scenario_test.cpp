@@ -32,12 +32,6 @@ std::string refusal(const std::string& text) {
   return refusal_of([&] { return read_scenario(folder.write("s.toml", text)); });
 }
 
-TEST(Scenarios, AtLeastThirtyAreShippedEachWithATitle) {
-  const std::vector<Scenario> all = shipped();
-  EXPECT_GE(all.size(), 30U);
-  for (const Scenario& s : all) EXPECT_FALSE(s.title.empty()) << s.name;
-}
-
 TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
   std::set<std::pair<BatteryFault, bool>> tried;
   for (const Scenario& s : shipped()) {

@@ -135,33 +135,6 @@ const Month& undisturbed(const std::string& map) {
   return months.emplace(map, run_month("[battery]\nmap = \"" + map + "\"\n")).first->second;
 }
 
-/// Each reading for two minutes, at the settled price: a simple evaluation of the log.
-double by_readings_eur(const Month& month) {
-  double eur = 0;
-  const std::int64_t begin_utc_s = DayAccount(kFirstDay).start_utc_s();
-  for (const CycleRecord& cycle : month.outcome.evidence.log) {
-    if (cycle.mode == Mode::kStopping || cycle.utc_s <= begin_utc_s) continue;
-    for (const std::int64_t minute_utc_s : {cycle.utc_s - 120, cycle.utc_s - 60}) {
-      const SettledQuarter* const price = month.terms.settled.find(minute_utc_s);
-      if (price == nullptr) continue;
-      eur -= cycle_energy_wh(cycle) / 2 / kWattsPerMegawatt * price->eur_per_mwh;
-    }
-  }
-  return eur;
-}
-
-void report_month(const char* name, const DayAccount& statement, const Month& month) {
-  const double net_wh = month.record.charged_wh - month.record.discharged_wh;
-  const double told_wh = 1'000 * (statement.charged_kwh() - statement.discharged_kwh());
-  std::printf("%-12s by readings alone %+.3f %%\n", name,
-              100 * (by_readings_eur(month) / month.record.profit_eur - 1));
-  std::printf(
-      "%-12s %.4f EUR, record %.4f (%+.3f %%); net energy %+.1f Wh of %.0f; unseen %.2f kWh\n",
-      name, statement.money().earned_eur, month.record.profit_eur,
-      100 * (statement.money().earned_eur / month.record.profit_eur - 1), told_wh - net_wh,
-      month.record.charged_wh, statement.unseen_kwh());
-}
-
 /// On maps with a fine SoC, and one that shows whole percents; with and without a known capacity.
 TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
   for (const std::string map : {"alphaess", "sunspec_124", "huawei_luna2000", "victron_ess3"}) {
@@ -169,7 +142,6 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
     const Month& month = undisturbed(map);
     EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
     const DayAccount statement = month.statement().together();
-    report_month(map.c_str(), statement, month);
     const QuarterHourMoney money = statement.money();
     EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
     EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
@@ -183,44 +155,14 @@ TEST(StatementOfAMonth, CountsBothDirections) {
   const Month& month = undisturbed("alphaess");
   const DayAccount statement = month.statement().together();
   const Directions hand = by_hand(month.scenario, month.outcome.evidence);
-  std::printf("charged %.3f kWh, by hand %.3f; discharged %.3f, by hand %.3f\n",
-              statement.charged_kwh(), hand.charged_wh / 1'000, statement.discharged_kwh(),
-              hand.discharged_wh / 1'000);
   EXPECT_NEAR(statement.charged_kwh(), hand.charged_wh / 1'000, hand.charged_wh / 1e6);
   EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
-}
-
-/// From its ring and the notifier's file, by the program, in its few MB.
-TEST(StatementOfAMonth, IsWhatTheProgramSays) {
-  const Month& month = undisturbed("alphaess");
-  const TemporaryFolder folder("/dev/shm");  // each record waits for its disk
-  RingLog ring;
-  FileMessage error;
-  std::filesystem::create_directories(folder.file("state"));
-  std::filesystem::create_directories(folder.file("notify"));
-  ASSERT_TRUE(ring.open(folder.file("state/decisions.ring").c_str(), 35 * 720, error));
-  for (const CycleRecord& cycle : month.outcome.evidence.log) ASSERT_TRUE(ring.append(cycle));
-  ASSERT_NE(folder.write("state/settled.csv", month.terms.settled.text()), "");
-  const std::string config =
-      folder.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
-                                "/edge/device/maps/alphaess.toml\"\n"
-                                "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
-  const ProgramResult said =
-      run_and_capture({BESS_EDGE_PROGRAM, "earned", "2023-03", "--json", "--config", config}, 60);
-  ASSERT_TRUE(said.is_well()) << said.complaint();
-  const Json json = Json::parse(said.output);
-  const DayAccount statement = month.statement().together();
-  EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), statement.money().earned_eur, 1e-4);
-  EXPECT_NEAR(json.value()["charged_kwh"].number().value_or(0), statement.charged_kwh(), 1e-3);
-  EXPECT_EQ(json.value()["validated_quarter_hours"].number(), 31 * 96 - 4);
-  EXPECT_EQ(json.value()["stops"]["missing_cycles"].number(), 0);
 }
 
 TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
   const Month month = run_month(kDisturbed);
   const Earnings earnings = month.statement();
   const DayAccount& statement = earnings.together();
-  report_month("disturbed", statement, month);
   EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
               kOfTheMoney * month.record.profit_eur);
   EXPECT_GT(statement.unseen_kwh(), 0);
