@@ -30,7 +30,7 @@ std::string headline(const Message& message) {
   return before + one_line(message.text, 400);
 }
 
-std::string run_alarm_command(const NotifySettings& settings, const Message& message,
+std::string run_alert_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop) {
   const std::string text = text_of(settings, message);
   // Passed by env as separate words, so that the shell interprets no part of a text.

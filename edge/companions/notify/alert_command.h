@@ -27,7 +27,7 @@ struct Message {
 std::string headline(const Message& message);
 
 /// Empty when delivered; else the error. Returns soon after a stop request.
-std::string run_alarm_command(const NotifySettings& settings, const Message& message,
+std::string run_alert_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop = {});
 
 }  // namespace bess

@@ -37,18 +37,18 @@ Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> wor
   return Json::parse(run_and_capture(words, kEarnedSMax).output);
 }
 
-Trouble trouble_of(Alert alert, const std::string& found) {
+SeenAlert seen_alert(Alert alert, const std::string& found) {
   return {.key = std::string(info_of(alert).code), .text = one_line(alert_line(alert, found))};
 }
 
-std::vector<Trouble> troubles_of(const ControllerStatus& status) {
-  if (!status.trouble.empty()) return {trouble_of(Alert::kNoStatus, status.trouble)};
-  std::vector<Trouble> troubles;
+std::vector<SeenAlert> seen_alerts(const ControllerStatus& status) {
+  if (!status.trouble.empty()) return {seen_alert(Alert::kNoStatus, status.trouble)};
+  std::vector<SeenAlert> seen;
   for (const JsonValue alert : status.json.value()["alerts"]) {
-    troubles.push_back(
+    seen.push_back(
         {.key = one_line(alert["code"].text_or("")), .text = one_line(alert["line"].text_or(""))});
   }
-  return troubles;
+  return seen;
 }
 
 std::string settled_trouble(const std::string& file, std::int64_t now_utc_s) {

@@ -26,10 +26,10 @@ ControllerStatus ask_controller(const ControllerPlaces& controller);
 Json ask_earned(const ControllerPlaces& controller, std::vector<std::string> words);
 
 /// `found`: as of `alert_line`.
-Trouble trouble_of(Alert alert, const std::string& found = "");
+SeenAlert seen_alert(Alert alert, const std::string& found = "");
 
 /// Each alert of `status --json` unchanged, so that alerts of a later version are reported too.
-std::vector<Trouble> troubles_of(const ControllerStatus& status);
+std::vector<SeenAlert> seen_alerts(const ControllerStatus& status);
 
 /// Why the settled prices in `file` are late; empty if they are not.
 std::string settled_trouble(const std::string& file, std::int64_t now_utc_s);

@@ -65,7 +65,7 @@ Notifier::~Notifier() {
 
 void Notifier::run_round(std::int64_t now_utc_s) {
   const ControllerStatus status = ask_controller(settings_);
-  notify_of_alarms(status, now_utc_s);
+  notify_of_alerts(status, now_utc_s);
   notify_of_day(status, now_utc_s);
   if (mqtt_ != nullptr) note_connection();
   publish(status);
@@ -94,26 +94,24 @@ void Notifier::serve(TimePoint until, const std::stop_token& stop, bool is_for_c
   }
 }
 
-void Notifier::notify_of_alarms(const ControllerStatus& status, std::int64_t now_utc_s) {
-  std::vector<Trouble> troubles = troubles_of(status);
-  if (!memory_trouble_.empty())
-    troubles.push_back(trouble_of(Alert::kNotifyState, memory_trouble_));
+void Notifier::notify_of_alerts(const ControllerStatus& status, std::int64_t now_utc_s) {
+  std::vector<SeenAlert> seen = seen_alerts(status);
+  if (!memory_trouble_.empty()) seen.push_back(seen_alert(Alert::kNotifyState, memory_trouble_));
   if (!settings_.settled_file.empty()) {
     const std::string trouble = settled_trouble(settings_.settled_file, now_utc_s);
-    if (!trouble.empty()) troubles.push_back(trouble_of(Alert::kSettledPrices, trouble));
+    if (!trouble.empty()) seen.push_back(seen_alert(Alert::kSettledPrices, trouble));
   }
   if (mqtt_ != nullptr && mqtt_->is_cut_off()) {
-    troubles.push_back(trouble_of(Alert::kMqttCutOff));
+    seen.push_back(seen_alert(Alert::kMqttCutOff));
   }
-  for (const auto& [is_over, alarm] :
-       observe(state_.alarms, troubles, settings_.after_s, now_utc_s)) {
+  for (const auto& [is_over, alert] : observe(state_.alerts, seen, settings_.after_s, now_utc_s)) {
     Message message{.severity = is_over ? "over" : "alarm",
-                    .key = alarm.key,
-                    .text = alarm.text,
+                    .key = alert.key,
+                    .text = alert.text,
                     .utc_s = now_utc_s,
-                    .since_utc_s = alarm.since_utc_s};
+                    .since_utc_s = alert.since_utc_s};
     // It began up to one round before it was first seen and ended up to one round after the last.
-    const std::int64_t lasted_s = alarm.seen_utc_s - alarm.since_utc_s + settings_.every_s;
+    const std::int64_t lasted_s = alert.seen_utc_s - alert.since_utc_s + settings_.every_s;
     if (is_over) message.text += " (lasted " + duration_text(lasted_s) + ")";
     send_message(message);
   }
@@ -171,10 +169,10 @@ void Notifier::publish(const ControllerStatus& status) {
       is_held_ ? static_cast<std::int32_t>(last["hold_power_w"].number().value_or(0)) : 0;
   mqtt_->retain(
       topic(settings_.name, "state"),
-      state_json(status, state_.alarms, today_.value(),
+      state_json(status, state_.alerts, today_.value(),
                  settings_.mqtt.orders ? std::optional(hold_power_w_.value_or(held_power_w_))
                                        : std::nullopt));
-  mqtt_->retain(topic(settings_.name, "alarms"), alarms_json(state_.alarms));
+  mqtt_->retain(topic(settings_.name, "alarms"), alerts_json(state_.alerts));
 }
 
 /// Runs bess-edge hold, with its checks, and logs the result.
@@ -222,7 +220,7 @@ void Notifier::run_command() {
   if (is_command_running_ || state_.pending.empty()) return;
   is_command_running_ = true;
   command_ = std::jthread([this, message = state_.pending.front()](const std::stop_token& stop) {
-    std::string trouble = run_alarm_command(settings_, message, stop);
+    std::string trouble = run_alert_command(settings_, message, stop);
     const std::lock_guard lock(mutex_);
     outcome_ = std::move(trouble);
     changed_.notify_all();
@@ -252,7 +250,7 @@ bool send_test(const NotifySettings& settings, std::int64_t now_utc_s) {
   };
   if (!settings.command.empty()) {
     message.text = "bess-notify can reach you by command";
-    note("command", run_alarm_command(settings, message));
+    note("command", run_alert_command(settings, message));
   }
   if (!settings.mqtt.host.empty()) {
     message.text = "bess-notify can reach you by mqtt";

@@ -1,5 +1,5 @@
 // Notifier round: reads bess-edge status and reports changes.
-//   bess-edge status -> troubles -> alerts -> messages -> retry queue -> command
+//   bess-edge status -> seen alerts -> told alerts -> messages -> retry queue -> command
 //   bess-edge earned -> yesterday          -> messages -> MQTT event
 //   both                                   -> MQTT state, alarms, day
 // Takes nothing that the controller needs. The command runs in its own thread, one message at a
@@ -50,7 +50,7 @@ class Notifier {
 
   void serve(TimePoint until, const std::stop_token& stop, bool is_for_command);
   void send_message(const Message& message);
-  void notify_of_alarms(const ControllerStatus& status, std::int64_t now_utc_s);
+  void notify_of_alerts(const ControllerStatus& status, std::int64_t now_utc_s);
   void notify_of_day(const ControllerStatus& status, std::int64_t now_utc_s);
   void note_connection();
   void publish(const ControllerStatus& status);

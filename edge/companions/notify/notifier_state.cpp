@@ -11,29 +11,29 @@
 
 namespace bess {
 
-std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
+std::vector<AlertEvent> observe(std::vector<ToldAlert>& alerts, const std::vector<SeenAlert>& seen,
                                 std::int64_t after_s, std::int64_t now_utc_s) {
-  std::vector<AlarmEvent> events;
-  for (Alarm& alarm : alarms) {  // a clock set back must not suppress an alert
-    alarm.since_utc_s = std::min(alarm.since_utc_s, now_utc_s);
-    alarm.seen_utc_s = std::min(alarm.seen_utc_s, now_utc_s);
+  std::vector<AlertEvent> events;
+  for (ToldAlert& alert : alerts) {  // a clock set back must not suppress an alert
+    alert.since_utc_s = std::min(alert.since_utc_s, now_utc_s);
+    alert.seen_utc_s = std::min(alert.seen_utc_s, now_utc_s);
   }
-  for (const Trouble& trouble : troubles) {
-    auto alarm = std::ranges::find(alarms, trouble.key, &Alarm::key);
-    if (alarm == alarms.end()) {
-      alarm = alarms.insert(alarm, {.key = trouble.key, .since_utc_s = now_utc_s});
+  for (const SeenAlert& trouble : seen) {
+    auto alert = std::ranges::find(alerts, trouble.key, &ToldAlert::key);
+    if (alert == alerts.end()) {
+      alert = alerts.insert(alert, {.key = trouble.key, .since_utc_s = now_utc_s});
     }
-    alarm->text = trouble.text;
-    alarm->seen_utc_s = now_utc_s;
-    if (alarm->is_told || now_utc_s - alarm->since_utc_s < after_s) continue;
-    alarm->is_told = true;
-    events.push_back({.is_over = false, .alarm = *alarm});
+    alert->text = trouble.text;
+    alert->seen_utc_s = now_utc_s;
+    if (alert->is_told || now_utc_s - alert->since_utc_s < after_s) continue;
+    alert->is_told = true;
+    events.push_back({.is_over = false, .alert = *alert});
   }
-  std::erase_if(alarms, [&](const Alarm& alarm) {
-    // Strictly longer than 0; else with after_s = 0 a trouble just seen would be over.
-    const std::int64_t away_s = now_utc_s - alarm.seen_utc_s;
+  std::erase_if(alerts, [&](const ToldAlert& alert) {
+    // Strictly longer than 0; else with after_s = 0 an alert just seen would be over.
+    const std::int64_t away_s = now_utc_s - alert.seen_utc_s;
     if (away_s == 0 || away_s < after_s) return false;
-    if (alarm.is_told) events.push_back({.is_over = true, .alarm = alarm});
+    if (alert.is_told) events.push_back({.is_over = true, .alert = alert});
     return true;
   });
   return events;
@@ -52,12 +52,12 @@ std::int64_t utc_of(JsonValue value) {
 NotifierState state_in(JsonValue all) {
   NotifierState state{.number = static_cast<std::uint64_t>(all["number"].number().value_or(0)),
                       .day = all["day"].text_or("")};
-  for (const JsonValue alarm : all["alarms"]) {
-    state.alarms.push_back({.key = alarm["key"].text_or(""),
-                            .text = alarm["text"].text_or(""),
-                            .since_utc_s = utc_of(alarm["since_utc"]),
-                            .seen_utc_s = utc_of(alarm["seen_utc"]),
-                            .is_told = alarm["is_told"].boolean().value_or(false)});
+  for (const JsonValue alert : all["alarms"]) {
+    state.alerts.push_back({.key = alert["key"].text_or(""),
+                            .text = alert["text"].text_or(""),
+                            .since_utc_s = utc_of(alert["since_utc"]),
+                            .seen_utc_s = utc_of(alert["seen_utc"]),
+                            .is_told = alert["is_told"].boolean().value_or(false)});
   }
   for (const JsonValue message : all["pending"]) {
     state.pending.push_back({.severity = message["kind"].text_or(""),
@@ -107,19 +107,19 @@ NotifierState read_notifier_state(const std::vector<std::string>& paths,
 }
 
 std::string notifier_state_text(const NotifierState& state) {
-  Json alarms = Json::list();
+  Json alerts = Json::list();
   Json pending = Json::list();
-  for (const Alarm& alarm : state.alarms) {
-    Json json = alarm_json(alarm);
-    json.set("seen_utc", utc_text(alarm.seen_utc_s).view());
-    json.set("is_told", alarm.is_told);
-    alarms.add(std::move(json));
+  for (const ToldAlert& alert : state.alerts) {
+    Json json = alert_json(alert);
+    json.set("seen_utc", utc_text(alert.seen_utc_s).view());
+    json.set("is_told", alert.is_told);
+    alerts.add(std::move(json));
   }
   for (const Message& message : state.pending) pending.add(event_json("", message));
   const std::string text = Json::object({{"version", kVersion},
                                          {"number", state.number},
                                          {"day", state.day},
-                                         {"alarms", std::move(alarms)},
+                                         {"alarms", std::move(alerts)},
                                          {"pending", std::move(pending)}})
                                .text();
   const std::string body = text.substr(0, text.rfind("\n}"));

@@ -12,18 +12,18 @@
 
 namespace bess {
 
-// Alert bookkeeping: each trouble and its end are reported once. Pure, over UTC seconds.
-//   a trouble that lasts `after_s`           is reported
+// Alert bookkeeping: each alert and its end are reported once. Pure, over UTC seconds.
+//   one that lasts `after_s`                 is reported
 //   one that returns within `after_s`        is the same
 //   a reported one absent for `after_s`      is over, which is reported
 
-/// A current trouble. The key identifies it; numbers in the text may change.
-struct Trouble {
+/// A current alert. The key identifies it; numbers in the text may change.
+struct SeenAlert {
   std::string key{};
   std::string text{};
 };
 
-struct Alarm {
+struct ToldAlert {
   std::string key{};
   std::string text{};  ///< newest text
   std::int64_t since_utc_s = 0;
@@ -31,19 +31,19 @@ struct Alarm {
   bool is_told = false;
 };
 
-struct AlarmEvent {
+struct AlertEvent {
   bool is_over = false;
-  Alarm alarm{};
+  ToldAlert alert{};
 };
 
-/// Updates `alarms`, oldest first, with the current troubles. Returns the events to report.
-std::vector<AlarmEvent> observe(std::vector<Alarm>& alarms, const std::vector<Trouble>& troubles,
+/// Updates `alerts`, oldest first, with the current alerts. Returns the events to report.
+std::vector<AlertEvent> observe(std::vector<ToldAlert>& alerts, const std::vector<SeenAlert>& seen,
                                 std::int64_t after_s, std::int64_t now_utc_s);
 
 struct NotifierState {
   std::uint64_t number = 0;  ///< of the stored version
   std::string day{};         ///< newest day with a control cycle in the log; empty = none
-  std::vector<Alarm> alarms{};
+  std::vector<ToldAlert> alerts{};
   std::deque<Message> pending{};  ///< oldest first
 };
 

@@ -61,7 +61,7 @@ std::string topic(const std::string& node, const char* name) {
   return "bess/v1/" + node + "/" + name;
 }
 
-std::string state_json(const ControllerStatus& status, const std::vector<Alarm>& alarms,
+std::string state_json(const ControllerStatus& status, const std::vector<ToldAlert>& alerts,
                        JsonValue today, std::optional<std::int32_t> hold_power_w) {
   const JsonValue all = status.json.value();
   const std::string_view health =
@@ -69,7 +69,7 @@ std::string state_json(const ControllerStatus& status, const std::vector<Alarm>&
   const bool is_running = health != kNotRunning;
   Json json =
       Json::object({{"health", health},
-                    {"alarms", std::ranges::count(alarms, true, &Alarm::is_told)},
+                    {"alarms", std::ranges::count(alerts, true, &ToldAlert::is_told)},
                     {"mode", is_running ? all["last"]["mode"].text_or("none") : kNotRunning},
                     {"reason", all["last"]["reason"].text_or("none")},
                     {"in_control", is_running && is_true(all["control"])},
@@ -86,16 +86,16 @@ std::string state_json(const ControllerStatus& status, const std::vector<Alarm>&
   return json.line();
 }
 
-Json alarm_json(const Alarm& alarm) {
-  return Json::object({{"key", alarm.key},
-                       {"text", alarm.text},
-                       {"since_utc", utc_text(alarm.since_utc_s).view()}});
+Json alert_json(const ToldAlert& alert) {
+  return Json::object({{"key", alert.key},
+                       {"text", alert.text},
+                       {"since_utc", utc_text(alert.since_utc_s).view()}});
 }
 
-std::string alarms_json(const std::vector<Alarm>& alarms) {
+std::string alerts_json(const std::vector<ToldAlert>& alerts) {
   Json list = Json::list();
-  for (const Alarm& alarm : alarms) {
-    if (alarm.is_told) list.add(alarm_json(alarm));
+  for (const ToldAlert& alert : alerts) {
+    if (alert.is_told) list.add(alert_json(alert));
   }
   return list.line();
 }

@@ -26,11 +26,11 @@ inline constexpr const char* kHoldPowerTopic = "hold_power/set";  ///< whole W, 
 std::string topic(const std::string& node, const char* name);
 
 /// `today`: from ask_earned. `hold_power_w`: of the next hold, if orders are allowed.
-std::string state_json(const ControllerStatus& status, const std::vector<Alarm>& alarms,
+std::string state_json(const ControllerStatus& status, const std::vector<ToldAlert>& alerts,
                        JsonValue today, std::optional<std::int32_t> hold_power_w);
-Json alarm_json(const Alarm& alarm);
+Json alert_json(const ToldAlert& alert);
 /// Reported alerts only.
-std::string alarms_json(const std::vector<Alarm>& alarms);
+std::string alerts_json(const std::vector<ToldAlert>& alerts);
 /// All numbers of `earned`, from ask_earned.
 std::string day_json(JsonValue earned);
 Json event_json(const std::string& node, const Message& message);

@@ -132,7 +132,7 @@ void add_requests(const BatteryCounters& c, const Metrics& text) {
 
 void add_interventions(const RunTotals& t, const Metrics& text) {
   const char* const name = "bess_guard_interventions_total";
-  add_head(text.out, name, "Cycles in which this rule overruled the student.");
+  add_head(text.out, name, "Control cycles decided by this reason instead of the student alone.");
   for (int i = 0; i < kReasonCount; ++i) {
     if (static_cast<Reason>(i) == Reason::kStudent) continue;  // no intervention
     text.out.add("%s{%s,rule=\"%s\"} %lld\n", name, text.label,
@@ -257,7 +257,7 @@ void format_prometheus(const RunStatus& status, TextBuffer& out) {
   add_interventions(totals, text);
   add_state(last.mode, text);
   add_value(text, "bess_cycle_duration_seconds",
-            "From the begin of the decision to the order read back, last cycle.",
+            "Time from the start of the decision until the order is read back, last control cycle.",
             1e-6 * last.decision_us + 1e-6 * last.write_us);
   add_fields(MetricGroup::kRun, totals, text);
   add_fields(MetricGroup::kPeople, totals, text);

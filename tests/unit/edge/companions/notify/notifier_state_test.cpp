@@ -6,71 +6,71 @@
 namespace bess {
 namespace {
 
-const Trouble kLink{.key = "battery", .text = "WARN battery: found"};
-const Trouble kPrices{.key = "prices", .text = "WARN prices: found"};
+const SeenAlert kLink{.key = "battery", .text = "WARN battery: found"};
+const SeenAlert kPrices{.key = "prices", .text = "WARN prices: found"};
 
-class AlarmList {
+class AlertList {
  public:
-  explicit AlarmList(std::int64_t after_s, std::vector<Alarm> before = {})
-      : after_s_(after_s), alarms_(std::move(before)) {}
-  std::vector<AlarmEvent> observe(const std::vector<Trouble>& troubles, std::int64_t now_utc_s) {
-    return bess::observe(alarms_, troubles, after_s_, now_utc_s);
+  explicit AlertList(std::int64_t after_s, std::vector<ToldAlert> before = {})
+      : after_s_(after_s), alerts_(std::move(before)) {}
+  std::vector<AlertEvent> observe(const std::vector<SeenAlert>& seen, std::int64_t now_utc_s) {
+    return bess::observe(alerts_, seen, after_s_, now_utc_s);
   }
-  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+  [[nodiscard]] const std::vector<ToldAlert>& alerts() const { return alerts_; }
 
  private:
   std::int64_t after_s_;
-  std::vector<Alarm> alarms_;
+  std::vector<ToldAlert> alerts_;
 };
 
-TEST(Alarms, AFaultIsReportedOnceAndItsEndOnce) {
-  AlarmList list(300);
+TEST(Alerts, AFaultIsReportedOnceAndItsEndOnce) {
+  AlertList list(300);
   int reported = 0;
   for (int s = 0; s < 3'600; s += 30) {
-    for (const AlarmEvent& event : list.observe({kLink}, 1'000 + s)) {
+    for (const AlertEvent& event : list.observe({kLink}, 1'000 + s)) {
       ++reported;
       EXPECT_FALSE(event.is_over);
-      EXPECT_EQ(event.alarm.key, kLink.key);
-      EXPECT_EQ(event.alarm.since_utc_s, 1'000);
+      EXPECT_EQ(event.alert.key, kLink.key);
+      EXPECT_EQ(event.alert.since_utc_s, 1'000);
       EXPECT_EQ(s, 300);
     }
   }
   EXPECT_EQ(reported, 1);
   int over = 0;
   for (int s = 3'600; s < 7'200; s += 30) {
-    for (const AlarmEvent& event : list.observe({}, 1'000 + s)) {
+    for (const AlertEvent& event : list.observe({}, 1'000 + s)) {
       ++over;
       EXPECT_TRUE(event.is_over);
-      EXPECT_EQ(event.alarm.since_utc_s, 1'000);
-      EXPECT_EQ(event.alarm.seen_utc_s, 1'000 + 3'570);
+      EXPECT_EQ(event.alert.since_utc_s, 1'000);
+      EXPECT_EQ(event.alert.seen_utc_s, 1'000 + 3'570);
       EXPECT_EQ(s, 3'570 + 300);
     }
   }
   EXPECT_EQ(over, 1);
-  EXPECT_TRUE(list.alarms().empty());
+  EXPECT_TRUE(list.alerts().empty());
 }
 
-TEST(Alarms, AShortFaultIsNotReported) {
-  AlarmList list(300);
+TEST(Alerts, AShortFaultIsNotReported) {
+  AlertList list(300);
   for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(list.observe({kLink}, s).empty());
   for (int s = 300; s <= 1'200; s += 30) EXPECT_TRUE(list.observe({}, s).empty());
-  EXPECT_TRUE(list.alarms().empty());
+  EXPECT_TRUE(list.alerts().empty());
   EXPECT_TRUE(list.observe({kLink}, 1'230).empty());  // another one: counted from here
 }
 
-TEST(Alarms, WhatComesAndGoesIsOneTrouble) {
-  AlarmList list(300);
+TEST(Alerts, WhatComesAndGoesIsOneTrouble) {
+  AlertList list(300);
   int reported = 0;
   for (int s = 0; s < 3'600; s += 30) {
     const bool is_there = s / 120 % 2 == 0;
     reported += static_cast<int>(
-        list.observe(is_there ? std::vector{kPrices} : std::vector<Trouble>{}, s).size());
+        list.observe(is_there ? std::vector{kPrices} : std::vector<SeenAlert>{}, s).size());
   }
   EXPECT_EQ(reported, 1);
 }
 
-TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
-  AlarmList list(300);
+TEST(Alerts, AClockThatWasInTheFutureSilencesNothing) {
+  AlertList list(300);
   list.observe({kLink}, 1'000'000);
   EXPECT_TRUE(list.observe({kLink}, 1'000).empty());
   EXPECT_EQ(list.observe({kLink}, 1'300).size(), 1U);
@@ -78,12 +78,12 @@ TEST(Alarms, AClockThatWasInTheFutureSilencesNothing) {
   EXPECT_EQ(list.observe({}, 800).size(), 1U);
 }
 
-TEST(Alarms, TheTextIsTheNewest) {
-  AlarmList list(60);
+TEST(Alerts, TheTextIsTheNewest) {
+  AlertList list(60);
   list.observe({{"age", "260 s ago"}}, 0);
-  const std::vector<AlarmEvent> events = list.observe({{"age", "320 s ago"}}, 60);
+  const std::vector<AlertEvent> events = list.observe({{"age", "320 s ago"}}, 60);
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].alarm.text, "320 s ago");
+  EXPECT_EQ(events[0].alert.text, "320 s ago");
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST_F(Channels, ACommandThatHangsIsKilledAndRunAgain) {
   EXPECT_TRUE(pending().empty());
 }
 
-/// Killed repeatedly during a slow command: no alarm is lost, and the file is complete each time.
+/// Killed repeatedly during a slow command: no alert is lost, and the file is complete each time.
 TEST_F(Channels, AKillLosesNothing) {
   settings_.command = "echo x >>" + folder_.file("command_began") +
                       "; sleep 0.3; echo \"$BESS_TITLE\" >>" + folder_.file("told");
@@ -177,7 +177,7 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
   EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed process owns no lock
 }
 
-/// Without storage, alarms are still reported, and so is the storage fault.
+/// Without storage, alerts are still reported, and so is the storage fault.
 TEST_F(Channels, ANotifierThatCannotLockStillReports) {
   const std::string file =
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +

@@ -1,5 +1,5 @@
 // Parts of the notifier: settings and their mistakes, a child program, faults in a status, the
-// alarm command, topics, stored state.
+// alert command, topics, stored state.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -192,7 +192,7 @@ ControllerStatus ask(const std::string& program) {
 
 std::vector<std::string> keys_of(const ControllerStatus& status) {
   std::vector<std::string> keys;
-  for (const Trouble& trouble : troubles_of(status)) keys.push_back(trouble.key);
+  for (const SeenAlert& trouble : seen_alerts(status)) keys.push_back(trouble.key);
   return keys;
 }
 
@@ -238,10 +238,10 @@ TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
   }
   ControllerStatus well;
   well.json.set("health", "ok");
-  EXPECT_TRUE(troubles_of(well).empty());
+  EXPECT_TRUE(seen_alerts(well).empty());
 }
 
-const Message kAlarm{.severity = "alarm",
+const Message kAlert{.severity = "alarm",
                      .key = "battery",
                      .text = "WARN: mode is safe, reason link\nBcc: evil@example.org",
                      .utc_s = 1'679'875'320,
@@ -252,7 +252,7 @@ class AlertCommand : public ::testing::Test {
   AlertCommand() { signal(SIGPIPE, SIG_IGN); }  // as the program does: not all read their input
   std::string run(const std::string& command) {
     settings_.command = command;
-    return run_alarm_command(settings_, kAlarm);
+    return run_alert_command(settings_, kAlert);
   }
   [[nodiscard]] std::string said() const { return text_of_file(folder_.file("said")); }
   const TemporaryFolder folder_;
@@ -278,10 +278,10 @@ TEST_F(AlertCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
 }
 
 TEST_F(AlertCommand, NothingInATextIsReadByTheShell) {
-  Message evil = kAlarm;
+  Message evil = kAlert;
   evil.text = "'; touch " + folder_.file("owned") + "; $(touch " + folder_.file("owned") + ") `id`";
   settings_.command = "echo \"$BESS_TEXT\" >" + folder_.file("said");
-  EXPECT_EQ(run_alarm_command(settings_, evil), "");
+  EXPECT_EQ(run_alert_command(settings_, evil), "");
   EXPECT_THAT(said(), HasSubstr("$(touch "));
   EXPECT_FALSE(std::filesystem::exists(folder_.file("owned")));
 }
@@ -320,8 +320,8 @@ TEST(Topics, AreTheseToTheLetter) {
   settings.id = "0a1b2c3d";
   settings.mqtt.orders = true;
   const Json earned = Json::parse(kEarned);
-  const std::vector<Alarm> alarms = {{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
-                                     {.key = "not reported yet"}};
+  const std::vector<ToldAlert> alerts = {
+      {.key = "k", .text = "t", .since_utc_s = 0, .is_told = true}, {.key = "not reported yet"}};
   std::string text =
       "# generator notify_test, no seed, command: BESS_UPDATE_GOLDEN=1 notify_test "
       "--gtest_filter=Topics.*\n";
@@ -329,12 +329,12 @@ TEST(Topics, AreTheseToTheLetter) {
     text.append(name).append(" ").append(payload).append("\n");
   };
   const std::string state = topic("garage", "state");
-  add(state, state_json(sample_status(), alarms, earned.value(), -1'500));
+  add(state, state_json(sample_status(), alerts, earned.value(), -1'500));
   add(state, state_json({.trouble = "x"}, {}, JsonValue(), std::nullopt));
-  add(state, state_json(sample_status("not running"), alarms, earned.value(), std::nullopt));
-  add(topic("garage", "alarms"), alarms_json(alarms));
+  add(state, state_json(sample_status("not running"), alerts, earned.value(), std::nullopt));
+  add(topic("garage", "alarms"), alerts_json(alerts));
   add(topic("garage", "day"), day_json(earned.value()));
-  add(topic("garage", "event"), event_json("garage", kAlarm).line());
+  add(topic("garage", "event"), event_json("garage", kAlert).line());
   add(discovery_topic(settings), discovery_json(settings, "1.2.3"));
   expect_golden(BESS_SOURCE_DIR "/tests/data/golden/mqtt_topics.txt", text);
 }
@@ -379,9 +379,9 @@ TEST_F(NotifierStateFile, OutlastsARestart) {
   const NotifierState state{
       .number = 7,
       .day = "2023-11-26",
-      .alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true},
+      .alerts = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true},
                  {.key = "new"}},
-      .pending = {kAlarm, {.severity = "day", .key = "2023-11-25", .text = "d", .utc_s = 9}}};
+      .pending = {kAlert, {.severity = "day", .key = "2023-11-25", .text = "d", .utc_s = 9}}};
   ASSERT_EQ(write_notifier_state(paths_, notifier_state_text(state)), "");
   EXPECT_EQ(notifier_state_text(read()), notifier_state_text(state));
 }

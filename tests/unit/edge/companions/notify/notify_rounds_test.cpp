@@ -29,7 +29,7 @@ TEST_F(Rounds, AnAlarmIsReportedOnceAndItsEndOnceAlsoOverRestarts) {
 }
 
 /// Raised and cleared in a drawn order, while the command fails and the notifier restarts at
-/// random: each alarm and each end is reported once, alternating, and none is missing.
+/// random: each alert and each end is reported once, alternating, and none is missing.
 TEST_F(Rounds, AnyOrderOfAlarmsIsReportedOnceForEachRaiseAndEachClear) {
   constexpr std::uint32_t kSeed = 20'261'128;
   constexpr int kKinds = 4;

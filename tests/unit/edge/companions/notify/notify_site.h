@@ -1,4 +1,4 @@
-// Site for tests of whole rounds: no controller, its status is a file and its alarm command writes
+// Site for tests of whole rounds: no controller, its status is a file and its alert command writes
 // into another.
 #pragma once
 
