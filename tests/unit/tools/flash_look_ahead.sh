@@ -39,7 +39,11 @@ echo 'bess-edge: edge.toml:3: no such key' >status
 look_ahead
 [ $code -eq 1 ] || fail "refused settings: exit code $code"
 grep -q "battery in use" err || fail "the new program's output is lost: $(cat err)"
-rm runs  # no controller: the new program connects to battery and price itself, which may be absent
+rm runs
+look_ahead
+[ $code -eq 1 ] || fail "refused settings of a stopped controller: exit code $code"
+# No controller: the new program connects to battery and price itself, which may be absent.
+echo '{"health": "not running"}' >status
 echo 1 >check_code
 look_ahead
 [ $code -eq 0 ] || fail "no controller: exit code $code"
