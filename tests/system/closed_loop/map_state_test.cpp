@@ -104,7 +104,9 @@ TEST_P(EveryMapState, RawExtremesAreNoValues) {
   for (const std::int8_t point : load_shipped_map(GetParam()).required) {
     HeldDevice device(GetParam());
     const RegisterPoint& p = device.map().points[point];
-    std::vector<std::uint64_t> extremes = raw_extremes(p.type);
+    // Of a part of a register, such as a sign, every value is one.
+    std::vector<std::uint64_t> extremes;
+    if (p.mask == RegisterPoint{}.mask) extremes = raw_extremes(p.type);
     for (const std::uint64_t nothing : p.not_implemented) extremes.push_back(nothing);
     for (const std::uint64_t bits : extremes) {
       ASSERT_EQ(device.read(), Status::kOk) << p.name.view();
