@@ -33,10 +33,11 @@ void add_head(const CycleRecord& record, std::string& text) {
   }
 }
 
-void add_decider(const Explanation& explanation, const std::string& end, std::string& text) {
+void add_reason(const Explanation& explanation, const std::string& end, std::string& text) {
   const CycleRecord& record = explanation.record;
-  add_formatted(text, "decided by %s", reason_name(record.reason).data());
-  add_formatted(text, ", %d control cycle%s in a row since %s", explanation.cycles,
+  const ReasonInfo& reason = info_of(record.reason);
+  add_formatted(text, "reason     %s: %s; %d control cycle%s in a row since %s",
+                reason.name.data(), reason.meaning, explanation.cycles,
                 explanation.cycles == 1 ? "" : "s", local_text(explanation.since_utc_s).c_str());
   if (!end.empty()) text.append("; ").append(end);
   text += '\n';
@@ -176,7 +177,7 @@ std::string explanation_text(const Explanation& explanation, const ControlSettin
   const CycleRecord& record = explanation.record;
   std::string text;
   add_head(record, text);
-  add_decider(explanation, what_ends(record, settings), text);
+  add_reason(explanation, what_ends(record, settings), text);
   add_price(explanation, text);
   add_soc(explanation, text);
   add_level(record, text);
