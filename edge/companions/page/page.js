@@ -113,7 +113,7 @@ function showNext(next, noEffect) {
   if (!next) {
     texts.push("No next decision.");
   } else if (next.action === null) {
-    texts.push(`At ${next.local}: no control without price and measurement.`);
+    texts.push(`At ${next.local}: no decision without a price and a reading of the battery.`);
   } else {
     texts.push(
       `At ${next.local} it ${does(next.power_w)} if price and state of charge stay.`);
@@ -134,7 +134,9 @@ function showWhy(why) {
     ? `${why.meaning} (${why.reason}) since ${moment(why.since_utc)}`
     : `the price of ${price(why.price_eur_per_mwh)} is ` +
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
-  const what = why.mode !== "running" ? `No control, mode ${why.mode}`
+  const what = !isRunning()
+    ? "No controller is running; the battery's state is unknown. Last decision"
+    : why.mode !== "running" ? `No control, mode ${why.mode}`
     : state.control ? `The battery ${does(why.ordered_power_w)}`
     : `Read-only, nothing is written; decided: ${say(why.ordered_power_w, 0, "W")}`;
   byId("sentence").textContent = `${what}: ${cause}${why.ends && ", " + why.ends}.`;
@@ -283,7 +285,8 @@ async function turnTo(days) {
 function drawMap({columns}) {
   if (columns.length === 0) return "No student decision in this control cycle.";
   const last = state.last;
-  const now = {x: last.soc_e4 / 100, y: last.price_centi_eur_per_mwh / 100};
+  const now = {x: last.has_measurement ? last.soc_e4 / 100 : NaN,
+               y: last.price_centi_eur_per_mwh / 100};
   const points = (key) => columns.map((column) => ({x: column.soc_percent, y: column[key]}));
   const prices = [now.y, ...points("charge_up_to_eur_per_mwh").map(({y}) => y),
                   ...points("discharge_from_eur_per_mwh").map(({y}) => y)];

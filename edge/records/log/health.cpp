@@ -162,8 +162,10 @@ void check_answers(const RunStatus& status, Alerts& alerts) {
   if (!lost.empty()) fail(Alert::kPointLost, "battery: ", lost + " could not be read");
   if (last.price.status != Status::kOk) {
     fail(Alert::kPrices, "prices: ",
-         "no usable answer, " + std::string(status_name(last.price.status)) +
-             since(status.totals.price_since_utc_s));
+         std::string(last.price.status == Status::kNoFetcher
+                         ? "bess-prices does not run (`systemctl status bess-prices`), "
+                         : "no usable answer, ") +
+             std::string(status_name(last.price.status)) + since(status.totals.price_since_utc_s));
   }
   if (last.mode == Mode::kRunning) {
     alerts.insert(alerts.end(), failed.begin(), failed.end());

@@ -40,10 +40,18 @@ std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineByte
 
 std::size_t format_short_line(const CycleRecord& record, char (&line)[kLogLineBytes]) {
   TextBuffer text(line);
-  text.add("%s  %10d  %13.2f  %6.1f  %s%s", local_text(record.utc_s).c_str(),
-           record.ordered_power_w, eur_of(record.price.price_centi_eur_per_mwh),
-           record.measurement.soc_e4 / 100.0, reason_name(record.reason).data(),
-           record.written ? "" : " (not written)");
+  text.add("%s  %10d  ", local_text(record.utc_s).c_str(), record.ordered_power_w);
+  if (record.price.has_row) {
+    text.add("%13.2f  ", eur_of(record.price.price_centi_eur_per_mwh));
+  } else {
+    text.add("%13s  ", "-");
+  }
+  if (record.has_measurement) {
+    text.add("%6.1f", record.measurement.soc_e4 / 100.0);
+  } else {
+    text.add("%6s", "-");
+  }
+  text.add("  %s%s", reason_name(record.reason).data(), record.written ? "" : " (not written)");
   return text.view().size();
 }
 
