@@ -36,9 +36,9 @@ void add_head(const CycleRecord& record, std::string& text) {
 void add_reason(const Explanation& explanation, const std::string& end, std::string& text) {
   const CycleRecord& record = explanation.record;
   const ReasonInfo& reason = info_of(record.reason);
-  add_formatted(text, "reason     %s: %s; %d control cycle%s in a row since %s",
-                reason.name.data(), reason.meaning, explanation.cycles,
-                explanation.cycles == 1 ? "" : "s", local_text(explanation.since_utc_s).c_str());
+  add_formatted(text, "reason     %s: %s; %d control cycle%s in a row since %s", reason.name.data(),
+                reason.meaning, explanation.cycles, explanation.cycles == 1 ? "" : "s",
+                local_text(explanation.since_utc_s).c_str());
   if (!end.empty()) text.append("; ").append(end);
   text += '\n';
   if (!is_students(record) && record.has_student_action) {
