@@ -51,7 +51,9 @@ TomlValue value_of(const toml::node& node, const FileName& file) {
 }
 
 std::string complaint(const std::string& name, int line, std::string_view what) {
-  const bool is_bare_word = what.find("could not determine value type") != what.npos;
+  // "no" is read as the beginning of nan.
+  const bool is_bare_word = what.find("could not determine value type") != what.npos ||
+                            what.find("expected 'nan'") != what.npos;
   return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what) +
          (what.find("control characters") != what.npos ? "; is a closing quote missing?" : "") +
          (is_bare_word ? "; write true or false, a number, or text in \"quotes\"" : "");
