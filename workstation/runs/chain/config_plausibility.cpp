@@ -45,8 +45,8 @@ void warn_long_training(const RunConfig& config) {
 void require_plausible(const RunConfig& config, const std::string& name) {
   const BatteryParameters& battery = config.battery;
   if (battery.power_w_max < kPowerMin_w) {
-    fail("{}: [battery] power_w = {:g} is below {:g} W; use watts: 5 MW is 5000000", name,
-         battery.power_w_max, kPowerMin_w);
+    fail("{}: [battery] power_w = {:g} is below {:g} W; use watts: 5 kW is 5000, 5 MW is 5000000",
+         name, battery.power_w_max, kPowerMin_w);
   }
   if (battery.capacity_wh < kCapacityMin_wh) {
     fail(
