@@ -25,7 +25,7 @@ constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 /// Slow enough that an order outlasts the start of a process. The environment names a program under
 /// test in sanitizer runs, which start more slowly.
 std::int32_t outlasting_scale() {
-  return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 15 : 3);
+  return kScale / (std::getenv("BESS_EDGE_UNDER_TEST") != nullptr ? 10 : 3);
 }
 
 /// The line of the next control cycle that orders power, empty if it ended before.
