@@ -178,7 +178,7 @@ std::string operator_note(const ControlSettings& control, const Hold& hold,
   }
   if (control.full_charge_every_days > 0) {
     add_line(note, "full       every %d days, with %d W", control.full_charge_every_days,
-             control.guard.power_w / 2);
+             control.guard.full_charge_power_w());
   }
   return note;
 }

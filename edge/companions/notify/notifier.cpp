@@ -170,8 +170,7 @@ void Notifier::publish(const ControllerStatus& status) {
   mqtt_->retain(
       topic(settings_.name, "state"),
       state_json(status, state_.alerts, today_.value(),
-                 settings_.mqtt.orders ? std::optional(hold_power_w_.value_or(held_power_w_))
-                                       : std::nullopt));
+                 settings_.mqtt.orders ? std::optional(next_hold_power_w()) : std::nullopt));
   mqtt_->retain(topic(settings_.name, "alarms"), alerts_json(state_.alerts));
 }
 
@@ -194,8 +193,7 @@ void Notifier::follow(const Order& order) {
   if (order.payload == "OFF") {
     words.emplace_back("--release");
   } else {
-    words.insert(words.end(),
-                 {std::to_string(hold_power_w_.value_or(held_power_w_)), "--for", "60m"});
+    words.insert(words.end(), {std::to_string(next_hold_power_w()), "--for", "60m"});
   }
   words.insert(words.end(), {"--config", settings_.config_path});
   constexpr std::int64_t kOrderSMax = 10;

@@ -58,6 +58,9 @@ class Notifier {
   void keep();
   void run_command();
   void note_command_result(const std::string& trouble);
+  [[nodiscard]] std::int32_t next_hold_power_w() const {
+    return hold_power_w_.value_or(held_power_w_);
+  }
 
   const NotifySettings settings_;
   const std::stop_token stop_;

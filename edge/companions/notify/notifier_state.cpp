@@ -18,12 +18,12 @@ std::vector<AlertEvent> observe(std::vector<ToldAlert>& alerts, const std::vecto
     alert.since_utc_s = std::min(alert.since_utc_s, now_utc_s);
     alert.seen_utc_s = std::min(alert.seen_utc_s, now_utc_s);
   }
-  for (const SeenAlert& trouble : seen) {
-    auto alert = std::ranges::find(alerts, trouble.key, &ToldAlert::key);
+  for (const SeenAlert& seen_now : seen) {
+    auto alert = std::ranges::find(alerts, seen_now.key, &ToldAlert::key);
     if (alert == alerts.end()) {
-      alert = alerts.insert(alert, {.key = trouble.key, .since_utc_s = now_utc_s});
+      alert = alerts.insert(alert, {.key = seen_now.key, .since_utc_s = now_utc_s});
     }
-    alert->text = trouble.text;
+    alert->text = seen_now.text;
     alert->seen_utc_s = now_utc_s;
     if (alert->is_told || now_utc_s - alert->since_utc_s < after_s) continue;
     alert->is_told = true;

@@ -98,7 +98,7 @@ GuardDecision SafetyGuard::find_price_action(const GuardInputs& in) const {
 
 GuardDecision SafetyGuard::find_student_action(const GuardInputs& in) const {
   if (in.full_charge == FullChargeRequest::kCharge) {
-    return {.power_w = settings_.power_w / 2, .reason = Reason::kFullCharge};  // gentle
+    return {.power_w = settings_.full_charge_power_w(), .reason = Reason::kFullCharge};
   }
   if (in.full_charge == FullChargeRequest::kNoDischarge &&
       in.student_action == Action::kDischarge) {

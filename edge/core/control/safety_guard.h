@@ -29,6 +29,9 @@ struct GuardSettings {
   std::int32_t stand_in_s_max = 0;
   std::int32_t temperature_min_deci_c = 0;
   std::int32_t temperature_max_deci_c = 500;
+
+  /// Gentle: half the rated power.
+  [[nodiscard]] constexpr std::int32_t full_charge_power_w() const { return power_w / 2; }
 };
 
 struct GuardInputs {

@@ -141,16 +141,17 @@ Status DayAheadStore::take(std::span<const DayAheadDay> days, std::int64_t now_u
   bool is_refused = false;
   bool has_other_unit = false;
   for (const DayAheadDay& day : days) {
-    if (!day.is_constant() && is_in_another_unit(day)) {
+    const bool is_constant = day.is_constant();
+    if (!is_constant && is_in_another_unit(day)) {
       has_other_unit = true;
       continue;
     }
     for (const DayAheadQuarterHour& q : day.quarter_hours) {
       if (q.utc_s < answer.yesterday_utc_s || q.utc_s >= answer.end_utc_s) continue;
-      is_refused = is_refused || day.is_constant();
+      is_refused = is_refused || is_constant;
       const bool is_price = std::fabs(q.eur_per_mwh) <= kPlausiblePriceMaxEurPerMwh &&
                             !is_day_ahead_sentinel(q.eur_per_mwh);
-      if (day.is_constant() || !is_price) continue;
+      if (is_constant || !is_price) continue;
       answer.day_ahead_centi[answer.index_of(q.utc_s)] =
           static_cast<std::int32_t>(std::lround(q.eur_per_mwh * kCentiPerEur));
       answer.is_assumed[answer.index_of(q.utc_s)] = q.is_assumed;

@@ -76,13 +76,10 @@ void check_day_ahead(const EdgeConfig& config) {
   const std::string source =
       outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const DayAheadReply reply = ask_day_ahead(outlook, now_utc_s, [] { return false; });
   DayAheadFetchState fetch_state;
-  fetch_state.take(reply, outlook, now_utc_s);
+  fetch_state.take(ask_day_ahead(outlook, now_utc_s, [] { return false; }), outlook, now_utc_s);
   if (fetch_state.status != Status::kOk) {
-    complain("day-ahead prices from " + source + ": " +
-             (reply.reason.empty() ? std::string(day_ahead_status_text(fetch_state.status, outlook))
-                                   : reply.reason) +
+    complain("day-ahead prices from " + source + ": " + fetch_state.reason +
              "; planning on usual prices");
     return;
   }

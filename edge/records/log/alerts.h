@@ -117,13 +117,17 @@ inline constexpr AlertInfo kAlerts[] = {
 
 constexpr const AlertInfo& info_of(Alert alert) { return kAlerts[static_cast<int>(alert)]; }
 
+inline std::string alert_line(std::string_view code, const std::string& found, const char* remedy,
+                              bool is_critical = false) {
+  std::string line = is_critical ? "CRITICAL " : "WARN ";
+  return line.append(code).append(": ").append(found).append("; ").append(remedy);
+}
+
 /// `found`: with numbers and times; empty = the meaning.
 inline std::string alert_line(Alert alert, const std::string& found = "",
                               bool is_critical = false) {
   const AlertInfo& info = info_of(alert);
-  std::string line = is_critical ? "CRITICAL " : "WARN ";
-  line.append(info.code).append(": ").append(found.empty() ? info.meaning : found);
-  return line.append("; ").append(info.remedy);
+  return alert_line(info.code, found.empty() ? info.meaning : found, info.remedy, is_critical);
 }
 
 }  // namespace bess

@@ -25,11 +25,8 @@ constexpr std::int64_t kWrongEnergyE6Max = 50'000;
 
 using Alerts = std::vector<HealthAlert>;
 
-void warn(Alerts& alerts, Alert alert, const std::string& found = "") {
-  alerts.push_back({info_of(alert).code, alert_line(alert, found)});
-}
-void warn_critically(Alerts& alerts, Alert alert, const std::string& found = "") {
-  alerts.push_back({info_of(alert).code, alert_line(alert, found, true)});
+void warn(Alerts& alerts, Alert alert, const std::string& found = "", bool is_critical = false) {
+  alerts.push_back({info_of(alert).code, alert_line(alert, found, is_critical)});
 }
 
 std::string since(std::int64_t utc_s) { return " since " + std::string(local_text(utc_s).view()); }
@@ -48,11 +45,7 @@ void check_age(const HealthInputs& in, Alerts& alerts) {
   if (in.age_ms <= 2 * cadence_ms) return;
   const std::string found = "the last control cycle ended " + seconds(in.age_ms) +
                             " ago, expected every " + seconds(cadence_ms);
-  if (in.age_ms > 4 * cadence_ms) {
-    warn_critically(alerts, Alert::kOverdue, found);
-  } else {
-    warn(alerts, Alert::kOverdue, found);
-  }
+  warn(alerts, Alert::kOverdue, found, in.age_ms > 4 * cadence_ms);
 }
 
 void check_prices(const CycleRecord& last, Alerts& alerts) {
@@ -174,10 +167,10 @@ void check_answers(const RunStatus& status, Alerts& alerts) {
   if (last.is_tripped && last.reason == last.trip.reason) return;  // check_cycle has it
   const ReasonInfo& reason = info_of(last.reason);
   const std::string_view code = outage_code(last.reason);
-  alerts.push_back({code, "WARN " + std::string(code) + ": mode " +
-                              std::string(mode_name(last.mode)) + ", reason " +
-                              std::string(reason.name) + since(status.totals.reason_since_utc_s) +
-                              ": " + reason.meaning + causes + "; " + reason.look_at});
+  const std::string found = "mode " + std::string(mode_name(last.mode)) + ", reason " +
+                            std::string(reason.name) + since(status.totals.reason_since_utc_s) +
+                            ": " + reason.meaning + causes;
+  alerts.push_back({code, alert_line(code, found, reason.look_at)});
 }
 
 void check_site(const CycleRecord& last, Alerts& alerts) {
@@ -201,9 +194,10 @@ void check_site(const CycleRecord& last, Alerts& alerts) {
 void check_cycle(const RunStatus& status, Alerts& alerts) {
   const CycleRecord& last = status.totals.last;
   if (last.is_tripped) {
-    warn_critically(alerts, Alert::kTripped,
-                    std::string(reason_name(last.trip.reason)) + since(last.trip.utc_s) + ": " +
-                        info_of(last.trip.reason).meaning);
+    warn(alerts, Alert::kTripped,
+         std::string(reason_name(last.trip.reason)) + since(last.trip.utc_s) + ": " +
+             info_of(last.trip.reason).meaning,
+         true);
   }
   check_answers(status, alerts);
   const std::string cut = point_name(status.identity, last.measurement.cut_point);
@@ -226,10 +220,11 @@ void check_wear(const StorageWear& wear, Alerts& alerts) {
     warn(alerts, Alert::kStorageLife,
          "storage has used up to " + std::to_string(wear.used_life_percent) + " % of its life");
   }
-  if (wear.spare_level >= 3) {
-    warn_critically(alerts, Alert::kStorageSpare, "storage has used 90 % of its spare blocks");
-  } else if (wear.spare_level == 2) {
-    warn(alerts, Alert::kStorageSpare, "storage has used 80 % of its spare blocks");
+  if (wear.spare_level >= 2) {
+    const bool is_critical = wear.spare_level >= 3;
+    warn(alerts, Alert::kStorageSpare,
+         "storage has used " + std::string(is_critical ? "90" : "80") + " % of its spare blocks",
+         is_critical);
   }
   if (wear.file_system_errors > 0) {
     warn(alerts, Alert::kFileSystem,
@@ -243,13 +238,13 @@ void check_wear(const StorageWear& wear, Alerts& alerts) {
 Health assess_health(const HealthInputs& in) {
   Health health;
   if (!in.is_running) {
-    warn_critically(health.alerts, Alert::kNoController);
+    warn(health.alerts, Alert::kNoController, "", true);
     health.level = HealthLevel::kNotRunning;
     return health;
   }
   const RunTotals totals = in.status != nullptr ? in.status->totals : RunTotals{};
   if (!in.unknown.empty()) {
-    warn_critically(health.alerts, Alert::kUnknown, std::string(in.unknown));
+    warn(health.alerts, Alert::kUnknown, std::string(in.unknown), true);
   } else if (!in.is_of_this_run || totals.cycles == 0) {
     warn(health.alerts, Alert::kStarting);
   } else {
