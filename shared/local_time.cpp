@@ -53,6 +53,12 @@ std::int64_t utc_from_local(const CivilTime& wall) {
   return after + shown_ahead_s(after) == wall_s ? after : before;
 }
 
+std::int64_t local_midnight_utc_s(std::int64_t utc_s, int days_later) {
+  const LocalMinute local = local_minute_of(utc_s);
+  const std::int64_t day_s = utc_from_civil({local.year, local.month, local.day, 0, 0, 0});
+  return utc_from_local(civil_from_utc(day_s + std::int64_t{days_later} * kSecondsPerDay));
+}
+
 CivilTime civil_from_utc(std::int64_t utc_s) {
   using namespace std::chrono;
   const sys_seconds instant{seconds{utc_s}};

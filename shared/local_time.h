@@ -34,6 +34,9 @@ struct CivilTime {
 /// previous hour.
 std::int64_t utc_from_local(const CivilTime& wall);
 
+/// Local midnight that begins the day `days_later` days after that of `utc_s`.
+std::int64_t local_midnight_utc_s(std::int64_t utc_s, int days_later = 0);
+
 /// Seconds since 1970 of a UTC calendar time (proleptic Gregorian); fields must be in range.
 std::int64_t utc_from_civil(const CivilTime& t);
 CivilTime civil_from_utc(std::int64_t utc_s);

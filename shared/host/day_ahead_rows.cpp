@@ -77,22 +77,13 @@ std::string without_blanks(std::string_view text) {
   return plain;
 }
 
-std::int64_t local_midnight_before(std::int64_t utc_s) {
-  const LocalMinute day = local_minute_of(utc_s);
-  return utc_from_local({day.year, day.month, day.day, 0, 0, 0});
-}
-
-std::int64_t local_midnight_after(std::int64_t midnight_utc_s) {
-  return local_midnight_before(midnight_utc_s + 36 * kHourS);
-}
-
 /// Rows of one local day with their lengths.
 class DayRows {
  public:
   DayRows(std::vector<DayAheadRow> rows, std::int64_t midnight_utc_s)
       : rows_(std::move(rows)),
         midnight_utc_s_(midnight_utc_s),
-        end_utc_s_(local_midnight_after(midnight_utc_s)) {
+        end_utc_s_(local_midnight_utc_s(midnight_utc_s, 1)) {
     for (std::size_t i = 1; i < rows_.size(); ++i) {
       step_s_ = std::gcd(step_s_, rows_[i].utc_s - rows_[i - 1].utc_s);
     }
@@ -272,8 +263,8 @@ DayAheadLayout lay_out_day_ahead(std::vector<DayAheadRow> rows) {
   for (const DayAheadRow& row : distinct(std::move(rows), layout)) {
     if (of_day.empty() || row.utc_s >= end) {
       close_day();
-      midnight = local_midnight_before(row.utc_s);
-      end = local_midnight_after(midnight);
+      midnight = local_midnight_utc_s(row.utc_s);
+      end = local_midnight_utc_s(midnight, 1);
     }
     of_day.push_back(row);
   }

@@ -22,12 +22,6 @@ constexpr std::int64_t shifted(std::int64_t value, int bits) {
   return (value + (std::int64_t{1} << (bits - 1))) >> bits;
 }
 
-std::int64_t midnight_utc_s(std::int64_t utc_s, int days_later) {
-  const LocalMinute local = local_minute_of(utc_s);
-  const std::int64_t day_s = utc_from_civil({local.year, local.month, local.day, 0, 0, 0});
-  return utc_from_local(civil_from_utc(day_s + days_later * kSecondsPerDay));
-}
-
 int phase_of(std::int64_t utc_s) {
   return static_cast<int>(utc_s / 60 % (2 * kMinutesPerQuarterHour)) / kMinutesPerStep;
 }
@@ -80,10 +74,10 @@ struct ValueHalves {
 
 OutlookDays outlook_days_around(std::int64_t utc_s) {
   OutlookDays days;
-  days.yesterday_utc_s = midnight_utc_s(utc_s, -1);
-  days.today_utc_s = midnight_utc_s(utc_s, 0);
-  days.tomorrow_utc_s = midnight_utc_s(utc_s, 1);
-  days.end_utc_s = midnight_utc_s(utc_s, 2);
+  days.yesterday_utc_s = local_midnight_utc_s(utc_s, -1);
+  days.today_utc_s = local_midnight_utc_s(utc_s, 0);
+  days.tomorrow_utc_s = local_midnight_utc_s(utc_s, 1);
+  days.end_utc_s = local_midnight_utc_s(utc_s, 2);
   for (std::int32_t& price : days.day_ahead_centi) price = kDayAheadUnknown;
   return days;
 }

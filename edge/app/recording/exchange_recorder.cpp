@@ -77,7 +77,7 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
   mask_.emplace(map, head.unit);
   is_writing_ = true;
   const std::string first = format_recording_head(head) + "\n";
-  if (!write_line(first.data(), first.size())) {
+  if (!write_line(first)) {
     return fail_with_errno(part_path_.c_str(), "cannot be written", error);
   }
   thread_.start<&ExchangeRecorder::run>(this);
@@ -114,11 +114,10 @@ void ExchangeRecorder::keep(BusExchange& exchange) {
   char text[kLineBytesMax];
   TextBuffer line(text);
   add_line(exchange, line);
-  const std::size_t size = line.view().size();
-  if (bytes_ + static_cast<std::int64_t>(size + kEndBytesMax) > bytes_max_) {
+  if (bytes_ + static_cast<std::int64_t>(line.view().size() + kEndBytesMax) > bytes_max_) {
     return stop_writing("has reached its maximum size: recording ends");
   }
-  if (write_line(text, size)) {
+  if (write_line(line.view())) {
     ++written_;
   } else {
     has_failed_ = true;
@@ -126,18 +125,10 @@ void ExchangeRecorder::keep(BusExchange& exchange) {
   }
 }
 
-/// Removes a torn line, so that the file has only complete lines.
-bool ExchangeRecorder::write_line(const char* line, std::size_t size) {
-  errno = ENOSPC;  // what a short write means
-  const ssize_t done = write(fd_, line, size);
-  if (done == static_cast<ssize_t>(size)) {
-    bytes_ += done;
-    return true;
-  }
-  const int cause = errno;
-  if (done > 0) static_cast<void>(ftruncate(fd_, bytes_));
-  errno = cause;
-  return false;
+bool ExchangeRecorder::write_line(std::string_view line) {
+  if (!append_whole(fd_, line)) return false;
+  bytes_ += static_cast<std::int64_t>(line.size());
+  return true;
 }
 
 void ExchangeRecorder::stop_writing(const char* why) {
@@ -154,7 +145,7 @@ bool ExchangeRecorder::write_end() {
   line.add("{\"end\":\"%s\",\"exchanges\":%" PRId64 ",\"dropped\":%" PRId64 "}\n",
            utc_text(clock_.now_utc_ns() / kNanosecondsPerSecond).c_str(), written_.load(),
            dropped_.load());
-  return write_line(text, line.view().size());
+  return write_line(line.view());
 }
 
 bool ExchangeRecorder::finish(FileMessage& error) {

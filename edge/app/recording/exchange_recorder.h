@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "edge/app/recording/recording_mask.h"
 #include "edge/core/memory/plain_thread.h"
@@ -52,7 +53,7 @@ class ExchangeRecorder {
   void push(BusExchange exchange);
   void run();
   void keep(BusExchange& exchange);
-  bool write_line(const char* line, std::size_t size);
+  bool write_line(std::string_view line);
   void stop_writing(const char* why);
   bool write_end();
 

@@ -9,12 +9,12 @@
 #include "edge/core/control/quarter_hour_energy.h"
 #include "edge/prices/fetch/fetch.h"
 #include "edge/prices/record/transport_security.h"
-#include "edge/records/account/day_account.h"
 #include "edge/records/account/settled_prices.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
+#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -83,10 +83,6 @@ bool parse_row(JsonValue row, SettledQuarter& quarter) {
   return true;
 }
 
-std::int64_t midnight_before(std::int64_t now_utc_s) {
-  return DayAccount(local_day_at(now_utc_s)).start_utc_s();
-}
-
 std::string keep(const SettledSource& source, const SettledPrices& prices) {
   const bool is_kept = make_folder(folder_of(source.file.c_str()).c_str()) &&
                        replace_file_durably(source.file.c_str(), prices.text());
@@ -144,9 +140,7 @@ void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole, double wait_s
   pause_s_ = is_whole ? 0 : std::clamp(2 * pause_s_, kFirstPauseS, kLongestPauseS);
   // After the next midnight, when another day may be available; not at the peak load of midnight.
   constexpr std::int64_t kBehindMidnightS = 2 * 3'600;
-  const std::int64_t tomorrow_utc_s =
-      midnight_before(midnight_before(now_utc_s) + kSecondsPerDay + kSecondsPerDay / 4) +
-      kBehindMidnightS;
+  const std::int64_t tomorrow_utc_s = local_midnight_utc_s(now_utc_s, 1) + kBehindMidnightS;
   last_utc_s_ = now_utc_s;
   next_utc_s_ =
       is_whole ? tomorrow_utc_s : now_utc_s + std::max(pause_s_, static_cast<std::int64_t>(wait_s));
@@ -158,7 +152,7 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   SettledPrices prices;
   const std::string loss = prices.read(source.file);
   if (!loss.empty()) say(JournalLevel::kWarning, loss);
-  const std::int64_t until_utc_s = midnight_before(now_utc_s);
+  const std::int64_t until_utc_s = local_midnight_utc_s(now_utc_s);
   const std::int64_t oldest_utc_s = until_utc_s - source.days * kSecondsPerDay;
   const std::string url = settled_url(source, prices.first_open(oldest_utc_s), until_utc_s);
   HttpSettings http;

@@ -88,9 +88,8 @@ bool replace(const char* path, std::string_view text, Durability durability) {
   }
   const int fd = make_afresh(new_path);
   if (fd < 0) return false;
-  errno = ENOSPC;  // what a short write means
-  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-                       (durability == Durability::kOrdinary || fsync(fd) == 0);
+  const bool written =
+      append_whole(fd, text) && (durability == Durability::kOrdinary || fsync(fd) == 0);
   const int write_errno = errno;
   close(fd);
   if (written && rename(new_path, path) == 0) return true;
@@ -101,6 +100,17 @@ bool replace(const char* path, std::string_view text, Durability durability) {
 }
 
 }  // namespace
+
+bool append_whole(int fd, std::string_view text) {
+  errno = ENOSPC;  // what a short write means
+  const ssize_t done = write(fd, text.data(), text.size());
+  if (done == static_cast<ssize_t>(text.size())) return true;
+  const int cause = errno;
+  struct stat info {};
+  if (done > 0 && fstat(fd, &info) == 0) static_cast<void>(!ftruncate(fd, info.st_size - done));
+  errno = cause;
+  return false;
+}
 
 bool has_trusted_owner(uid_t owner, const char* path) {
   if (owner == 0 || owner == geteuid()) return true;

@@ -49,6 +49,9 @@ bool replace_or_remove_file(const char* path, std::string_view text);
 /// As `replace_file`, synced to disk: for data that must survive a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
+/// Appends all of `text` or nothing: half a line would spoil the next one. False with errno set.
+bool append_whole(int fd, std::string_view text);
+
 /// Trusted owner check: root, the user of this process, or the owner of the folder of `path`.
 bool has_trusted_owner(uid_t owner, const char* path);
 

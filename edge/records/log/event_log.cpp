@@ -116,15 +116,7 @@ bool append_line(int fd, const char* text, std::size_t size) {
   char line[kLogLineBytes + 1];
   std::memcpy(line, text, size);
   line[size] = '\n';
-  errno = ENOSPC;  // what a short write means
-  const ssize_t done = ::write(fd, line, size + 1);
-  if (done == static_cast<ssize_t>(size + 1)) return true;
-  const int cause = errno;
-  struct stat info {};
-  // Half a line would spoil the next one.
-  if (done > 0 && fstat(fd, &info) == 0) static_cast<void>(!ftruncate(fd, info.st_size - done));
-  errno = cause;
-  return false;
+  return append_whole(fd, {line, size + 1});
 }
 
 bool is_unusual(const PriceReport& price) {

@@ -15,8 +15,7 @@ namespace bess {
 
 /// Noon of the previous local day, also where the clock changed.
 inline std::int64_t yesterday_utc_s(std::int64_t now_utc_s) {
-  const LocalMinute today = local_minute_of(now_utc_s);
-  return utc_from_local({today.year, today.month, today.day, 0, 0, 0}) - kSecondsPerDay / 2;
+  return local_midnight_utc_s(now_utc_s) - kSecondsPerDay / 2;
 }
 
 /// False for any other text.

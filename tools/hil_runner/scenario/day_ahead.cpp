@@ -55,10 +55,9 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
 std::string day_ahead_csv(const Scenario& scenario) {
   if (!scenario.day_ahead_file.empty()) return read_file(scenario.day_ahead_file);
   std::string csv = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
-  const LocalMinute first = local_minute_of(scenario.start_utc_s - kSecondsPerDay);
   const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kSecondsPerDay;
-  for (std::int64_t t = utc_from_local({first.year, first.month, first.day, 0, 0, 0});
-       t < end_utc_s; t += kSecondsPerQuarterHour) {
+  for (std::int64_t t = local_midnight_utc_s(scenario.start_utc_s, -1); t < end_utc_s;
+       t += kSecondsPerQuarterHour) {
     csv += fmt::format("{},{:.2f},15,\n", utc_text(t).view(), made_up_day_ahead(t));
   }
   return csv;

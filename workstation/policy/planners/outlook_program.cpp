@@ -31,13 +31,6 @@ void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days
   }
 }
 
-/// Local midnight `days_later` days after that of the instant's day.
-std::int64_t midnight_utc_s(std::int64_t utc_s, int days_later) {
-  const LocalMinute local = local_minute_of(utc_s);
-  const std::int64_t day_s = utc_from_civil({local.year, local.month, local.day, 0, 0, 0});
-  return utc_from_local(civil_from_utc(day_s + std::int64_t{days_later} * kSecondsPerDay));
-}
-
 int quarter_hour_of(std::int64_t utc_s) { return local_minute_of(utc_s).quarter_hour; }
 
 std::int64_t quarter_hour_start(std::int64_t utc_s) {
@@ -290,8 +283,8 @@ void OutlookProgram::solve_usual_days() {
 /// if none is known.
 double OutlookProgram::height_before(const MarketStep& step) const {
   for (const int later : {1, 0, -1}) {
-    const std::int64_t from = midnight_utc_s(step.utc_s, later);
-    const std::int64_t until = midnight_utc_s(step.utc_s, later + 1);
+    const std::int64_t from = local_midnight_utc_s(step.utc_s, later);
+    const std::int64_t until = local_midnight_utc_s(step.utc_s, later + 1);
     double sum = 0, count = 0;
     for (std::int64_t utc_s = from; utc_s < until; utc_s += kSecondsPerQuarterHour) {
       const double known = step.day_ahead_eur_per_mwh(utc_s);
@@ -305,10 +298,10 @@ double OutlookProgram::height_before(const MarketStep& step) const {
 }
 
 OutlookProgram::Plan OutlookProgram::plan_of(const MarketStep& step) const {
-  const std::int64_t tomorrow_utc_s = midnight_utc_s(step.utc_s, 1);
+  const std::int64_t tomorrow_utc_s = local_midnight_utc_s(step.utc_s, 1);
   Plan plan;
   plan.from_utc_s = step.utc_s;
-  plan.end_utc_s = midnight_utc_s(step.utc_s, 2);
+  plan.end_utc_s = local_midnight_utc_s(step.utc_s, 2);
   plan.first_quarter_hour_utc_s = quarter_hour_start(row_utc_s(step));
   plan.until_utc_s = tomorrow_utc_s;
   if (step.day_ahead != nullptr) {
