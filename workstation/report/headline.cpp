@@ -189,6 +189,20 @@ std::string headline_text(const Headline& headline) {
       headline_accounting(headline));
 }
 
+std::string gains_text(const Headline& headline) {
+  std::string text =
+      "Gain over each policy without wear cost, EUR per day per MWh of capacity; significant if "
+      "the 95 % interval "
+      "excludes 0:\n";
+  for (const HeadlineGain& gain : headline.gains) {
+    if (gain.against == kForesightName) continue;
+    const PairedDifference& d = gain.difference.front();
+    text += fmt::format("  {:<22} {}, {}\n", gain.against, difference_text(d),
+                        is_shown(d) ? "significant" : "not significant");
+  }
+  return text;
+}
+
 Json headline_json(const Headline& headline) {
   Json json = Json::object({{"policy", headline.student},
                             {key::kCarrySoc, true},

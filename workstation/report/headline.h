@@ -63,6 +63,9 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
 /// Outside the 95 % interval; never for one day.
 bool is_shown(const PairedDifference& difference);
 
+/// Gain over each baseline and the plain student with its verdict, one line each.
+std::string gains_text(const Headline& headline);
+
 /// "+5.2 ± 1.1 (1.4 by month)", with a true minus; unknown errors are left out.
 std::string difference_text(const PairedDifference& difference);
 

@@ -259,7 +259,11 @@ int run_check(const EdgeConfig& config, const std::string& path) {
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   const bool is_well = report_check(config, battery, path, session.clock());
-  return report_site(config, battery, meter) && is_well ? 0 : 1;
+  const bool is_accepted = report_site(config, battery, meter) && is_well;
+  std::printf("result     %s\n", is_accepted
+                                     ? "accepted: no error found"
+                                     : "refused: correct the errors above, then check again");
+  return is_accepted ? 0 : 1;
 }
 
 }  // namespace bess

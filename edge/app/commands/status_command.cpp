@@ -12,6 +12,7 @@
 #include "edge/app/storage/published_status.h"
 #include "edge/app/storage/storage_health.h"
 #include "edge/core/control/tick.h"
+#include "edge/core/site/connection_guard.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/health.h"
 #include "edge/records/log/journal.h"
@@ -80,7 +81,8 @@ void print_outlook(const CycleRecord& last) {
   const OutlookReport& outlook = last.outlook;
   if (outlook.source == OutlookSource::kNone) return;
   std::printf(
-      "outlook    %s, break-even %.2f EUR/MWh, class %d of %d; day-ahead prices of the "
+      "outlook    %s, break-even %.2f EUR/MWh, class %d of %d (1 = lowest); day-ahead prices of "
+      "the "
       "next %.1f h, last answer %s\n",
       outlook_source_name(outlook.source).data(), eur_of(outlook.break_even_centi),
       last.context_class, kContextClassCount, outlook.known_quarter_hours / 4.0,
@@ -99,7 +101,7 @@ void print_level(const RunIdentity& identity, const CycleRecord& last) {
   if (last.context_class == 0) {
     std::printf("no student decision\n");
   } else {
-    std::printf("class %d of %d\n", last.context_class, kContextClassCount);
+    std::printf("class %d of %d (1 = lowest)\n", last.context_class, kContextClassCount);
   }
 }
 
@@ -123,6 +125,20 @@ void print_new_hold(const EdgeConfig& config, const CycleRecord& last) {
   if (is_followed || hold.until_utc_s <= last.utc_s) return;
   std::printf("hold       %d W until %s, from the next control cycle\n", hold.power_w,
               local_of(hold.until_utc_s).c_str());
+}
+
+/// Limit of another program that is in force now; a lapsed or malformed one is an alert.
+void print_limit(const EdgeConfig& config) {
+  if (!config.site.settings.has_outside_limits) return;
+  OutsideLimit limit;
+  bool is_set = false;
+  LimitFile(config.site.limit_file.c_str()).read(limit, is_set);
+  if (!is_set || limit.until_utc_s <= config.clock.now_utc_ns() / kNanosecondsPerSecond) return;
+  const auto power = [](std::int32_t power_w) {
+    return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w) + " W";
+  };
+  std::printf("limit      charge %s, discharge %s until %s\n", power(limit.charge_w_max).c_str(),
+              power(limit.discharge_w_max).c_str(), local_of(limit.until_utc_s).c_str());
 }
 
 /// Prints nothing without a meter.
@@ -163,8 +179,8 @@ void print_last_cycle(const RunStatus& status, bool is_running) {
   print_level(status.identity, last);
   print_outlook(last);
   print_site(last);
-  std::printf("order      %d W, reason %s\n", last.ordered_power_w,
-              reason_name(last.reason).data());
+  std::printf("order      %d W, reason %s: %s\n", last.ordered_power_w,
+              reason_name(last.reason).data(), info_of(last.reason).meaning);
   print_operator_orders(last);
 }
 
@@ -267,6 +283,7 @@ void print_run(const EdgeConfig& config, const RunStatus& status, bool is_runnin
               id.map.c_str(), id.variant.empty() ? "" : ", variant ", id.variant.c_str());
   if (status.totals.cycles > 0) print_last_cycle(status, is_running);
   if (is_running) print_new_hold(config, status.totals.last);
+  if (is_running) print_limit(config);
   if (is_running) print_next(config);
   print_counters(status.totals);
 }

@@ -25,6 +25,21 @@ void find_beginning(const LogReader& log, std::uint64_t number, Explanation& exp
   }
 }
 
+/// The last control cycles with a reading, up to the one that tripped.
+void find_evidence(const LogReader& log, Explanation& explanation) {
+  constexpr std::uint64_t kCycles = 4;
+  const std::uint64_t last = number_at(log, explanation.record.trip.utc_s);
+  CycleRecord before;
+  CycleRecord record;
+  for (std::uint64_t n = last > kCycles ? last - kCycles + 1 : 1; n <= last; ++n) {
+    if (!log.read(n, record) || !record.has_measurement) continue;
+    const bool has_order = n > 1 && log.read(n - 1, before);
+    explanation.evidence.push_back({.utc_s = record.utc_s,
+                                    .ordered_power_w = has_order ? before.ordered_power_w : 0,
+                                    .measurement = record.measurement});
+  }
+}
+
 /// Input of the student.
 LatticeState state_of(const CycleRecord& record) {
   return make_lattice_state(local_minute_of(record.utc_s), record.context_class,
@@ -42,6 +57,7 @@ bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& 
   explanation.has_margins = margins_of(record, thresholds, explanation.margins);
   explanation.is_other_student =
       explanation.has_margins && decide_with_student(state_of(record)) != record.student_action;
+  if (record.is_tripped) find_evidence(log, explanation);
   return true;
 }
 

@@ -88,7 +88,7 @@ void add_soc(const Explanation& explanation, std::string& text) {
 
 void add_level(const CycleRecord& record, std::string& text) {
   if (record.context_class == 0 || student_context().kind != ContextKind::kLevel) return;
-  add_formatted(text, "level      %.2f EUR/MWh, class %d of %d\n",
+  add_formatted(text, "level      %.2f EUR/MWh, class %d of %d (1 = lowest)\n",
                 eur_of(record.price_level.centi_eur_per_mwh()), record.context_class,
                 kContextClassCount);
 }
@@ -112,7 +112,7 @@ void add_outlook(const CycleRecord& record, std::string& text) {
   } else {
     text += " with typical prices of this hour and level: no day-ahead price is published";
   }
-  add_formatted(text, "; class %d of %d\n", record.context_class, kContextClassCount);
+  add_formatted(text, "; class %d of %d (1 = lowest)\n", record.context_class, kContextClassCount);
 }
 
 void add_limits(const CycleRecord& record, const ControlSettings& settings, std::string& text) {
@@ -133,6 +133,27 @@ void add_limits(const CycleRecord& record, const ControlSettings& settings, std:
                   settings.reversals_per_hour_max);
   }
   text += '\n';
+}
+
+void add_evidence(const Explanation& explanation, std::string& text) {
+  const char* head = "evidence";
+  for (const TripEvidence& cycle : explanation.evidence) {
+    add_formatted(text, "%-10s %s: ordered %d W, measured %d W, SoC %.2f %%\n", head,
+                  local_text(cycle.utc_s).c_str(), cycle.ordered_power_w, cycle.measurement.power_w,
+                  percent(cycle.measurement.soc_e4));
+    head = "";
+  }
+}
+
+Json evidence_json(const Explanation& explanation) {
+  Json list = Json::list();
+  for (const TripEvidence& cycle : explanation.evidence) {
+    list.add(Json::object({{"utc", utc_text(cycle.utc_s).view()},
+                           {"ordered_power_w", cycle.ordered_power_w},
+                           {"measured_power_w", cycle.measurement.power_w},
+                           {"soc_percent", Decimals{percent(cycle.measurement.soc_e4), 2}}}));
+  }
+  return list;
 }
 
 Json outlook_json(const OutlookReport& outlook) {
@@ -178,6 +199,7 @@ std::string explanation_text(const Explanation& explanation, const ControlSettin
   std::string text;
   add_head(record, text);
   add_reason(explanation, what_ends(record, settings), text);
+  add_evidence(explanation, text);
   add_price(explanation, text);
   add_soc(explanation, text);
   add_level(record, text);
@@ -223,6 +245,7 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
   json.set("outlook", outlook_json(record.outlook));
   json.set("margins", explanation.has_margins ? margins_json(explanation.margins) : Json::null());
   json.set("is_other_student", explanation.is_other_student);
+  json.set("evidence", evidence_json(explanation));
   json.set(
       "thresholds",
       Json::object({{"charge_at_or_below_eur_per_mwh", guard.thresholds.low_eur_per_mwh},

@@ -467,7 +467,7 @@ std::vector<std::string> write_run_report(const RunResults& run,
   std::string summary = certificate.violations() == 0 ? "" : proof_sentence(certificate) + "\n\n";
   if (const auto headline = headline_of(evaluations)) {
     summary += headline_text(*headline) + judged_days_text(judged_days(run.market, Split::kTest)) +
-               "\n" + walk_forward_text(run.walk_forward) + "\n\n";
+               "\n" + walk_forward_text(run.walk_forward) + "\n\n" + gains_text(*headline) + "\n";
   }
   summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
              whole_battery_text(evaluations) + cycles_text(run.corrected) +
