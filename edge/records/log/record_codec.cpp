@@ -19,16 +19,6 @@ consteval std::size_t used_bytes() {
 }
 static_assert(used_bytes() <= kCrcOffset, "the record on disk is full");
 
-void put(std::uint64_t bits, std::size_t count, std::uint8_t* bytes) {
-  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(bits >> (8 * i));
-}
-
-std::uint64_t take(std::size_t count, const std::uint8_t* bytes) {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{bytes[i]} << (8 * i);
-  return bits;
-}
-
 /// CRC of all preceding bytes.
 std::uint32_t crc_of(std::span<const std::uint8_t> record) {
   Crc32 crc;
@@ -38,19 +28,29 @@ std::uint32_t crc_of(std::span<const std::uint8_t> record) {
 
 }  // namespace
 
+void put_bytes(std::uint64_t bits, std::size_t count, std::uint8_t* bytes) {
+  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(bits >> (8 * i));
+}
+
+std::uint64_t take_bytes(std::size_t count, const std::uint8_t* bytes) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{bytes[i]} << (8 * i);
+  return bits;
+}
+
 void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordBytes& bytes) {
   bytes.fill(0);
-  put(sequence, kNumberBytes, bytes.data());
+  put_bytes(sequence, kNumberBytes, bytes.data());
   std::uint8_t* end = bytes.data() + kNumberBytes;
   for (const auto& field : kRecordFields) {
-    put(static_cast<std::uint64_t>(field.access.read(record)), field.access.bytes, end);
+    put_bytes(static_cast<std::uint64_t>(field.access.read(record)), field.access.bytes, end);
     end += field.access.bytes;
   }
-  put(crc_of(bytes), kCrcBytes, bytes.data() + kCrcOffset);
+  put_bytes(crc_of(bytes), kCrcBytes, bytes.data() + kCrcOffset);
 }
 
 bool is_intact(std::span<const std::uint8_t> stored) {
-  return take(kCrcBytes, stored.data() + stored.size() - kCrcBytes) == crc_of(stored);
+  return take_bytes(kCrcBytes, stored.data() + stored.size() - kCrcBytes) == crc_of(stored);
 }
 
 bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
@@ -60,11 +60,11 @@ bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
   RecordBytes bytes{};  // fields beyond the end of an older record read as zero
   std::copy_n(stored.begin(), crc_offset, bytes.begin());
   record = CycleRecord{};
-  sequence = take(kNumberBytes, bytes.data());
+  sequence = take_bytes(kNumberBytes, bytes.data());
   bool all_known = true;
   const std::uint8_t* begin = bytes.data() + kNumberBytes;
   for (const auto& field : kRecordFields) {
-    const auto value = static_cast<std::int64_t>(take(field.access.bytes, begin));
+    const auto value = static_cast<std::int64_t>(take_bytes(field.access.bytes, begin));
     all_known = field.access.set(record, value) && all_known;
     begin += field.access.bytes;
   }

@@ -18,6 +18,10 @@ inline constexpr std::size_t kRecordBytes = 512;
 inline constexpr std::size_t kOlderRecordBytes = 256;
 using RecordBytes = std::array<std::uint8_t, kRecordBytes>;
 
+/// A little-endian integer of `count` bytes.
+void put_bytes(std::uint64_t bits, std::size_t count, std::uint8_t* bytes);
+std::uint64_t take_bytes(std::size_t count, const std::uint8_t* bytes);
+
 void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordBytes& bytes);
 
 /// Whether the CRC is correct; false for a slot that was never written.

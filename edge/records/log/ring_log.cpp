@@ -48,25 +48,15 @@ constexpr char kMagic[8] = {'B', 'E', 'S', 'S', 'R', 'I', 'N', 'G'};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderUsedBytes = 28;  // magic, version, record bytes, capacity, CRC
 
-void put(std::uint8_t* bytes, std::uint64_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-}
-
-std::uint64_t take(const std::uint8_t* bytes, int count) {
-  std::uint64_t value = 0;
-  for (int i = 0; i < count; ++i) value |= std::uint64_t{bytes[i]} << (8 * i);
-  return value;
-}
-
 void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_bytes,
                  std::int64_t capacity) {
   std::memcpy(header, kMagic, sizeof kMagic);
-  put(header + 8, kVersion, 4);
-  put(header + 12, record_bytes, 4);
-  put(header + 16, static_cast<std::uint64_t>(capacity), 8);
+  put_bytes(kVersion, 4, header + 8);
+  put_bytes(record_bytes, 4, header + 12);
+  put_bytes(static_cast<std::uint64_t>(capacity), 8, header + 16);
   Crc32 crc;
   crc.add_bytes(header, 24);
-  put(header + 24, crc.value(), 4);
+  put_bytes(crc.value(), 4, header + 24);
 }
 
 /// Neither intact (possibly of a later version) nor never written.
@@ -219,8 +209,9 @@ bool RingLog::read_header(std::int64_t offset) {
   if (pread(fd_, header, sizeof header, offset) != static_cast<ssize_t>(sizeof header)) {
     return false;
   }
-  const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
-  record_bytes_ = take(header + 12, 4) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
+  const auto capacity = static_cast<std::int64_t>(take_bytes(8, header + 16));
+  record_bytes_ =
+      take_bytes(4, header + 12) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
   std::uint8_t expected[kHeaderUsedBytes];
   fill_header(expected, record_bytes_, capacity);
   const std::int64_t most = (INT64_MAX - kHeaderBytes) / static_cast<std::int64_t>(kRecordBytes);
@@ -308,7 +299,7 @@ bool RingLog::find_newest_by_number() {
                                 kHeaderBytes + slot * record_bytes);
     if (bytes != count * record_bytes) return false;
     for (std::int64_t i = 0; i < count; ++i, ++slot) {
-      const std::uint64_t number = take(chunk + i * record_bytes, 8);
+      const std::uint64_t number = take_bytes(8, chunk + i * record_bytes);
       const bool is_in_place =
           number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
       if (is_in_place && number > newest) newest = number;
