@@ -273,9 +273,7 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
   if (!append_to_ring(record, number)) ++totals_.disk_failures;
-  report_hold(record);
-  report_readings(record);
-  report_meter(record);
+  report_changes(record);
   write_journal_line(level_of(record), {line, size});
   report_trip(record);
   if (!append_to_csv(record)) ++totals_.disk_failures;
@@ -405,39 +403,24 @@ void EventLog::report_disk(bool is_failing, const CycleRecord* record) {
   write_journal_line(JournalLevel::kWarning, line.view());
 }
 
-void EventLog::report_hold(const CycleRecord& record) {
-  char text[256];
-  TextBuffer line(text);
-  if (!hold_lines_.add_line(record, identity_.control, line)) return;
-  write_journal_line(record.hold.unreadable ? JournalLevel::kWarning : JournalLevel::kNotice,
-                     line.view());
-}
-
-void EventLog::report_readings(const CycleRecord& record) {
-  char text[256];
-  TextBuffer lost(text);
-  if (reading_lines_.add_lost_line(record, identity_, lost)) {
-    const bool is_trouble = record.measurement.lost_point != 0;
-    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, lost.view());
-  }
-  TextBuffer cut(text);
-  if (reading_lines_.add_cut_line(record, identity_, cut)) {
-    write_journal_line(JournalLevel::kWarning, cut.view());
-  }
-}
-
-void EventLog::report_meter(const CycleRecord& record) {
-  char text[320];
-  TextBuffer trust(text);
-  if (meter_lines_.add_trust_line(record, trust)) {
-    const bool is_trouble = record.site.trust.is_mismatch;
-    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, trust.view());
-  }
-  TextBuffer house(text);
-  if (meter_lines_.add_house_line(record, house)) {
-    const bool is_trouble = record.site.house_is_implausible;
-    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, house.view());
-  }
+/// Of hold, readings and meter.
+void EventLog::report_changes(const CycleRecord& record) {
+  const auto report = [](bool is_trouble, const auto& add_line) {
+    char text[320];
+    TextBuffer line(text);
+    if (!add_line(line)) return;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, line.view());
+  };
+  report(record.hold.unreadable,
+         [&](TextBuffer& line) { return hold_lines_.add_line(record, identity_.control, line); });
+  report(record.measurement.lost_point != 0,
+         [&](TextBuffer& line) { return reading_lines_.add_lost_line(record, identity_, line); });
+  report(true,
+         [&](TextBuffer& line) { return reading_lines_.add_cut_line(record, identity_, line); });
+  report(record.site.trust.is_mismatch,
+         [&](TextBuffer& line) { return meter_lines_.add_trust_line(record, line); });
+  report(record.site.house_is_implausible,
+         [&](TextBuffer& line) { return meter_lines_.add_house_line(record, line); });
 }
 
 void EventLog::report_run_folder() {

@@ -126,9 +126,7 @@ class EventLog {
   void report_disk(bool is_failing, const CycleRecord* record);
   void add_present_state(const CycleRecord* record, TextBuffer& line) const;
   void report_run_folder();
-  void report_hold(const CycleRecord& record);
-  void report_readings(const CycleRecord& record);
-  void report_meter(const CycleRecord& record);
+  void report_changes(const CycleRecord& record);
 
   EventLogSettings settings_;
   StoredStatus stored_;
