@@ -38,15 +38,21 @@ void PriceReader::request(std::int64_t minute_utc_s, std::int64_t, std::int64_t)
   wanted_minute_utc_s_ = minute_utc_s;
 }
 
-bool PriceReader::wait(std::int64_t until_monotonic_ns) {
+template <typename IsThere>
+bool PriceReader::await_until(std::int64_t until_monotonic_ns, const IsThere& is_there) {
   while (true) {
     read();
-    const bool is_served = published_.served_minute_utc_s >= wanted_minute_utc_s_ ||
-                           published_.row.minute_utc_s >= wanted_minute_utc_s_;
-    if (reading_ == Status::kOk && is_served) return true;
+    if (reading_ == Status::kOk && is_there()) return true;
     if (clock_ns(CLOCK_MONOTONIC) >= until_monotonic_ns) return false;
     await_change(until_monotonic_ns);
   }
+}
+
+bool PriceReader::wait(std::int64_t until_monotonic_ns) {
+  return await_until(until_monotonic_ns, [this] {
+    return published_.served_minute_utc_s >= wanted_minute_utc_s_ ||
+           published_.row.minute_utc_s >= wanted_minute_utc_s_;
+  });
 }
 
 PriceReport PriceReader::latest() {
@@ -64,13 +70,7 @@ PriceReport PriceReader::latest() {
 
 template <typename IsThere>
 bool PriceReader::await(std::int64_t patience_ns, const IsThere& is_there) {
-  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + patience_ns;
-  while (true) {
-    read();
-    if (reading_ == Status::kOk && is_there()) return true;
-    if (clock_ns(CLOCK_MONOTONIC) >= until_ns) return false;
-    await_change(until_ns);
-  }
+  return await_until(clock_ns(CLOCK_MONOTONIC) + patience_ns, is_there);
 }
 
 Status PriceReader::first_answer(std::int64_t patience_ns) {

@@ -45,6 +45,8 @@ class PriceReader {
   [[nodiscard]] Status refusal_of(const PublishedPrices& published) const;
   void await_change(std::int64_t until_monotonic_ns);
   template <typename IsThere>
+  bool await_until(std::int64_t until_monotonic_ns, const IsThere& is_there);
+  template <typename IsThere>
   bool await(std::int64_t patience_ns, const IsThere& is_there);
 
   const Settings settings_;
