@@ -6,6 +6,7 @@
 
 #include "edge/core/control/reasons.h"
 #include "edge/core/control/tick.h"
+#include "edge/core/supervision/energy_balance.h"
 #include "edge/records/log/alerts.h"
 #include "edge/records/log/log_text.h"
 #include "shared/local_text.h"
@@ -20,8 +21,6 @@ constexpr std::int64_t kWeakAnswersMax = 1;
 /// An hour: a battery that is too cold or too warm may be idle that long.
 constexpr std::int64_t kLockedReadingsMax = 30;
 constexpr std::int64_t kUnplannedSMax = kSecondsPerDay;
-/// A quarter of the trip level (../core/supervision/energy_balance.h).
-constexpr std::int64_t kWrongEnergyE6Max = 50'000;
 
 using Alerts = std::vector<HealthAlert>;
 
@@ -92,7 +91,7 @@ void check_findings(const CycleRecord& last, Alerts& alerts) {
          "the SoC change is about " + std::to_string(found.energy_share_percent) +
              " % of the measured energy");
   }
-  if (found.wrong_energy_e6 >= kWrongEnergyE6Max) {
+  if (found.wrong_energy_e6 >= WrongEnergy::kReportedE6) {
     warn(alerts, Alert::kSetPointIgnored,
          "the battery sometimes does not follow its set point: " +
              std::to_string(found.wrong_energy_e6 / 10'000) +

@@ -41,9 +41,9 @@ void find_price_margins(const LatticeState& state, const PriceThresholds& thresh
 
 void find_soc_margins(const LatticeState& state, std::int32_t price_centi,
                       const PriceThresholds& thresholds, Policy policy, Margins& margins) {
+  const Action of_price = thresholds.action_beyond(price_centi);
   const auto action_at = [&](int soc_index) {
-    if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
-    if (price_centi >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
+    if (of_price != Action::kIdle) return of_price;
     LatticeState at = state;
     at.soc_index = static_cast<std::int16_t>(soc_index);
     return policy(at);

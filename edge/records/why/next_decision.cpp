@@ -16,9 +16,8 @@ namespace {
 
 Action decide_at(const LatticeState& state, std::int32_t price_centi,
                  const PriceThresholds& thresholds) {
-  if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
-  if (price_centi >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
-  return decide_with_student(state);
+  const Action of_price = thresholds.action_beyond(price_centi);
+  return of_price == Action::kIdle ? decide_with_student(state) : of_price;
 }
 
 /// State at the next tick, at constant price and SoC.
