@@ -39,7 +39,7 @@ void PriceReader::request(std::int64_t minute_utc_s, std::int64_t, std::int64_t)
 }
 
 template <typename IsThere>
-bool PriceReader::await_until(std::int64_t until_monotonic_ns, const IsThere& is_there) {
+bool PriceReader::await(std::int64_t until_monotonic_ns, const IsThere& is_there) {
   while (true) {
     read();
     if (reading_ == Status::kOk && is_there()) return true;
@@ -49,7 +49,7 @@ bool PriceReader::await_until(std::int64_t until_monotonic_ns, const IsThere& is
 }
 
 bool PriceReader::wait(std::int64_t until_monotonic_ns) {
-  return await_until(until_monotonic_ns, [this] {
+  return await(until_monotonic_ns, [this] {
     return published_.served_minute_utc_s >= wanted_minute_utc_s_ ||
            published_.row.minute_utc_s >= wanted_minute_utc_s_;
   });
@@ -68,25 +68,23 @@ PriceReport PriceReader::latest() {
   return report;
 }
 
-template <typename IsThere>
-bool PriceReader::await(std::int64_t patience_ns, const IsThere& is_there) {
-  return await_until(clock_ns(CLOCK_MONOTONIC) + patience_ns, is_there);
-}
-
 Status PriceReader::first_answer(std::int64_t patience_ns) {
-  const bool is_there = await(patience_ns, [&] { return published_.answers > 0; });
+  const bool is_there =
+      await(clock_ns(CLOCK_MONOTONIC) + patience_ns, [&] { return published_.answers > 0; });
   return is_there ? refusal_of(published_) : latest().status;
 }
 
 PublishedHistory PriceReader::await_history(std::int64_t patience_ns) {
-  const bool is_there = await(patience_ns, [&] { return published_.history.is_done; });
+  const bool is_there =
+      await(clock_ns(CLOCK_MONOTONIC) + patience_ns, [&] { return published_.history.is_done; });
   if (is_there) return published_.history;
   return {.status = reading_ == Status::kOk ? Status::kTimeout : reading_};
 }
 
 OutlookExchange* PriceReader::await_outlook(std::int64_t patience_ns) {
   if (settings_.model == nullptr) return nullptr;
-  static_cast<void>(await(patience_ns, [&] { return taken_outlook_ > 0; }));
+  static_cast<void>(
+      await(clock_ns(CLOCK_MONOTONIC) + patience_ns, [&] { return taken_outlook_ > 0; }));
   return &exchange_;
 }
 

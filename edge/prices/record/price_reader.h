@@ -45,9 +45,7 @@ class PriceReader {
   [[nodiscard]] Status refusal_of(const PublishedPrices& published) const;
   void await_change(std::int64_t until_monotonic_ns);
   template <typename IsThere>
-  bool await_until(std::int64_t until_monotonic_ns, const IsThere& is_there);
-  template <typename IsThere>
-  bool await(std::int64_t patience_ns, const IsThere& is_there);
+  bool await(std::int64_t until_monotonic_ns, const IsThere& is_there);
 
   const Settings settings_;
   const ScaledClock clock_;

@@ -405,22 +405,24 @@ void EventLog::report_disk(bool is_failing, const CycleRecord* record) {
 
 /// Of hold, readings and meter.
 void EventLog::report_changes(const CycleRecord& record) {
-  const auto report = [](bool is_trouble, const auto& add_line) {
+  const auto report_one = [](bool is_trouble, const auto& add_line) {
     char text[320];
     TextBuffer line(text);
     if (!add_line(line)) return;
     write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, line.view());
   };
-  report(record.hold.unreadable,
-         [&](TextBuffer& line) { return hold_lines_.add_line(record, identity_.control, line); });
-  report(record.measurement.lost_point != 0,
-         [&](TextBuffer& line) { return reading_lines_.add_lost_line(record, identity_, line); });
-  report(true,
-         [&](TextBuffer& line) { return reading_lines_.add_cut_line(record, identity_, line); });
-  report(record.site.trust.is_mismatch,
-         [&](TextBuffer& line) { return meter_lines_.add_trust_line(record, line); });
-  report(record.site.house_is_implausible,
-         [&](TextBuffer& line) { return meter_lines_.add_house_line(record, line); });
+  report_one(record.hold.unreadable, [&](TextBuffer& line) {
+    return hold_lines_.add_line(record, identity_.control, line);
+  });
+  report_one(record.measurement.lost_point != 0, [&](TextBuffer& line) {
+    return reading_lines_.add_lost_line(record, identity_, line);
+  });
+  report_one(
+      true, [&](TextBuffer& line) { return reading_lines_.add_cut_line(record, identity_, line); });
+  report_one(record.site.trust.is_mismatch,
+             [&](TextBuffer& line) { return meter_lines_.add_trust_line(record, line); });
+  report_one(record.site.house_is_implausible,
+             [&](TextBuffer& line) { return meter_lines_.add_house_line(record, line); });
 }
 
 void EventLog::report_run_folder() {
