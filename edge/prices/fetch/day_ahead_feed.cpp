@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 
 #include "edge/prices/fetch/fetch.h"
 #include "edge/records/log/atomic_file.h"
-#include "shared/local_time.h"
+#include "shared/host/text.h"
+#include "shared/training_period.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -19,12 +19,6 @@ constexpr std::size_t kUtcBytes = 20;
 constexpr std::size_t kLineBytesMax = 2 * kUtcBytes + 12;
 constexpr std::size_t kFileBytesMax =
     kHead.size() + DayAheadStore::kPricesMax * kLineBytesMax + sizeof "# crc32=01234567\n";
-
-/// Shared by reader and writer at different times: before the loop, and the fetching thread.
-char* file_text() {
-  static char text[kFileBytesMax];
-  return text;
-}
 
 /// False for a line in another format.
 bool parse_line(std::string_view line, KnownPrice& price) {
@@ -42,33 +36,28 @@ bool parse_line(std::string_view line, KnownPrice& price) {
 }  // namespace
 
 bool keep_day_ahead(const char* path, const DayAheadStore& store) {
-  char* const text = file_text();
-  std::size_t size = kHead.copy(text, kHead.size());
+  std::string text(kHead);
   for (const KnownPrice& price : store.prices()) {
     if (price.utc_s == 0 || price.is_assumed) continue;
-    size += static_cast<std::size_t>(std::snprintf(
-        text + size, kFileBytesMax - size, "%s %d %s\n", utc_text(price.utc_s).c_str(),
-        price.centi_eur_per_mwh, utc_text(price.received_utc_s).c_str()));
+    add_formatted(text, "%s %d %s\n", utc_text(price.utc_s).c_str(), price.centi_eur_per_mwh,
+                  utc_text(price.received_utc_s).c_str());
   }
-  const FixedText<31> end = checksum_end({text, size}, kCommentChecksum);
-  size += end.view().copy(text + size, kFileBytesMax - size);
-  return replace_file_durably(path, {text, size});
+  text += checksum_end(text, kCommentChecksum).view();
+  return replace_file_durably(path, text);
 }
 
 int restore_day_ahead(const char* path, DayAheadStore& store) {
-  char* const text = file_text();
-  const ssize_t size = read_beginning(path, {text, kFileBytesMax}, SymlinkPolicy::kRefused);
+  std::string text(kFileBytesMax, '\0');
+  const ssize_t size = read_beginning(path, text, SymlinkPolicy::kRefused);
   if (size <= 0) return 0;
-  std::string_view rest(text, static_cast<std::size_t>(size));
+  std::string_view rest(text.data(), static_cast<std::size_t>(size));
   if (!rest.starts_with(kHead) || check_text(rest, kCommentChecksum) != ChecksumState::kIntact)
     return 0;
   rest = without_checksum(rest, kCommentChecksum).substr(kHead.size());
   int prices = 0;
   while (!rest.empty()) {
-    const std::size_t end = rest.find('\n');
     KnownPrice price;
-    if (parse_line(rest.substr(0, end), price) && store.restore(price)) ++prices;
-    rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
+    if (parse_line(take_line(rest), price) && store.restore(price)) ++prices;
   }
   return prices;
 }
@@ -79,13 +68,6 @@ constexpr std::int64_t kShortestPauseS = 60;
 constexpr int kDoublingsMax = 5;  // up to half an hour
 constexpr std::int64_t kLongestPauseS = 1'800;
 constexpr std::int64_t kBeforePublicationS = 600;
-
-FixedText<10> date_text(std::int64_t midnight_utc_s) {
-  const LocalMinute day = local_minute_of(midnight_utc_s);
-  char text[48];
-  std::snprintf(text, sizeof text, "%04d-%02d-%02d", day.year, day.month, day.day);
-  return {static_cast<const char*>(text)};
-}
 
 }  // namespace
 
@@ -111,27 +93,11 @@ std::string_view day_ahead_status_text(Status status, const OutlookSettings& set
   return price_status_text(status);
 }
 
-DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days) {
-  constexpr std::string_view kToday = "{today}";
-  constexpr std::string_view kTomorrow = "{tomorrow}";
-  const FixedText<10> today = date_text(days.today_utc_s);
-  const FixedText<10> tomorrow = date_text(days.tomorrow_utc_s);
-  char text[640];
-  std::size_t size = 0;
-  const auto add = [&](std::string_view part) {
-    size += part.copy(text + size, sizeof text - size);
-  };
-  while (!url.empty()) {
-    const bool is_today = url.starts_with(kToday);
-    if (is_today || url.starts_with(kTomorrow)) {
-      add(is_today ? today.view() : tomorrow.view());
-      url.remove_prefix(is_today ? kToday.size() : kTomorrow.size());
-    } else {
-      add(url.substr(0, 1));
-      url.remove_prefix(1);
-    }
-  }
-  return {std::string_view(text, size)};
+std::string day_ahead_url(std::string_view url, const OutlookDays& days) {
+  std::string text(url);
+  replace_all(text, "{today}", local_date_text(days.today_utc_s).view());
+  replace_all(text, "{tomorrow}", local_date_text(days.tomorrow_utc_s).view());
+  return text;
 }
 
 DayAheadReply read_day_ahead(std::string_view answer, const PriceFields& fields) {
@@ -154,9 +120,8 @@ DayAheadReply read_day_ahead(std::string_view answer, const PriceFields& fields)
 DayAheadReply ask_day_ahead(const OutlookSettings& settings, std::int64_t now_utc_s,
                             const StopRequested& stop_requested) {
   if (settings.file.empty()) {
-    const DayAheadUrl url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
-    FetchResult fetched =
-        fetch(settings.http, url.c_str(), settings.http.timeout_ms, stop_requested);
+    const std::string url = day_ahead_url(settings.http.url.view(), outlook_days_around(now_utc_s));
+    FetchResult fetched = fetch(settings.http, url, settings.http.timeout_ms, stop_requested);
     if (fetched.status != Status::kOk) {
       return {
           .status = fetched.status, .reason = std::move(fetched.reason), .wait_s = fetched.wait_s};

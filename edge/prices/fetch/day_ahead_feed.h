@@ -32,8 +32,7 @@ int restore_day_ahead(const char* path, DayAheadStore& store);
 /// Meaning and remedy of a status of this feed.
 std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings);
 
-using DayAheadUrl = FixedText<639>;
-DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days);
+std::string day_ahead_url(std::string_view url, const OutlookDays& days);
 
 /// Result of a request; `days` only for kOk.
 struct DayAheadReply {

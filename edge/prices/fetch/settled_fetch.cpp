@@ -28,12 +28,6 @@ void say(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: settled prices: " + text);
 }
 
-void replace_all(std::string& text, std::string_view what, std::string_view by) {
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-}
-
 /// True for "Validated" in any case, not for "Not Validated", "NV", "DataIssue" and others.
 bool is_validated(std::string_view quality) {
   constexpr std::string_view kValidated = "validated";

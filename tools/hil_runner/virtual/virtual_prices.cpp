@@ -43,8 +43,7 @@ DayAheadReply VirtualOutlook::ask(std::int64_t now_utc_s) const {
   if (time_.market() == VirtualTime::Market::kDead) return {.status = Status::kNotConnected};
   const OutlookDays days = outlook_days_around(now_utc_s);
   const AuctionAnswer answer =
-      auction_.answer(std::string(day_ahead_url("{today}", days).view()),
-                      std::string(day_ahead_url("{tomorrow}", days).view()),
+      auction_.answer(day_ahead_url("{today}", days), day_ahead_url("{tomorrow}", days),
                       time_.utc_ns() / kNanosecondsPerSecond);
   if (answer.fault == AuctionFault::kSlow) return {.status = Status::kTimeout};
   if (answer.status != 200) return {.status = Status::kHttpError};

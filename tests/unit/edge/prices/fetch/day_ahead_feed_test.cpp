@@ -88,7 +88,7 @@ TEST_F(Feed, NoFileIsNoConnection) {
 
 TEST_F(Feed, TheUrlNamesLocalDates) {
   const OutlookDays days = outlook_days_around(utc_from_civil({2025, 12, 31, 23, 30, 0}));
-  EXPECT_EQ(day_ahead_url("http://h/p?a={today}&b={tomorrow}&{x}", days).view(),
+  EXPECT_EQ(day_ahead_url("http://h/p?a={today}&b={tomorrow}&{x}", days),
             "http://h/p?a=2026-01-01&b=2026-01-02&{x}");
 }
 
