@@ -1,7 +1,5 @@
 #include "edge/prices/fetch/history_pages.h"
 
-#include <cstdio>
-
 namespace bess {
 
 bool HistoryPages::goes_on(Status status, int items, std::int64_t oldest_before_utc_s) {
@@ -18,31 +16,22 @@ void HistoryPages::take(const PriceRow& row) {
   oldest_utc_s_ = std::min(oldest_utc_s_, row.minute_utc_s);
 }
 
-FixedText<639> page_url(std::string_view url, int offset) {
+std::string page_url(std::string_view url, int offset) {
   url = url.substr(0, url.find('#'));
   const std::size_t query_at = url.find('?');
-  char page[640];
-  std::size_t size = 0;
-  const auto add = [&](std::string_view text) {
-    size += text.copy(page + size, sizeof page - size);
-  };
-  add(url.substr(0, query_at));
-  char separator = '?';
+  std::string page(url.substr(0, query_at));
+  const char* separator = "?";
   std::string_view rest = query_at == std::string_view::npos ? "" : url.substr(query_at + 1);
   while (!rest.empty()) {
     const std::size_t end = rest.find('&');
     const std::string_view key = rest.substr(0, end);
     rest = end == std::string_view::npos ? "" : rest.substr(end + 1);
     if (key.starts_with("limit=") || key.starts_with("offset=")) continue;
-    add({&separator, 1});
-    add(key);
-    separator = '&';
+    page.append(separator).append(key);
+    separator = "&";
   }
-  char limits[64];
-  const int length = std::snprintf(limits, sizeof limits, "%climit=%d&offset=%d", separator,
-                                   HistoryPages::kRowsPerPage, offset);
-  add({limits, static_cast<std::size_t>(length)});
-  return FixedText<639>(std::string_view(page, size));
+  return page + separator + "limit=" + std::to_string(HistoryPages::kRowsPerPage) +
+         "&offset=" + std::to_string(offset);
 }
 
 }  // namespace bess

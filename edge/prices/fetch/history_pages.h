@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "edge/core/control/price_history.h"
@@ -16,7 +17,7 @@
 namespace bess {
 
 /// `url` with a limit of 100 rows and an offset, replacing its own.
-FixedText<639> page_url(std::string_view url, int offset);
+std::string page_url(std::string_view url, int offset);
 
 class HistoryPages {
  public:

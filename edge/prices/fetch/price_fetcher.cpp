@@ -54,7 +54,7 @@ std::string text_of(const std::string& reason, Status status) {
 }  // namespace
 
 PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
-  Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0).c_str());
+  Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0));
   // A server without pages may refuse them; a busy or unreachable one is not asked twice.
   const bool may_know_no_pages =
       answer.status == Status::kHttpError || answer.status == Status::kMalformed;
