@@ -107,7 +107,7 @@ void print_thresholds(const EdgeConfig& config) {
 }
 
 void print_transport(const EdgeConfig& config) {
-  const TransportNote note = transport_note({config.price.feed, config.price.history});
+  const TransportNote note = transport_note(config.price);
   if (!note.is_open) return static_cast<void>(std::printf("transport  %s\n", note.text.c_str()));
   report(JournalLevel::kWarning, "note: %s", note.text.c_str());
 }

@@ -71,7 +71,7 @@ void journal_thresholds(const EdgeConfig& config) {
 }
 
 void journal_transport(const EdgeConfig& config) {
-  const TransportNote note = transport_note({config.price.feed, config.price.history});
+  const TransportNote note = transport_note(config.price);
   if (note.is_open) report(JournalLevel::kWarning, "note: %s", note.text.c_str());
 }
 

@@ -75,7 +75,9 @@ void read_price(TomlTable table, PriceConfig& price) {
   const std::string_view url = price.feed.http.url.view();
   check_history_url(table, price);
   transport.has_header_file = !header_file.empty();
-  check_price_transport(table, {price.feed, price.history}, transport);
+  check_price_url(table, "url", url, transport);
+  if (!price.history.url.empty())
+    check_price_url(table, "history_url", price.history.url.view(), transport);
   const std::string ca_file = table.resolved(price.feed.http.ca_file.view());
   if (!price.feed.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
   if (url.starts_with("https://") && access(price.feed.http.ca_file.c_str(), R_OK) != 0) {
@@ -113,17 +115,10 @@ void check_price_url(TomlTable& table, std::string_view key, std::string_view ur
   }
 }
 
-void check_price_transport(TomlTable& table, const PriceSources& sources,
-                           const PriceTransportKeys& keys) {
-  check_price_url(table, "url", sources.price.http.url.view(), keys);
-  if (!sources.history.url.empty())
-    check_price_url(table, "history_url", sources.history.url.view(), keys);
-}
-
-TransportNote transport_note(const PriceSources& sources) {
-  UrlTransport weakest = transport_of(sources.price.http.url.view());
-  if (!sources.history.url.empty()) {
-    weakest = std::max(weakest, transport_of(sources.history.url.view()));
+TransportNote transport_note(const PriceConfig& price) {
+  UrlTransport weakest = transport_of(price.feed.http.url.view());
+  if (!price.history.url.empty()) {
+    weakest = std::max(weakest, transport_of(price.history.url.view()));
   }
   switch (weakest) {
     case UrlTransport::kSecure:

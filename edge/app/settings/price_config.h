@@ -19,12 +19,6 @@ struct PriceConfig {
 
 void read_price(TomlTable table, PriceConfig& price);
 
-/// Sources of prices.
-struct PriceSources {
-  const PriceFeedSettings& price;
-  const HistorySettings& history;
-};
-
 /// Operator's settings of the transport.
 struct PriceTransportKeys {
   bool allow_http = false;
@@ -35,16 +29,12 @@ struct PriceTransportKeys {
 void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
                      const PriceTransportKeys& keys);
 
-/// The same for each URL of [price].
-void check_price_transport(TomlTable& table, const PriceSources& sources,
-                           const PriceTransportKeys& keys);
-
 struct TransportNote {
   bool is_open = false;  ///< prices could be forged in transit
   std::string text;
 };
 
 /// One line on the weaker transport of url and history_url.
-TransportNote transport_note(const PriceSources& sources);
+TransportNote transport_note(const PriceConfig& price);
 
 }  // namespace bess
