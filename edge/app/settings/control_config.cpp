@@ -114,7 +114,7 @@ bool is_same_line(const BatteryLinkSettings& a, const BatteryLinkSettings& b) {
          std::filesystem::equivalent(a.device.c_str(), b.device.c_str(), ignored);
 }
 
-void load_meter_map(TomlTable& table, const MeteredBattery& battery, std::string_view map_file,
+void load_meter_map(TomlTable& table, const BatteryConfig& battery, std::string_view map_file,
                     std::string_view variant, SiteConfig& site) {
   check_link(table, site.link);
   FixedText<511> path;
@@ -129,7 +129,7 @@ void load_meter_map(TomlTable& table, const MeteredBattery& battery, std::string
   }
 }
 
-void use_grid_point(TomlTable& table, const MeteredBattery& battery) {
+void use_grid_point(TomlTable& table, BatteryConfig& battery) {
   if (!table.ok() || measure_grid_power(battery.map)) return;
   table.fail("source", "= \"battery\": the battery's map " + std::string(battery.map.name.view()) +
                            " has no grid power point: use a meter's map");
@@ -137,7 +137,7 @@ void use_grid_point(TomlTable& table, const MeteredBattery& battery) {
 
 }  // namespace
 
-void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
+void read_meter(TomlTable table, BatteryConfig& battery, SiteConfig& site) {
   if (table.value() == nullptr) return;
   SiteSettings& settings = site.settings;
   int source = 0;
@@ -287,10 +287,6 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 
 }  // namespace
 
-void read_full_charge(TomlTable& battery, ControlSettings& control) {
-  battery.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);
-}
-
 void check_full_charge(TomlTable& battery, const ControlSettings& control) {
   if (control.full_charge_every_days == 0) return;
   if (control.guard.soc_max_e4 >= FullCharge::kFullE4) return;
@@ -401,7 +397,7 @@ void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& cont
   int on_other_master = 0;
   table.choice("on_other_master", on_other_master, {"yield", "insist"});
   control.supervision.yields_to_other_master = on_other_master == 0;
-  read_full_charge(table, control);
+  table.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);
   table.finish();
   check_link(table, battery.link);
   if (!load_linked_map(table, map_file.view(), variant.view(), battery.link, battery.map,

@@ -35,14 +35,6 @@ struct SiteConfig {
   FixedText<511> limit_file;
 };
 
-/// The battery, for [meter]: the meter needs another serial line, or uses the battery's grid power
-/// point.
-struct MeteredBattery {
-  const BatteryLinkSettings& link;
-  RegisterMap& map;
-};
-
-void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site);
 void read_limits(TomlTable table, SiteConfig& site);
 
 struct BatteryConfig {
@@ -54,6 +46,9 @@ struct BatteryConfig {
   bool allow_without_watchdog = false;  ///< control a battery that keeps its order without us
   std::int32_t start_timeout_s = 10;    ///< wall time to reach the battery at start
 };
+
+/// The meter needs another serial line than the battery, or uses its grid power point.
+void read_meter(TomlTable table, BatteryConfig& battery, SiteConfig& site);
 
 /// Power and operator's settings of the battery go to `control`.
 void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& control);
@@ -71,9 +66,6 @@ FixedText<159> battery_place(const BatteryConfig& battery);
 /// [guard]. Call after read_battery: the default of cycles_per_day_max depends on power and
 /// capacity.
 void read_guard(TomlTable table, const BatteryConfig& battery, ControlSettings& control);
-
-/// Key full_charge_every_days of [battery]; power_w must be known.
-void read_full_charge(TomlTable& battery, ControlSettings& control);
 
 /// [[reserve]], an array of tables; bounds and hysteresis of the guard must be known.
 void read_reserve(TomlTable& root, ControlSettings& control);

@@ -22,16 +22,17 @@ void keep_path(TomlTable& table, std::string_view key, const std::string& path,
   if (!kept.assign(path)) table.fail(key, "is too long");
 }
 
-void keep_run_paths(TomlTable& table, const std::string& path, StateAndLogSettings kept) {
-  keep_path(table, "run_folder", path, kept.state.run_folder);
-  keep_path(table, "run_folder", path + "/decisions.ring", kept.log.run_ring);
-  keep_path(table, "run_folder", path + "/status.json", kept.log.run_status);
-  keep_path(table, "run_folder", path + "/metrics.prom", kept.log.run_metrics);
+void keep_run_paths(TomlTable& table, const std::string& path, StateSettings& state,
+                    EventLogSettings& log) {
+  keep_path(table, "run_folder", path, state.run_folder);
+  keep_path(table, "run_folder", path + "/decisions.ring", log.run_ring);
+  keep_path(table, "run_folder", path + "/status.json", log.run_status);
+  keep_path(table, "run_folder", path + "/metrics.prom", log.run_metrics);
 }
 
 }  // namespace
 
-void read_state(TomlTable table, StateAndLogSettings kept) {
+void read_state(TomlTable table, StateSettings& state, EventLogSettings& log) {
   FixedText<255> folder("state");
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
@@ -40,11 +41,11 @@ void read_state(TomlTable table, StateAndLogSettings kept) {
   FixedText<255> run_folder(kInstalledEdge.run_beside(path));
   table.text("run_folder", run_folder);
   table.finish();
-  if (!run_folder.empty()) keep_run_paths(table, table.resolved(run_folder.view()), kept);
-  keep_path(table, "folder", path, kept.state.folder);
-  keep_path(table, "folder", path + "/decisions.ring", kept.log.ring);
-  keep_path(table, "folder", path + "/status.json", kept.log.status);
-  keep_path(table, "folder", path + "/metrics.prom", kept.log.metrics);
+  if (!run_folder.empty()) keep_run_paths(table, table.resolved(run_folder.view()), state, log);
+  keep_path(table, "folder", path, state.folder);
+  keep_path(table, "folder", path + "/decisions.ring", log.ring);
+  keep_path(table, "folder", path + "/status.json", log.status);
+  keep_path(table, "folder", path + "/metrics.prom", log.metrics);
 }
 
 void read_log(TomlTable table, EventLogSettings& log) {
@@ -110,12 +111,11 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_reserve(root, config.control);
   TomlTable battery = section(root, "battery");
   check_full_charge(battery, config.control);
-  read_state(section(root, "state", &config.retired), {config.state, config.log});
+  read_state(section(root, "state", &config.retired), config.state, config.log);
   read_log(section(root, "log"), config.log);
   read_metrics(section(root, "metrics"), config.log);
   read_simulation(section(root, "simulation"), config.clock);
-  read_meter(section(root, "meter", &config.retired), {config.battery.link, config.battery.map},
-             config.site);
+  read_meter(section(root, "meter", &config.retired), config.battery, config.site);
   read_limits(section(root, "limits"), config.site);
   // For bess-notify, bess-page and bess-edge earned: an error there must not stop the controller.
   for (const char* const others : {"notify", "page", "settled", "contract"}) {

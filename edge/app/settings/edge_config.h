@@ -21,12 +21,8 @@ struct StateSettings {
   FixedText<511> run_folder;  ///< on a memory file system; empty = none
 };
 
-/// Settings of [state], [log] and [metrics]; the log is in the [state] folders by default.
-struct StateAndLogSettings {
-  StateSettings& state;
-  EventLogSettings& log;
-};
-void read_state(TomlTable table, StateAndLogSettings kept);
+/// The log is in the [state] folders by default.
+void read_state(TomlTable table, StateSettings& state, EventLogSettings& log);
 void read_log(TomlTable table, EventLogSettings& log);
 void read_metrics(TomlTable table, EventLogSettings& log);
 
