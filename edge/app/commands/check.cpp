@@ -140,19 +140,8 @@ bool report_clock(const EdgeConfig& config, const EdgeClock& clock) {
   return !config.control.control;
 }
 
-/// "127.0.0.1:502" or the serial device.
-FixedText<159> place_of(const BatteryLinkSettings& link) {
-  char place[160];
-  if (link.rtu) {
-    std::snprintf(place, sizeof place, "%s", link.device.c_str());
-  } else {
-    std::snprintf(place, sizeof place, "%s:%d", link.host.c_str(), link.port);
-  }
-  return FixedText<159>(place);
-}
-
 bool complain_of_meter(const SiteConfig& site, const char* what) {
-  report(JournalLevel::kError, "meter at %s, map %s: %s", place_of(site.link).c_str(),
+  report(JournalLevel::kError, "meter at %s, map %s: %s", link_place(site.link).c_str(),
          site.map.name.c_str(), what);
   return false;
 }

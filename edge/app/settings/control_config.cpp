@@ -437,15 +437,20 @@ void set_supervision(const BatteryConfig& battery, ControlSettings& control) {
   supervision.capacity_wh_max = static_cast<std::int32_t>(range.most_wh);
 }
 
+FixedText<159> link_place(const BatteryLinkSettings& link) {
+  char place[160];
+  if (link.rtu) {
+    std::snprintf(place, sizeof place, "%s", link.device.c_str());
+  } else {
+    std::snprintf(place, sizeof place, "%s:%d", link.host.c_str(), link.port);
+  }
+  return FixedText<159>(place);
+}
+
 FixedText<159> battery_place(const BatteryConfig& battery) {
   const int unit = battery.link.unit >= 0 ? battery.link.unit : battery.map.unit;
-  char place[160];
-  if (battery.link.rtu) {
-    std::snprintf(place, sizeof place, "%s unit %d", battery.link.device.c_str(), unit);
-  } else {
-    std::snprintf(place, sizeof place, "%s:%d unit %d", battery.link.host.c_str(),
-                  battery.link.port, unit);
-  }
+  char place[180];
+  std::snprintf(place, sizeof place, "%s unit %d", link_place(battery.link).c_str(), unit);
   return FixedText<159>(place);
 }
 

@@ -60,6 +60,8 @@ void check_battery_against_map(TomlTable table, const BatteryConfig& battery,
 /// Sets the supervision by map and rating of the battery.
 void set_supervision(const BatteryConfig& battery, ControlSettings& control);
 
+/// "127.0.0.1:502" or the serial device.
+FixedText<159> link_place(const BatteryLinkSettings& link);
 /// Address of the battery: "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85".
 FixedText<159> battery_place(const BatteryConfig& battery);
 

@@ -30,8 +30,7 @@ void keep_run_paths(TomlTable& table, const std::string& path, StateSettings& st
   keep_path(table, "run_folder", path + "/metrics.prom", log.run_metrics);
 }
 
-}  // namespace
-
+/// The log is in the [state] folders by default.
 void read_state(TomlTable table, StateSettings& state, EventLogSettings& log) {
   FixedText<255> folder("state");
   table.text("folder", folder);
@@ -64,8 +63,6 @@ void read_metrics(TomlTable table, EventLogSettings& log) {
     keep_path(table, "prometheus", table.resolved(prometheus.view()), log.metrics);
   }
 }
-
-namespace {
 
 /// Completes the site's settings from battery and map.
 void set_site(EdgeConfig& config) {

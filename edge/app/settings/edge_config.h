@@ -21,11 +21,6 @@ struct StateSettings {
   FixedText<511> run_folder;  ///< on a memory file system; empty = none
 };
 
-/// The log is in the [state] folders by default.
-void read_state(TomlTable table, StateSettings& state, EventLogSettings& log);
-void read_log(TomlTable table, EventLogSettings& log);
-void read_metrics(TomlTable table, EventLogSettings& log);
-
 struct EdgeConfig {
   ControlSettings control;
   BatteryConfig battery;
