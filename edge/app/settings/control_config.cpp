@@ -175,9 +175,7 @@ void read_limits(TomlTable table, SiteConfig& site) {
   table.choice("on_timeout", on_timeout, {"release_limits", "idle"});
   table.finish();
   if (!table.ok()) return;
-  if (!site.limit_file.assign(table.resolved(file.view()))) {
-    table.fail("file", "is too long a path");
-  }
+  keep_resolved(table, "file", file.view(), site.limit_file);
   site.settings.has_outside_limits = true;
   site.settings.idle_after_timeout = on_timeout == 1;
 }
@@ -327,16 +325,11 @@ void read_outlook(TomlTable table, OutlookSettings& outlook) {
     return table.fail("file", "and url are two sources: remove one");
   }
   if (!outlook.file.empty()) {
-    if (!outlook.file.assign(table.resolved(outlook.file.view()))) {
-      table.fail("file", "is too long a path");
-    }
-    return;
+    return keep_resolved(table, "file", outlook.file.view(), outlook.file);
   }
   transport.has_header_file = !header_file.empty();
   check_price_url(table, "url", outlook.http.url.view(), transport);
-  if (!outlook.http.ca_file.assign(table.resolved(outlook.http.ca_file.view()))) {
-    table.fail("ca_file", "is too long a path");
-  }
+  keep_resolved(table, "ca_file", outlook.http.ca_file.view(), outlook.http.ca_file);
   if (header_file.empty() || !table.ok()) return;
   load_http_headers(table.resolved(header_file.view()).c_str(), outlook.http.headers,
                     table.error());

@@ -78,10 +78,10 @@ void read_price(TomlTable table, PriceConfig& price) {
   check_price_url(table, "url", url, transport);
   if (!price.history.url.empty())
     check_price_url(table, "history_url", price.history.url.view(), transport);
-  const std::string ca_file = table.resolved(price.feed.http.ca_file.view());
-  if (!price.feed.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
-  if (url.starts_with("https://") && access(price.feed.http.ca_file.c_str(), R_OK) != 0) {
-    table.fail("ca_file", "= " + ca_file +
+  FixedText<255>& ca_file = price.feed.http.ca_file;
+  keep_resolved(table, "ca_file", ca_file.view(), ca_file);
+  if (url.starts_with("https://") && access(ca_file.c_str(), R_OK) != 0) {
+    table.fail("ca_file", "= " + std::string(ca_file.view()) +
                               " cannot be read: install the package ca-certificates, "
                               "or set your own file");
   }

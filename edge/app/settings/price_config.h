@@ -19,6 +19,13 @@ struct PriceConfig {
 
 void read_price(TomlTable table, PriceConfig& price);
 
+/// Keeps the path of the key, relative to the folder of the file.
+template <int kCapacity>
+void keep_resolved(TomlTable& table, std::string_view key, std::string_view path,
+                   FixedText<kCapacity>& kept) {
+  if (!kept.assign(table.resolved(path))) table.fail(key, "is too long a path");
+}
+
 /// Operator's settings of the transport.
 struct PriceTransportKeys {
   bool allow_http = false;
