@@ -111,23 +111,18 @@ bool decode_integer(const RegisterPoint& point, std::uint64_t bits, const Ratio&
   return true;
 }
 
+/// Raw integers of a type, in the order of RegisterType; none of float and text.
+struct RawRange {
+  std::int64_t least, most;
+};
+constexpr RawRange kRawRanges[] = {{0, UINT16_MAX}, {INT16_MIN, INT16_MAX},
+                                   {0, UINT32_MAX}, {INT32_MIN, INT32_MAX},
+                                   {0, INT64_MAX},  {0, -1},
+                                   {0, -1}};
+
 bool fits(const RegisterPoint& point, std::int64_t raw) {
-  switch (point.type) {
-    case RegisterType::kS16:
-      return raw >= INT16_MIN && raw <= INT16_MAX;
-    case RegisterType::kS32:
-      return raw >= INT32_MIN && raw <= INT32_MAX;
-    case RegisterType::kU16:
-      return raw >= 0 && raw <= UINT16_MAX;
-    case RegisterType::kU32:
-      return raw >= 0 && raw <= UINT32_MAX;
-    case RegisterType::kU64:
-      return raw >= 0;
-    case RegisterType::kF32:
-    case RegisterType::kText:
-      break;
-  }
-  return false;
+  const auto [least, most] = kRawRanges[static_cast<int>(point.type)];
+  return raw >= least && raw <= most;
 }
 
 Status append(const RegisterPoint& point, std::uint64_t bits, RegisterBlock& out) {
