@@ -29,8 +29,10 @@ class BatteryDriver {
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
         reader_(map),
-        ours_(map.watchdog),
-        adds_live_(std::any_of(std::begin(map.command), std::end(map.command), adds_to_order)) {}
+        ours_(map.watchdog) {
+    for_each_written(
+        map, [this](const WriteValue& value) { adds_live_ = adds_live_ || value.plus >= 0; });
+  }
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
@@ -189,13 +191,6 @@ class BatteryDriver {
 
   [[nodiscard]] bool was_known() const { return identity_ != Identity::kUnknown; }
   [[nodiscard]] std::int64_t now_ns() const { return bus_.time().now_ns(); }
-
-  static bool adds_to_order(const CommandSequence& sequence) {
-    return std::any_of(sequence.writes.begin(), sequence.writes.end(), [](const BlockWrite& write) {
-      return std::any_of(write.values.begin(), write.values.end(),
-                         [](const WriteValue& value) { return value.plus >= 0; });
-    });
-  }
 
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
   static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
@@ -403,7 +398,7 @@ class BatteryDriver {
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
   OrderState ours_;
-  bool adds_live_;  ///< a measured load is added to orders
+  bool adds_live_ = false;  ///< a measured load is added to orders
   Identity identity_ = Identity::kUnknown;
   std::int64_t identified_ns_ = 0;
   std::int64_t identified_connections_ = 0;

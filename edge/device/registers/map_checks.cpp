@@ -78,14 +78,10 @@ void complete_measure(RegisterMap& map) {
       if (scale >= 0 && !contains(map.scales, scale)) map.scales.push_back(scale);
     }
   }
-  for (const CommandSequence& sequence : map.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        measure_also(map, value.plus);
-        if (value.plus >= 0 && !contains(map.scales, value.plus)) map.scales.push_back(value.plus);
-      }
-    }
-  }
+  for_each_written(map, [&map](const WriteValue& value) {
+    measure_also(map, value.plus);
+    if (value.plus >= 0 && !contains(map.scales, value.plus)) map.scales.push_back(value.plus);
+  });
 }
 
 bool writes_argument(const RegisterMap& map, Command command, Argument wanted) {
@@ -152,13 +148,10 @@ bool is_reported(const RegisterMap& map, int point) {
 }
 
 bool is_written(const RegisterMap& map, int point) {
-  return std::any_of(std::begin(map.command), std::end(map.command), [&](const auto& sequence) {
-    return std::any_of(
-        sequence.writes.begin(), sequence.writes.end(), [&](const BlockWrite& write) {
-          return std::any_of(write.values.begin(), write.values.end(),
-                             [&](const WriteValue& value) { return value.point == point; });
-        });
-  });
+  bool is_found = false;
+  for_each_written(map,
+                   [&](const WriteValue& value) { is_found = is_found || value.point == point; });
+  return is_found;
 }
 
 /// No other part may rely on a point that a device may lack.
@@ -182,18 +175,14 @@ void check_optional(TomlTable& root, const RegisterMap& map) {
 
 /// "saved" without a fallback would restore 0; a saved point without a restore is an error.
 void check_saved(TomlTable& root, const RegisterMap& map) {
-  for (const CommandSequence& sequence : map.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        const bool listed =
-            std::any_of(map.saved.begin(), map.saved.end(),
-                        [&](const SavedPoint& saved) { return saved.point == value.point; });
-        if (value.argument != Argument::kSaved || listed) continue;
-        root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
-                                 ", which is not in the list save");
-      }
-    }
-  }
+  for_each_written(map, [&](const WriteValue& value) {
+    const bool listed =
+        std::any_of(map.saved.begin(), map.saved.end(),
+                    [&](const SavedPoint& saved) { return saved.point == value.point; });
+    if (value.argument != Argument::kSaved || listed) return;
+    root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
+                             ", which is not in the list save");
+  });
   for (const SavedPoint& saved : map.saved) {
     if (map.points[saved.point].registers <= kPointRegistersMax) continue;
     root.fail("command", "cannot save text");
@@ -240,24 +229,20 @@ void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
   const std::string duration_text =
       "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
   const PointValues assumed = assumed_live_points(map, false);
-  for (const CommandSequence& sequence : map.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        const bool in_minutes = value.argument == Argument::kDurationMinutes;
-        if (!in_minutes && value.argument != Argument::kDuration) continue;
-        const RegisterPoint& p = map.points[value.point];
-        const std::int64_t time =
-            in_minutes ? (map.watchdog.duration_s + 59) / 60 : map.watchdog.duration_s;
-        Scaling scaling;
-        RegisterBlock block;
-        if (!live_scaling(map, assumed, value.point, scaling)) continue;
-        if (encode(p, time, Rounding::kNearest, block, scaling) == Status::kOk) continue;
-        root.fail("watchdog", duration_text + std::to_string(time) + (in_minutes ? " min" : " s") +
-                                  ", which the point " + quoted(p.name.view()) +
-                                  " cannot express (min, max, type)");
-      }
-    }
-  }
+  for_each_written(map, [&](const WriteValue& value) {
+    const bool in_minutes = value.argument == Argument::kDurationMinutes;
+    if (!in_minutes && value.argument != Argument::kDuration) return;
+    const RegisterPoint& p = map.points[value.point];
+    const std::int64_t time =
+        in_minutes ? (map.watchdog.duration_s + 59) / 60 : map.watchdog.duration_s;
+    Scaling scaling;
+    RegisterBlock block;
+    if (!live_scaling(map, assumed, value.point, scaling)) return;
+    if (encode(p, time, Rounding::kNearest, block, scaling) == Status::kOk) return;
+    root.fail("watchdog", duration_text + std::to_string(time) + (in_minutes ? " min" : " s") +
+                              ", which the point " + quoted(p.name.view()) +
+                              " cannot express (min, max, type)");
+  });
 }
 
 /// Overflow is excluded: both ends of the stated power range are encoded once here.

@@ -7,15 +7,7 @@ namespace bess {
 PointPlaces::PointPlaces(const RegisterMap& map, std::int32_t unit)
     : map_(map), unit_(unit >= 0 ? unit : map.unit) {
   model_start_.fill(-1);
-  find_written();
-}
-
-void PointPlaces::find_written() {
-  for (const CommandSequence& sequence : map_.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) is_written_[value.point] = true;
-    }
-  }
+  for_each_written(map, [this](const WriteValue& value) { is_written_[value.point] = true; });
 }
 
 bool PointPlaces::begins_walk(const BusExchange& exchange) const {

@@ -35,7 +35,6 @@ class PointPlaces {
   [[nodiscard]] bool is_written(int point) const { return is_written_[point]; }
 
  private:
-  void find_written();
   [[nodiscard]] bool begins_walk(const BusExchange& exchange) const;
 
   const RegisterMap& map_;

@@ -125,6 +125,16 @@ struct RegisterMap {
   }
 };
 
+/// Calls `visit` for each value that a command writes.
+template <typename Visit>
+constexpr void for_each_written(const RegisterMap& map, const Visit& visit) {
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) visit(value);
+    }
+  }
+}
+
 /// Index of a point, -1 if the map has none of that name.
 constexpr int find_point(const RegisterMap& map, std::string_view name) {
   for (int i = 0; i < map.points.size(); ++i) {
