@@ -18,6 +18,7 @@
 #include "edge/core/memory/heap_seal.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/records/log/journal.h"
+#include "shared/host/text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -43,19 +44,12 @@ class Table {
   int failures_ = 0;
 };
 
-template <typename... Values>
-std::string text(const char* format, Values... values) {
-  char line[512];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
 void test_student(Table& table) {
   set_market_time_zone();  // one check plans local days
   const int wrong = count_student_self_check_failures();
   table.add("student", wrong == 0,
-            text("%d of %d self-check vectors match; %s", student_self_check_count() - wrong,
-                 student_self_check_count(), student_provenance()));
+            formatted("%d of %d self-check vectors match; %s", student_self_check_count() - wrong,
+                      student_self_check_count(), student_provenance()));
 }
 
 void test_signature(Table& table) {
@@ -150,8 +144,8 @@ void test_storage(const EdgeConfig& config, Table& table) {
                             : "wear not reported";
   const bool is_worn = used_life_percent > kUsedLifePercentMax || disk.wear.spare_level >= 2;
   table.add("storage", disk.free_mb >= kFreeMbMin && !is_worn,
-            text("%s: %.0f MB free, 4 KiB written in %.1f ms, %s", folder.c_str(), disk.free_mb,
-                 disk.synced_write_ms, wear.c_str()));
+            formatted("%s: %.0f MB free, 4 KiB written in %.1f ms, %s", folder.c_str(),
+                      disk.free_mb, disk.synced_write_ms, wear.c_str()));
 }
 
 /// Reads identity and measurements; writes nothing.
@@ -169,8 +163,8 @@ void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
     return table.add("battery", false, place + ": " + std::string(status_text(status)));
   }
   table.add("battery", true,
-            text("%s, map %s: SoC %.1f %%, %d W", place.c_str(), config.battery.map.name.c_str(),
-                 m.soc_e4 / 100.0, m.power_w));
+            formatted("%s, map %s: SoC %.1f %%, %d W", place.c_str(),
+                      config.battery.map.name.c_str(), m.soc_e4 / 100.0, m.power_w));
 }
 
 }  // namespace
@@ -189,7 +183,7 @@ int run_self_test(const EdgeConfig& config, const std::string& config_path) {
   test_battery(config, clock, table);
   std::printf("self-test  %s\n", table.failures() == 0
                                      ? "passed"
-                                     : text("%d part(s) failed", table.failures()).c_str());
+                                     : formatted("%d part(s) failed", table.failures()).c_str());
   return table.failures() == 0 ? 0 : 1;
 }
 

@@ -3,14 +3,13 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
-#include <cstdio>
-
 #include "edge/app/settings/price_config.h"
 #include "edge/app/storage/commission_file.h"
 #include "edge/core/control/decision_signature.h"
 #include "edge/core/control/policy.h"
 #include "edge/prices/record/price_settings.h"
 #include "edge/records/log/journal.h"
+#include "shared/host/text.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -89,9 +88,7 @@ void prepare_process() {
 namespace {
 
 std::string eur_text(std::int32_t centi) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f EUR/MWh", static_cast<double>(centi) / kCentiPerEur);
-  return text;
+  return formatted("%.2f EUR/MWh", static_cast<double>(centi) / kCentiPerEur);
 }
 
 std::string why_no_more(const LevelStartReport& level_report) {
@@ -149,36 +146,26 @@ JournalLevel journal_level_of(const LevelStartReport& level_report) {
                                                          : JournalLevel::kNotice;
 }
 
-namespace {
-
-template <typename... Values>
-void add_line(std::string& note, const char* format, Values... values) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, values...);
-  note.append(line).append("\n");
-}
-
-}  // namespace
-
 std::string operator_note(const ControlSettings& control, const Hold& hold,
                           std::int64_t now_utc_s) {
   std::string note;
   const HoldReport held = hold_at(hold, now_utc_s);
   if (held.held) {
-    add_line(note, "hold       %d W until %s", held.power_w, utc_text(held.until_utc_s).c_str());
+    add_formatted(note, "hold       %d W until %s\n", held.power_w,
+                  utc_text(held.until_utc_s).c_str());
   }
-  if (held.unreadable) add_line(note, "hold       %s", "file unreadable, hold ignored");
+  if (held.unreadable) note += "hold       file unreadable, hold ignored\n";
   if (!control.reserve.empty()) {
     const std::int16_t now_e4 = reserve_soc_e4_at(control.reserve, local_minute_of(now_utc_s));
-    add_line(note, "reserve    SoC %.1f %% at this hour, %d periods in total", now_e4 / 100.0,
-             control.reserve.size());
+    add_formatted(note, "reserve    SoC %.1f %% at this hour, %d periods in total\n",
+                  now_e4 / 100.0, control.reserve.size());
   }
   for (int r = 0; r < guard_rule_count(); ++r) {
-    add_line(note, "rule       %s", guard_rule_name(r));
+    add_formatted(note, "rule       %s\n", guard_rule_name(r));
   }
   if (control.full_charge_every_days > 0) {
-    add_line(note, "full       every %d days, with %d W", control.full_charge_every_days,
-             control.guard.full_charge_power_w());
+    add_formatted(note, "full       every %d days, with %d W\n", control.full_charge_every_days,
+                  control.guard.full_charge_power_w());
   }
   return note;
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
 #include "edge/device/registers/point_codec.h"
+#include "shared/host/text.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -25,15 +25,9 @@ int first_term(const StaticVector<PowerCase, 4>& cases) {
 std::string decimal_factor(double factor) {
   const double size = std::abs(factor);
   const int power = static_cast<int>(std::lround(std::log10(size)));
-  char text[48];
-  if (power > 0) {
-    std::snprintf(text, sizeof text, "%.0f times as much as", std::pow(10, power));
-  } else if (power < 0) {
-    std::snprintf(text, sizeof text, "a %.0fth of what", std::pow(10, -power));
-  } else {
-    std::snprintf(text, sizeof text, "%.1f times as much as", size);
-  }
-  return text;
+  if (power > 0) return formatted("%.0f times as much as", std::pow(10, power));
+  if (power < 0) return formatted("a %.0fth of what", std::pow(10, -power));
+  return formatted("%.1f times as much as", size);
 }
 
 std::string raw_text(const RegisterPoint& p, const std::uint16_t* raw) {
@@ -316,10 +310,7 @@ std::string MapCheck::power_finding(double capacity) const {
 std::string MapCheck::soc_finding(double capacity) const {
   constexpr double kCapacityUnknownWh = 20'000;
   if (energy_.soc_stands_still(capacity > 0 ? capacity : kCapacityUnknownWh)) {
-    char text[96];
-    std::snprintf(text, sizeof text, "does not change, although %.0f Wh have flowed",
-                  energy_.energy_moved_wh());
-    return text;
+    return formatted("does not change, although %.0f Wh have flowed", energy_.energy_moved_wh());
   }
   const auto ratio = energy_.soc_per_energy(capacity);
   if (capacity <= 0 || !ratio.has_value() || *ratio < 0) return "";
