@@ -14,6 +14,7 @@
 #include <cstdlib>
 
 #include "edge/records/log/journal.h"
+#include "shared/host/text.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -77,34 +78,23 @@ bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& err
     error = {};
     return true;
   }
-  char what[560];
-  std::snprintf(what, sizeof what, "the run folder %s", folder);
-  return locks.run.take(run_file(config, "lock").c_str(), what, error);
+  return locks.run.take(run_file(config, "lock").c_str(), std::string("the run folder ") + folder,
+                        error);
 }
 
 }  // namespace
 
 FixedText<639> battery_lock_path(const EdgeConfig& config) {
-  const std::string_view folder = lock_folder();
-  FixedText<159> thing = lock_subject(config);
-  char name[160];
-  std::size_t size = 0;
-  for (const char c : thing.view()) name[size++] = c == '/' || c == ' ' || c == ':' ? '_' : c;
-  char path[640];
-  std::snprintf(path, sizeof path, "%.*s/bess-%.*s.lock", static_cast<int>(folder.size()),
-                folder.data(), static_cast<int>(size), name);
-  return {path};
+  std::string name(lock_subject(config).view());
+  for (char& c : name) c = c == '/' || c == ' ' || c == ':' ? '_' : c;
+  return formatted("%s/bess-%s.lock", lock_folder(), name.c_str()).c_str();
 }
 
 FixedText<639> name_lock_path(const EdgeConfig& config) {
-  const std::string_view folder = lock_folder();
-  char path[640];
-  std::snprintf(path, sizeof path, "%.*s/bess-name-%s.lock", static_cast<int>(folder.size()),
-                folder.data(), config.battery.name.c_str());
-  return {path};
+  return formatted("%s/bess-name-%s.lock", lock_folder(), config.battery.name.c_str()).c_str();
 }
 
-std::string_view lock_folder() {
+const char* lock_folder() {
   struct stat info {};
   const bool is_there = stat("/run/lock", &info) == 0 && S_ISDIR(info.st_mode);
   return is_there ? "/run/lock" : "/tmp";
@@ -121,9 +111,9 @@ int controller_holding(const EdgeConfig& config) {
 bool is_controller_running(const EdgeConfig& config) { return controller_holding(config) != 0; }
 
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
-  char what[200];
-  std::snprintf(what, sizeof what, "the battery at %s", battery_place(config.battery).c_str());
-  return locks.battery.take(battery_lock_path(config).c_str(), what, error);
+  return locks.battery.take(battery_lock_path(config).c_str(),
+                            formatted("the battery at %s", battery_place(config.battery).c_str()),
+                            error);
 }
 
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
@@ -135,12 +125,11 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
                            stored_status_path(config.log.run_status), config.log.run_ring}) {
     if (!check_file_owner(path.c_str(), error)) return false;
   }
-  char what[560];
-  std::snprintf(what, sizeof what, "the state folder %s", folder);
-  if (!locks.state.take(state_file(config, "lock").c_str(), what, error)) return false;
-  std::snprintf(what, sizeof what, "[battery] name %s", config.battery.name.c_str());
-  if (!locks.name.take(name_lock_path(config).c_str(), what, error)) return false;
-  return lock_run_folder(config, locks, error);
+  return locks.state.take(state_file(config, "lock").c_str(),
+                          std::string("the state folder ") + folder, error) &&
+         locks.name.take(name_lock_path(config).c_str(),
+                         formatted("[battery] name %s", config.battery.name.c_str()), error) &&
+         lock_run_folder(config, locks, error);
 }
 
 namespace {
@@ -182,7 +171,7 @@ InstanceLock::~InstanceLock() {
   close(fd_);
 }
 
-bool InstanceLock::take(const char* path, const char* what, FileMessage& error) {
+bool InstanceLock::take(const char* path, const std::string& what, FileMessage& error) {
   constexpr int kTries = 11;
   constexpr std::int64_t kPauseNs = kNanosecondsPerSecond / 10;
   for (int i = 0; i < kTries; ++i) {
@@ -201,7 +190,8 @@ bool InstanceLock::take(const char* path, const char* what, FileMessage& error) 
   std::snprintf(line, sizeof line,
                 "%s is in use by another program (process %d, lock %s), also reading needs "
                 "exclusive access: stop that program, or use bess-edge status%s%s",
-                what, lock_owner_pid(path), path, is_strangers ? "; " : "", stranger.c_str());
+                what.c_str(), lock_owner_pid(path), path, is_strangers ? "; " : "",
+                stranger.c_str());
   static_cast<void>(error.assign(line));
   return false;
 }

@@ -41,7 +41,7 @@ class InstanceLock {
   /// Tries for one second, because a predecessor may be ending and `lock_owner_pid` locks briefly.
   /// False with one line; `what` names the locked object. A lock file of another user except root
   /// is refused, because that user could remove it. On a full or read-only disk, a note and true.
-  bool take(const char* path, const char* what, FileMessage& error);
+  bool take(const char* path, const std::string& what, FileMessage& error);
 
  private:
   enum class LockAttempt { kTaken, kHeld, kFailed };  ///< kFailed with errno set
@@ -65,7 +65,7 @@ FixedText<639> battery_lock_path(const EdgeConfig& config);
 /// Lock of [battery] name: two controllers of one machine need different names.
 FixedText<639> name_lock_path(const EdgeConfig& config);
 /// Folder of the locks of all controllers of this machine, not configurable.
-std::string_view lock_folder();
+const char* lock_folder();
 /// Process of the controller of this configuration, as `lock_owner_pid`: by the lock of its run
 /// folder or its state folder.
 int controller_holding(const EdgeConfig& config);
