@@ -12,10 +12,6 @@
 namespace bess {
 namespace {
 
-struct ClearOptions {
-  bool yes = false;
-};
-
 constexpr const char* kFooter =
     R"(A trip (wrong_direction, uncontrolled_power, soc_mismatch, state_lost) leaves the battery in
 its own mode, also over restarts, until this command. A running controller continues at its next
@@ -41,9 +37,7 @@ int clear(const EdgeConfig& config, const StateFilePaths& paths, const Trip& tri
   if (!in_state) report(JournalLevel::kError, "%s", state_error.c_str());
   if (!run_error.empty()) report(JournalLevel::kWarning, "%s", run_error.c_str());
   if (!in_state && !in_run) {
-    report(JournalLevel::kError,
-           "not cleared: the battery stays released; correct the disk error, then repeat");
-    return 1;
+    return failed("not cleared: the battery stays released; correct the disk error, then repeat");
   }
   std::printf("cleared    control continues from the next %s\n",
               is_controller_running(config) ? "control cycle" : "start");
@@ -55,14 +49,13 @@ int clear(const EdgeConfig& config, const StateFilePaths& paths, const Trip& tri
   return 0;
 }
 
-int run_clear(const ClearOptions& options, SettingsFile& settings) {
+int run_clear(bool yes, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
   if (!log.open(config.log, error)) {
-    report(JournalLevel::kError, "%s: trip state unknown", error.c_str());
-    return 1;
+    return failed(std::string(error.view()) + ": trip state unknown");
   }
   if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
   const StateFilePaths paths = state_file_paths(config, kClearedFileName);
@@ -73,7 +66,7 @@ int run_clear(const ClearOptions& options, SettingsFile& settings) {
   }
   std::printf("tripped    %s at %s local time\n", reason_name(trip->reason).data(),
               local_text(trip->utc_s).c_str());
-  if (!options.yes) {
+  if (!yes) {
     report(JournalLevel::kError,
            "check the cause (bess-edge log --last 10), then repeat with --yes");
     return 2;
@@ -85,10 +78,10 @@ int run_clear(const ClearOptions& options, SettingsFile& settings) {
 
 void add_clear(EdgeCommand root) {
   EdgeCommand command = root.subcommand("clear", "clear a trip after its cause is found");
-  const auto options = std::make_shared<ClearOptions>();
-  command.flag("--yes", options->yes, "clear the trip; default: only show it");
+  const auto yes = std::make_shared<bool>(false);
+  command.flag("--yes", *yes, "clear the trip; default: only show it");
   command.footer(kFooter);
-  command.set_action([options](SettingsFile& settings) { return run_clear(*options, settings); });
+  command.set_action([yes](SettingsFile& settings) { return run_clear(*yes, settings); });
 }
 
 }  // namespace bess

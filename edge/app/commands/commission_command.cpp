@@ -238,8 +238,7 @@ int run_commission(const CommissionOptions& options, SettingsFile& settings) {
     if (!recorder.start(options.record_path.c_str(),
                         recording_head_of(config.battery.map, config.battery.link, config.clock),
                         config.battery.map, config.clock, message)) {
-      report(JournalLevel::kError, "%s", message.c_str());
-      return 1;
+      return failed(message.c_str());
     }
     battery.link().set_exchange_listener(recorder.listener());
   }
@@ -266,10 +265,7 @@ int run_commission(const CommissionOptions& options, SettingsFile& settings) {
   }
   std::string error;
   const std::int64_t utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
-  if (!write_commission_file(config, result, utc_s, error)) {
-    report(JournalLevel::kError, "%s", error.c_str());
-    return 1;
-  }
+  if (!write_commission_file(config, result, utc_s, error)) return failed(error);
   std::printf("passed     ordered %d W, measured %d W: the sign is right; stored in %s\n",
               result.ordered_power_w, result.measured_power_w, config.state.folder.c_str());
   return 0;

@@ -127,8 +127,7 @@ int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s
                       (is_kept(paths.run.c_str(), hold) ||
                        fail_with_errno(paths.run.c_str(), "cannot write the hold", run_error));
   if (!in_state && !in_run) {
-    report(JournalLevel::kError, "%s; the hold is unchanged", error.c_str());
-    return 1;
+    return failed(std::string(error.view()) + "; the hold is unchanged");
   }
   if (!in_state) warn_of_next_boot(paths, error);
   if (!run_error.empty()) report(JournalLevel::kWarning, "note: %s", run_error.c_str());
@@ -149,8 +148,7 @@ int release_hold(const EdgeConfig& config) {
   const bool is_outdone = (of_state || (has_run && is_kept(paths.run.c_str(), kOver))) &&
                           (of_run || is_kept(paths.state.c_str(), kOver));
   if (!is_outdone) {
-    report(JournalLevel::kError, "%s; the hold is still in force", error.c_str());
-    return 1;
+    return failed(std::string(error.view()) + "; the hold is still in force");
   }
   if (!of_state) warn_of_next_boot(paths, error);
   std::printf("hold       none: prices decide from the next control cycle\n");

@@ -8,7 +8,6 @@
 
 #include "edge/app/commands/command.h"
 #include "edge/records/log/atomic_file.h"
-#include "edge/records/log/journal.h"
 #include "shared/local_text.h"
 #include "shared/utc_text.h"
 
@@ -36,10 +35,7 @@ Examples:
   bess-edge limit --charge 2000 --discharge 1000 --for 2h
   bess-edge limit --clear)";
 
-int refuse(const std::string& message) {
-  report(JournalLevel::kError, "limit: %s", message.c_str());
-  return 1;
-}
+int refuse(const std::string& message) { return failed("limit: " + message); }
 
 int clear(const char* path) {
   if (unlink(path) != 0 && errno != ENOENT) {

@@ -125,18 +125,14 @@ int run_record(const RecordOptions& options, SettingsFile& settings) {
   const auto recorder = std::make_unique<ExchangeRecorder>();
   FileMessage error;
   if (!recorder->start(path.c_str(), head, config.battery.map, config.clock, error)) {
-    report(JournalLevel::kError, "%s", error.c_str());
-    return 1;
+    return failed(error.c_str());
   }
   Bus bus(config.battery.map, DeviceTime(config.clock), config.battery.link.unit,
           config.battery.link, timing_of(config.battery.map), config.clock);
   bus.link().set_exchange_listener(recorder->listener());
   poll_device(options, config, bus, clock);
   bus.link().set_exchange_listener({});
-  if (!recorder->finish(error)) {
-    report(JournalLevel::kError, "%s", error.c_str());
-    return 1;
-  }
+  if (!recorder->finish(error)) return failed(error.c_str());
   const LinkCounters& counters = bus.link().counters();
   std::printf("recorded   %s: %" PRId64 " requests, %" PRId64
               " failed; nothing was written to %s\n",

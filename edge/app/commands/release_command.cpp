@@ -37,8 +37,7 @@ int run_release(const ReleaseOptions& options, SettingsFile& settings) {
   }
   if (options.force) battery.permit_release();
   if (!reach_battery(config, battery, session.clock()) && !options.force) {
-    report(JournalLevel::kError, "not released; --force releases it anyway");
-    return 1;
+    return failed("not released; --force releases it anyway");
   }
   const Status status = battery.release();
   if (status != Status::kOk) {
