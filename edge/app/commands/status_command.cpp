@@ -378,18 +378,14 @@ bool print_metrics(const EdgeConfig& config, const std::optional<RunStatus>& sta
   }
   // Installed as a package: metrics of bess-probation and of the fleet's inventory.
   for (const char* file : {"/update.prom", "/expected.prom"}) {
-    std::string more;
-    if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
-      print_labelled(config, more);
-    }
+    print_labelled(config, contents_of(std::string(kUpdateFolder) + file));
   }
   return true;
 }
 
 /// One line of bess-probation; empty without one.
 std::string update_note() {
-  std::string note;
-  read_text((std::string(kUpdateFolder) + "/note").c_str(), note);
+  const std::string note = contents_of(std::string(kUpdateFolder) + "/note");
   return note.substr(0, note.find('\n'));
 }
 

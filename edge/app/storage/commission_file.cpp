@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "edge/app/storage/storage_health.h"
 #include "edge/records/log/atomic_file.h"
 #include "shared/crc32.h"
 #include "shared/host/toml_reader.h"
@@ -115,10 +115,7 @@ std::string why_not_commissioned(const AllStored& all) {
 }
 
 void add_file(const std::string& path, Crc32& crc) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  const std::string text = bytes.str();
+  const std::string text = contents_of(path);
   crc.add_bytes(text.data(), text.size());
 }
 

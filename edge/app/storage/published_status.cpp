@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "edge/app/storage/instance_lock.h"
 #include "edge/app/storage/storage_health.h"
@@ -93,9 +91,8 @@ int living_writer_of(const std::optional<RunStatus>& status) {
   const int pid = status->identity.pid;
   if (pid <= 0 || age_ms_of(*status) < 0) return 0;
   if (kill(pid, 0) != 0 && errno != EPERM) return 0;
-  std::string name;
-  const bool is_another =
-      read_text(("/proc/" + std::to_string(pid) + "/comm").c_str(), name) && name != "bess-edge\n";
+  const std::string name = contents_of("/proc/" + std::to_string(pid) + "/comm");
+  const bool is_another = !name.empty() && name != "bess-edge\n";
   return is_another ? 0 : pid;
 }
 
@@ -204,15 +201,6 @@ std::string why_unknown(const EdgeConfig& config, const PublishedStatus& publish
 }
 
 }  // namespace
-
-bool read_text(const char* path, std::string& text) {
-  const std::ifstream file(path);
-  if (!file) return false;
-  std::ostringstream all;
-  all << file.rdbuf();
-  text = all.str();
-  return true;
-}
 
 PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
   PublishedStatus published{.status = newer_status(config), .unknown = ""};

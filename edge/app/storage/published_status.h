@@ -30,7 +30,4 @@ PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock);
 /// Number of the newest record in a stored status; 0 = none.
 std::uint64_t published_log_number(const EdgeConfig& config);
 
-/// Whole text of a file; false when it cannot be read.
-bool read_text(const char* path, std::string& text);
-
 }  // namespace bess

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "edge/records/log/atomic_file.h"
 #include "shared/scaled_clock.h"
@@ -25,12 +25,6 @@ namespace {
 std::string sysfs() {
   const char* const root = std::getenv("BESS_ROOT");
   return std::string(root == nullptr ? "" : root) + "/sys";
-}
-
-/// Text of a file; empty without one.
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Value of "0x0a" at that position; 0 if malformed.
@@ -79,6 +73,13 @@ int write_and_sync(const std::string& path) {
 
 }  // namespace
 
+std::string contents_of(const std::string& path) {
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
 int used_life_percent(std::string_view life_time) {
   constexpr int kTenthsMax = 11;  // life exceeded
   int worst = 0;
@@ -102,14 +103,14 @@ StorageWear storage_wear_of(const std::string& folder) {
   // The device itself, or the disk of a partition.
   for (const std::string& place : {device + "/device", device + "/../device"}) {
     if (wear.used_life_percent == 0) {
-      wear.used_life_percent = used_life_percent(text_of(place + "/life_time"));
+      wear.used_life_percent = used_life_percent(contents_of(place + "/life_time"));
     }
-    if (wear.spare_level == 0) wear.spare_level = spare_level(text_of(place + "/pre_eol_info"));
+    if (wear.spare_level == 0) wear.spare_level = spare_level(contents_of(place + "/pre_eol_info"));
   }
   std::error_code error;
   const auto block_device = std::filesystem::canonical(device, error);
   const std::string errors =
-      text_of(sysfs() + "/fs/ext4/" + block_device.filename().string() + "/errors_count");
+      contents_of(sysfs() + "/fs/ext4/" + block_device.filename().string() + "/errors_count");
   if (error || errors.empty()) return wear;
   std::int64_t count = -1;
   std::from_chars(errors.data(), errors.data() + errors.size(), count);

@@ -10,6 +10,9 @@
 
 namespace bess {
 
+/// Whole text of a file; empty without one.
+std::string contents_of(const std::string& path);
+
 /// Used life in percent, rounded up, from an eMMC's life_time file ("0x01 0x03": two kinds of
 /// cells, in tenths; the worse one); 0 = not reported.
 int used_life_percent(std::string_view life_time);
