@@ -28,28 +28,24 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
     return true;
   }
   CivilTime wall{};
+  const auto utc_on_day_of = [&wall](std::int64_t day_utc_s) {
+    const LocalMinute day = local_minute_of(day_utc_s);
+    wall.year = day.year;
+    wall.month = day.month;
+    wall.day = day.day;
+    return utc_from_local(wall);
+  };
   for (const std::string_view day : {"today ", "yesterday "}) {
     if (!text.starts_with(day)) continue;
     std::string_view clock = text.substr(day.size());
-    const LocalMinute date =
-        local_minute_of(day[0] == 'y' ? yesterday_utc_s(now_utc_s) : now_utc_s);
-    wall.year = date.year;
-    wall.month = date.month;
-    wall.day = date.day;
     if (!detail::take_clock(clock, wall) || !clock.empty()) return false;
-    utc_s = utc_from_local(wall);
+    utc_s = utc_on_day_of(day[0] == 'y' ? yesterday_utc_s(now_utc_s) : now_utc_s);
     return true;
   }
   std::string_view clock = text;
   if (detail::take_clock(clock, wall) && clock.empty()) {
-    for (const std::int64_t day_of : {now_utc_s, yesterday_utc_s(now_utc_s)}) {
-      const LocalMinute day = local_minute_of(day_of);
-      wall.year = day.year;
-      wall.month = day.month;
-      wall.day = day.day;
-      utc_s = utc_from_local(wall);
-      if (utc_s <= now_utc_s) return true;
-    }
+    utc_s = utc_on_day_of(now_utc_s);
+    if (utc_s > now_utc_s) utc_s = utc_on_day_of(yesterday_utc_s(now_utc_s));
     return true;
   }
   if (!detail::take_date(text, wall)) return false;
