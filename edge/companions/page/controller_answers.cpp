@@ -10,27 +10,13 @@
 
 namespace bess {
 
-DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds, Policy policy) {
+DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds) {
   DecisionMap map;
   for (int i = 0; i < kSocCount; ++i) {
     at.soc_index = static_cast<std::int16_t>(i);
-    const Margins margins = find_margins(at, 0, thresholds, policy);
-    map.columns[static_cast<std::size_t>(i)] = {margins.charge_up_to_centi,
-                                                margins.discharge_from_centi};
+    map[static_cast<std::size_t>(i)] = find_margins(at, 0, thresholds, decide_with_student);
   }
   return map;
-}
-
-Json decision_map_json(const DecisionMap& map) {
-  Json columns = Json::list();
-  for (int i = 0; i < kSocCount; ++i) {
-    const DecisionMap::Column& column = map.columns[static_cast<std::size_t>(i)];
-    columns.add(Json::object(
-        {{"soc_percent", Decimals{100.0 * i / (kSocCount - 1), 1}},
-         {"charge_up_to_eur_per_mwh", Decimals{eur_of(column.charge_up_to_centi), 2}},
-         {"discharge_from_eur_per_mwh", Decimals{eur_of(column.discharge_from_centi), 2}}}));
-  }
-  return Json::object({{"columns", std::move(columns)}});
 }
 
 Json decision_map_of(JsonValue why) {
@@ -52,7 +38,16 @@ Json decision_map_of(JsonValue why) {
       whole(set["discharge_at_or_above_eur_per_mwh"], thresholds.high_eur_per_mwh);
   const LatticeState at =
       make_lattice_state(local_minute_of(utc_s), static_cast<std::int16_t>(context), 0, 0);
-  return decision_map_json(make_decision_map(at, thresholds, decide_with_student));
+  const DecisionMap map = make_decision_map(at, thresholds);
+  Json columns = Json::list();
+  for (int i = 0; i < kSocCount; ++i) {
+    const Margins& column = map[static_cast<std::size_t>(i)];
+    columns.add(Json::object(
+        {{"soc_percent", Decimals{100.0 * i / (kSocCount - 1), 1}},
+         {"charge_up_to_eur_per_mwh", Decimals{eur_of(column.charge_up_to_centi), 2}},
+         {"discharge_from_eur_per_mwh", Decimals{eur_of(column.discharge_from_centi), 2}}}));
+  }
+  return Json::object({{"columns", std::move(columns)}});
 }
 
 namespace {

@@ -19,18 +19,10 @@ namespace bess {
 /// Decisions of the student at one minute and context: for every state of charge, the highest price
 /// at which it charges and the lowest at which it discharges. Two prices describe a column, because
 /// the student is proved monotone in the price.
-struct DecisionMap {
-  struct Column {
-    std::int32_t charge_up_to_centi = 0;  ///< EUR/MWh / 100
-    std::int32_t discharge_from_centi = 0;
-  };
-  std::array<Column, kSocCount> columns{};  ///< by SoC, in steps of 0.5 %
-};
+using DecisionMap = std::array<Margins, kSocCount>;  ///< by SoC, in steps of 0.5 %
 
 /// For minute and context of `at`; its price and SoC are ignored.
-DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds, Policy policy);
-
-Json decision_map_json(const DecisionMap& map);
+DecisionMap make_decision_map(LatticeState at, const PriceThresholds& thresholds);
 
 /// Map of the control cycle in `why --json`; no columns without a student decision, or with a
 /// student of another build.

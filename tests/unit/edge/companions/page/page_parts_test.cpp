@@ -41,10 +41,10 @@ TEST(DecisionMap, IsTheStudentAtEveryPrice) {
     at.minute_of_quarter_hour = static_cast<std::int16_t>(random() % 15);
     at.quarter_hour = static_cast<std::int16_t>(random() % 96);
     at.context_class = static_cast<std::int16_t>(1 + random() % kContextClassCount);
-    const DecisionMap map = make_decision_map(at, thresholds, decide_with_student);
+    const DecisionMap map = make_decision_map(at, thresholds);
     for (int j = 0; j < 8; ++j) {
       at.soc_index = static_cast<std::int16_t>(random() % kSocCount);
-      const DecisionMap::Column& column = map.columns[static_cast<std::size_t>(at.soc_index)];
+      const Margins& column = map[static_cast<std::size_t>(at.soc_index)];
       for (int price = kLatticePriceMinEurPerMwh + 1; price < kLatticePriceMaxEurPerMwh; ++price) {
         at.price_eur_per_mwh = static_cast<std::int16_t>(price);
         const std::int32_t centi = price * kCentiPerEur;
