@@ -50,24 +50,16 @@ std::string_view without_checksum(std::string_view text, const ChecksumFrame& fr
 
 namespace {
 
-enum class Durability { kOrdinary, kOnDisk };
-
-struct FileOwnership {
-  uid_t user;
-  gid_t group;
-  mode_t mode;
-};
-
 /// File permissions follow the folder's permissions, independent of umask and creator: the service
 /// must be able to read and replace files made by root.
-void set_ownership(int fd, const FileOwnership& wanted) {
+void set_ownership(int fd, uid_t user, gid_t group, mode_t mode) {
   struct stat made {};
   if (fstat(fd, &made) != 0) return;
   const bool is_root = geteuid() == 0;
-  const bool is_others = made.st_uid != wanted.user || made.st_gid != wanted.group;
+  const bool is_others = made.st_uid != user || made.st_gid != group;
   // On refusal the file keeps its owner.
-  bool is_done = !is_root || !is_others || fchown(fd, wanted.user, wanted.group) == 0;
-  if ((made.st_mode & 07777) != wanted.mode) is_done = fchmod(fd, wanted.mode) == 0 && is_done;
+  bool is_done = !is_root || !is_others || fchown(fd, user, group) == 0;
+  if ((made.st_mode & 07777) != mode) is_done = fchmod(fd, mode) == 0 && is_done;
   static_cast<void>(is_done);
 }
 
@@ -75,11 +67,10 @@ void belong_to_folder(int fd, const char* path) {
   constexpr mode_t kReaders = S_IRGRP | S_IROTH;
   struct stat folder {};
   if (stat(folder_of(path).c_str(), &folder) != 0) return;
-  set_ownership(fd,
-                {folder.st_uid, folder.st_gid, S_IRUSR | S_IWUSR | (folder.st_mode & kReaders)});
+  set_ownership(fd, folder.st_uid, folder.st_gid, S_IRUSR | S_IWUSR | (folder.st_mode & kReaders));
 }
 
-bool replace(const char* path, std::string_view text, Durability durability) {
+bool replace(const char* path, std::string_view text, bool is_synced) {
   char new_path[640];
   const int length = std::snprintf(new_path, sizeof new_path, "%s.new", path);
   if (length < 0 || length >= static_cast<int>(sizeof new_path)) {
@@ -88,8 +79,7 @@ bool replace(const char* path, std::string_view text, Durability durability) {
   }
   const int fd = make_afresh(new_path);
   if (fd < 0) return false;
-  const bool written =
-      append_whole(fd, text) && (durability == Durability::kOrdinary || fsync(fd) == 0);
+  const bool written = append_whole(fd, text) && (!is_synced || fsync(fd) == 0);
   const int write_errno = errno;
   close(fd);
   if (written && rename(new_path, path) == 0) return true;
@@ -148,7 +138,7 @@ bool make_folder(const char* path) {
   const FileDescriptor made(open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   struct stat parent {};
   if (made.get() >= 0 && stat(folder_of(path).c_str(), &parent) == 0) {
-    set_ownership(made.get(), {parent.st_uid, parent.st_gid, kMode});
+    set_ownership(made.get(), parent.st_uid, parent.st_gid, kMode);
   }
   return true;
 }
@@ -164,9 +154,7 @@ bool is_disk_trouble(int error) {
   return error == ENOSPC || error == EDQUOT || error == EFBIG || error == EROFS || error == EIO;
 }
 
-bool replace_file(const char* path, std::string_view text) {
-  return replace(path, text, Durability::kOrdinary);
-}
+bool replace_file(const char* path, std::string_view text) { return replace(path, text, false); }
 
 bool replace_or_remove_file(const char* path, std::string_view text) {
   if (replace_file(path, text)) return true;
@@ -177,7 +165,7 @@ bool replace_or_remove_file(const char* path, std::string_view text) {
 }
 
 bool replace_file_durably(const char* path, std::string_view text) {
-  if (!replace(path, text, Durability::kOnDisk)) return false;
+  if (!replace(path, text, true)) return false;
   sync_folder_of(path);
   return true;
 }
