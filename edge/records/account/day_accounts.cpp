@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "shared/host/exchanged_days.h"
 #include "shared/local_day.h"
@@ -35,16 +36,6 @@ Period month_of(std::int32_t day) {
   return {day / 100 * 100 + 1, day_of(Days{month / last})};
 }
 
-/// "2026-11" and nothing else.
-bool parse_month(std::string_view text, Period& period) {
-  const std::string whole = std::string(text) + "-01";
-  std::string_view rest = whole;
-  CivilTime date{};
-  if (text.size() != 7 || !detail::take_date(rest, date) || !rest.empty()) return false;
-  period = month_of(date.year * 10'000 + date.month * 100 + 1);
-  return true;
-}
-
 /// "2026-11-23" and nothing else.
 bool parse_date(std::string_view text, std::int32_t& day) {
   CivilTime date{};
@@ -53,30 +44,31 @@ bool parse_date(std::string_view text, std::int32_t& day) {
   return true;
 }
 
+/// "2026-11" and nothing else.
+bool parse_month(std::string_view text, Period& period) {
+  std::int32_t first_day = 0;
+  if (text.size() != 7 || !parse_date(std::string(text) + "-01", first_day)) return false;
+  period = month_of(first_day);
+  return true;
+}
+
 }  // namespace
 
 bool parse_period(std::string_view text, std::int32_t today, Period& period) {
   using std::chrono::days;
   const Days now = days_of(today);
-  if (text == "today") {
-    period = {today, today};
-    return true;
-  }
-  if (text == "yesterday") {
-    period = {day_of(now - days{1}), day_of(now - days{1})};
-    return true;
-  }
-  if (text == "week") {
-    const days since_monday = std::chrono::weekday{now} - std::chrono::Monday;
-    period = {day_of(now - since_monday), today};
-    return true;
-  }
-  if (text == "month") {
-    period = {today / 100 * 100 + 1, today};
-    return true;
-  }
-  if (text == "last-month") {
-    period = month_of(day_of(days_of(today / 100 * 100 + 1) - days{1}));
+  const std::int32_t yesterday = day_of(now - days{1});
+  const days since_monday = std::chrono::weekday{now} - std::chrono::Monday;
+  const std::int32_t first_of_month = today / 100 * 100 + 1;
+  const std::pair<std::string_view, Period> named_periods[] = {
+      {"today", {today, today}},
+      {"yesterday", {yesterday, yesterday}},
+      {"week", {day_of(now - since_monday), today}},
+      {"month", {first_of_month, today}},
+      {"last-month", month_of(day_of(days_of(first_of_month) - days{1}))}};
+  for (const auto& [name, named] : named_periods) {
+    if (text != name) continue;
+    period = named;
     return true;
   }
   if (parse_month(text, period)) return true;
