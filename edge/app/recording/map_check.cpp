@@ -239,10 +239,8 @@ std::string MapCheck::finding_of(int point) const {
 
 /// The controller needs this point.
 bool MapCheck::is_needed(int point) const {
-  const bool is_measured =
-      std::find(map_.measure.begin(), map_.measure.end(), point) != map_.measure.end();
-  const bool identifies = std::any_of(map_.identity.begin(), map_.identity.end(),
-                                      [point](const auto& check) { return check.point == point; });
+  const bool is_measured = std::ranges::count(map_.measure, point) > 0;
+  const bool identifies = std::ranges::count(map_.identity, point, &IdentityCheck::point) > 0;
   return (is_measured || identifies) && !map_.points[point].optional;
 }
 

@@ -87,10 +87,7 @@ struct AllStored {
     }
     return best;
   }
-  [[nodiscard]] bool are_absent() const {
-    return std::all_of(places.begin(), places.end(),
-                       [](const Stored& one) { return one.is_absent; });
-  }
+  [[nodiscard]] bool are_absent() const { return std::ranges::all_of(places, &Stored::is_absent); }
 };
 
 AllStored read_places(const EdgeConfig& config) {

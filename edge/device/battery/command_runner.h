@@ -249,8 +249,8 @@ class CommandRunner {
   /// True for points that a device writes when it ends an order by itself.
   [[nodiscard]] bool shows_end(int point) const {
     const auto is_this = [point](const auto& shown) { return shown.point == point; };
-    return std::any_of(map_.active.begin(), map_.active.end(), is_this) ||
-           std::any_of(map_.simulator.at_expiry.begin(), map_.simulator.at_expiry.end(), is_this);
+    return std::ranges::any_of(map_.active, is_this) ||
+           std::ranges::any_of(map_.simulator.at_expiry, is_this);
   }
 
   [[nodiscard]] bool is_as_released(int point, const PointValues& now) const {

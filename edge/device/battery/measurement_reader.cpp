@@ -66,8 +66,7 @@ MeasurementReader::MeasurementReader(const RegisterMap& map)
       alive_(map) {}
 
 bool MeasurementReader::lacks_required_values(const PointValues& live) const {
-  return std::any_of(map_.required.begin(), map_.required.end(),
-                     [&](std::int8_t point) { return live.failed[point]; });
+  return std::ranges::any_of(map_.required, [&](std::int8_t point) { return live.failed[point]; });
 }
 
 bool MeasurementReader::is_unknown(const PointValues& live, std::int8_t point) const {

@@ -9,9 +9,7 @@
 namespace bess {
 namespace {
 
-bool contains(const auto& list, std::int8_t point) {
-  return std::find(list.begin(), list.end(), point) != list.end();
-}
+bool contains(const auto& list, std::int8_t point) { return std::ranges::count(list, point) > 0; }
 
 /// A point of that name is the power, unless the map defines it otherwise.
 void complete_power(RegisterMap& map, std::string_view name, StaticVector<PowerCase, 4>& cases) {
@@ -36,21 +34,16 @@ void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
 }
 
 bool keeps_from_harm(const RegisterMap& map, std::int8_t point) {
-  const auto name = map.points[point].name.view();
-  for (const std::string_view known :
-       {"temperature_min", "temperature_max", "charge_power_max", "discharge_power_max"}) {
-    if (name == known) return true;
-  }
-  return point == map.off_grid.point ||
-         std::any_of(map.alarms.begin(), map.alarms.end(),
-                     [&](const Condition& alarm) { return alarm.point == point; });
+  constexpr std::string_view kNames[] = {"temperature_min", "temperature_max", "charge_power_max",
+                                         "discharge_power_max"};
+  return std::ranges::count(kNames, map.points[point].name.view()) > 0 ||
+         point == map.off_grid.point ||
+         std::ranges::count(map.alarms, point, &Condition::point) > 0;
 }
 
 bool is_power(const RegisterMap& map, std::int8_t point) {
-  return std::any_of(map.measured_power.begin(), map.measured_power.end(), [&](const PowerCase& c) {
-    return c.when.point == point ||
-           std::any_of(c.terms.begin(), c.terms.end(),
-                       [&](const PowerCase::Term& term) { return term.point == point; });
+  return std::ranges::any_of(map.measured_power, [&](const PowerCase& c) {
+    return c.when.point == point || std::ranges::count(c.terms, point, &PowerCase::Term::point) > 0;
   });
 }
 
@@ -142,9 +135,9 @@ void check_roles(TomlTable& root, const RegisterMap& map) {
 }
 
 bool is_reported(const RegisterMap& map, int point) {
-  const auto looks_at = [point](const Condition& c) { return c.point == point; };
-  return looks_at(map.off_grid) || std::any_of(map.alarms.begin(), map.alarms.end(), looks_at) ||
-         std::any_of(map.warnings.begin(), map.warnings.end(), looks_at);
+  return map.off_grid.point == point ||
+         std::ranges::count(map.alarms, point, &Condition::point) > 0 ||
+         std::ranges::count(map.warnings, point, &Condition::point) > 0;
 }
 
 bool is_written(const RegisterMap& map, int point) {
@@ -176,9 +169,7 @@ void check_optional(TomlTable& root, const RegisterMap& map) {
 /// "saved" without a fallback would restore 0; a saved point without a restore is an error.
 void check_saved(TomlTable& root, const RegisterMap& map) {
   for_each_written(map, [&](const WriteValue& value) {
-    const bool listed =
-        std::any_of(map.saved.begin(), map.saved.end(),
-                    [&](const SavedPoint& saved) { return saved.point == value.point; });
+    const bool listed = std::ranges::count(map.saved, value.point, &SavedPoint::point) > 0;
     if (value.argument != Argument::kSaved || listed) return;
     root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
                              ", which is not in the list save");

@@ -11,7 +11,7 @@ void read_measured(TomlTable& table, RegisterMap& map) {
   for_each_text(table, "measure", [&](std::string_view name, const TomlValue& at) {
     const std::int8_t point = require_point(table, at, name, map);
     if (point < 0) return;
-    if (std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end()) {
+    if (std::ranges::count(map.measure, point) > 0) {
       return table.fail_at(at, "measure lists " + quoted(name) + " twice");
     }
     if (map.points[point].optional) {

@@ -148,8 +148,7 @@ Status encode_float(const RegisterPoint& point, std::int64_t value, const Ratio&
 
 bool is_not_implemented(const RegisterPoint& point, const std::uint16_t* raw) {
   const std::uint64_t bits = bits_of(point, raw);
-  return std::find(point.not_implemented.begin(), point.not_implemented.end(), bits) !=
-         point.not_implemented.end();
+  return std::ranges::count(point.not_implemented, bits) > 0;
 }
 
 bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value,

@@ -11,8 +11,7 @@ PointPlaces::PointPlaces(const RegisterMap& map, std::int32_t unit)
 }
 
 bool PointPlaces::begins_walk(const BusExchange& exchange) const {
-  return std::find(map_.model_bases.begin(), map_.model_bases.end(), exchange.address) !=
-             map_.model_bases.end() &&
+  return std::ranges::count(map_.model_bases, exchange.address) > 0 &&
          exchange.registers[0] == 0x5375 && exchange.registers[1] == 0x6E53;  // "SunS"
 }
 
@@ -88,8 +87,8 @@ namespace {
 
 bool needs_absent(const PointValues& live, const PowerCase& c) {
   return (c.when.point >= 0 && live.absent[c.when.point]) ||
-         std::any_of(c.terms.begin(), c.terms.end(),
-                     [&](const PowerCase::Term& term) { return live.absent[term.point]; });
+         std::ranges::any_of(c.terms,
+                             [&](const PowerCase::Term& term) { return live.absent[term.point]; });
 }
 
 }  // namespace
