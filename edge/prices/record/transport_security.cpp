@@ -11,6 +11,7 @@
 #include <iterator>
 #include <string>
 
+#include "edge/records/log/battery_name.h"
 #include "shared/file_descriptor.h"
 
 namespace bess {
@@ -77,16 +78,11 @@ std::string_view trimmed(std::string_view text) {
 
 /// "Name: value" with a name of letters, digits, - and _, and no control character.
 bool is_header(std::string_view line) {
-  const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos || colon == 0) return false;
-  for (const char c : line.substr(0, colon)) {
-    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    if (!is_letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
-  }
-  for (const char c : line) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) return false;
-  }
-  return true;
+  const std::size_t name_end = line.find_first_not_of(kNameCharacters);
+  const bool is_named = name_end != line.npos && name_end > 0 && line[name_end] == ':';
+  return is_named && std::ranges::none_of(line, [](char c) {
+           return static_cast<unsigned char>(c) < ' ' || c == 127;
+         });
 }
 
 /// Stores the header lines of a file's text. False with the number of the first invalid line.

@@ -28,13 +28,8 @@ std::string machine_id() {
 }  // namespace
 
 bool is_battery_name(std::string_view name) {
-  constexpr std::string_view kOthers = "-_";
-  for (const char c : name) {
-    const bool is_plain =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (!is_plain && kOthers.find(c) == kOthers.npos) return false;
-  }
-  return !name.empty() && name.size() <= kNameMax;
+  return !name.empty() && name.size() <= kNameMax &&
+         name.find_first_not_of(kNameCharacters) == name.npos;
 }
 
 std::string battery_id(const std::string& state_folder) {

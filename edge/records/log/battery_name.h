@@ -20,6 +20,9 @@ struct InstalledFolders {
 inline constexpr InstalledFolders kInstalledEdge{"/var/lib/bess", "/run/bess"};
 inline constexpr InstalledFolders kInstalledNotify{"/var/lib/bess-notify", "/run/bess-notify"};
 
+inline constexpr std::string_view kNameCharacters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
 /// 1 to 63 letters, digits, - and _: valid as topic level and label value.
 bool is_battery_name(std::string_view name);
 
