@@ -33,7 +33,6 @@ class PriceHistory {
   }
 
   [[nodiscard]] int rows() const { return rows_; }
-  [[nodiscard]] int hours() const { return minutes_ / 60; }
   /// From the oldest row to now, rounded up to whole hours; 0 = no row.
   [[nodiscard]] int hours_covered() const {
     return rows_ == 0 ? 0 : (minutes_ - oldest_ + 59) / 60;

@@ -42,7 +42,6 @@ class DayAccount {
   void add(const DayAccount& other);
 
   [[nodiscard]] bool is_empty() const { return cycles_ == 0; }
-  [[nodiscard]] std::int32_t local_day() const { return local_day_; }
   [[nodiscard]] double earned_eur() const { return money().earned_eur; }
   [[nodiscard]] double charged_kwh() const { return exchanged_.charged_wh / 1'000; }
   [[nodiscard]] double discharged_kwh() const { return exchanged_.discharged_wh / 1'000; }
