@@ -10,15 +10,15 @@
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/local_moment.h"
 #include "shared/host/embed/build_info.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
 
 std::string version_text() {
-  char student[16];
-  std::snprintf(student, sizeof student, "%08x", student_hash());
-  return std::string("bess-edge " BESS_VERSION ", student ") + student + ": " +
-         student_provenance() + "\n" + build_line();
+  return formatted("bess-edge " BESS_VERSION ", student %08x: %s\n", student_hash(),
+                   student_provenance()) +
+         build_line();
 }
 
 }  // namespace

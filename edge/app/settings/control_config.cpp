@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -15,6 +14,7 @@
 #include "edge/device/registers/map_file.h"
 #include "edge/prices/record/transport_security.h"
 #include "edge/records/log/battery_name.h"
+#include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -431,20 +431,13 @@ void set_supervision(const BatteryConfig& battery, ControlSettings& control) {
 }
 
 FixedText<159> link_place(const BatteryLinkSettings& link) {
-  char place[160];
-  if (link.rtu) {
-    std::snprintf(place, sizeof place, "%s", link.device.c_str());
-  } else {
-    std::snprintf(place, sizeof place, "%s:%d", link.host.c_str(), link.port);
-  }
-  return FixedText<159>(place);
+  if (link.rtu) return link.device.view();
+  return formatted("%s:%d", link.host.c_str(), link.port).c_str();
 }
 
 FixedText<159> battery_place(const BatteryConfig& battery) {
   const int unit = battery.link.unit >= 0 ? battery.link.unit : battery.map.unit;
-  char place[180];
-  std::snprintf(place, sizeof place, "%s unit %d", link_place(battery.link).c_str(), unit);
-  return FixedText<159>(place);
+  return formatted("%s unit %d", link_place(battery.link).c_str(), unit).c_str();
 }
 
 }  // namespace bess

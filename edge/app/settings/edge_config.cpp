@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "edge/prices/record/published_prices.h"
 #include "edge/records/log/battery_name.h"
 #include "shared/crc32.h"
+#include "shared/host/text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -135,9 +135,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
 namespace {
 
 FixedText<639> file_in(const char* folder, std::string_view name) {
-  char path[640];
-  std::snprintf(path, sizeof path, "%s/%.*s", folder, static_cast<int>(name.size()), name.data());
-  return {path};
+  return std::string(folder).append("/").append(name).c_str();
 }
 
 }  // namespace
@@ -160,10 +158,8 @@ FixedText<639> prices_file(const EdgeConfig& config) {
       std::filesystem::absolute(config.state.folder.c_str(), ignored).lexically_normal().string();
   Crc32 crc;
   crc.add_bytes(folder.data(), folder.size());
-  char path[64];
-  std::snprintf(path, sizeof path, "/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()),
-                crc.value());
-  return {static_cast<const char*>(path)};
+  return formatted("/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()), crc.value())
+      .c_str();
 }
 
 std::int32_t day_ahead_offset_s(const EdgeConfig& config) {

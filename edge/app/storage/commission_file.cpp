@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "edge/app/storage/storage_health.h"
 #include "edge/records/log/atomic_file.h"
 #include "shared/crc32.h"
+#include "shared/host/text.h"
 #include "shared/host/toml_reader.h"
 #include "shared/utc_text.h"
 
@@ -128,9 +128,7 @@ std::string map_checksum(const EdgeConfig& config) {
   if (const auto* name = include == nullptr ? nullptr : include->as<std::string>()) {
     add_file((std::filesystem::path(path).parent_path() / *name).string(), crc);
   }
-  char hex[16];
-  std::snprintf(hex, sizeof hex, "%08x", crc.value());
-  return hex;
+  return formatted("%08x", crc.value());
 }
 
 /// Address with the unit ids of the map's groups: another id is another inverter.

@@ -24,13 +24,10 @@ bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
 FileMessage foreign_file_error(const char* path) {
   struct stat info {};
   const bool is_known = lstat(path, &info) == 0;
-  char line[768];
-  std::snprintf(
-      line, sizeof line,
-      "%.500s belongs to user %ld, not to root or the user of this bess-edge (%ld): remove it, "
-      "unless that user runs a bess-edge",
-      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid()));
-  return {line};
+  return FileMessage(formatted(
+      "%.500s belongs to user %ld, not to root or the user of this bess-edge (%ld): remove "
+      "it, unless that user runs a bess-edge",
+      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid())));
 }
 
 bool check_file_owner(const char* path, FileMessage& error) {
@@ -43,12 +40,10 @@ bool check_file_owner(const char* path, FileMessage& error) {
 bool check_root_leftover(const char* path, FileMessage& error) {
   struct stat info {};
   if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
-  char line[1'400];  // longer than a message, which is cut
-  std::snprintf(line, sizeof line,
-                "%s belongs to a bess-edge started as root: if it no longer runs (pgrep -u root -x "
+  error = FileMessage(
+      formatted("%s belongs to a bess-edge started as root: if it no longer runs (pgrep -u root -x "
                 "bess-edge), remove its lock: sudo rm %s",
-                path, path);
-  error = FileMessage(line);
+                path, path));
   return false;
 }
 
@@ -186,13 +181,10 @@ bool InstanceLock::take(const char* path, const std::string& what, FileMessage& 
   }
   FileMessage stranger;
   const bool is_strangers = !check_file_owner(path, stranger);
-  char line[1'700];  // longer than a message, which is cut
-  std::snprintf(line, sizeof line,
-                "%s is in use by another program (process %d, lock %s), also reading needs "
-                "exclusive access: stop that program, or use bess-edge status%s%s",
-                what.c_str(), lock_owner_pid(path), path, is_strangers ? "; " : "",
-                stranger.c_str());
-  static_cast<void>(error.assign(line));
+  error = FileMessage(formatted(
+      "%s is in use by another program (process %d, lock %s), also reading needs "
+      "exclusive access: stop that program, or use bess-edge status%s%s",
+      what.c_str(), lock_owner_pid(path), path, is_strangers ? "; " : "", stranger.c_str()));
   return false;
 }
 
