@@ -5,7 +5,6 @@
 //                                                     +-> EventLog (own thread), ServiceNotify
 #include "edge/app/commands/check.h"
 #include "edge/app/commands/command.h"
-#include "edge/app/commands/self_test.h"
 #include "edge/app/program/controller.h"
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/real_world.h"

@@ -1,4 +1,5 @@
-#include "edge/app/commands/self_test.h"
+// Self-test of machine and site for the controller: `bess-edge --self-test`.
+#include "edge/app/commands/check.h"
 
 #include <expected_signature.h>
 #include <sys/mman.h>
@@ -9,7 +10,6 @@
 #include <fstream>
 #include <string>
 
-#include "edge/app/commands/check.h"
 #include "edge/app/program/edge_clock.h"
 #include "edge/app/program/startup.h"
 #include "edge/app/storage/instance_lock.h"
