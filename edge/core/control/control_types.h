@@ -4,6 +4,7 @@
 // Power is grid side, positive when the battery charges. Prices are integers in 0.01 EUR/MWh.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -12,7 +13,6 @@
 #include "edge/core/control/cycle_budget.h"
 #include "edge/core/control/frozen_price.h"
 #include "edge/core/control/hold.h"
-#include "edge/core/control/lost_order_history.h"
 #include "edge/core/control/outlook.h"
 #include "edge/core/control/reasons.h"
 #include "edge/core/control/site_types.h"
@@ -93,6 +93,25 @@ struct ResponseFindings {
   std::int32_t ramp_w_per_s = 0;          ///< ramp after an order, too slow for the map
   std::int16_t locked_readings = 0;       ///< consecutive readings whose own limits permit no power
   std::int32_t wrong_energy_e6 = 0;  ///< energy against or beyond orders, share of the capacity
+};
+
+/// Lost orders among the newest orders with power. Logged, so that a restart continues the count;
+/// shown by status, health and metrics.
+struct LostOrderHistory {
+  static constexpr int kRemembered = 30;  ///< one hour
+
+  std::uint32_t orders = 0;  ///< one bit per order, 1 = lost, newest in the lowest bit
+  std::int16_t judged = 0;   ///< number of valid bits, 0..30
+  std::int16_t lost = 0;     ///< lost orders among them
+  bool is_found = false;     ///< finding: too many, and no long enough series held since
+
+  constexpr void note(bool is_lost) {
+    constexpr std::uint32_t kMask = (1U << kRemembered) - 1;
+    orders = (orders << 1 | (is_lost ? 1U : 0U)) & kMask;
+    if (judged < kRemembered) ++judged;
+    lost = static_cast<std::int16_t>(std::popcount(orders));
+  }
+  friend constexpr bool operator==(const LostOrderHistory&, const LostOrderHistory&) = default;
 };
 
 struct GuardDecision {

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "edge/core/control/lost_order_history.h"
+#include "edge/core/control/control_types.h"
 #include "edge/core/supervision/leaky_count.h"
 #include "edge/core/supervision/response.h"
 #include "shared/units_and_limits.h"
