@@ -19,10 +19,11 @@
 
 namespace bess {
 
-bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line) {
+bool ChangeLines::add_hold_line(const CycleRecord& record, const RunIdentity& identity,
+                                TextBuffer& line) {
   if (record.mode == Mode::kStopping) return false;  // it reads no hold; the next run continues it
   const HoldReport now = record.hold;
-  const HoldReport before = std::exchange(before_, now);
+  const HoldReport before = std::exchange(hold_, now);
   if (now.unreadable) {
     if (before.unreadable) return false;
     line.add(
@@ -35,7 +36,7 @@ bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuff
         before.held && before.power_w == now.power_w && before.until_utc_s == now.until_utc_s;
     if (is_same) return false;
     line.add("hold: %d W until %s%s", now.power_w, utc_text(now.until_utc_s).c_str(),
-             is_in_control ? "" : " (read-only: not written)");
+             identity.control ? "" : " (read-only: not written)");
     return true;
   }
   if (before.held) {
@@ -47,7 +48,7 @@ bool HoldLines::add_line(const CycleRecord& record, bool is_in_control, TextBuff
   return before.unreadable;
 }
 
-bool MeterLines::add_trust_line(const CycleRecord& record, TextBuffer& line) {
+bool ChangeLines::add_trust_line(const CycleRecord& record, const RunIdentity&, TextBuffer& line) {
   if (record.mode == Mode::kStopping) return false;  // no measurement; the next run continues
   const MeterTrust& trust = record.site.trust;
   if (std::exchange(was_mismatch_, trust.is_mismatch) == trust.is_mismatch) return false;
@@ -62,7 +63,7 @@ bool MeterLines::add_trust_line(const CycleRecord& record, TextBuffer& line) {
   return true;
 }
 
-bool MeterLines::add_house_line(const CycleRecord& record, TextBuffer& line) {
+bool ChangeLines::add_house_line(const CycleRecord& record, const RunIdentity&, TextBuffer& line) {
   if (record.mode == Mode::kStopping) return false;
   const bool is_implausible = record.site.house_is_implausible;
   if (std::exchange(was_implausible_, is_implausible) == is_implausible) return false;
@@ -87,8 +88,8 @@ const char* name_of(const RunIdentity& identity, int number) {
 
 }  // namespace
 
-bool ReadingLines::add_lost_line(const CycleRecord& record, const RunIdentity& identity,
-                                 TextBuffer& line) {
+bool ChangeLines::add_lost_line(const CycleRecord& record, const RunIdentity& identity,
+                                TextBuffer& line) {
   const std::int16_t now = record.measurement.lost_point;
   const std::int16_t before = std::exchange(lost_, now);
   if (record.mode == Mode::kStopping || now == before) return false;
@@ -97,8 +98,8 @@ bool ReadingLines::add_lost_line(const CycleRecord& record, const RunIdentity& i
   return true;
 }
 
-bool ReadingLines::add_cut_line(const CycleRecord& record, const RunIdentity& identity,
-                                TextBuffer& line) {
+bool ChangeLines::add_cut_line(const CycleRecord& record, const RunIdentity& identity,
+                               TextBuffer& line) {
   if (!record.has_measurement) return false;
   const std::int16_t now = record.measurement.cut_point;
   if (std::exchange(cut_, now) == now || now == 0) return false;
@@ -403,26 +404,20 @@ void EventLog::report_disk(bool is_failing, const CycleRecord* record) {
   write_journal_line(JournalLevel::kWarning, line.view());
 }
 
-/// Of hold, readings and meter.
 void EventLog::report_changes(const CycleRecord& record) {
-  const auto report_one = [](bool is_trouble, const auto& add_line) {
+  using AddLine = bool (ChangeLines::*)(const CycleRecord&, const RunIdentity&, TextBuffer&);
+  const std::pair<AddLine, bool> lines[] = {
+      {&ChangeLines::add_hold_line, record.hold.unreadable},
+      {&ChangeLines::add_lost_line, record.measurement.lost_point != 0},
+      {&ChangeLines::add_cut_line, true},
+      {&ChangeLines::add_trust_line, record.site.trust.is_mismatch},
+      {&ChangeLines::add_house_line, record.site.house_is_implausible}};
+  for (const auto& [add_line, is_trouble] : lines) {
     char text[320];
     TextBuffer line(text);
-    if (!add_line(line)) return;
+    if (!(change_lines_.*add_line)(record, identity_, line)) continue;
     write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, line.view());
-  };
-  report_one(record.hold.unreadable, [&](TextBuffer& line) {
-    return hold_lines_.add_line(record, identity_.control, line);
-  });
-  report_one(record.measurement.lost_point != 0, [&](TextBuffer& line) {
-    return reading_lines_.add_lost_line(record, identity_, line);
-  });
-  report_one(
-      true, [&](TextBuffer& line) { return reading_lines_.add_cut_line(record, identity_, line); });
-  report_one(record.site.trust.is_mismatch,
-             [&](TextBuffer& line) { return meter_lines_.add_trust_line(record, line); });
-  report_one(record.site.house_is_implausible,
-             [&](TextBuffer& line) { return meter_lines_.add_house_line(record, line); });
+  }
 }
 
 void EventLog::report_run_folder() {

@@ -21,39 +21,22 @@
 
 namespace bess {
 
-// Journal lines on changes of holds, meter and battery readings, written by the log thread without
-// allocation.
-
-// Operator's hold: a line when it begins, changes or ends, and once when its file is unreadable.
-class HoldLines {
+/// Journal lines on changes of hold, meter and battery readings, written by the log thread without
+/// allocation. Each function appends the line of this control cycle; false without one.
+class ChangeLines {
  public:
-  /// Appends the line of this control cycle; false without one.
-  bool add_line(const CycleRecord& record, bool is_in_control, TextBuffer& line);
-
- private:
-  HoldReport before_{};
-};
-
-// Meter mismatch and implausible house load: a line at begin and end.
-class MeterLines {
- public:
-  /// Appends the line of this control cycle; false without one.
-  bool add_trust_line(const CycleRecord& record, TextBuffer& line);
-  bool add_house_line(const CycleRecord& record, TextBuffer& line);
-
- private:
-  bool was_mismatch_ = false;
-  bool was_implausible_ = false;
-};
-
-// Readings that are missing or out of range: a line at begin and end.
-class ReadingLines {
- public:
-  /// Appends the line of this control cycle; false without one.
+  /// When a hold begins, changes or ends, and once when its file is unreadable.
+  bool add_hold_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
+  // At begin and end: meter mismatch, implausible house load, a reading missing or out of range.
+  bool add_trust_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
+  bool add_house_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
   bool add_lost_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
   bool add_cut_line(const CycleRecord& record, const RunIdentity& identity, TextBuffer& line);
 
  private:
+  HoldReport hold_{};
+  bool was_mismatch_ = false;
+  bool was_implausible_ = false;
   std::int16_t lost_ = 0;
   std::int16_t cut_ = 0;
 };
@@ -140,9 +123,7 @@ class EventLog {
   bool was_failing_ = false;
   bool was_run_failing_ = false;
   bool is_ending_run_ = false;
-  HoldLines hold_lines_;
-  MeterLines meter_lines_;
-  ReadingLines reading_lines_;
+  ChangeLines change_lines_;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;
   std::atomic<std::int64_t> kept_{0};

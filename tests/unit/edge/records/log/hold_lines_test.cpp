@@ -22,13 +22,15 @@ struct Journal {
     record.hold = hold;
     char text[256];
     TextBuffer line(text);
-    const bool said = lines.add_line(record, is_in_control, line);
+    RunIdentity identity;
+    identity.control = is_in_control;
+    const bool said = lines.add_hold_line(record, identity, line);
     EXPECT_EQ(said, !line.view().empty());
     EXPECT_FALSE(line.was_cut());
     return std::string(line.view());
   }
 
-  HoldLines lines;
+  ChangeLines lines;
   Mode mode = Mode::kRunning;
 };
 
@@ -66,21 +68,21 @@ TEST(HoldLines, TheEndOfTheProcessIsNotTheEndOfTheHold) {
 
 struct MeterJournal {
   CycleRecord record{.mode = Mode::kRunning};
-  MeterLines lines;
+  ChangeLines lines;
 
   std::string trust(bool is_mismatch, Mode mode = Mode::kRunning) {
     record.mode = mode;
     record.site.trust = {.is_mismatch = is_mismatch, .pause_until_utc_s = 1'679'875'920};
-    return said(&MeterLines::add_trust_line);
+    return said(&ChangeLines::add_trust_line);
   }
   std::string house(bool is_implausible) {
     record.site.house_is_implausible = is_implausible;
-    return said(&MeterLines::add_house_line);
+    return said(&ChangeLines::add_house_line);
   }
-  std::string said(bool (MeterLines::*add)(const CycleRecord&, TextBuffer&)) {
+  std::string said(bool (ChangeLines::*add)(const CycleRecord&, const RunIdentity&, TextBuffer&)) {
     char text[320];
     TextBuffer line(text);
-    const bool is_said = (lines.*add)(record, line);
+    const bool is_said = (lines.*add)(record, RunIdentity{}, line);
     EXPECT_EQ(is_said, !line.view().empty());
     EXPECT_FALSE(line.was_cut());
     return std::string(line.view());
