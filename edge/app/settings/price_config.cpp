@@ -120,15 +120,8 @@ TransportNote transport_note(const PriceConfig& price) {
   if (!price.history.url.empty()) {
     weakest = std::max(weakest, transport_of(price.history.url.view()));
   }
-  switch (weakest) {
-    case UrlTransport::kSecure:
-      return {.text = "https"};
-    case UrlTransport::kLoopback:
-      return {.text = "plain http on this machine"};
-    case UrlTransport::kOpen:
-    case UrlTransport::kUnusable:
-      break;
-  }
+  if (weakest == UrlTransport::kSecure) return {.text = "https"};
+  if (weakest == UrlTransport::kLoopback) return {.text = "plain http on this machine"};
   return {.is_open = true,
           .text = "prices come over plain http (allow_http) and could be forged in transit"};
 }

@@ -57,16 +57,11 @@ std::optional<RunStatus> stored_status(const FixedText<511>& status_json) {
     return std::nullopt;
   }
   RunStatus status;
-  switch (read_status(path.c_str(), status)) {
-    case StatusFile::kRead:
-      return status;
-    case StatusFile::kDamaged:
-      report(JournalLevel::kWarning, "%s is damaged or of another version: ignored", path.c_str());
-      return std::nullopt;
-    case StatusFile::kAbsent:
-      break;
-  }
-  if (errno == EACCES) {
+  const StatusFile file = read_status(path.c_str(), status);
+  if (file == StatusFile::kRead) return status;
+  if (file == StatusFile::kDamaged) {
+    report(JournalLevel::kWarning, "%s is damaged or of another version: ignored", path.c_str());
+  } else if (errno == EACCES) {
     report(JournalLevel::kWarning,
            "%s is not readable by this user: run this as the service's user, or with sudo",
            path.c_str());

@@ -245,15 +245,9 @@ std::int32_t MeterCheck::power_w_max(std::int64_t now_utc_s) const {
   const std::int64_t retreat_s = test_power_until_utc_s_ - now_utc_s;
   const bool retreats = retreat_s > 0 && retreat_s <= kSecondsPerStep;
   if (retreats) return 0;
-  switch (state_at(now_utc_s)) {
-    case State::kTrusted:
-      return kAnyPowerW;
-    case State::kTested:
-      return test_power_w(now_utc_s);
-    case State::kPaused:
-      break;
-  }
-  return 0;
+  const State state = state_at(now_utc_s);
+  if (state == State::kTested) return test_power_w(now_utc_s);
+  return state == State::kTrusted ? kAnyPowerW : 0;
 }
 
 /// On in every second cycle, so that there are steps to judge.

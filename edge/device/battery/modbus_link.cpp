@@ -32,16 +32,9 @@ LinkPauses pauses_of(const LinkTiming& timing, const ScaledClock& clock) {
 
 BusOutcome outcome_of(Status status, int exception) {
   if (exception != 0) return BusOutcome::kException;
-  switch (status) {
-    case Status::kOk:
-      return BusOutcome::kAnswered;
-    case Status::kTimeout:
-      return BusOutcome::kTimeout;
-    case Status::kBadReply:
-      return BusOutcome::kBadReply;
-    default:
-      return BusOutcome::kNotConnected;
-  }
+  if (status == Status::kOk) return BusOutcome::kAnswered;
+  if (status == Status::kTimeout) return BusOutcome::kTimeout;
+  return status == Status::kBadReply ? BusOutcome::kBadReply : BusOutcome::kNotConnected;
 }
 
 std::int64_t late_reply_ns_max(const LinkTiming& timing, const ScaledClock& clock) {

@@ -270,15 +270,8 @@ Health assess_health(const HealthInputs& in) {
 }
 
 std::string_view health_name(HealthLevel level) {
-  switch (level) {
-    case HealthLevel::kOk:
-      return "ok";
-    case HealthLevel::kDegraded:
-      return "degraded";
-    case HealthLevel::kNotRunning:
-      break;
-  }
-  return "not running";
+  if (level == HealthLevel::kOk) return "ok";
+  return level == HealthLevel::kDegraded ? "degraded" : "not running";
 }
 
 }  // namespace bess

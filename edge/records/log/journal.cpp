@@ -37,18 +37,9 @@ void write_pieces(int fd, JournalLevel level, std::string_view lead, std::string
 }  // namespace
 
 const char* journal_prefix(int fd, JournalLevel level) {
+  constexpr const char* kPrefixes[] = {"<3>", "<4>", "<5>", "<6>"};
   if (!leads_to_journal(fd)) return "";
-  switch (level) {
-    case JournalLevel::kError:
-      return "<3>";
-    case JournalLevel::kWarning:
-      return "<4>";
-    case JournalLevel::kNotice:
-      return "<5>";
-    case JournalLevel::kInfo:
-      break;
-  }
-  return "<6>";
+  return kPrefixes[static_cast<int>(level) - static_cast<int>(JournalLevel::kError)];
 }
 
 void write_journal_line(JournalLevel level, std::string_view text) {

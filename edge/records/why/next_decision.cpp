@@ -45,15 +45,8 @@ std::vector<ReserveChange> changes_ahead(const ReservePlan& plan, std::int64_t n
 }
 
 const char* doing(Action action) {
-  switch (action) {
-    case Action::kDischarge:
-      return "discharging";
-    case Action::kIdle:
-      return "idle";
-    case Action::kCharge:
-      break;
-  }
-  return "charging";
+  if (action == Action::kIdle) return "idle";
+  return action == Action::kCharge ? "charging" : "discharging";
 }
 
 std::string ahead_text(const NextDecision& next) {
