@@ -107,15 +107,11 @@ std::string history_note(const LevelStartReport& level_report) {
 
 std::string source_note(const LevelStartReport& level_report) {
   const std::string level = eur_text(level_report.start.level.centi_eur_per_mwh());
-  switch (level_report.start.source) {
-    case LevelSource::kLog:
-      return level + ", from the decision log";
-    case LevelSource::kHistory:
-      return level + ", " + history_note(level_report);
-    case LevelSource::kSetting:
-      return level + ", from level_start_eur_per_mwh; no history: " + why_no_more(level_report);
-    case LevelSource::kNone:
-      break;
+  const LevelSource source = level_report.start.source;
+  if (source == LevelSource::kLog) return level + ", from the decision log";
+  if (source == LevelSource::kHistory) return level + ", " + history_note(level_report);
+  if (source == LevelSource::kSetting) {
+    return level + ", from level_start_eur_per_mwh; no history: " + why_no_more(level_report);
   }
   return "set by the first price; no history: " + why_no_more(level_report);
 }

@@ -99,18 +99,12 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
 /// Connects, waits for the gap, and excludes replies that could be mistaken for this request's.
 Status ModbusLink::make_ready(const ModbusRequest& request) {
   if (state_.state(now()) == LinkState::kConnected && wire_.is_lost()) close();
-  switch (state_.state(now())) {
-    case LinkState::kBackingOff:
-      return connect_status_;
-    case LinkState::kDisconnected:
-      if (connect() != Status::kOk) return connect_status_;
-      break;
-    case LinkState::kDraining:
-      sleep_until(state_.ready_ns());
-      state_.on_drained();
-      break;
-    case LinkState::kConnected:
-      break;
+  const LinkState state = state_.state(now());
+  if (state == LinkState::kBackingOff) return connect_status_;
+  if (state == LinkState::kDisconnected && connect() != Status::kOk) return connect_status_;
+  if (state == LinkState::kDraining) {
+    sleep_until(state_.ready_ns());
+    state_.on_drained();
   }
   sleep_until(state_.ready_ns());
   if (!rtu_) return Status::kOk;

@@ -87,20 +87,13 @@ bool writes_argument(const RegisterMap& map, Command command, Argument wanted) {
 }
 
 bool is_fed_by(const RegisterMap& map, Command command) {
-  using enum Watchdog::Kind;
-  const bool duration = writes_argument(map, command, Argument::kDuration) ||
-                        writes_argument(map, command, Argument::kDurationMinutes);
-  switch (map.watchdog.kind) {
-    case kDuration:
-    case kRevertTimer:
-      return duration;
-    case kHeartbeat:
-      return writes_argument(map, command, Argument::kHeartbeat);
-    case kNone:
-    case kRewrite:
-      break;
+  const Watchdog::Kind kind = map.watchdog.kind;
+  if (kind == Watchdog::Kind::kHeartbeat) {
+    return writes_argument(map, command, Argument::kHeartbeat);
   }
-  return true;
+  const bool has_timer = kind == Watchdog::Kind::kDuration || kind == Watchdog::Kind::kRevertTimer;
+  return !has_timer || writes_argument(map, command, Argument::kDuration) ||
+         writes_argument(map, command, Argument::kDurationMinutes);
 }
 
 /// Without a refresh the watchdog would end every order, or never one.

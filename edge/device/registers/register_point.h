@@ -69,15 +69,8 @@ struct Condition {
   std::int64_t value = 0;
 
   [[nodiscard]] constexpr bool holds(std::int64_t read) const {
-    switch (test) {
-      case Test::kEqual:
-        return read == value;
-      case Test::kNotEqual:
-        return read != value;
-      case Test::kHasBits:
-        return (read & value) != 0;
-    }
-    return false;
+    if (test == Test::kHasBits) return (read & value) != 0;
+    return (read == value) == (test == Test::kEqual);
   }
 };
 

@@ -123,16 +123,10 @@ std::string point_name(const RunIdentity& identity, int number) {
 
 /// Code of an outage: the same while the mode is still running and after it has changed.
 std::string_view outage_code(Reason reason) {
-  switch (reason) {
-    case Reason::kLink:
-      return info_of(Alert::kBattery).code;
-    case Reason::kNoPrice:
-    case Reason::kPriceAge:
-    case Reason::kPriceQuarterHour:
-      return info_of(Alert::kPrices).code;
-    default:
-      return reason_name(reason);
-  }
+  if (reason == Reason::kLink) return info_of(Alert::kBattery).code;
+  const bool is_price = reason == Reason::kNoPrice || reason == Reason::kPriceAge ||
+                        reason == Reason::kPriceQuarterHour;
+  return is_price ? info_of(Alert::kPrices).code : reason_name(reason);
 }
 
 /// One alert per outage: outside mode running, that of the mode says what failed.
