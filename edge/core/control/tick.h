@@ -38,19 +38,11 @@ struct ModeInputs {
 constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
   if (in.stop_requested || mode == Mode::kStopping) return Mode::kStopping;
   if (!in.stop_reason) return Mode::kRunning;
-  switch (mode) {
-    case Mode::kRunning:
-      return in.release_now ? Mode::kSafe : Mode::kHolding;
-    case Mode::kHolding:
-      return in.hold_elapsed || in.release_now ? Mode::kSafe : Mode::kHolding;
-    case Mode::kStart:
-      if (!in.order_found) return Mode::kStart;
-      return in.release_now ? Mode::kSafe : Mode::kHolding;
-    case Mode::kSafe:
-    case Mode::kStopping:
-      break;
-  }
-  return mode;
+  const bool has_order =
+      mode == Mode::kRunning || mode == Mode::kHolding || (mode == Mode::kStart && in.order_found);
+  if (!has_order) return mode;
+  const bool is_held_out = mode == Mode::kHolding && in.hold_elapsed;
+  return in.release_now || is_held_out ? Mode::kSafe : Mode::kHolding;
 }
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {

@@ -198,22 +198,15 @@ class ControlLoop {
     const std::int64_t start_ns = clock_.monotonic_ns();
     const Status reading_status = record.battery_status;
     watch_.forget_failed_cut();
-    switch (mode_) {
-      case Mode::kRunning:
-        write_order(record.ordered_power_w, record, order_.write_until_ns());
-        if (record.has_measurement) {
-          of<SupervisionPart>().supervision.on_ordered(now_utc_s(), record.battery_status);
-        }
-        break;
-      case Mode::kHolding:
-        write_order(0, record, order_.write_until_ns());
-        break;
-      case Mode::kSafe:
-        if (order_.exists()) write_release(record);
-        break;
-      case Mode::kStart:
-      case Mode::kStopping:
-        break;
+    if (mode_ == Mode::kRunning) {
+      write_order(record.ordered_power_w, record, order_.write_until_ns());
+      if (record.has_measurement) {
+        of<SupervisionPart>().supervision.on_ordered(now_utc_s(), record.battery_status);
+      }
+    } else if (mode_ == Mode::kHolding) {
+      write_order(0, record, order_.write_until_ns());
+    } else if (mode_ == Mode::kSafe && order_.exists()) {
+      write_release(record);
     }
     record.write_us = elapsed_us(start_ns);
     if (record.battery_status == Status::kOk) record.battery_status = reading_status;
