@@ -337,25 +337,15 @@ void read_outlook(TomlTable table, OutlookSettings& outlook) {
 
 namespace {
 
-struct CapacityRange {
-  std::int64_t least_wh;
-  std::int64_t most_wh;
-};
-
-/// Range that a battery of the configured capacity reports.
-CapacityRange capacity_range(const BatteryConfig& battery) {
-  const std::int64_t capacity_wh = battery.capacity_wh;
-  const std::int64_t tolerance_wh = capacity_wh / 4;  // ageing and rounding
-  return {.least_wh = capacity_wh - tolerance_wh, .most_wh = capacity_wh + tolerance_wh};
-}
+/// Difference of the capacity that a battery reports from the configured one: ageing and rounding.
+std::int32_t capacity_tolerance_wh(const BatteryConfig& battery) { return battery.capacity_wh / 4; }
 
 /// The battery must report the configured capacity, else it is another battery.
 void expect_capacity(BatteryConfig& battery) {
-  const CapacityRange range = capacity_range(battery);
   for (IdentityCheck& check : battery.map.identity) {
     if (battery.map.points[check.point].name != "capacity") continue;
-    check.value_min = range.least_wh;
-    check.value_max = range.most_wh;
+    check.value_min = battery.capacity_wh - capacity_tolerance_wh(battery);
+    check.value_max = battery.capacity_wh + capacity_tolerance_wh(battery);
     check.hint = "check [battery] capacity_wh, or the address: this may be another battery";
   }
 }
@@ -425,9 +415,8 @@ void set_supervision(const BatteryConfig& battery, ControlSettings& control) {
   supervision.response = {.band = battery.map.response,
                           .power_w = control.guard.power_w,
                           .capacity_wh = battery.capacity_wh};
-  const CapacityRange range = capacity_range(battery);
-  supervision.capacity_wh_min = static_cast<std::int32_t>(range.least_wh);
-  supervision.capacity_wh_max = static_cast<std::int32_t>(range.most_wh);
+  supervision.capacity_wh_min = battery.capacity_wh - capacity_tolerance_wh(battery);
+  supervision.capacity_wh_max = battery.capacity_wh + capacity_tolerance_wh(battery);
 }
 
 FixedText<159> link_place(const BatteryLinkSettings& link) {
