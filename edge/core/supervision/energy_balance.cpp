@@ -222,7 +222,7 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
 /// At 0 W: the measured power, and the additional loss of the SoC.
 void EnergyBalance::judge_rest(std::int64_t soc_variance) {
   const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
-  const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;
+  const std::int64_t allowed_w = std::int64_t{settings_.noise_w()} * 5 / 4;
   Evidence lost, gained, lost_for_good, drawn;
   std::int64_t seconds = 0, unmeasured_e4 = 0, drawn_ws = 0;
   int resting = 0, spells = 0;
@@ -245,7 +245,7 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
     drawn_ws -= std::int64_t{interval.power_w} * interval.seconds;
     const std::int64_t noise = square_root(2 * spells * soc_variance);
     const bool is_unmeasured = lost.is_significant(noise) ||
-                               (gained.is_significant(noise) && !settings_.charges_by_itself);
+                               (gained.is_significant(noise) && !settings_.band.charges_by_itself);
     const bool is_shown = resting >= kIntervalsOfShownRest && drawn.is_significant(0);
     if ((resting >= kIntervalsOfRest && is_unmeasured) || is_shown) {
       const std::int64_t hidden_ws = is_unmeasured ? unmeasured_e4 * capacity_ws / 10'000 : 0;
@@ -262,7 +262,7 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
 /// b from k.
 void EnergyBalance::judge_drift(std::int64_t soc_variance) {
   const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
-  const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;
+  const std::int64_t allowed_w = std::int64_t{settings_.noise_w()} * 5 / 4;
   Evidence lost, gained;
   std::int64_t seconds = 0, moved_e4 = 0, net_e4 = 0;
   int flowing = 0, spells = 0;
@@ -288,7 +288,7 @@ void EnergyBalance::judge_drift(std::int64_t soc_variance) {
     const auto beyond_e4 = [&](const Evidence& e) { return e.sum - e.largest - allowed_e4; };
     const bool loses = 2 * beyond_e4(lost) > kHalfSigmasToTell * noise;
     const bool gains =
-        2 * beyond_e4(gained) > kHalfSigmasToTell * noise && !settings_.charges_by_itself;
+        2 * beyond_e4(gained) > kHalfSigmasToTell * noise && !settings_.band.charges_by_itself;
     if (!loses && !gains) continue;
     if (findings_.share_percent == 0) {  // else already reported
       const std::int64_t drift_e4 = lost.sum - kUsuallyLostPercent * moved_e4 / kPercent;

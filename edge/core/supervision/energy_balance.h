@@ -167,12 +167,6 @@ struct EnergyInterval {
   std::int32_t power_w = 0;  ///< at the end of the interval
 };
 
-struct EnergyBalanceSettings {
-  std::int32_t capacity_wh = 8'000;
-  std::int32_t noise_w = 200;  ///< own consumption, and meter error
-  bool charges_by_itself = false;
-};
-
 class EnergyBalance {
  public:
   static constexpr std::size_t kIntervals = 60;  ///< two hours
@@ -187,7 +181,7 @@ class EnergyBalance {
     std::int32_t rest_loss_w = 0;
   };
 
-  explicit EnergyBalance(const EnergyBalanceSettings& settings) : settings_(settings) {}
+  explicit EnergyBalance(const ResponseSettings& settings) : settings_(settings) {}
 
   /// The newest interval; `soc_span_e4`: possible difference of two readings of the same SoC.
   void observe(const EnergyInterval& interval, std::int32_t soc_span_e4);
@@ -206,7 +200,7 @@ class EnergyBalance {
     return intervals_[(next_ + kIntervals - 1 - i) % kIntervals];
   }
 
-  EnergyBalanceSettings settings_;
+  ResponseSettings settings_;
   std::array<EnergyInterval, kIntervals> intervals_{};
   std::size_t next_ = 0;
   std::size_t count_ = 0;

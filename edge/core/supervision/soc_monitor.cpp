@@ -35,11 +35,7 @@ std::int16_t to_int16(std::int64_t value) {
 }  // namespace
 
 SocMonitor::SocMonitor(const ResponseSettings& settings)
-    : settings_(settings),
-      balance_({.capacity_wh = settings.capacity_wh,
-                .noise_w = settings.noise_w(),
-                .charges_by_itself = settings.band.charges_by_itself}),
-      sparse_soc_(settings) {}
+    : settings_(settings), balance_(settings), sparse_soc_(settings) {}
 
 void SocMonitor::observe(const Response& now) {
   const BatteryMeasurement& m = now.measurement;
