@@ -94,11 +94,10 @@ void read_unit_group(TomlTable& table, const RegisterMap& map, RegisterPoint& po
 
 void read_place(TomlTable& table, const MapDefaults& defaults, const RegisterMap& map,
                 RegisterPoint& point) {
-  std::int32_t address = 0;
   std::int32_t read_function = defaults.read_function;
   read_model(table, map, point);
   const std::int32_t base = point.model >= 0 ? 0 : defaults.address_base;
-  address = base;
+  std::int32_t address = base;
   table.integer("address", address, base, 65'535);
   table.integer("read_function", read_function, 3, 4);
   read_unit_group(table, map, point);
