@@ -77,14 +77,10 @@ GuardDecision SafetyGuard::find_requested_action(const GuardInputs& in) const {
             .reason = Reason::kHeld};
   }
   GuardDecision decision = find_price_action(in);
-  apply_rules(in.rules, decision);
-  return decision;
-}
-
-/// Moves to the nearest action and power that the rules permit.
-void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) const {
-  const std::int32_t ruled_w = ruled_power_w(rules, decision.power_w, settings_.power_w);
+  // Moves to the nearest action and power that the rules permit.
+  const std::int32_t ruled_w = ruled_power_w(in.rules, decision.power_w, settings_.power_w);
   if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
+  return decision;
 }
 
 GuardDecision SafetyGuard::find_price_action(const GuardInputs& in) const {

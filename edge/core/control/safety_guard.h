@@ -86,7 +86,6 @@ class SafetyGuard {
   [[nodiscard]] GuardDecision find_requested_action(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_price_action(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_student_action(const GuardInputs& in) const;
-  void apply_rules(const RuleLimits& rules, GuardDecision& decision) const;
   void update_soc(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;

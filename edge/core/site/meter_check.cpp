@@ -110,7 +110,8 @@ void MeterCheck::judge_step(const MeterCheckReading& now) {
   if (step.size_w * 1'000 < settings_.power_w * kStepMinPermille) return;
   note_ratio(step, now.utc_s);
   missed_.reset();
-  end_test(now.utc_s);
+  // The step was observed: 0 W until the next tick keeps the exposure short.
+  if (trust_.is_mismatch) test_power_until_utc_s_ = next_tick_utc_s(now.utc_s);
   if (contradicts(step)) {
     missed_ = {.power_w = std::int64_t{now.battery_w} - before_->battery_w, .utc_s = now.utc_s};
     return on_contradiction(now, kContradicts);
@@ -235,25 +236,16 @@ MeterCheck::State MeterCheck::state_at(std::int64_t now_utc_s) const {
   return left_s > 0 && left_s <= kLongestPauseS ? State::kPaused : State::kTested;
 }
 
-/// The step was observed: 0 W until the next tick keeps the exposure short.
-void MeterCheck::end_test(std::int64_t utc_s) {
-  if (trust_.is_mismatch) test_power_until_utc_s_ = next_tick_utc_s(utc_s);
-}
-
 std::int32_t MeterCheck::power_w_max(std::int64_t now_utc_s) const {
   // A clock step backwards extends neither.
   const std::int64_t retreat_s = test_power_until_utc_s_ - now_utc_s;
   const bool retreats = retreat_s > 0 && retreat_s <= kSecondsPerStep;
   if (retreats) return 0;
   const State state = state_at(now_utc_s);
-  if (state == State::kTested) return test_power_w(now_utc_s);
-  return state == State::kTrusted ? kAnyPowerW : 0;
-}
-
-/// On in every second cycle, so that there are steps to judge.
-std::int32_t MeterCheck::test_power_w(std::int64_t now_utc_s) const {
+  // A test is on in every second cycle, so that there are steps to judge.
   const bool is_on = now_utc_s / kSecondsPerStep % 2 != 0;
-  return is_on ? settings_.power_w / 8 : 0;
+  if (state == State::kTested) return is_on ? settings_.power_w / 8 : 0;
+  return state == State::kTrusted ? kAnyPowerW : 0;
 }
 
 }  // namespace bess

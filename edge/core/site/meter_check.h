@@ -160,10 +160,8 @@ class MeterCheck {
   [[nodiscard]] bool contradicts(const Step& step) const;
   void on_contradiction(const MeterCheckReading& now, std::int32_t points);
   void judge_test(const Step& step, std::int64_t utc_s);
-  void end_test(std::int64_t utc_s);
   void add_to_sums(const Step& step);
   [[nodiscard]] bool is_wrong_ratio() const;
-  [[nodiscard]] std::int32_t test_power_w(std::int64_t now_utc_s) const;
   [[nodiscard]] State state_at(std::int64_t now_utc_s) const;
   void find(std::int64_t utc_s);
 

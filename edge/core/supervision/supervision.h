@@ -79,7 +79,10 @@ class Supervision {
   }
 
   /// The reported capacity, also when nothing else could be read; 0 or less: not reported.
-  void note_capacity(std::int32_t capacity_wh) { capacity_fits_ = is_right_capacity(capacity_wh); }
+  void note_capacity(std::int32_t capacity_wh) {
+    capacity_fits_ = capacity_wh <= 0 || (capacity_wh >= settings_.capacity_wh_min &&
+                                          capacity_wh <= settings_.capacity_wh_max);
+  }
 
   /// A reading within a step, just before the order changes: only recorded.
   void note_power(const Response& now) { response_.note_power(now); }
@@ -174,11 +177,6 @@ class Supervision {
     }
     lost_.observe(now, follows_another);
     if (lost_.is_to_be_given_up(now.steady_s, yields)) pause(now.utc_s, lost_.reason());
-  }
-
-  [[nodiscard]] bool is_right_capacity(std::int32_t capacity_wh) const {
-    return capacity_wh <= 0 ||
-           (capacity_wh >= settings_.capacity_wh_min && capacity_wh <= settings_.capacity_wh_max);
   }
 
   SupervisionSettings settings_;
