@@ -169,10 +169,6 @@ void ModbusLink::finish(const ModbusRequest& request, Status status) {
     }
   }
   if (answered) return state_.on_answered(now());
-  recover(status);
-}
-
-void ModbusLink::recover(Status status) {
   if (rtu_ && status != Status::kNotConnected) return state_.on_no_answer(now());
   close();
 }

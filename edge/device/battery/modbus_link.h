@@ -87,7 +87,6 @@ class ModbusLink {
   void finish(const ModbusRequest& request, Status status);
   void report_exchange(const ModbusRequest& request, const std::uint16_t* registers, Status status,
                        std::int64_t asked_ns) const;
-  void recover(Status status);
   [[nodiscard]] std::int64_t line_time_ns(int bytes) const;
 
   bool rtu_;

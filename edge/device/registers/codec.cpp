@@ -6,10 +6,6 @@
 namespace bess {
 namespace {
 
-std::int64_t divide_up(std::int64_t numerator, std::int64_t denominator) {
-  return (numerator + denominator - 1) / denominator;
-}
-
 /// A SoC limit is a ceiling for a charging battery and a floor for a discharging one.
 std::int64_t argument_of(Argument argument, const PowerOrder& order, std::int64_t heartbeat) {
   const std::int64_t power_w = order.power_w;
@@ -29,7 +25,7 @@ std::int64_t argument_of(Argument argument, const PowerOrder& order, std::int64_
     case Argument::kDuration:
       return order.duration_s;
     case Argument::kDurationMinutes:
-      return divide_up(order.duration_s, 60);
+      return (std::int64_t{order.duration_s} + 59) / 60;
     case Argument::kHeartbeat:
       return heartbeat;
     case Argument::kConstant:

@@ -10,18 +10,16 @@ PointPlaces::PointPlaces(const RegisterMap& map, std::int32_t unit)
   for_each_written(map, [this](const WriteValue& value) { is_written_[value.point] = true; });
 }
 
-bool PointPlaces::begins_walk(const BusExchange& exchange) const {
-  return std::ranges::count(map_.model_bases, exchange.address) > 0 &&
-         exchange.registers[0] == 0x5375 && exchange.registers[1] == 0x6E53;  // "SunS"
-}
-
 void PointPlaces::follow(const BusExchange& exchange) {
   is_model_head_ = false;
   if (map_.models.empty() || exchange.unit != unit_ || exchange.function != 3 ||
       exchange.count != 2 || exchange.outcome != BusOutcome::kAnswered) {
     return;
   }
-  if (begins_walk(exchange)) {
+  const bool begins_walk = std::ranges::count(map_.model_bases, exchange.address) > 0 &&
+                           exchange.registers[0] == 0x5375 &&
+                           exchange.registers[1] == 0x6E53;  // "SunS"
+  if (begins_walk) {
     is_model_head_ = true;
     next_head_ = exchange.address + 2;
   } else if (exchange.address == next_head_) {

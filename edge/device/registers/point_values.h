@@ -35,8 +35,6 @@ class PointPlaces {
   [[nodiscard]] bool is_written(int point) const { return is_written_[point]; }
 
  private:
-  [[nodiscard]] bool begins_walk(const BusExchange& exchange) const;
-
   const RegisterMap& map_;
   std::int32_t unit_;
   bool is_model_head_ = false;
