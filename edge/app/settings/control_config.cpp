@@ -16,6 +16,7 @@
 #include "edge/records/log/battery_name.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 
@@ -233,11 +234,10 @@ namespace {
 
 /// "17:00", or "24:00" for the end of the day.
 bool parse_time_of_day(std::string_view text, std::int16_t& minute) {
-  const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
-  if (text.size() != 5 || text[2] != ':') return false;
-  if (!is_digit(0) || !is_digit(1) || !is_digit(3) || !is_digit(4)) return false;
-  const int hours = (text[0] - '0') * 10 + (text[1] - '0');
-  const int minutes = (text[3] - '0') * 10 + (text[4] - '0');
+  const int hours = detail::take_digits(text, 2);
+  const bool has_colon = detail::take(text, ':');
+  const int minutes = detail::take_digits(text, 2);
+  if (hours < 0 || !has_colon || minutes < 0 || !text.empty()) return false;
   if (minutes > 59 || hours * 60 + minutes > kMinutesPerDay) return false;
   minute = static_cast<std::int16_t>(hours * 60 + minutes);
   return true;

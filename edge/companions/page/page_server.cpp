@@ -10,6 +10,7 @@
 #include "shared/host/json.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 
@@ -143,12 +144,9 @@ void send(const Answer& answer, const char* type, httplib::Response& response) {
 
 /// "2026-11-23"; bess-edge checks that there is such a day.
 bool looks_like_date(std::string_view text) {
-  if (text.size() != 10) return false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool fits = i == 4 || i == 7 ? text[i] == '-' : text[i] >= '0' && text[i] <= '9';
-    if (!fits) return false;
-  }
-  return true;
+  using detail::take, detail::take_digits;
+  return take_digits(text, 4) >= 0 && take(text, '-') && take_digits(text, 2) >= 0 &&
+         take(text, '-') && take_digits(text, 2) >= 0 && text.empty();
 }
 
 }  // namespace

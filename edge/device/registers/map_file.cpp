@@ -46,11 +46,6 @@ void overlay(TomlMembers& base, TomlMembers& over) {
   }
 }
 
-std::string file_beside(const std::string& path, const std::string& name) {
-  const auto slash = path.find_last_of('/');
-  return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
-}
-
 /// Parses the file, merged over the file that it includes.
 bool parse_map_file(const std::string& path, TomlValue& document, std::string& error) {
   if (!parse_toml_file(path, document, error)) return false;
@@ -64,7 +59,7 @@ bool parse_map_file(const std::string& path, TomlValue& document, std::string& e
     return false;
   }
   TomlValue base;
-  if (!parse_toml_file(file_beside(path, name), base, error)) return false;
+  if (!parse_toml_file(root.resolved(name), base, error)) return false;
   if (base.find("include") != nullptr) {
     root.fail("include", "names a file that itself has an include: only one level is allowed");
     return false;
