@@ -74,35 +74,32 @@ Stored read_place(const std::string& path) {
   return stored;
 }
 
-struct AllStored {
-  std::vector<Stored> places;
+using AllStored = std::vector<Stored>;
 
-  /// Prefers a file with a checksum (older versions and truncated files have none), then the order
-  /// of places.
-  [[nodiscard]] const Stored* that_counts() const {
-    const Stored* best = nullptr;
-    for (const Stored& one : places) {
-      const bool is_better = best == nullptr || (one.is_checked && !best->is_checked);
-      if (one.loss.empty() && is_better) best = &one;
-    }
-    return best;
+/// Prefers a file with a checksum (older versions and truncated files have none), then the order of
+/// places. Null if none is usable.
+const Stored* find_best(const AllStored& all) {
+  const Stored* best = nullptr;
+  for (const Stored& one : all) {
+    const bool is_better = best == nullptr || (one.is_checked && !best->is_checked);
+    if (one.loss.empty() && is_better) best = &one;
   }
-  [[nodiscard]] bool are_absent() const { return std::ranges::all_of(places, &Stored::is_absent); }
-};
+  return best;
+}
 
 AllStored read_places(const EdgeConfig& config) {
   AllStored all;
-  for (const std::string& path : places_of(config)) all.places.push_back(read_place(path));
+  for (const std::string& path : places_of(config)) all.push_back(read_place(path));
   return all;
 }
 
 std::string why_not_commissioned(const AllStored& all) {
-  const Stored& first = all.places.front();
+  const Stored& first = all.front();
   if (first.loss == kHidden) {
     return first.path + " " + kHidden + ": run this as the service's user, or with sudo";
   }
   const std::string why =
-      all.are_absent()
+      std::ranges::all_of(all, &Stored::is_absent)
           ? ": missing: the battery's sign is not checked (or the disk of [state] folder is "
             "not mounted); run once: "
           : " " + first.loss +
@@ -191,7 +188,7 @@ std::string whole_text(const Stored& good) {
 bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
              const Stored& good) {
   if (!one.is_absent) return &one != &good;
-  const bool is_in_memory = &one == &all.places.back() && !config.state.run_folder.empty();
+  const bool is_in_memory = &one == &all.back() && !config.state.run_folder.empty();
   return !is_in_memory && good.is_checked;
 }
 
@@ -210,10 +207,10 @@ std::string loss_line(const Stored& one, const Stored& good) {
 template <typename Visit>
 void for_each_other(const EdgeConfig& config, const Visit& visit) {
   const AllStored all = read_places(config);
-  const Stored* const good = all.that_counts();
+  const Stored* const good = find_best(all);
   if (good == nullptr) return;
   const std::string text = whole_text(*good);
-  for (const Stored& one : all.places) {
+  for (const Stored& one : all) {
     if (one.text != text) visit(one, *good, text, is_loss(config, all, one, *good));
   }
 }
@@ -252,7 +249,7 @@ bool write_commission_file(const EdgeConfig& config, const CommissionResult& res
 
 bool is_commissioned(const EdgeConfig& config, std::string& error) {
   const AllStored all = read_places(config);
-  const Stored* const stored = all.that_counts();
+  const Stored* const stored = find_best(all);
   if (stored == nullptr) {
     error = why_not_commissioned(all);
     return false;
@@ -268,7 +265,7 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
 
 std::vector<std::int8_t> commissioned_points(const EdgeConfig& config) {
   const AllStored all = read_places(config);
-  const Stored* const stored = all.that_counts();
+  const Stored* const stored = find_best(all);
   const TomlValue* const node = stored == nullptr ? nullptr : stored->document.find("present");
   const auto* const list = node == nullptr ? nullptr : node->as<TomlArray>();
   std::vector<std::int8_t> points;
