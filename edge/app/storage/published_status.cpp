@@ -91,18 +91,10 @@ int living_writer_of(const std::optional<RunStatus>& status) {
   return is_another ? 0 : pid;
 }
 
-/// Whether a controller could write a status anywhere now.
-bool has_place_for_status(const EdgeConfig& config) {
+/// Whether this holds for every folder in which a controller writes status and log.
+bool holds_everywhere(const EdgeConfig& config, bool (*is_trouble)(const char* folder)) {
   const char* const run_folder = config.state.run_folder.c_str();
-  return !takes_no_file(config.state.folder.c_str()) ||
-         (*run_folder != '\0' && !takes_no_file(run_folder));
-}
-
-/// Whether neither status nor log can be written.
-bool is_every_place_read_only(const EdgeConfig& config) {
-  const char* const run_folder = config.state.run_folder.c_str();
-  return is_read_only(config.state.folder.c_str()) &&
-         (*run_folder == '\0' || is_read_only(run_folder));
+  return is_trouble(config.state.folder.c_str()) && (*run_folder == '\0' || is_trouble(run_folder));
 }
 
 /// Age of the newest lock file of a controller; nothing without one.
@@ -135,7 +127,7 @@ int controller_by_files(const EdgeConfig& config, const std::optional<RunStatus>
 int find_controller(const EdgeConfig& config, const std::optional<RunStatus>& status,
                     bool no_lock) {
   int holder = no_lock ? kOwnerHidden : controller_holding(config);
-  if (holder == 0 && !has_place_for_status(config)) {  // no locks there either
+  if (holder == 0 && holds_everywhere(config, takes_no_file)) {  // no locks there either
     holder = lock_owner_pid(battery_lock_path(config).c_str());
   }
   if (holder == kOwnerHidden) return controller_by_files(config, status);
@@ -183,7 +175,7 @@ void restore_from_log(const EdgeConfig& config, PublishedStatus& published) {
 std::string why_unknown(const EdgeConfig& config, const PublishedStatus& published) {
   const std::int64_t start_ms = (std::int64_t{config.battery.start_timeout_s} + 60) * 1'000;
   const bool is_starting = lock_age_ms(config).value_or(INT64_MAX) < start_ms;
-  if (is_starting && has_place_for_status(config)) return "";
+  if (is_starting && !holds_everywhere(config, takes_no_file)) return "";
   const std::string who = published.holder > 0
                               ? "process " + std::to_string(published.holder) + " runs"
                               : std::string("a controller has locked this battery or its state");
@@ -208,7 +200,8 @@ PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
   published.is_of_this_run = published.holder > 0 ? published.holder == pid : is_fresh;
   const bool is_old = !published.is_of_this_run || (pid == 0 && !is_fresh);
   // A status that can no longer be written is out of date.
-  const bool is_stuck = 2 * published.age_ms > 3 * cadence_ms && is_every_place_read_only(config);
+  const bool is_stuck =
+      2 * published.age_ms > 3 * cadence_ms && holds_everywhere(config, is_read_only);
   if (published.holder != 0 && (is_old || is_stuck)) {
     published.unknown = why_unknown(config, published);
   }
