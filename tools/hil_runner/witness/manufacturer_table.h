@@ -41,15 +41,14 @@ class WireMemory {
   std::map<std::tuple<int, Table, int>, std::uint16_t> words_;
 };
 
-class ManufacturerTable {
- public:
+struct ManufacturerTable {
   using Value = std::optional<double>;
 
-  virtual ~ManufacturerTable() = default;
-  [[nodiscard]] virtual Value soc_frac(const WireMemory& wire) const = 0;
-  [[nodiscard]] virtual Value power_w(const WireMemory& wire) const = 0;
+  std::string_view map, variant;
+  Value (*soc_frac)(const WireMemory& wire);
+  Value (*power_w)(const WireMemory& wire);
   /// Empty without an order in the registers. 0 W is an order.
-  [[nodiscard]] virtual Value ordered_w(const WireMemory& wire) const = 0;
+  Value (*ordered_w)(const WireMemory& wire);
 };
 
 /// Table of a map by its name; null: none.
