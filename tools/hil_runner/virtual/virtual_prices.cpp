@@ -19,7 +19,7 @@ VirtualOutlook::VirtualOutlook(const Scenario& scenario, const OutlookSettings& 
 OutlookExchange* VirtualOutlook::start(std::int32_t level_centi) {
   process_ = std::make_unique<Process>(model_);
   process_->fetch_state.store = kept_;
-  const std::int64_t now = edge_utc_s();
+  const std::int64_t now = time_.edge_utc_s();
   fetch(now);
   process_->planner.plan_usual_day(now, level_centi);
   plan((now + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep, level_centi);
@@ -27,7 +27,7 @@ OutlookExchange* VirtualOutlook::start(std::int32_t level_centi) {
 }
 
 void VirtualOutlook::cycle_done(const CycleRecord& record) {
-  const std::int64_t now = edge_utc_s();
+  const std::int64_t now = time_.edge_utc_s();
   if (process_->fetch_state.is_due(settings_, now)) fetch(now);
   plan(record.utc_s + kSecondsPerStep, record.price_level.centi_eur_per_mwh());
 }
@@ -54,10 +54,6 @@ void VirtualOutlook::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
   process_->planner.plan(
       {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->fetch_state.status},
       process_->fetch_state.store.days_at(tick_utc_s));
-}
-
-std::int64_t VirtualOutlook::edge_utc_s() const {
-  return time_.edge_utc_ns() / kNanosecondsPerSecond;
 }
 
 namespace {
@@ -129,16 +125,17 @@ bool VirtualPrices::begin_next() {
 void VirtualPrices::fetch() {
   const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
   answer_.done_ns = time_.monotonic_ns() + reply.takes_ns;
-  answer_.status = reply.status != Status::kOk ? reply.status
-                                               : parse_newest_price(reply.text, settings_.fields,
-                                                                    edge_utc_s(), answer_.row);
+  answer_.status =
+      reply.status != Status::kOk
+          ? reply.status
+          : parse_newest_price(reply.text, settings_.fields, time_.edge_utc_s(), answer_.row);
 }
 
 Status VirtualPrices::fetch_once(PriceRow& row) {
   const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
   time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
   if (reply.status != Status::kOk) return reply.status;
-  return parse_newest_price(reply.text, settings_.fields, edge_utc_s(), row);
+  return parse_newest_price(reply.text, settings_.fields, time_.edge_utc_s(), row);
 }
 
 PriceAnswer VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms) {
@@ -149,11 +146,7 @@ PriceAnswer VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms) 
                           timeout_ms);
   time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
   if (reply.status != Status::kOk) return {.status = reply.status};
-  return parse_prices(reply.text, settings_.fields, edge_utc_s());
-}
-
-std::int64_t VirtualPrices::edge_utc_s() const {
-  return time_.edge_utc_ns() / kNanosecondsPerSecond;
+  return parse_prices(reply.text, settings_.fields, time_.edge_utc_s());
 }
 
 VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout_ms) {

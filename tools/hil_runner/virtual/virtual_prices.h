@@ -47,7 +47,6 @@ class VirtualOutlook {
   void fetch(std::int64_t now_utc_s);
   [[nodiscard]] DayAheadReply ask(std::int64_t now_utc_s) const;
   void plan(std::int64_t tick_utc_s, std::int32_t level_centi);
-  [[nodiscard]] std::int64_t edge_utc_s() const;
 
   const OutlookSettings& settings_;
   const OutlookModel& model_;
@@ -87,7 +86,6 @@ class VirtualPrices {
   };
   [[nodiscard]] bool begin_next();
   void fetch();
-  [[nodiscard]] std::int64_t edge_utc_s() const;
   [[nodiscard]] Reply ask(RecordsQuery query, std::int32_t timeout_ms);
 
   PriceFeedSettings settings_;

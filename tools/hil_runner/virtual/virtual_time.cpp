@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "shared/scaled_clock.h"
 #include "tools/hil_runner/base/stop_request.h"
 
 namespace bess {
@@ -15,18 +14,16 @@ namespace {
 
 VirtualTime* current_time = nullptr;
 
+/// The edge starts one minute earlier, to read before the first tick.
+constexpr std::int64_t kLeadNs = 60 * kNanosecondsPerSecond;
+
 }  // namespace
 
 VirtualTime::VirtualTime(const Scenario& scenario)
     : scenario_(scenario),
-      start_utc_ns_(scenario.start_utc_s * kNanosecondsPerSecond),
-      now_ns_(0),
-      base_ns_(0),
+      start_utc_ns_(scenario.start_utc_s * kNanosecondsPerSecond - 2 * kLeadNs),
+      now_ns_(kLeadNs),  // not 0, which often means "never"
       events_(scenario.events) {
-  // The edge starts one minute earlier, to read before the first tick.
-  constexpr std::int64_t kLeadNs = 60 * kNanosecondsPerSecond;
-  now_ns_ = base_ns_ = kLeadNs;  // not 0, which often means "never"
-  start_utc_ns_ -= 2 * kLeadNs;
   const ScenarioEvent end{.at_min = scenario.minutes, .kind = ScenarioEvent::EventKind::kEdgeStop};
   events_.push_back(end);
   std::ranges::stable_sort(events_, {}, &ScenarioEvent::at_min);

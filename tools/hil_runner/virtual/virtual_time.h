@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/scenario.h"
 
 namespace bess {
@@ -33,6 +34,7 @@ class VirtualTime {
   [[nodiscard]] std::int64_t utc_ns() const { return start_utc_ns_ + now_ns_; }
   /// Time of the edge's clock, which may be stepped.
   [[nodiscard]] std::int64_t edge_utc_ns() const { return utc_ns() + step_ns_; }
+  [[nodiscard]] std::int64_t edge_utc_s() const { return edge_utc_ns() / kNanosecondsPerSecond; }
   [[nodiscard]] bool is_synchronised() const { return synchronised_; }
   [[nodiscard]] bool battery_is_paused() const { return battery_is_paused_; }
   /// Listener for commands of people or other programs.
@@ -58,7 +60,6 @@ class VirtualTime {
   const Scenario& scenario_;
   std::int64_t start_utc_ns_;
   std::int64_t now_ns_;
-  std::int64_t base_ns_;  ///< of now_ns_ at the start
   std::int64_t step_ns_ = 0;
   std::vector<ScenarioEvent> events_;  ///< of the scenario, plus the final stop
   std::size_t next_event_ = 0;

@@ -146,7 +146,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
       if (outlook) outlook->lose();
       return state.lose();
     }
-    site_operator.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
+    site_operator.act(event, time.edge_utc_s(), state.trip());
   });
   do {
     try {
@@ -207,14 +207,13 @@ RestoredState VirtualWorld::restore_state() const {
   if (trip && !environment_.site_operator.is_cleared(trip->utc_s)) restored.trip = trip;
   if (!environment_.state.is_lost()) return restored;
   restored.unknown = "the scenario has deleted it";
-  restored.trip =
-      trip_without_state(restored, environment_.time.edge_utc_ns() / kNanosecondsPerSecond);
+  restored.trip = trip_without_state(restored, environment_.time.edge_utc_s());
   return restored;
 }
 
 PublishedHistory VirtualWorld::find_history() {
-  const auto history = std::make_unique<PriceHistory>(
-      price_.history.hours, environment_.time.edge_utc_ns() / kNanosecondsPerSecond);
+  const auto history =
+      std::make_unique<PriceHistory>(price_.history.hours, environment_.time.edge_utc_s());
   const Status status = fetch_history(prices_, price_.feed, price_.history, clock_, *history);
   return {.is_done = true,
           .hours = history->hours_covered(),
