@@ -138,8 +138,8 @@ def figures(tree):
     scenarios = list((tree / "tests/scenarios").glob("*.toml"))
     yield r"\b(\d+) (?:shipped )?scenarios\b", str(len(scenarios))
     for pattern, name, row in (
-            (r"\b(\d+) faults of bus", "tools/simulators/battery_sim/battery_faults.cpp",
-             r"^    \{Bat"),
+            (r"\b(\d+) faults of bus", "tools/simulators/battery_sim/battery_faults.h",
+             r"^  ROW\(k"),
             (r"\b(\d+) faults\b(?! of bus)", "tests/system/trial/trial_fault.cpp", r'^    \{"'),
             (r"\b(\d+) honest (?:variants|batteries)", "tests/system/trial/healthy_batteries.cpp",
              r'^    \{(?:\.name = )?"'),

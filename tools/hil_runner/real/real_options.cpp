@@ -64,8 +64,7 @@ std::string why_not_real(const Scenario& scenario) {
   if (!scenario.runs_wall) return "it is for virtual time";
   if (!scenario.battery_faults.empty()) {
     const BatteryFault kind = scenario.battery_faults.front().schedule.faults.front();
-    return fmt::format("only a simulated battery has the fault {}",
-                       battery_faults()[static_cast<std::size_t>(kind) - 1].name);
+    return fmt::format("only a simulated battery has the fault {}", battery_fault_name(kind));
   }
   const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::kind);
   if (event != scenario.events.end()) {

@@ -64,7 +64,7 @@ void for_each_mark(const Scenario& scenario, const Add& add) {
   const auto add_faults = [&](std::string name, const FaultSchedule& schedule) {
     if (schedule.faults.empty()) return;
     for (const BatteryFault fault : schedule.faults) {
-      name += std::string(" ") + battery_faults()[static_cast<std::size_t>(fault) - 1].name;
+      name += std::string(" ") + battery_fault_name(fault);
     }
     add("battery", name, schedule.from_s / 60, schedule.to_s / 60);
   };

@@ -84,10 +84,7 @@ void read_fault_kinds(TomlTable& table, std::vector<BatteryFault>& faults, const
   for (std::size_t i = 0; kinds != nullptr && i < kinds->size(); ++i) {
     const TomlValue& item = (*kinds)[i];
     const auto* const name = item.as<std::string>();
-    const BatteryFaultInfo* found = nullptr;
-    for (const BatteryFaultInfo& info : battery_faults()) {
-      if (name != nullptr && *name == info.name) found = &info;
-    }
+    const BatteryFaultInfo* const found = name == nullptr ? nullptr : find_fault(*name);
     if (found == nullptr) {
       table.fail_at(item, "unknown fault of the battery (see bess-sim battery --help)");
     } else if (const std::string why = refuse(*found); !why.empty()) {

@@ -35,7 +35,7 @@ class Options {
   /// Faults, their span, and on-off times.
   void add_faults(const std::string& prefix, const FaultSchedule& schedule) {
     for (const BatteryFault kind : schedule.faults) {
-      add(prefix, battery_faults()[static_cast<std::size_t>(kind) - 1].name);
+      add(prefix, battery_fault_name(kind));
     }
     add_span(prefix, schedule.from_s, schedule.to_s);
     if (schedule.off_s == 0) return;

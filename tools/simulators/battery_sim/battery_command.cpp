@@ -108,13 +108,6 @@ struct BatteryOptions {
   ReplayOptions replay;
 };
 
-const BatteryFaultInfo* find_fault(const std::string& name) {
-  for (const BatteryFaultInfo& fault : battery_faults()) {
-    if (name == fault.name) return &fault;
-  }
-  return nullptr;
-}
-
 std::string known_fault(const std::string& name) {
   return find_fault(name) != nullptr ? "" : "unknown fault " + name;
 }
