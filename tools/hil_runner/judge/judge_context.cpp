@@ -72,17 +72,14 @@ void JudgeContext::find_disturbances() {
     disturbed_.push_back({from_ns, to_ns == INT64_MAX ? to_ns : to_ns + recovery_ns});
   };
   for (const BatteryFaultWindow& fault : scenario.battery_faults) {
-    const Window span{scenario.utc_ns_at(fault.schedule.from_s / 60),
-                      fault.schedule.to_s == kNeverMin
-                          ? INT64_MAX
-                          : scenario.utc_ns_at(fault.schedule.to_s / 60)};
     std::vector<Window> other;
     const bool is_silent =
         fault.strikes_always() && std::ranges::all_of(fault.schedule.faults, [](BatteryFault kind) {
           return kind == BatteryFault::kSilence || kind == BatteryFault::kDrop ||
                  kind == BatteryFault::kReset || kind == BatteryFault::kHalfOpen;
         });
-    add(is_silent ? lost : other, span.from_ns, span.to_ns);
+    add(is_silent ? lost : other, scenario.utc_ns_at(fault.schedule.from_s / 60),
+        scenario.utc_ns_at(fault.schedule.to_s / 60));
   }
   using enum ScenarioEvent::EventKind;
   add_spans(lost, {kEdgeKill, kEdgeStop, kEdgeHandOver}, kEdgeStart, add);

@@ -19,11 +19,7 @@ double made_up_price(const ScenarioPrices& prices, double minute) {
     return prices.wave_mean_eur_per_mwh +
            prices.wave_amplitude_eur_per_mwh * std::sin(2 * std::numbers::pi * turns);
   }
-  double price = prices.steps.front().eur_per_mwh;
-  for (const ScenarioPrices::Step& step : prices.steps) {
-    if (step.from_min <= minute) price = step.eur_per_mwh;
-  }
-  return price;
+  return step_value_at(prices.steps, minute);
 }
 
 MinuteSeries made_up_series(const Scenario& scenario) {
@@ -84,14 +80,14 @@ Publication::Publication(const Scenario& scenario, const MinuteSeries& prices)
 std::optional<Publication::Row> Publication::newest(std::int64_t utc_ns) const {
   for (const MinuteSpan& span : silent_) {
     if (utc_ns < scenario_.utc_ns_at(span.from_min)) continue;
-    const bool is_over = span.to_min != kNeverMin && utc_ns >= scenario_.utc_ns_at(span.to_min);
-    if (!is_over) return newest_published(scenario_.utc_ns_at(span.from_min), 0);
+    if (utc_ns < scenario_.utc_ns_at(span.to_min)) {
+      return newest_published(scenario_.utc_ns_at(span.from_min), 0);
+    }
   }
   const PriceFaultWindow& fault = scenario_.price_fault;
-  const bool is_struck =
-      fault.fault != MarketFault::kNone && fault.every == 1 &&
-      utc_ns >= scenario_.utc_ns_at(fault.span.from_min) &&
-      (fault.span.to_min == kNeverMin || utc_ns < scenario_.utc_ns_at(fault.span.to_min));
+  const bool is_struck = fault.fault != MarketFault::kNone && fault.every == 1 &&
+                         utc_ns >= scenario_.utc_ns_at(fault.span.from_min) &&
+                         utc_ns < scenario_.utc_ns_at(fault.span.to_min);
   if (is_struck && fault.fault == MarketFault::kNull) return newest_published(utc_ns, 1);
   if (is_struck && fault.fault == MarketFault::kStale) {
     // Older answers do not replace newer rows.

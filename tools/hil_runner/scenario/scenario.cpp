@@ -54,9 +54,7 @@ void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
   }
   read_text(table, "file", prices.file);
   if (!prices.file.empty()) prices.file = (folder / prices.file).lexically_normal().string();
-  read_steps(table, scenario.minutes, prices.steps, [](double from_min, double price) {
-    return ScenarioPrices::Step{from_min, price};
-  });
+  read_steps(table, scenario.minutes, prices.steps);
   if (const TomlValue* const node = table.table("wave")) {
     TomlTable wave(node, table.file(), "[prices] wave", table.error());
     read_decimal(wave, "mean", prices.wave_mean_eur_per_mwh, -kPlausiblePriceMaxEurPerMwh,
@@ -274,6 +272,7 @@ bool Scenario::has_limits() const {
 }
 
 std::int64_t Scenario::utc_ns_at(double minute) const {
+  if (minute == kNeverMin) return INT64_MAX;
   return start_utc_s * kNanosecondsPerSecond + std::llround(minute * 60e9);
 }
 

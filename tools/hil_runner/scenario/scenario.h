@@ -63,13 +63,24 @@ struct ScenarioBattery {
   bool sets_state = false;  ///< the scenario sets SoC, size or limits
 };
 
+/// Value until the next step.
+struct ScenarioStep {
+  double from_min;
+  double value;
+};
+
+/// The first step is also valid before it.
+inline double step_value_at(const std::vector<ScenarioStep>& steps, double minute) {
+  double value = steps.front().value;
+  for (const ScenarioStep& step : steps) {
+    if (step.from_min <= minute) value = step.value;
+  }
+  return value;
+}
+
 struct ScenarioPrices {
-  struct Step {
-    double from_min;
-    double eur_per_mwh;
-  };
-  std::string file;         ///< minute file; empty: `steps`, or a wave
-  std::vector<Step> steps;  ///< each price until the next
+  std::string file;                 ///< minute file; empty: `steps`, or a wave
+  std::vector<ScenarioStep> steps;  ///< EUR/MWh
   double wave_mean_eur_per_mwh = 100;
   double wave_amplitude_eur_per_mwh = 400;
   double wave_period_min = 44;
@@ -92,11 +103,7 @@ struct BatteryFaultWindow {
 
 /// House behind the same meter as the battery: none, steps, or drawn from a seed.
 struct ScenarioHouse {
-  struct Step {
-    double from_min;
-    double power_w;  ///< negative: PV surplus
-  };
-  std::vector<Step> steps;  ///< each load until the next; the first also before
+  std::vector<ScenarioStep> steps;  ///< W; negative: PV surplus
   std::optional<std::uint64_t> seed{};
   [[nodiscard]] bool exists() const { return !steps.empty() || seed.has_value(); }
 };

@@ -17,15 +17,11 @@ namespace bess {
 
 std::string house_csv(const Scenario& scenario) {
   constexpr int kMinutesAround = 60;
-  const auto& steps = scenario.house.steps;
   std::string text = "minute_utc,house_w\n";
   const int end = static_cast<int>(std::ceil(scenario.minutes)) + kMinutesAround;
   for (int minute = -kMinutesAround; minute < end; ++minute) {
-    double power_w = steps.front().power_w;
-    for (const ScenarioHouse::Step& step : steps) {
-      if (step.from_min <= minute) power_w = step.power_w;
-    }
-    text += fmt::format("{},{}\n", utc_text(scenario.start_utc_s + 60 * minute).view(), power_w);
+    text += fmt::format("{},{}\n", utc_text(scenario.start_utc_s + 60 * minute).view(),
+                        step_value_at(scenario.house.steps, minute));
   }
   return text;
 }
@@ -58,10 +54,8 @@ void read_house(TomlTable table, Scenario& scenario) {
   if (ways != 1) table.fail("power_w", "or steps or seed: exactly one is required");
   double power_w = 0;
   read_decimal(table, "power_w", power_w, -kHouseWMax, kHouseWMax);
-  if (table.has("power_w")) house.steps = {{.from_min = 0, .power_w = power_w}};
-  read_steps(table, scenario.minutes, house.steps, [](double from_min, double step_w) {
-    return ScenarioHouse::Step{.from_min = from_min, .power_w = step_w};
-  });
+  if (table.has("power_w")) house.steps = {{.from_min = 0, .value = power_w}};
+  read_steps(table, scenario.minutes, house.steps);
   if (table.has("seed")) {
     std::int64_t seed = 1;
     table.integer("seed", seed, 0, INT64_MAX);
@@ -440,7 +434,7 @@ void Parts::add_lines(const char* table, std::string Scenario::*text) {
 }
 
 /// The first step is a part only if another step replaces it at the start.
-std::size_t first_price_step(const std::vector<ScenarioPrices::Step>& steps) {
+std::size_t first_price_step(const std::vector<ScenarioStep>& steps) {
   return steps.size() > 1 && steps[1].from_min <= 0 ? 0 : 1;
 }
 

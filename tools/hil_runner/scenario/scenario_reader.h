@@ -65,13 +65,12 @@ void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
 }
 
 /// Steps, each until the next: ascending in time, before the end.
-template <typename Step, typename Make>
-void read_steps(TomlTable& table, double scenario_minutes, std::vector<Step>& steps,
-                const Make& make) {
+inline void read_steps(TomlTable& table, double scenario_minutes,
+                       std::vector<ScenarioStep>& steps) {
   read_pairs(table, "steps", [&](double from_min, double value) -> std::string {
     if (!steps.empty() && from_min <= steps.back().from_min) return "must be ascending in time";
     if (from_min >= scenario_minutes) return after_the_end(scenario_minutes);
-    steps.push_back(make(from_min, value));
+    steps.push_back({from_min, value});
     return "";
   });
 }

@@ -165,7 +165,7 @@ TEST(Judge, KnowsReserveBudgetAndCapsAboveTheThresholds) {
   HandMade kept = at_rest(1'600);
   kept.scenario.edge_other = "[[reserve]]\nfrom = \"00:00\"\nto = \"24:00\"\nsoc = 0.5\n";
   EXPECT_EQ(kept.broken(), "");
-  kept.scenario.prices.steps[1].eur_per_mwh = -600;  // it may still charge
+  kept.scenario.prices.steps[1].value = -600;  // it may still charge
   EXPECT_EQ(kept.broken(), "thresholds");
   HandMade spent = at_rest(1'600, "cycles_per_day_max = 0.2");
   EXPECT_EQ(spent.broken(), "thresholds");
