@@ -3,21 +3,25 @@
 #pragma once
 
 #include <fmt/core.h>
+#include <signal.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "edge/app/settings/edge_config.h"
-#include "shared/host/child_process.h"
+#include "edge/records/log/log_reader.h"
 #include "shared/host/user_error.h"
 #include "tools/hil_runner/base/work_folder.h"
-#include "tools/hil_runner/scenario/scenario.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/simulators/site/site_programs.h"
 
 namespace bess {
 
@@ -52,32 +56,86 @@ class EdgeProcess {
       : program_(program), folder_(folder) {}
 
   /// Writes the configuration, and reads it as bess-edge does.
-  void set_up(const Scenario& scenario, const std::string& settings);
+  void set_up(const Scenario& scenario, const std::string& settings) {
+    config_ = load_edge_settings(scenario, folder_.file("edge.toml"), settings);
+  }
   [[nodiscard]] const EdgeConfig& config() const { return config_; }
-  [[nodiscard]] std::int64_t now_utc_s() const;
+  [[nodiscard]] std::int64_t now_utc_s() const {
+    return config_.clock.now_utc_ns() / kNanosecondsPerSecond;
+  }
 
   /// Starts the controller. `recording`: file of its bus traffic; empty: none.
-  void start(const std::string& recording);
+  void start(const std::string& recording) {
+    std::vector<std::string> words;
+    if (!recording.empty()) words = {"--record", recording};
+    if (prices_ == nullptr) {
+      std::filesystem::path program(program_);
+      std::string name = program.filename().string();
+      name.replace(0, std::string_view("bess-edge").size(), "bess-prices");
+      program.replace_filename(name);
+      prices_ = start_logged({program.string(), "--config", folder_.file("edge.toml")},
+                             folder_.file("prices.log"));
+    }
+    start_command(std::move(words));
+  }
   /// Starts a longer command instead of the controller.
-  void start_command(std::vector<std::string> words);
-  void signal(int number) const;
+  void start_command(std::vector<std::string> words) {
+    words.insert(words.begin(), program_);
+    words.insert(words.end(), {"--config", folder_.file("edge.toml")});
+    log_ = folder_.file(fmt::format("edge-{}.log", ++started_));
+    process_ = start_logged(words, log_);
+  }
+  void signal(int number) const {
+    if (process_ != nullptr) process_->signal(number);
+  }
   /// Ends the process with this signal, if it runs.
-  void end(int number);
+  void end(int number) {
+    if (process_ == nullptr) return;
+    signal(SIGCONT);
+    signal(number);
+    exit_code_ = wait();
+  }
   /// Waits for the end of a command; returns its exit code.
-  int wait();
+  int wait() {
+    const int code = process_->wait();
+    process_.reset();
+    return code;
+  }
   [[nodiscard]] bool runs() const { return process_ != nullptr && !process_->has_ended(); }
   [[nodiscard]] bool is_started() const { return process_ != nullptr; }
 
   /// Runs a command of bess-edge in parallel. Throws UserError if it fails.
-  void say(std::vector<std::string> words) const;
+  void say(std::vector<std::string> words) const {
+    const std::string command = words.front();
+    words.insert(words.begin(), program_);
+    words.insert(words.end(), {"--config", folder_.file("edge.toml")});
+    const std::string log = folder_.file("commands.log");
+    const int code = start_logged(words, log)->wait();
+    if (code != 0) fail("bess-edge {}: exit code {}: {}", command, code, last_line_of(log));
+  }
 
   /// Exit code of the controller that ended last.
   [[nodiscard]] int exit_code() const { return exit_code_; }
-  [[nodiscard]] std::string last_line() const;  ///< of the newest log
+  /// Of the newest log.
+  [[nodiscard]] std::string last_line() const { return last_line_of(log_); }
 
   /// Records of its ring, as `bess-edge log` reads them, also while it is written.
-  [[nodiscard]] std::vector<CycleRecord> records() const;
-  [[nodiscard]] bool newest(CycleRecord& record) const;
+  [[nodiscard]] std::vector<CycleRecord> records() const {
+    std::vector<CycleRecord> records;
+    LogReader log;
+    FileMessage error;
+    if (!log.open(config_.log, error)) return records;
+    CycleRecord record;
+    for (std::uint64_t n = log.oldest_number(); n <= log.newest_number(); ++n) {
+      if (log.read(n, record)) records.push_back(record);
+    }
+    return records;
+  }
+  [[nodiscard]] bool newest(CycleRecord& record) const {
+    LogReader log;
+    FileMessage error;
+    return log.open(config_.log, error) && log.newest(record);
+  }
 
  private:
   const std::string& program_;

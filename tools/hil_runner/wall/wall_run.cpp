@@ -4,15 +4,23 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <thread>
+#include <vector>
 
 #include "edge/app/storage/commission_file.h"
 #include "edge/device/battery/commission.h"
 #include "shared/host/file.h"
 #include "shared/host/pty_bridge.h"
+#include "shared/scaled_clock.h"
+#include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
+#include "tools/hil_runner/wall/edge_process.h"
 #include "tools/simulators/battery_sim/battery_record.h"
 #include "tools/simulators/site/site_programs.h"
 
@@ -106,8 +114,8 @@ void add_day_ahead(Options& options, const Scenario& scenario, const WorkFolder&
   if (auction.repair_s) options.add("--day-ahead-repair-s", *auction.repair_s);
 }
 
-}  // namespace
-
+/// `serial_device`: end of the line for the battery; empty: TCP. Writes a file for a house with
+/// steps.
 std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
                                          const WorkFolder& folder) {
   Options options;
@@ -124,6 +132,7 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
   return options.take();
 }
 
+/// `prices`: minute file. Writes a file for day-ahead prices.
 std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
                                         const WorkFolder& folder) {
   const PriceFaultWindow& fault = scenario.price_fault;
@@ -138,65 +147,109 @@ std::vector<std::string> market_options(const Scenario& scenario, const std::str
   return options.take();
 }
 
-void RealDeviceRun::check_stop_request() const {
-  if (key_.is_pressed()) request_stop();
-  throw_if_stopped();
-}
+/// Worst wake-up latency of this machine during the life of this object.
+class Lateness {
+ public:
+  Lateness() : thread_([this] { run(); }) {}
+  Lateness(const Lateness&) = delete;
+  Lateness& operator=(const Lateness&) = delete;
+  ~Lateness() {
+    is_ending_ = true;
+    thread_.join();
+  }
+  [[nodiscard]] double worst_s() const { return static_cast<double>(worst_ns_) / 1e9; }
 
-void RealDeviceRun::commission() {
-  constexpr useconds_t kLookUs = 50'000;
-  edge_.start_command({"commission", "--yes"});
-  while (edge_.runs()) {
+ private:
+  void run() {
+    constexpr std::int64_t kTickNs = 5'000'000;
+    while (!is_ending_) {
+      const std::int64_t due_ns = clock_ns(CLOCK_MONOTONIC) + kTickNs;
+      while (clock_ns(CLOCK_MONOTONIC) < due_ns) sleep_until_monotonic(due_ns);
+      worst_ns_ = std::max(worst_ns_.load(), clock_ns(CLOCK_MONOTONIC) - due_ns);
+    }
+  }
+
+  std::atomic<std::int64_t> worst_ns_ = 0;
+  std::atomic<bool> is_ending_ = false;
+  std::thread thread_;
+};
+
+/// Real battery in a run: commissioned first, checked every second, and released at every end.
+class RealDeviceRun {
+ public:
+  /// All must outlive this object.
+  RealDeviceRun(const Scenario& scenario, const RealBattery& battery, const WorkFolder& folder,
+                EdgeProcess& edge)
+      : scenario_(scenario), battery_(battery), folder_(folder), edge_(edge) {}
+
+  /// Commissioning by the edge: half a minute of a small order.
+  void commission() {
+    constexpr useconds_t kLookUs = 50'000;
+    edge_.start_command({"commission", "--yes"});
+    while (edge_.runs()) {
+      check_stop_request();
+      usleep(kLookUs);
+    }
+    if (edge_.wait() != 0) fail("{}", edge_.last_line());
+  }
+  /// Throws Interrupted on a stop request, UserError beyond the limits.
+  void look() {
     check_stop_request();
-    usleep(kLookUs);
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    CycleRecord cycle;
+    if (now_ns < next_look_ns_) return;
+    next_look_ns_ = now_ns + kNanosecondsPerSecond;
+    if (!edge_.newest(cycle)) return;
+    show(cycle);
+    const std::string broken = beyond_limits(cycle, battery_);
+    if (!broken.empty()) fail("stopped: {} exceeds the limits of --real", broken);
   }
-  if (edge_.wait() != 0) fail("{}", edge_.last_line());
-}
-
-void RealDeviceRun::look() {
-  check_stop_request();
-  const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-  CycleRecord cycle;
-  if (now_ns < next_look_ns_) return;
-  next_look_ns_ = now_ns + kNanosecondsPerSecond;
-  if (!edge_.newest(cycle)) return;
-  show(cycle);
-  const std::string broken = beyond_limits(cycle, battery_);
-  if (!broken.empty()) fail("stopped: {} exceeds the limits of --real", broken);
-}
-
-void RealDeviceRun::show(const CycleRecord& cycle) const {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr,
-             "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q stops  ",
-             scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
-             cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
-}
-
-std::string RealDeviceRun::next_recording() {
-  recordings_.push_back(folder_.file(fmt::format("bus-{}.jsonl", recordings_.size() + 1)));
-  return recordings_.back();
-}
-
-void RealDeviceRun::give_back() {
-  edge_.end(SIGTERM);
-  CycleRecord last;
-  if (edge_.newest(last) && last.mode == Mode::kStopping && last.battery_status == Status::kOk) {
-    return fmt::print(stderr, "{}: mode=stopping battery=ok\n", scenario_.name);
+  /// File for the bus traffic of the next edge.
+  [[nodiscard]] std::string next_recording() {
+    recordings_.push_back(folder_.file(fmt::format("bus-{}.jsonl", recordings_.size() + 1)));
+    return recordings_.back();
   }
-  edge_.start_command({"release", "--yes"});
-  const int code = edge_.wait();
-  fmt::print(stderr, "{}: {}\n", scenario_.name, edge_.last_line());
-  if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, check the battery\n", scenario_.name);
-}
+  [[nodiscard]] bool has_begun() const { return edge_.is_started() || !recordings_.empty(); }
+  /// Stops the edge, which releases the battery; if not, releases it by a command and reports.
+  void give_back() {
+    edge_.end(SIGTERM);
+    CycleRecord last;
+    if (edge_.newest(last) && last.mode == Mode::kStopping && last.battery_status == Status::kOk) {
+      return fmt::print(stderr, "{}: mode=stopping battery=ok\n", scenario_.name);
+    }
+    edge_.start_command({"release", "--yes"});
+    const int code = edge_.wait();
+    fmt::print(stderr, "{}: {}\n", scenario_.name, edge_.last_line());
+    if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, check the battery\n", scenario_.name);
+  }
+  /// Adds orders from its bus traffic, and its measurements.
+  void report_to(Evidence& evidence) const {
+    evidence.orders =
+        orders_on_the_bus(recordings_, edge_.config().battery.map, scenario_.end_utc_ns());
+    evidence.minutes = measured_minutes(evidence.log);
+  }
 
-void RealDeviceRun::report_to(Evidence& evidence) const {
-  evidence.orders =
-      orders_on_the_bus(recordings_, edge_.config().battery.map, scenario_.end_utc_ns());
-  evidence.minutes = measured_minutes(evidence.log);
-}
+ private:
+  void check_stop_request() const {
+    if (key_.is_pressed()) request_stop();
+    throw_if_stopped();
+  }
+  void show(const CycleRecord& cycle) const {
+    if (isatty(STDERR_FILENO) == 0) return;
+    fmt::print(stderr,
+               "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q stops  ",
+               scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
+               cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
+  }
 
-namespace {
+  const Scenario& scenario_;
+  const RealBattery& battery_;
+  const WorkFolder& folder_;
+  EdgeProcess& edge_;
+  AbortKey key_;
+  std::vector<std::string> recordings_;
+  std::int64_t next_look_ns_ = 0;
+};
 
 constexpr double kStartUpS = 1.2;  ///< wall time until all processes run
 
