@@ -347,20 +347,6 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
 }
 CommandLine::~CommandLine() = default;
 
-namespace {
-
-/// Control characters of ASCII and C1 (as UTF-8).
-bool holds_control(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
-    if (c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0)) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 int CommandLine::run(int argc, const char* const* argv) {
   const char* const program = app_->get_name().c_str();
   const auto refuse = [&](const CLI::App& command, const std::string& complaint) {

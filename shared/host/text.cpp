@@ -50,27 +50,16 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string>&
 }
 
 std::string html_escaped(std::string_view text) {
+  struct Entity {
+    char character;
+    std::string_view text;
+  };
+  constexpr Entity kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
+    const auto* const entity = std::ranges::find(kEntities, c, &Entity::character);
+    out += entity == std::end(kEntities) ? std::string_view(&c, 1) : entity->text;
   }
   return out;
 }
@@ -119,6 +108,13 @@ void add_formatted_list(std::string& text, const char* format, std::va_list argu
 }
 
 }  // namespace
+
+bool holds_control(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (is_control(text, i)) return true;
+  }
+  return false;
+}
 
 std::string formatted(const char* format, ...) {
   std::string text;

@@ -53,6 +53,9 @@ inline std::string_view take_line(std::string_view& rest) {
 /// Lines of `text`, each with "# " in front.
 std::string comment_lines(std::string_view text);
 
+/// Control characters of ASCII and C1 (as UTF-8).
+bool holds_control(std::string_view text);
+
 /// At most `size_max` bytes of `text` on one line: replaces control characters by spaces, and
 /// merges spaces.
 std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);
