@@ -16,15 +16,8 @@ inline constexpr ContextKind kContextKinds[] = {ContextKind::kMonth, ContextKind
                                                 ContextKind::kOutlook};
 
 constexpr std::string_view context_name(ContextKind kind) {
-  switch (kind) {
-    case ContextKind::kMonth:
-      return "month";
-    case ContextKind::kLevel:
-      return "level";
-    case ContextKind::kOutlook:
-      break;
-  }
-  return "outlook";
+  constexpr std::string_view kNames[] = {"month", "level", "outlook"};
+  return kNames[static_cast<int>(kind)];
 }
 
 struct ContextClasses {

@@ -1,7 +1,6 @@
 #include "shared/outlook/outlook_plan.h"
 
 #include "shared/crc32.h"
-#include "shared/fixed_point.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 

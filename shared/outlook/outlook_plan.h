@@ -13,6 +13,7 @@
 
 #include <cstdint>
 
+#include "shared/fixed_point.h"
 #include "shared/outlook/outlook_model.h"
 
 namespace bess {
@@ -25,10 +26,7 @@ inline constexpr std::int32_t kDayAheadUnknown = INT32_MIN;
 inline constexpr std::int32_t kPlannedLevelCenti = 1600;
 
 constexpr std::int32_t planned_level_centi(std::int32_t level_centi) {
-  const std::int32_t half = kPlannedLevelCenti / 2;
-  const std::int32_t shifted = level_centi + half;
-  const std::int32_t whole = shifted / kPlannedLevelCenti;
-  return (whole - (shifted % kPlannedLevelCenti < 0 ? 1 : 0)) * kPlannedLevelCenti;
+  return rounding_divide(level_centi, kPlannedLevelCenti) * kPlannedLevelCenti;
 }
 
 /// Three local days around now, with known day-ahead prices.
