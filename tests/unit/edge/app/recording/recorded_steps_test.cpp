@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "edge/device/battery/step_fit.h"
-#include "shared/battery_response.h"
+#include "shared/battery_model.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/shipped_maps.h"
 
