@@ -14,12 +14,13 @@ namespace {
 constexpr std::size_t kLineBytesMax = 4'096;
 
 /// Whole number in a range; false if the member is missing or something else.
+template <typename Whole>
 bool take_whole(JsonValue object, const char* key, std::int64_t min, std::int64_t max,
-                std::int64_t& value) {
+                Whole& value) {
   const double number = object[key].number().value_or(0.5);
   if (number != std::floor(number)) return false;
   if (number < static_cast<double>(min) || number > static_cast<double>(max)) return false;
-  value = static_cast<std::int64_t>(number);
+  value = static_cast<Whole>(number);
   return true;
 }
 
@@ -39,14 +40,11 @@ bool parse_utc_ns(std::string_view text, std::int64_t& utc_ns) {
 
 /// Outcome of a line; false if unknown.
 bool take_outcome(JsonValue object, BusExchange& exchange) {
-  std::int64_t code = 0;
   exchange.exception = 0;
   exchange.outcome = BusOutcome::kAnswered;
   if (object["exception"].exists()) {
-    if (!take_whole(object, "exception", 1, 255, code)) return false;
     exchange.outcome = BusOutcome::kException;
-    exchange.exception = static_cast<std::int32_t>(code);
-    return true;
+    return take_whole(object, "exception", 1, 255, exchange.exception);
   }
   if (!object["error"].exists()) return true;
   const std::string_view name = object["error"].text_or("");
@@ -73,28 +71,21 @@ bool take_values(JsonValue list, BusExchange& exchange) {
 
 /// Error of a line; "": none.
 std::string_view parse_exchange(JsonValue object, BusExchange& exchange) {
-  std::int64_t unit = 0;
-  std::int64_t function = 0;
-  std::int64_t address = 0;
-  std::int64_t count = 0;
   if (!object.is_object()) return "not a line of a recording";
   if (!parse_utc_ns(object["utc"].text_or(""), exchange.utc_ns)) return "\"utc\" is not a UTC time";
-  if (!take_whole(object, "unit", 0, 255, unit)) return "\"unit\" must be 0 to 255";
-  if (!take_whole(object, "function", 3, 16, function) ||
-      (function != 3 && function != 4 && function != 6 && function != 16)) {
+  if (!take_whole(object, "unit", 0, 255, exchange.unit)) return "\"unit\" must be 0 to 255";
+  if (!take_whole(object, "function", 3, 16, exchange.function) ||
+      (exchange.function != 3 && exchange.function != 4 && !exchange.is_write())) {
     return "\"function\" must be 3, 4, 6 or 16";
   }
-  if (!take_whole(object, "address", 0, 65'535, address)) return "\"address\" must be 0 to 65535";
-  if (!take_whole(object, "count", 1, BusExchange::kRegistersMax, count)) {
+  if (!take_whole(object, "address", 0, 65'535, exchange.address))
+    return "\"address\" must be 0 to 65535";
+  if (!take_whole(object, "count", 1, BusExchange::kRegistersMax, exchange.count)) {
     return "\"count\" must be 1 to 125";
   }
   if (!take_whole(object, "latency_us", 0, 3'600'000'000LL, exchange.latency_us)) {
     return "\"latency_us\" must be 0 to 3600000000";
   }
-  exchange.unit = static_cast<std::int32_t>(unit);
-  exchange.function = static_cast<std::uint8_t>(function);
-  exchange.address = static_cast<std::uint16_t>(address);
-  exchange.count = static_cast<std::uint16_t>(count);
   if (!take_outcome(object, exchange)) return "unknown \"exception\" or \"error\"";
   if (!take_values(object["values"], exchange)) {
     return "\"values\" must be \"count\" numbers from 0 to 65535";
@@ -103,14 +94,12 @@ std::string_view parse_exchange(JsonValue object, BusExchange& exchange) {
 }
 
 bool parse_head(JsonValue object, RecordingHead& head) {
-  std::int64_t version = 0;
-  std::int64_t unit = 0;
-  std::int64_t scale = 0;
+  int version = 0;
   const JsonValue groups = object["units"];
   const std::string_view transport = object["transport"].text_or("");
   if (!take_whole(object, "bess_recording", kRecordingVersion, kRecordingVersion, version) ||
-      !take_whole(object, "unit", 0, 255, unit) ||
-      !take_whole(object, "time_scale", 1, 100'000, scale) || !groups.is_object() ||
+      !take_whole(object, "unit", 0, 255, head.unit) ||
+      !take_whole(object, "time_scale", 1, 100'000, head.time_scale) || !groups.is_object() ||
       (transport != "tcp" && transport != "rtu") ||
       !parse_utc(object["begin"].text_or(""), head.begin_utc_s)) {
     return false;
@@ -118,8 +107,6 @@ bool parse_head(JsonValue object, RecordingHead& head) {
   head.version = object["version"].text_or("");
   head.map = object["map"].text_or("");
   head.variant = object["variant"].text_or("");
-  head.unit = static_cast<std::int32_t>(unit);
-  head.time_scale = static_cast<std::int32_t>(scale);
   head.rtu = transport == "rtu";
   for (const JsonValue group : groups) {
     const double id = group.number().value_or(-1);
