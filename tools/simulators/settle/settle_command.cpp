@@ -64,31 +64,19 @@ void print_text(const RunSettlement& s) {
 /// Same names and ranges as the keys of bess-train's configuration.
 void add_costs(ProgramCommand& command, BatteryParameters& battery) {
   TradingCosts& costs = battery.costs;
-  command
-      .option("--import-adder-eur-per-mwh", costs.import_adder_eur_per_mwh,
-              "surcharge on charged energy, EUR/MWh")
-      .range(0.0, 1000.0)
-      .with_default();
-  command
-      .option("--import-percent", costs.import_percent,
-              "surcharge on charged energy, % of the absolute price")
-      .range(0.0, 100.0)
-      .with_default();
-  command
-      .option("--export-fee-eur-per-mwh", costs.export_fee_eur_per_mwh,
-              "fee on discharged energy, EUR/MWh")
-      .range(0.0, 1000.0)
-      .with_default();
-  command
-      .option("--export-percent", costs.export_percent,
-              "fee on discharged energy, % of the absolute price")
-      .range(0.0, 100.0)
-      .with_default();
-  command
-      .option("--wear-eur-per-mwh", battery.wear_eur_per_mwh,
-              "wear cost of energy charged or discharged, EUR/MWh")
-      .range(0.0, 1000.0)
-      .with_default();
+  const auto add = [&](const char* name, double& cost, double most, const char* help) {
+    command.option(name, cost, help).range(0.0, most).with_default();
+  };
+  add("--import-adder-eur-per-mwh", costs.import_adder_eur_per_mwh, 1000,
+      "surcharge on charged energy, EUR/MWh");
+  add("--import-percent", costs.import_percent, 100,
+      "surcharge on charged energy, % of the absolute price");
+  add("--export-fee-eur-per-mwh", costs.export_fee_eur_per_mwh, 1000,
+      "fee on discharged energy, EUR/MWh");
+  add("--export-percent", costs.export_percent, 100,
+      "fee on discharged energy, % of the absolute price");
+  add("--wear-eur-per-mwh", battery.wear_eur_per_mwh, 1000,
+      "wear cost of energy charged or discharged, EUR/MWh");
 }
 
 }  // namespace
