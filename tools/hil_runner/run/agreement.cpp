@@ -6,9 +6,7 @@
 #include <cstdlib>
 
 #include "shared/utc_text.h"
-#include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
-#include "tools/hil_runner/wall/wall_run.h"
 
 namespace bess {
 

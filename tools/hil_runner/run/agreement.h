@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "tools/hil_runner/run/outcome.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/hil_runner/evidence/evidence.h"
-#include "tools/hil_runner/run/outcome.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/hil_runner/run/outcome.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 
