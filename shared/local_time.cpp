@@ -9,8 +9,8 @@
 
 namespace bess {
 
-void set_market_time_zone(const char* posix_rule) {
-  setenv("TZ", posix_rule, 1);
+void set_market_time_zone() {
+  setenv("TZ", kBrusselsTimeZone, 1);
   tzset();
 }
 

@@ -21,7 +21,7 @@ struct LocalMinute {
 };
 
 /// Sets TZ for the process (setenv + tzset). Call once, before any thread is started.
-void set_market_time_zone(const char* posix_rule = kBrusselsTimeZone);
+void set_market_time_zone();
 
 /// Local wall-clock minute of a UTC instant in seconds since 1970.
 LocalMinute local_minute_of(std::int64_t utc_s);
