@@ -34,9 +34,7 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
     scenario.day_ahead_file = (folder / *file).string();
   }
   int fault = 0;
-  table.choice("fault", fault,
-               {"none", "late", "missing", "half", "shifted-hour", "shifted-day", "doubled",
-                "yesterday", "hours", "out-of-range", "html", "slow", "all"});
+  table.choice("fault", fault, kAuctionFaultNames);
   auction.fault = static_cast<AuctionFault>(fault);
   for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
     if (fault == 0 && table.has(key)) table.fail(key, "requires a fault");

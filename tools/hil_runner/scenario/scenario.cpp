@@ -162,8 +162,7 @@ void read_price_fault(TomlTable table, Scenario& scenario) {
   table.integer("every", fault.every, 1, 1'000'000);
   int kind = 0;
   table.require("kind");
-  table.choice("kind", kind,
-               {"null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"});
+  table.choice("kind", kind, std::span(kMarketFaultNames).subspan(1));  // without none
   fault.fault = static_cast<MarketFault>(kind + 1);
   // Use steps of [prices] for a price that moves again, or is frozen in some answers.
   const bool is_partly_frozen = fault.every > 1 || fault.span.to_min != kNeverMin;

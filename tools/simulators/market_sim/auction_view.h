@@ -20,7 +20,7 @@ enum class AuctionFault : std::uint8_t {
   // clang-format on
 };
 
-inline constexpr const char* kAuctionFaultNames[] = {
+inline constexpr std::string_view kAuctionFaultNames[] = {
     "none",      "late",  "missing",      "half", "shifted-hour", "shifted-day", "doubled",
     "yesterday", "hours", "out-of-range", "html", "slow",         "all"};
 

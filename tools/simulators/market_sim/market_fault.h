@@ -22,7 +22,7 @@ enum class MarketFault : std::uint8_t {
   kFrozen,    ///< the price at the begin of the fault, with new time stamps
 };
 
-inline constexpr const char* kMarketFaultNames[] = {
+inline constexpr std::string_view kMarketFaultNames[] = {
     "none", "null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"};
 
 inline constexpr std::int64_t kStaleAnswerS = 600;
