@@ -134,7 +134,9 @@ double RegisterImage::shown_grid_w() {
 void RegisterImage::refresh(std::int64_t utc_ns) {
   battery_.advance(utc_ns);
   utc_s_ = utc_ns / kNanosecondsPerSecond;
-  if (is_running_ && !battery_.dispatch_active()) show_expiry();
+  if (is_running_ && !battery_.dispatch_active()) {
+    for (const Assignment& assignment : map_.simulator.at_expiry) assign(assignment);
+  }
   is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
   show_soc();
@@ -207,10 +209,6 @@ void RegisterImage::show_power(const StaticVector<PowerCase, 4>& all, std::int64
     set(c.when.point, c.when.value);
     return;
   }
-}
-
-void RegisterImage::show_expiry() {
-  for (const Assignment& assignment : map_.simulator.at_expiry) assign(assignment);
 }
 
 void RegisterImage::apply_write(int address, int count) {

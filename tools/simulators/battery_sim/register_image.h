@@ -91,7 +91,6 @@ class RegisterImage {
   [[nodiscard]] std::int64_t duration_s() const;
   [[nodiscard]] double soc_limit_frac(std::int64_t power_w) const;
   void start(const PointValues& registers);
-  void show_expiry();
 
   const RegisterMap& map_;
   SimulatedBattery& battery_;
