@@ -85,11 +85,7 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   for (int i = 0; i < frame.size; ++i) sent_.add(frame.bytes[i]);
   if (is_cut_) return Status::kNotConnected;
   answer_due();
-  Pending pending{.due_ns = 0,
-                  .request = {},
-                  .fault = BatteryFault::kNone,
-                  .window = 0,
-                  .connection = connection_};
+  Pending pending{.connection = connection_};
   BusRequest& request = pending.request;
   std::copy_n(frame.bytes, frame.size, request.bytes);
   request.size = frame.size;

@@ -61,16 +61,13 @@ class VirtualBus {
   void show_to(WireListener listener) { listener_ = std::move(listener); }
 
  private:
-  struct ContextDeleter {
-    void operator()(modbus_t* context) const { modbus_free(context); }
-  };
   /// Request in processing.
   struct Pending {
-    std::int64_t due_ns;
-    BusRequest request;
-    BatteryFault fault;
-    std::size_t window;       ///< index of the fault window
-    std::int64_t connection;  ///< of the request; a closed one gets no answer
+    std::int64_t connection = 0;  ///< of the request; a closed one gets no answer
+    BusRequest request{};
+    BatteryFault fault = BatteryFault::kNone;
+    std::size_t window = 0;  ///< index of the fault window
+    std::int64_t due_ns = 0;
   };
   struct ByteInTransit {
     std::int64_t arrives_ns;
@@ -85,7 +82,7 @@ class VirtualBus {
   VirtualBusSettings settings_;
   VirtualTime& time_;
   std::int32_t baud_;
-  std::unique_ptr<modbus_t, ContextDeleter> context_;
+  ModbusContext context_;
   FaultyDevice device_;
   std::deque<Pending> pending_;
   std::deque<ByteInTransit> input_;

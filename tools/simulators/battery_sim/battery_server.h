@@ -89,9 +89,6 @@ class BatteryServer {
   void run(int stop_fd);
 
  private:
-  struct ContextDeleter {
-    void operator()(modbus_t* context) const { modbus_free(context); }
-  };
   struct Client {
     int fd;
     bool half_open = false;
@@ -113,7 +110,7 @@ class BatteryServer {
   const RegisterMap& map_;
   ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
   ScaledClock clock_;
-  std::unique_ptr<modbus_t, ContextDeleter> context_;
+  ModbusContext context_;
   std::optional<FaultyDevice> device_;
   std::vector<Client> clients_;
   int listen_fd_ = -1;

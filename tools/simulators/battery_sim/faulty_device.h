@@ -18,6 +18,11 @@
 
 namespace bess {
 
+struct ModbusDeleter {
+  void operator()(modbus_t* context) const { modbus_free(context); }
+};
+using ModbusContext = std::unique_ptr<modbus_t, ModbusDeleter>;
+
 class FaultyDevice {
  public:
   /// All but the schedule must outlive this object. `context` makes the frames; with a `house` the
