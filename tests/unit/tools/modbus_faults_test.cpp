@@ -29,9 +29,9 @@ BatteryServerSettings troubled(const Trouble& trouble, double probability) {
   if (trouble.fault == BatteryFault::kRefuse) {  // an open connection must be closed to be refused
     settings.faults.faults.push_back(BatteryFault::kDrop);
   }
-  settings.late_ms = trouble.late_ms;
-  settings.drip_ms = 1;
-  settings.exception_code = trouble.exception_code;
+  settings.faults.late_ms = trouble.late_ms;
+  settings.faults.drip_ms = 1;
+  settings.faults.exception_code = trouble.exception_code;
   return settings;
 }
 
@@ -253,7 +253,7 @@ TEST(ModbusFaults, EachIsReportedByItsStatus) {
 TEST(ModbusFaults, ADrippingDeviceCannotHoldARequest) {
   for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
     BatteryServerSettings settings = troubled({transport, BatteryFault::kDrip}, 1);
-    settings.drip_ms = 30;  // 100 registers would take more than 6 s
+    settings.faults.drip_ms = 30;  // 100 registers would take more than 6 s
     LoopbackBattery loopback("block", settings, transport);
     ModbusLink link(loopback.link(kResponseTimeoutMs), {}, loopback.clock);
     std::uint16_t registers[100] = {};

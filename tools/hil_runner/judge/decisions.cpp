@@ -250,7 +250,7 @@ bool is_full_or_empty(const JudgeContext& judging, std::int64_t tick_ns, bool ch
 bool has_connection(const JudgeContext& judging) {
   const Scenario& scenario = judging.scenario;
   return judging.house.has_value() &&
-         (!scenario.edge_meter.empty() || !scenario.meter.fault.schedule.faults.empty());
+         (!scenario.edge_meter.empty() || !scenario.meter.fault.faults.empty());
 }
 
 }  // namespace

@@ -71,15 +71,15 @@ void JudgeContext::find_disturbances() {
     list.push_back({from_ns, to_ns});
     disturbed_.push_back({from_ns, to_ns == INT64_MAX ? to_ns : to_ns + recovery_ns});
   };
-  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
+  for (const FaultSchedule& fault : scenario.battery_faults) {
     std::vector<Window> other;
     const bool is_silent =
-        fault.strikes_always() && std::ranges::all_of(fault.schedule.faults, [](BatteryFault kind) {
+        fault.strikes_always() && std::ranges::all_of(fault.faults, [](BatteryFault kind) {
           return kind == BatteryFault::kSilence || kind == BatteryFault::kDrop ||
                  kind == BatteryFault::kReset || kind == BatteryFault::kHalfOpen;
         });
-    add(is_silent ? lost : other, scenario.utc_ns_at(fault.schedule.from_s / 60),
-        scenario.utc_ns_at(fault.schedule.to_s / 60));
+    add(is_silent ? lost : other, scenario.utc_ns_at(fault.from_s / 60),
+        scenario.utc_ns_at(fault.to_s / 60));
   }
   using enum ScenarioEvent::EventKind;
   add_spans(lost, {kEdgeKill, kEdgeStop, kEdgeHandOver}, kEdgeStart, add);

@@ -63,7 +63,7 @@ void read_recording(const std::string& path, std::vector<BusExchange>& exchanges
 std::string why_not_real(const Scenario& scenario) {
   if (!scenario.runs_wall) return "it is for virtual time";
   if (!scenario.battery_faults.empty()) {
-    const BatteryFault kind = scenario.battery_faults.front().schedule.faults.front();
+    const BatteryFault kind = scenario.battery_faults.front().faults.front();
     return fmt::format("only a simulated battery has the fault {}", battery_fault_name(kind));
   }
   const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::kind);

@@ -68,10 +68,10 @@ void for_each_mark(const Scenario& scenario, const Add& add) {
     }
     add("battery", name, schedule.from_s / 60, schedule.to_s / 60);
   };
-  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
-    add_faults("battery:", fault.schedule);
+  for (const FaultSchedule& fault : scenario.battery_faults) {
+    add_faults("battery:", fault);
   }
-  add_faults("meter:", scenario.meter.fault.schedule);
+  add_faults("meter:", scenario.meter.fault);
   const PriceFaultWindow& price = scenario.price_fault;
   if (price.fault != MarketFault::kNone) {
     add("prices", fmt::format("prices: {}", kMarketFaultNames[static_cast<int>(price.fault)]),

@@ -102,32 +102,32 @@ void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
 
 void read_battery_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  BatteryFaultWindow& fault = scenario.battery_faults.emplace_back();
+  FaultSchedule& fault = scenario.battery_faults.emplace_back();
   const bool rtu = scenario.battery.rtu;
   MinuteSpan window;
   read_span(table, scenario.minutes, window);
-  fault.schedule.every = 1;
-  fault.schedule.from_s = 60 * window.from_min;
-  fault.schedule.to_s = 60 * window.to_min;
-  table.integer("every", fault.schedule.every, 1, 1'000'000);
-  read_decimal(table, "probability", fault.schedule.probability, 0, 1);
-  read_decimal(table, "on_s", fault.schedule.on_s, 1, kSecondsPerDay);
-  read_decimal(table, "off_s", fault.schedule.off_s, 1, kSecondsPerDay);
-  if (table.ok() && (fault.schedule.on_s > 0) != (fault.schedule.off_s > 0)) {
-    table.fail(fault.schedule.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
+  fault.every = 1;
+  fault.from_s = 60 * window.from_min;
+  fault.to_s = 60 * window.to_min;
+  table.integer("every", fault.every, 1, 1'000'000);
+  read_decimal(table, "probability", fault.probability, 0, 1);
+  read_decimal(table, "on_s", fault.on_s, 1, kSecondsPerDay);
+  read_decimal(table, "off_s", fault.off_s, 1, kSecondsPerDay);
+  if (table.ok() && (fault.on_s > 0) != (fault.off_s > 0)) {
+    table.fail(fault.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
   }
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
-  fault.schedule.seed = static_cast<std::uint64_t>(seed);
-  table.integer("period_s", fault.schedule.period_s, 1, kSecondsPerDay);
+  fault.seed = static_cast<std::uint64_t>(seed);
+  table.integer("period_s", fault.period_s, 1, kSecondsPerDay);
   table.integer("late_ms", fault.late_ms, 1, 60'000);
   table.integer("drip_ms", fault.drip_ms, 1, 60'000);
   table.integer("exception_code", fault.exception_code, 1, 255);
-  read_fault_kinds(table, fault.schedule.faults, [rtu](const BatteryFaultInfo& info) {
+  read_fault_kinds(table, fault.faults, [rtu](const BatteryFaultInfo& info) {
     if (rtu ? info.rtu : info.tcp) return std::string();
     return std::string(rtu ? "not on a serial line" : "only on a serial line");
   });
-  check_battery_fault(table, fault.schedule);
+  check_battery_fault(table, fault);
   table.finish();
 }
 
@@ -143,12 +143,12 @@ void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, c
     table.fail("battery_fault",
                "with several entries requires time = \"virtual\": bess-sim accepts one");
   }
-  const auto acts = [](const BatteryFaultWindow& fault) {
-    return std::ranges::any_of(fault.schedule.faults, is_by_period);
+  const auto acts = [](const FaultSchedule& fault) {
+    return std::ranges::any_of(fault.faults, is_by_period);
   };
   const auto first = std::ranges::find_if(faults, acts);
-  const auto differs = [&](const BatteryFaultWindow& fault) {
-    return acts(fault) && fault.schedule.period_s != first->schedule.period_s;
+  const auto differs = [&](const FaultSchedule& fault) {
+    return acts(fault) && fault.period_s != first->period_s;
   };
   if (table.ok() && std::ranges::any_of(faults, differs)) {
     table.fail("battery_fault", "has different values of period_s; they must be equal");

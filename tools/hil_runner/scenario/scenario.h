@@ -90,17 +90,6 @@ struct ScenarioPrices {
   std::vector<MinuteSpan> missing;  ///< unpublished rows
 };
 
-struct BatteryFaultWindow {
-  FaultSchedule schedule;  ///< span in seconds; no faults: healthy
-  std::int32_t late_ms = 1'500;
-  std::int32_t drip_ms = 100;
-  std::int32_t exception_code = 6;
-  [[nodiscard]] bool strikes_always() const {
-    return !schedule.faults.empty() && schedule.every == 1 && schedule.probability == 0 &&
-           schedule.off_s == 0;
-  }
-};
-
 /// House behind the same meter as the battery: none, steps, or drawn from a seed.
 struct ScenarioHouse {
   std::vector<ScenarioStep> steps;  ///< W; negative: PV surplus
@@ -114,7 +103,7 @@ struct ScenarioMeter {
   Source source = Source::kNone;  ///< kBattery: the battery's own grid point
   std::string map;                ///< path of its register map
   std::string variant;
-  BatteryFaultWindow fault;  ///< of a meter with its own map
+  FaultSchedule fault;  ///< of a meter with its own map; no faults: healthy
 };
 
 struct PriceFaultWindow {
@@ -201,7 +190,7 @@ struct Scenario {
   ScenarioMeter meter;
   // TOML lines of the edge's configuration, by table; `edge_other`: complete tables.
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
-  std::vector<BatteryFaultWindow> battery_faults;  ///< several: only in virtual time
+  std::vector<FaultSchedule> battery_faults;  ///< several: only in virtual time
   PriceFaultWindow price_fault;
   std::optional<AuctionSettings> day_ahead;  ///< with faults
   std::string day_ahead_file;                ///< empty: synthetic
@@ -220,8 +209,8 @@ struct Scenario {
   /// Some fault of the battery is of this kind: `is_kind(BatteryFault)`.
   template <typename IsKind>
   [[nodiscard]] bool has_battery_fault(const IsKind& is_kind) const {
-    return std::ranges::any_of(battery_faults, [&](const BatteryFaultWindow& fault) {
-      return std::ranges::any_of(fault.schedule.faults, is_kind);
+    return std::ranges::any_of(battery_faults, [&](const FaultSchedule& fault) {
+      return std::ranges::any_of(fault.faults, is_kind);
     });
   }
   /// Start of the price fault.

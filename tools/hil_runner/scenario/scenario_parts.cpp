@@ -95,7 +95,7 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
   }
   MinuteSpan window;
   read_span(table, scenario.minutes, window);
-  FaultSchedule& schedule = meter.fault.schedule;
+  FaultSchedule& schedule = meter.fault;
   schedule.every = 1;
   schedule.from_s = 60 * window.from_min;
   schedule.to_s = 60 * window.to_min;
@@ -458,7 +458,7 @@ std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
     parts.add_if(!scenario.battery_faults.empty(), "battery_fault",
                  [](Scenario& s) { s.battery_faults.clear(); });
   }
-  parts.add_if(!scenario.meter.fault.schedule.faults.empty(), "meter_fault",
+  parts.add_if(!scenario.meter.fault.faults.empty(), "meter_fault",
                [](Scenario& s) { s.meter.fault = {}; });
   parts.add_if(scenario.price_fault.fault != MarketFault::kNone, "price_fault",
                [](Scenario& s) { s.price_fault = {}; });

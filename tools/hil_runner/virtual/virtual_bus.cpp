@@ -23,12 +23,6 @@ modbus_t* make_context(bool rtu, int unit) {
   return context;
 }
 
-std::vector<FaultSchedule> schedules_of(const std::vector<BatteryFaultWindow>& faults) {
-  std::vector<FaultSchedule> schedules;
-  for (const BatteryFaultWindow& fault : faults) schedules.push_back(fault.schedule);
-  return schedules;
-}
-
 }  // namespace
 
 VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map,
@@ -37,8 +31,8 @@ VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& ma
       time_(time),
       baud_(map.baud),
       context_(make_context(settings.rtu, map.unit)),
-      device_(map, battery, context_.get(), schedules_of(settings.faults), settings.rtu,
-              settings.start_utc_ns, house) {
+      device_(map, battery, context_.get(), settings.faults, settings.rtu, settings.start_utc_ns,
+              house) {
   buses().emplace_back(settings.port, this);
 }
 
@@ -134,7 +128,7 @@ void VirtualBus::answer_due() {
   }
 }
 
-const BatteryFaultWindow& VirtualBus::window_of(const Pending& pending) const {
+const FaultSchedule& VirtualBus::window_of(const Pending& pending) const {
   return settings_.faults.at(pending.window);  // the fault belongs to one of them
 }
 

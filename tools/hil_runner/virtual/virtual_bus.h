@@ -26,7 +26,7 @@ struct VirtualBusSettings {
   std::int32_t port = 1;
   bool rtu = false;
   std::int32_t response_delay_ms = 20;
-  std::vector<BatteryFaultWindow> faults{};
+  std::vector<FaultSchedule> faults{};
   std::int64_t start_utc_ns = 0;  ///< start of the fault times
 };
 
@@ -73,7 +73,7 @@ class VirtualBus {
     std::int64_t arrives_ns;
     std::uint8_t byte;
   };
-  [[nodiscard]] const BatteryFaultWindow& window_of(const Pending& pending) const;
+  [[nodiscard]] const FaultSchedule& window_of(const Pending& pending) const;
   void answer_due();
   void answer(const Pending& pending);
   void put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap_ns = 0);

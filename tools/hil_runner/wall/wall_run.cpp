@@ -66,17 +66,16 @@ void add_plant(Options& options, const ScenarioBattery& battery) {
   options.add("--soc-max", battery.physics.soc_max_frac);
 }
 
-void add_battery_faults(Options& options, const BatteryFaultWindow& fault) {
-  const FaultSchedule& schedule = fault.schedule;
-  if (schedule.faults.empty()) return;
-  options.add_faults("--fault", schedule);
-  if (schedule.probability > 0) {
-    options.add("--fault-probability", schedule.probability);
+void add_battery_faults(Options& options, const FaultSchedule& fault) {
+  if (fault.faults.empty()) return;
+  options.add_faults("--fault", fault);
+  if (fault.probability > 0) {
+    options.add("--fault-probability", fault.probability);
   } else {
-    options.add("--fault-every", schedule.every);
+    options.add("--fault-every", fault.every);
   }
-  options.add("--fault-seed", schedule.seed);
-  options.add("--fault-period-s", schedule.period_s);
+  options.add("--fault-seed", fault.seed);
+  options.add("--fault-period-s", fault.period_s);
   options.add("--late-ms", fault.late_ms);
   options.add("--drip-ms", fault.drip_ms);
   options.add("--exception-code", fault.exception_code);
@@ -97,8 +96,8 @@ void add_meter(Options& options, const ScenarioMeter& meter) {
   options.add("--meter-map", meter.map);
   if (!meter.variant.empty()) options.add("--meter-variant", meter.variant);
   options.add("--meter-port", 0);
-  if (!meter.fault.schedule.faults.empty()) {
-    options.add_faults("--meter-fault", meter.fault.schedule);
+  if (!meter.fault.faults.empty()) {
+    options.add_faults("--meter-fault", meter.fault);
   }
 }
 
@@ -124,7 +123,7 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
     options.add("--serial", serial_device);
     options.add("--baud", 115'200);
   }
-  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
+  for (const FaultSchedule& fault : scenario.battery_faults) {
     add_battery_faults(options, fault);  // only one: the reader refuses more
   }
   add_house(options, scenario, folder);

@@ -305,8 +305,7 @@ void add_fault_span(ProgramCommand& command, const std::string& fault, FaultSche
 }
 
 void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
-  BatteryServerSettings& server = options.server;
-  FaultSchedule& faults = server.faults;
+  FaultSchedule& faults = options.server.faults;
   command
       .option("--fault", options.fault_names,
               "faults to inject, see below; with several, one at random each time")
@@ -331,16 +330,16 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
       .range(1, 86'400)
       .with_default()
       .needs("--fault");
-  command.option("--late-ms", server.late_ms, "delay of the faults late and byte-gap, ms")
+  command.option("--late-ms", faults.late_ms, "delay of the faults late and byte-gap, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
-  command.option("--drip-ms", server.drip_ms, "interval between bytes of the fault drip, ms")
+  command.option("--drip-ms", faults.drip_ms, "interval between bytes of the fault drip, ms")
       .range(1, 60'000)
       .with_default()
       .needs("--fault");
   command
-      .option("--exception-code", server.exception_code,
+      .option("--exception-code", faults.exception_code,
               "Modbus exception code: 1, 2, 3, 4, 6 or vendor code")
       .range(1, 255)
       .with_default()

@@ -130,6 +130,13 @@ struct FaultSchedule {
   double on_s = 0;
   double off_s = 0;
   std::int32_t period_s = 30;  ///< between ends or replacements of the order
+  std::int32_t late_ms = 1'500;
+  std::int32_t drip_ms = 100;
+  std::int32_t exception_code = 6;
+
+  [[nodiscard]] bool strikes_always() const {
+    return !faults.empty() && every == 1 && probability == 0 && off_s == 0;
+  }
 };
 
 /// Several schedules, each with its own opportunities and seed; the first one takes precedence.

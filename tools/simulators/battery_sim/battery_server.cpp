@@ -284,9 +284,9 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
     case BatteryFault::kReset:
       return close_client(client, fault == BatteryFault::kReset);
     case BatteryFault::kException:
-      return send(client, device_->exception(request, settings_.exception_code));
+      return send(client, device_->exception(request, settings_.faults.exception_code));
     case BatteryFault::kLate:
-      if (!wait(settings_.late_ms)) return;
+      if (!wait(settings_.faults.late_ms)) return;
       break;
     default:
       break;
@@ -296,7 +296,7 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
   if (fault != BatteryFault::kByteGap) return send(client, bytes);
   const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
   send(client, {bytes.begin(), middle});
-  if (wait(settings_.late_ms)) send(client, {middle, bytes.end()});
+  if (wait(settings_.faults.late_ms)) send(client, {middle, bytes.end()});
 }
 
 void BatteryServer::send(Client& client, const Bytes& bytes) {
@@ -308,7 +308,7 @@ void BatteryServer::send(Client& client, const Bytes& bytes) {
 
 void BatteryServer::drip(Client& client, const Bytes& bytes) {
   for (const std::uint8_t byte : bytes) {
-    if (client.fd < 0 || !wait(settings_.drip_ms)) return;
+    if (client.fd < 0 || !wait(settings_.faults.drip_ms)) return;
     send(client, {byte});
   }
 }

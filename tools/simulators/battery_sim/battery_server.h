@@ -67,9 +67,6 @@ struct BatteryServerSettings {
   std::int32_t stop_bits = 1;
   std::int32_t response_delay_ms = 0;
   FaultSchedule faults;
-  std::int32_t late_ms = 1'500;
-  std::int32_t drip_ms = 100;
-  std::int32_t exception_code = 6;
 };
 
 class BatteryServer {

@@ -200,7 +200,7 @@ TEST(Judge, SeesMoreWritesOfFlashThanTheMapAllows) {
 
 TEST(Judge, SeesPowerAfterTheLinkIsLost) {
   HandMade run;
-  run.scenario.battery_faults.emplace_back().schedule = {
+  run.scenario.battery_faults.emplace_back() = {
       .faults = {BatteryFault::kSilence}, .every = 1, .from_s = 60, .to_s = 1'200};
   EXPECT_EQ(run.broken(), "");
   run.order_of(10).power_w = 2'000;
@@ -328,8 +328,7 @@ TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   run.order_of(8).utc_ns = HandMade::at_ns(8, 40);
   run.scenario.invariants = {"order"};
   EXPECT_EQ(run.broken(), "order");
-  run.scenario.battery_faults.emplace_back().schedule = {.faults = {BatteryFault::kByteGap},
-                                                         .every = 5};
+  run.scenario.battery_faults.emplace_back() = {.faults = {BatteryFault::kByteGap}, .every = 5};
   EXPECT_EQ(run.broken(), "");
   run.order_of(8).utc_ns = HandMade::at_ns(9, 10);
   EXPECT_EQ(run.broken(), "order");

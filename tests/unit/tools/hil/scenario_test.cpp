@@ -35,12 +35,12 @@ std::string refusal(const std::string& text) {
 TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
   std::set<std::pair<BatteryFault, bool>> tried;
   for (const Scenario& s : shipped()) {
-    for (const BatteryFaultWindow& window : s.battery_faults) {
-      for (const BatteryFault fault : window.schedule.faults) {
+    for (const FaultSchedule& window : s.battery_faults) {
+      for (const BatteryFault fault : window.faults) {
         tried.insert({fault, s.battery.rtu});
       }
     }
-    for (const BatteryFault fault : s.meter.fault.schedule.faults) {
+    for (const BatteryFault fault : s.meter.fault.faults) {
       if (is_of_grid(fault)) tried.insert({fault, false});
     }
   }
@@ -86,7 +86,7 @@ TEST(Scenarios, EveryShippedMapIsInOne) {
 TEST(Scenarios, WhatAMeterCanDoWrongIsInOne) {
   std::set<BatteryFault> tried;
   for (const Scenario& s : shipped()) {
-    tried.insert(s.meter.fault.schedule.faults.begin(), s.meter.fault.schedule.faults.end());
+    tried.insert(s.meter.fault.faults.begin(), s.meter.fault.faults.end());
   }
   using enum BatteryFault;
   for (const BatteryFault fault : {kSilence, kFrozen, kWrongSign, kGridScaled, kGridRatio,
@@ -175,8 +175,8 @@ TEST(Scenarios, SeveralFaultsAreReadInTheirOrder) {
   const Scenario scenario = read_scenario(folder.write("s.toml", "title = \"x\"\n" + head + two));
   ASSERT_EQ(scenario.battery_faults.size(), 2U);
   EXPECT_EQ(scenario.battery_faults[0].late_ms, 300);
-  EXPECT_EQ(scenario.battery_faults[1].schedule.from_s, 540);
-  EXPECT_EQ(scenario.battery_faults[1].schedule.faults.size(), 2U);
+  EXPECT_EQ(scenario.battery_faults[1].from_s, 540);
+  EXPECT_EQ(scenario.battery_faults[1].faults.size(), 2U);
   expect_refused({
       {two, "s.toml:2 battery_fault time \"virtual\""},
       {head + two + "[[battery_fault]]\nkinds = [\"ends-orders\"]\n", "period_s"},

@@ -19,7 +19,7 @@ struct Subject {
 constexpr Subject kSubjects[] = {
     {"meter fault",
      [](Scenario& s) {
-       const bool has = !s.meter.fault.schedule.faults.empty();
+       const bool has = !s.meter.fault.faults.empty();
        s.meter.fault = {};
        return has;
      }},
@@ -27,14 +27,14 @@ constexpr Subject kSubjects[] = {
      [](Scenario& s) {
        std::size_t erased = 0;
        for (auto& fault : s.battery_faults) {
-         erased += std::erase_if(fault.schedule.faults, is_of_grid);
+         erased += std::erase_if(fault.faults, is_of_grid);
        }
        return erased > 0;
      }},
     // For a wrong meter the limits are not the subject.
     {"limits of the connection",
      [](Scenario& s) {
-       const bool lies = !s.meter.fault.schedule.faults.empty() || s.has_battery_fault(is_of_grid);
+       const bool lies = !s.meter.fault.faults.empty() || s.has_battery_fault(is_of_grid);
        const bool has = !s.edge_meter.empty() && !lies;
        s.edge_meter.clear();
        return has;
@@ -95,8 +95,8 @@ TEST(SiteScenarios, EachFailsWithoutWhatItIsAbout) {
 
 TEST(SiteScenarios, AMeterThatIsNotThereIsLostAndNotIgnored) {
   Scenario scenario = read_scenario(BESS_SOURCE_DIR "/tests/scenarios/meter_lost.toml");
-  scenario.meter.fault.schedule.from_s = -1e6;  // the edge starts before the scenario
-  scenario.meter.fault.schedule.to_s = 60 * kNeverMin;
+  scenario.meter.fault.from_s = -1e6;  // the edge starts before the scenario
+  scenario.meter.fault.to_s = 60 * kNeverMin;
   const Outcome outcome = run_scenario(scenario, true, {});
   ASSERT_FALSE(outcome.evidence.log.empty());
   for (const CycleRecord& cycle : outcome.evidence.log) EXPECT_EQ(cycle.ordered_power_w, 0);
