@@ -129,38 +129,31 @@ ProgramOption& ProgramOption::with_default() {
   option_->capture_default_str();
   return *this;
 }
-ProgramOption& ProgramOption::range(int low, int high) {
-  option_->check(CLI::Range(low, high));
+ProgramOption& ProgramOption::checked(const CLI::Validator& rule) {
+  option_->check(rule);
   return *this;
 }
+ProgramOption& ProgramOption::range(int low, int high) { return checked(CLI::Range(low, high)); }
 ProgramOption& ProgramOption::range(double low, double high) {
   const std::string rule = short_text(low) + " to " + short_text(high);
-  option_->check(CLI::Validator(number_rule([=](double x) { return x >= low && x <= high; }, rule),
+  return checked(CLI::Validator(number_rule([=](double x) { return x >= low && x <= high; }, rule),
                                 "[" + rule + "]"));
-  return *this;
 }
 ProgramOption& ProgramOption::positive() {
-  option_->check(
+  return checked(
       CLI::Validator(number_rule([](double x) { return x > 0; }, "above 0"), "POSITIVE"));
-  return *this;
 }
 ProgramOption& ProgramOption::non_negative() {
-  option_->check(
+  return checked(
       CLI::Validator(number_rule([](double x) { return x >= 0; }, "0 or more"), "NONNEGATIVE"));
-  return *this;
 }
 ProgramOption& ProgramOption::one_of(const std::vector<std::string>& names) {
-  option_->check(CLI::IsMember(names));
-  return *this;
+  return checked(CLI::IsMember(names));
 }
-ProgramOption& ProgramOption::ipv4() {
-  option_->check(CLI::ValidIPV4);
-  return *this;
-}
+ProgramOption& ProgramOption::ipv4() { return checked(CLI::ValidIPV4); }
 ProgramOption& ProgramOption::check(
     const std::function<std::string(const std::string&)>& complaint) {
-  option_->check(CLI::Validator(complaint, ""));
-  return *this;
+  return checked(CLI::Validator(complaint, ""));
 }
 ProgramOption& ProgramOption::value_name(const std::string& name) {
   option_->type_name(name);

@@ -13,6 +13,7 @@
 namespace CLI {
 class App;
 class Option;
+class Validator;
 }  // namespace CLI
 
 namespace bess {
@@ -43,6 +44,8 @@ class ProgramOption {
   ProgramOption& needs(const std::string& other);
 
  private:
+  ProgramOption& checked(const CLI::Validator& rule);
+
   CLI::Option* option_;
 };
 
