@@ -46,20 +46,12 @@ struct CommandInForce {
   double power_w = 0;
 };
 
-class CommandTimeline {
- public:
-  explicit CommandTimeline(const std::vector<DispatchEvent>& events) : events_(events) {}
-
-  [[nodiscard]] CommandInForce at(std::int64_t utc_ns) const {
-    const auto next = std::ranges::upper_bound(events_, utc_ns, {}, &DispatchEvent::utc_ns);
-    if (next == events_.begin()) return {};
-    const DispatchEvent& last = *(next - 1);
-    if (last.kind != DispatchEvent::Kind::kOrder || last.duration_s <= 0) return {};
-    return {.is_driven = true, .power_w = last.power_w};
-  }
-
- private:
-  const std::vector<DispatchEvent>& events_;
-};
+inline CommandInForce command_at(const std::vector<DispatchEvent>& events, std::int64_t utc_ns) {
+  const auto next = std::ranges::upper_bound(events, utc_ns, {}, &DispatchEvent::utc_ns);
+  if (next == events.begin()) return {};
+  const DispatchEvent& last = *(next - 1);
+  if (last.kind != DispatchEvent::Kind::kOrder || last.duration_s <= 0) return {};
+  return {.is_driven = true, .power_w = last.power_w};
+}
 
 }  // namespace bess

@@ -95,7 +95,7 @@ void judge_fresh_price(JudgeContext& judging) {
     if ((fresh && !judging.must_be_frozen(*fresh)) || judging.is_disturbed_in_cycle(tick_ns))
       return;
     if (!fresh && judging.may_stand_in(tick_ns)) return;
-    const CommandInForce command = judging.commands.at(judging.settled_ns(tick_ns));
+    const CommandInForce command = judging.command_at(judging.settled_ns(tick_ns));
     if (command.power_w == 0) return;
     const auto row = judging.publication.newest(tick_ns);
     judging.find(
@@ -231,7 +231,7 @@ bool may_be_barred(const JudgeContext& judging, std::int64_t tick_ns, double wan
 double ramped_w(const JudgeContext& judging, std::int64_t tick_ns, double wanted_w) {
   const double ramp_w = judging.config.control.guard.ramp_w_max;
   if (ramp_w == 0) return wanted_w;
-  const double from_w = judging.commands.at(tick_ns).power_w;
+  const double from_w = judging.command_at(tick_ns).power_w;
   return std::clamp(wanted_w, from_w - ramp_w, from_w + ramp_w);
 }
 
@@ -269,7 +269,7 @@ void judge_thresholds(JudgeContext& judging) {
     const double extreme_w = is_low ? guard.power_w : -guard.power_w;
     if (may_be_barred(judging, tick_ns, extreme_w)) return;
     const double wanted_w = ramped_w(judging, tick_ns, extreme_w);
-    const CommandInForce command = judging.commands.at(judging.settled_ns(tick_ns));
+    const CommandInForce command = judging.command_at(judging.settled_ns(tick_ns));
     if (std::abs(command.power_w - wanted_w) <= 0.01 * guard.power_w) return;
     const bool is_cut = operator_state.is_limited || has_connection(judging);
     if (is_cut && judging.may_be_cut(wanted_w, command.power_w)) return;

@@ -72,7 +72,7 @@ void judge_expectations(JudgeContext& judging) {
                                    ? judging.scenario.end_utc_ns()
                                    : judging.scenario.utc_ns_at(expectation.span.to_min);
     for (std::int64_t t = (from_ns + kStepNs - 1) / kStepNs * kStepNs; t < to_ns; t += kStepNs) {
-      const CommandInForce command = judging.commands.at(judging.settled_ns(t));
+      const CommandInForce command = judging.command_at(judging.settled_ns(t));
       if (!fits(expectation.command, command)) {
         judging.find(judging.settled_ns(t), kNames[static_cast<int>(expectation.command)],
                      watts(command));

@@ -26,7 +26,6 @@ JudgeContext::JudgeContext(const JudgedRun& judged_run)
       config(judged_run.config),
       evidence(judged_run.evidence),
       publication(judged_run.scenario, judged_run.prices),
-      commands(judged_run.evidence.orders),
       level(level_at_start(judged_run)) {
   if (judged_run.scenario.house.exists()) house.emplace(house_load(judged_run.scenario));
   find_disturbances();
@@ -47,47 +46,45 @@ std::vector<Finding> JudgeContext::findings() {
   return std::move(findings_);
 }
 
-template <typename Add>
-void JudgeContext::add_spans(std::vector<Window>& list,
-                             std::initializer_list<ScenarioEvent::EventKind> begin,
-                             ScenarioEvent::EventKind end, const Add& add) {
+void JudgeContext::add_disturbance(const Window& span, bool is_loss) {
+  const auto recovery_ns = static_cast<std::int64_t>(scenario.recovery_min * 60e9);
+  if (is_loss) lost.push_back(span);
+  disturbed_.push_back(
+      {span.from_ns, span.to_ns == INT64_MAX ? INT64_MAX : span.to_ns + recovery_ns});
+}
+
+void JudgeContext::add_spans(std::initializer_list<ScenarioEvent::EventKind> begin,
+                             ScenarioEvent::EventKind end, bool is_loss) {
   std::int64_t from_ns = -1;
   for (const ScenarioEvent& event : scenario.events) {
     const std::int64_t at_ns = scenario.utc_ns_at(event.at_min);
     const bool begins = std::ranges::find(begin, event.kind) != begin.end();
     if (event.kind == end && from_ns >= 0) {
-      add(list, from_ns, at_ns);
+      add_disturbance({from_ns, at_ns}, is_loss);
       from_ns = -1;
     } else if (begins && from_ns < 0) {
       from_ns = at_ns;
     }
   }
-  if (from_ns >= 0) add(list, from_ns, INT64_MAX);
+  if (from_ns >= 0) add_disturbance({from_ns, INT64_MAX}, is_loss);
 }
 
 void JudgeContext::find_disturbances() {
-  const auto recovery_ns = static_cast<std::int64_t>(scenario.recovery_min * 60e9);
-  const auto add = [&](std::vector<Window>& list, std::int64_t from_ns, std::int64_t to_ns) {
-    list.push_back({from_ns, to_ns});
-    disturbed_.push_back({from_ns, to_ns == INT64_MAX ? to_ns : to_ns + recovery_ns});
-  };
   for (const FaultSchedule& fault : scenario.battery_faults) {
-    std::vector<Window> other;
     const bool is_silent =
         fault.strikes_always() && std::ranges::all_of(fault.faults, [](BatteryFault kind) {
           return kind == BatteryFault::kSilence || kind == BatteryFault::kDrop ||
                  kind == BatteryFault::kReset || kind == BatteryFault::kHalfOpen;
         });
-    add(is_silent ? lost : other, scenario.utc_ns_at(fault.from_s / 60),
-        scenario.utc_ns_at(fault.to_s / 60));
+    add_disturbance({scenario.utc_ns_at(fault.from_s / 60), scenario.utc_ns_at(fault.to_s / 60)},
+                    is_silent);
   }
   using enum ScenarioEvent::EventKind;
-  add_spans(lost, {kEdgeKill, kEdgeStop, kEdgeHandOver}, kEdgeStart, add);
-  add_spans(lost, {kEdgePause}, kEdgeContinue, add);
-  add_spans(lost, {kBatteryPause}, kBatteryContinue, add);
-  std::vector<Window> clocks;
-  add_spans(clocks, {kClockUnsynchronised}, kClockSynchronised, add);
-  add_spans(clocks, {kClockStep}, kClockStep, add);
+  add_spans({kEdgeKill, kEdgeStop, kEdgeHandOver}, kEdgeStart, true);
+  add_spans({kEdgePause}, kEdgeContinue, true);
+  add_spans({kBatteryPause}, kBatteryContinue, true);
+  add_spans({kClockUnsynchronised}, kClockSynchronised, false);
+  add_spans({kClockStep}, kClockStep, false);
 }
 
 bool JudgeContext::is_disturbed(std::int64_t ns) const {
@@ -175,10 +172,10 @@ bool JudgeContext::may_be_cut(double from_w, double to_w) const {
 }
 
 bool JudgeContext::was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const {
-  if (!may_be_cut(ordered_w, commands.at(by_ns).power_w)) return false;
+  if (!may_be_cut(ordered_w, command_at(by_ns).power_w)) return false;
   const auto is_ordered = [&](double power_w) { return std::abs(power_w - ordered_w) <= 2; };
   // An order already in force is not written again.
-  const CommandInForce found = commands.at(tick_ns);
+  const CommandInForce found = command_at(tick_ns);
   if (found.is_driven && is_ordered(found.power_w)) return true;
   return std::ranges::any_of(evidence.orders, [&](const DispatchEvent& e) {
     return e.utc_ns >= tick_ns && e.utc_ns <= by_ns && is_ordered(e.power_w);

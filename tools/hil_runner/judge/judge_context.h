@@ -76,6 +76,9 @@ class JudgeContext {
   [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const;
   [[nodiscard]] bool must_be_frozen(const Publication::Row& row) const;
   [[nodiscard]] double soc_at(std::int64_t utc_ns) const;
+  [[nodiscard]] CommandInForce command_at(std::int64_t utc_ns) const {
+    return bess::command_at(evidence.orders, utc_ns);
+  }
   /// Tolerance of SoC limits: resolution of the device, or the energy of one control cycle.
   [[nodiscard]] double soc_margin_frac() const;
 
@@ -88,7 +91,6 @@ class JudgeContext {
   const EdgeConfig& config;
   const Evidence& evidence;
   const Publication publication;
-  const CommandTimeline commands;
   const PriceLevel level;  ///< at the start
   std::optional<HouseLoad> house;
   std::vector<Window> lost;  ///< no process can refresh or end an order
@@ -96,9 +98,10 @@ class JudgeContext {
 
  private:
   void find_disturbances();
-  template <typename Add>
-  void add_spans(std::vector<Window>& list, std::initializer_list<ScenarioEvent::EventKind> begin,
-                 ScenarioEvent::EventKind end, const Add& add);
+  /// `is_loss`: no process can refresh or end an order.
+  void add_disturbance(const Window& span, bool is_loss);
+  void add_spans(std::initializer_list<ScenarioEvent::EventKind> begin,
+                 ScenarioEvent::EventKind end, bool is_loss);
   [[nodiscard]] bool has_stood(const Publication::Row& row, std::int64_t for_s) const;
   [[nodiscard]] bool device_has_soc_limits() const;
 

@@ -14,13 +14,13 @@ void judge_order(JudgeContext& judging) {
     const bool counts = cycle.mode == Mode::kRunning && cycle.written &&
                         by_ns < judging.scenario.end_utc_ns() && !judging.is_lost(tick_ns);
     const auto is_in_force = [&](std::int64_t utc_ns) {
-      const CommandInForce command = judging.commands.at(utc_ns);
+      const CommandInForce command = judging.command_at(utc_ns);
       return command.is_driven && std::abs(command.power_w - cycle.ordered_power_w) <= 2;
     };
     if (!counts || is_in_force(judging.settled_ns(tick_ns)) || is_in_force(by_ns)) continue;
     if (judging.was_cut(tick_ns, by_ns, cycle.ordered_power_w)) continue;
     judging.find(by_ns, fmt::format("{} W, as logged", cycle.ordered_power_w),
-                 watts(judging.commands.at(by_ns)));
+                 watts(judging.command_at(by_ns)));
   }
 }
 
@@ -52,7 +52,7 @@ void judge_in_control(JudgeContext& judging) {
   judging.each_tick([&](std::int64_t tick_ns) {
     const auto row = judging.fresh_row(tick_ns);
     if (!row || judging.may_be_frozen(*row) || judging.is_disturbed_in_cycle(tick_ns)) return;
-    if (judging.commands.at(judging.settled_ns(tick_ns)).is_driven) return;
+    if (judging.command_at(judging.settled_ns(tick_ns)).is_driven) return;
     judging.find(judging.settled_ns(tick_ns), "an order in force", "no order");
   });
 }
@@ -112,7 +112,7 @@ void judge_released(JudgeContext& judging) {
   const bool was_killed = judging.evidence.edge_exit_code == 128 + SIGKILL;
   if (was_killed && !judging.evidence.order_ends_by_itself) return;
   // The order of a killed edge expires by itself if the scenario is long enough.
-  const CommandInForce last = judging.commands.at(INT64_MAX);
+  const CommandInForce last = judging.command_at(INT64_MAX);
   if (last.is_driven)
     judging.find(judging.evidence.orders.back().utc_ns, "no order in force at the end",
                  watts(last));
@@ -125,7 +125,7 @@ void judge_safe_state(JudgeContext& judging) {
   for (const Window& window : judging.lost) {
     const std::int64_t end_ns = std::min(window.to_ns, judging.scenario.end_utc_ns());
     for (std::int64_t t = window.from_ns + timer_ns; t < end_ns; t += 10 * kSecondNs) {
-      const CommandInForce command = judging.commands.at(t);
+      const CommandInForce command = judging.command_at(t);
       if (command.power_w == 0) continue;
       return judging.find(t,
                           fmt::format("no power {} s after loss of link or process",

@@ -62,7 +62,7 @@ void judge_truth(JudgeContext& judging, std::int64_t utc_ns) {
     judging.find(utc_ns, fmt::format("a SoC near {:.4f} on the wire", soc_frac),
                  text_of(reading.soc_frac));
   }
-  const CommandInForce command = judging.commands.at(utc_ns);
+  const CommandInForce command = judging.command_at(utc_ns);
   const double tolerance_w = kWatts + 0.001 * rated_w;
   if (command.is_driven && !is_near(reading.ordered_w, command.power_w, tolerance_w)) {
     judging.find(utc_ns, fmt::format("{:.0f} W ordered on the wire", command.power_w),
