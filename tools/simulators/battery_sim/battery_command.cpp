@@ -19,6 +19,8 @@
 #include "shared/utc_text.h"
 #include "tools/simulators/battery_sim/battery_faults.h"
 #include "tools/simulators/battery_sim/battery_record.h"
+#include "tools/simulators/battery_sim/battery_server.h"
+#include "tools/simulators/sim/clock_options.h"
 #include "tools/simulators/sim/commands.h"
 #include "tools/simulators/sim/stop_signal.h"
 
@@ -47,8 +49,17 @@ namespace {
 
 UtcText time_text(std::int64_t utc_ns) { return utc_text(utc_ns / kNanosecondsPerSecond); }
 
-}  // namespace
+std::string place_of(const BatteryServerSettings& settings, const BatteryServer& server) {
+  return settings.serial_device.empty() ? fmt::format("{}:{}", settings.host, server.port())
+                                        : settings.serial_device;
+}
 
+struct ReplayOptions {
+  std::string path;  ///< empty: no replay
+  bool accept_cut = false;
+};
+
+/// Serves a recorded device instead of a simulated one, until stopped.
 void run_replay(const ReplayOptions& options, const BatteryServerSettings& server,
                 const ClockOptions& clock_options) {
   const StopSignal stop;
@@ -61,9 +72,7 @@ void run_replay(const ReplayOptions& options, const BatteryServerSettings& serve
   SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
   BatteryServer battery(server, no_points, unused, clock);
   battery.replay(replayed);
-  const std::string place = server.serial_device.empty()
-                                ? fmt::format("{}:{}", server.host, battery.port())
-                                : server.serial_device;
+  const std::string place = place_of(server, battery);
   std::printf(
       "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "
       "%s%s\n",
@@ -75,8 +84,6 @@ void run_replay(const ReplayOptions& options, const BatteryServerSettings& serve
   battery.run(stop.fd());
   std::printf("bess-sim battery: stopped\n");
 }
-
-namespace {
 
 /// Any free port, several clients; a meter fault applies for its whole time span.
 BatteryServerSettings meter_defaults() {
@@ -220,11 +227,9 @@ void run_battery(BatteryOptions& options) {
   BatteryServer server(options.server, map, simulated, clock, house ? &*house : nullptr);
   std::optional<MeterThread> meter;
   if (!options.meter_map_path.empty()) meter.emplace(options, simulated, clock, *house);
-  const std::string place = options.server.serial_device.empty()
-                                ? fmt::format("{}:{}", options.server.host, server.port())
-                                : options.server.serial_device;
+  const std::string place = place_of(options.server, server);
   std::printf("bess-sim battery: listening on %s, unit %d, %s at time scale %d\n", place.c_str(),
-              map.unit, utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
+              map.unit, time_text(clock.now_utc_ns()).c_str(), clock.scale);
   if (meter) {
     std::printf("bess-sim battery: meter listening on %s:%d, unit %d\n", options.meter.host.c_str(),
                 meter->port(), meter->unit());
@@ -311,10 +316,10 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
               "faults to inject, see below; with several, one at random each time")
       .check(known_fault)
       .value_name("NAME");
-  command.option("--fault-every", faults.every, "inject at every Nth opportunity")
-      .range(1, 1'000'000)
-      .with_default()
-      .needs("--fault");
+  const auto whole = [&command](const char* name, std::int32_t& value, int most, const char* help) {
+    command.option(name, value, help).range(1, most).with_default().needs("--fault");
+  };
+  whole("--fault-every", faults.every, 1'000'000, "inject at every Nth opportunity");
   command
       .option("--fault-probability", faults.probability, "probability at each opportunity, 0 to 1")
       .range(0.0, 1.0)
@@ -324,56 +329,35 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
       .with_default()
       .needs("--fault");
   add_fault_span(command, "--fault", faults);
-  command
-      .option("--fault-period-s", faults.period_s,
-              "interval of faults that end or replace orders, s")
-      .range(1, 86'400)
-      .with_default()
-      .needs("--fault");
-  command.option("--late-ms", faults.late_ms, "delay of the faults late and byte-gap, ms")
-      .range(1, 60'000)
-      .with_default()
-      .needs("--fault");
-  command.option("--drip-ms", faults.drip_ms, "interval between bytes of the fault drip, ms")
-      .range(1, 60'000)
-      .with_default()
-      .needs("--fault");
-  command
-      .option("--exception-code", faults.exception_code,
-              "Modbus exception code: 1, 2, 3, 4, 6 or vendor code")
-      .range(1, 255)
-      .with_default()
-      .needs("--fault");
+  whole("--fault-period-s", faults.period_s, 86'400,
+        "interval of faults that end or replace orders, s");
+  whole("--late-ms", faults.late_ms, 60'000, "delay of the faults late and byte-gap, ms");
+  whole("--drip-ms", faults.drip_ms, 60'000, "interval between bytes of the fault drip, ms");
+  whole("--exception-code", faults.exception_code, 255,
+        "Modbus exception code: 1, 2, 3, 4, 6 or vendor code");
 }
 
 void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
+  const auto number = [&command](const char* name, double& value, double low, double high,
+                                 const char* help) {
+    command.option(name, value, help).range(low, high).with_default();
+  };
   command.option("--map", options.map_path, "register map of the simulated device (TOML)");
   command.option("--variant", options.map_variant, "map variant (default: the first)");
-  command.option("--soc", options.soc_frac, "state of charge at start, 0 to 1")
-      .range(0.0, 1.0)
-      .with_default();
+  number("--soc", options.soc_frac, 0, 1, "state of charge at start, 0 to 1");
   command.option("--power-w", options.battery.power_w_max, "rated power, W")
       .positive()
       .with_default();
   command.option("--capacity-wh", options.battery.capacity_wh, "capacity, Wh")
       .positive()
       .with_default();
-  command.option("--soc-min", options.battery.soc_min_frac, "battery's minimum SoC, 0 to 1")
-      .range(0.0, 1.0)
-      .with_default();
-  command.option("--soc-max", options.battery.soc_max_frac, "battery's maximum SoC, 0 to 1")
-      .range(0.0, 1.0)
-      .with_default();
-  command.option("--efficiency", options.round_trip_efficiency, "round-trip efficiency, 0 to 1")
-      .range(0.01, 1.0)
-      .with_default();
+  number("--soc-min", options.battery.soc_min_frac, 0, 1, "battery's minimum SoC, 0 to 1");
+  number("--soc-max", options.battery.soc_max_frac, 0, 1, "battery's maximum SoC, 0 to 1");
+  number("--efficiency", options.round_trip_efficiency, 0.01, 1, "round-trip efficiency, 0 to 1");
   command.option("--battery", options.battery_path,
                  "file with battery parameters in [battery] (bess-train battery fit)");
-  command
-      .option("--time-constant-s", options.battery.response.time_constant_s,
-              "time constant of the first-order power response, s; 0: immediate")
-      .range(0.0, 600.0)
-      .with_default();
+  number("--time-constant-s", options.battery.response.time_constant_s, 0, 600,
+         "time constant of the first-order power response, s; 0: immediate");
   command.option("--record", options.record_path,
                  "CSV file of energy and SoC per simulated minute, written at exit");
   command.option("--events", options.events_path,
