@@ -259,40 +259,40 @@ std::vector<std::string> addresses_of(const Place& place) {
   return addresses;
 }
 
+HttpOutcome failure(Kind kind, std::string reason) {
+  return {.kind = kind, .reason = std::move(reason)};
+}
+
 /// Outcome of an incomplete transfer. `is_over`: the time of the request is used up.
 HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& received,
                                const HttpRequest& request, const char* error_text, bool is_over) {
   const HttpLimits& limits = request.limits;
   // libcurl reports a single header of 100 kB as out of memory.
   if (received.header_bytes > kHeaderBytesMax || code == CURLE_OUT_OF_MEMORY) {
-    return {Kind::kRefused,
-            {},
-            formatted("the headers of the answer are larger than %zu bytes", kHeaderBytesMax)};
+    return failure(Kind::kRefused, formatted("the headers of the answer are larger than %zu bytes",
+                                             kHeaderBytesMax));
   }
   if (received.is_too_large) {
-    return {Kind::kRefused,
-            {},
-            formatted("the answer exceeds the limit of %zu bytes", limits.bytes_max)};
+    return failure(Kind::kRefused,
+                   formatted("the answer exceeds the limit of %zu bytes", limits.bytes_max));
   }
   const bool has_begun = !received.body.empty();
   if (code == CURLE_OPERATION_TIMEDOUT && is_over) {
     const std::string waited = formatted("%g s", limits.deadline_s);
-    return {Kind::kSlow,
-            {},
-            has_begun ? "the answer was incomplete after " + waited + " (" +
-                            counted(received.body.size(), "byte") + ")"
-                      : "no answer in time, " + waited + ": check the host and firewalls"};
+    return failure(Kind::kSlow,
+                   has_begun ? "the answer was incomplete after " + waited + " (" +
+                                   counted(received.body.size(), "byte") + ")"
+                             : "no answer in time, " + waited + ": check the host and firewalls");
   }
   if (code == CURLE_OPERATION_TIMEDOUT && has_begun) {
-    return {Kind::kSlow,
-            {},
-            formatted("the answer was too slow, less than %ld bytes/s for %ld s",
-                      limits.bytes_per_s_min, limits.slow_s)};
+    return failure(Kind::kSlow,
+                   formatted("the answer was too slow, less than %ld bytes/s for %ld s",
+                             limits.bytes_per_s_min, limits.slow_s));
   }
   const bool is_silent = code == CURLE_RECV_ERROR && received.header_bytes == 0;
   TransferTrouble trouble =
       transfer_trouble(curl, is_silent ? CURLE_GOT_NOTHING : code, error_text, request.authorities);
-  return {trouble.kind, {}, std::move(trouble.reason)};
+  return failure(trouble.kind, std::move(trouble.reason));
 }
 
 /// libcurl detects truncated frames, chunks or lengths, but not truncation of an HTTP/1 body that
@@ -315,9 +315,7 @@ bool is_whole(CURL* curl, std::string_view body) {
 HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received received) {
   if (is_post && status / 100 == 2) return {Kind::kDone, std::move(received.body)};
   if (status == 200) {
-    if (!is_whole(curl, received.body)) {
-      return {Kind::kTransient, {}, "the answer is truncated"};
-    }
+    if (!is_whole(curl, received.body)) return failure(Kind::kTransient, "the answer is truncated");
     return {Kind::kDone, std::move(received.body)};
   }
   const std::string_view retry_after = header(curl, "Retry-After");
@@ -331,7 +329,7 @@ HttpOutcome outcome_of_status(CURL* curl, long status, bool is_post, Received re
   }
   // 501 and 505 are permanent.
   const bool may_pass = status == 408 || (status >= 500 && status != 501 && status != 505);
-  return {may_pass ? Kind::kTransient : Kind::kRefused, {}, reason};
+  return failure(may_pass ? Kind::kTransient : Kind::kRefused, reason);
 }
 
 List header_list(const HttpRequest& request, const Place& origin, const std::string& url) {
@@ -527,7 +525,7 @@ HttpOutcome http_request(const HttpRequest& request, const StopRequested& stop_r
   const auto budget = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(request.limits.deadline_s));
   Transfer transfer{request, stop_requested, Clock::now() + budget, new_handle()};
-  if (transfer.curl == nullptr) return {Kind::kRefused, {}, "libcurl cannot be started"};
+  if (transfer.curl == nullptr) return failure(Kind::kRefused, "libcurl cannot be started");
   HttpOutcome outcome = transfer.follow();
   // Repeats a request for a compressed text without final line end uncompressed, to check its
   // length.
