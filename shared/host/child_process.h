@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -53,18 +52,6 @@ class ChildProcess {
     return text;
   }
   [[nodiscard]] pid_t pid() const { return pid_; }
-  /// Waits until it has a handler for this signal; false after one minute.
-  [[nodiscard]] bool catches(int number) const {
-    for (int ms = 0; ms < 60'000; ++ms) {
-      std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
-      for (std::string line; std::getline(status, line);) {
-        if (!line.starts_with("SigCgt:")) continue;
-        if (std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1) return true;
-      }
-      usleep(1'000);
-    }
-    return false;
-  }
   /// False if the process has ended: pid -1 would mean all processes of this user.
   bool signal(int number) const { return pid_ > 0 && kill(pid_, number) == 0; }
   /// Does not wait.

@@ -12,6 +12,7 @@
 #include "shared/host/pty_bridge.h"
 #include "tests/support/edge_answer.h"
 #include "tests/support/shipped_maps.h"
+#include "tests/support/signal_handler.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
@@ -196,7 +197,7 @@ TEST_F(RecordCommand, ReadsWhatTheMapNamesAndWritesNothing) {
 TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
   ChildProcess child(
       {edge_program(), "record", "--config", config_, "--for", "7d", "--out", path_});
-  ASSERT_TRUE(child.catches(SIGINT));
+  ASSERT_TRUE(catches(child.pid(), SIGINT));
   const auto lines = [&] {
     const std::string text = text_of_file(path_ + ".part");
     return std::count(text.begin(), text.end(), '\n');

@@ -12,6 +12,7 @@
 #include "tests/support/peer_programs.h"
 #include "tests/support/program_output.h"
 #include "tests/support/shipped_maps.h"
+#include "tests/support/signal_handler.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -95,7 +96,7 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
                                                 std::to_string(SimulatedSite::kStartS)};
     site_.battery = std::make_unique<ChildProcess>(arguments);
     ASSERT_EQ(std::sscanf(site_.battery->read_line().c_str(), "port %d", &site_.battery_port), 1);
-    ASSERT_TRUE(site_.battery->catches(SIGUSR2));
+    ASSERT_TRUE(catches(site_.battery->pid(), SIGUSR2));
     site_.start_market({}, SimulatedSite::flat_prices(600, device.price));
     config_ = site_.write_config({.battery_keys = device.keys + "start_timeout_s = 1\n"});
   }

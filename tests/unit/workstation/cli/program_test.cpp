@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "shared/host/toml_document.h"
+#include "tests/support/signal_handler.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/toml_mistakes.h"
@@ -38,7 +39,7 @@ TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {
   const TemporaryFolder folder;
   const auto out = folder.file("market.csv.gz");
   ChildProcess program({BESS_TRAIN_PROGRAM, "prices", "simulate", "--days", "7000", "--out", out});
-  ASSERT_TRUE(program.catches(SIGINT));  // far too soon for 7,000 days
+  ASSERT_TRUE(catches(program.pid(), SIGINT));  // far too soon for 7,000 days
   program.signal(SIGINT);
   EXPECT_EQ(program.wait(), 3);
   EXPECT_FALSE(std::filesystem::exists(out));
