@@ -5,6 +5,7 @@
 
 #include <student_weights.h>
 
+#include <algorithm>
 #include <array>
 
 #include "shared/decision_rule.h"
@@ -149,12 +150,7 @@ inline int count_exported_self_check_failures() {
     std::int32_t logits[kActionCount] = {};
     kExportedStudent.quantise(check.state, x);
     kExportedStudent.propagate(x, logits);
-    for (int a = 0; a < kActionCount; ++a) {
-      if (logits[a] != check.logits[a]) {
-        ++failures;
-        break;
-      }
-    }
+    if (!std::equal(logits, logits + kActionCount, check.logits)) ++failures;
   }
   return failures;
 }
