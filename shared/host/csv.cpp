@@ -1,7 +1,6 @@
 #include "shared/host/csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "shared/host/file.h"
@@ -99,8 +98,7 @@ std::size_t CsvTable::column(std::string_view name) const {
 double CsvTable::number(std::size_t row, std::size_t column) const {
   const std::string& field = text(row, column);
   double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) {
+  if (!read_number(field, value) || !std::isfinite(value)) {
     fail("{}:{}: {} \"{}\" is not a number", name_, rows_[row].line, header_[column],
          one_line(field, 40));
   }

@@ -11,7 +11,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <climits>
 #include <cstring>
 #include <optional>
@@ -156,10 +155,8 @@ void remove_stale_parts(const fs::path& target) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
     pid_t pid = 0;
-    const char* end = name.data() + name.size();
-    const auto [stop, bad] = std::from_chars(name.data() + prefix.size(), end, pid);
-    const bool gone = bad == std::errc{} && stop == end && kill(pid, 0) != 0 && errno == ESRCH;
-    if (gone) fs::remove(entry.path(), error);
+    const bool is_pid = read_number(std::string_view(name).substr(prefix.size()), pid);
+    if (is_pid && kill(pid, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), error);
   }
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 #include "shared/host/csv.h"
@@ -27,8 +26,7 @@ bool parse_price(std::string_view field, double& value) {
     value = kMissing;
     return true;
   }
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return error == std::errc{} && end == field.data() + field.size() && std::isfinite(value);
+  return read_number(field, value) && std::isfinite(value);
 }
 
 struct Row {

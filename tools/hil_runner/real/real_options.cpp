@@ -5,13 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "edge/device/registers/map_file.h"
 #include "shared/host/bus_recording.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "tools/simulators/battery_sim/register_image.h"
 
@@ -185,9 +185,8 @@ std::string complaint_of_address(const std::string& address) {
   if (inet_pton(AF_INET, address.substr(0, colon).c_str(), &numeric) != 1) return kNoAddress;
   if (colon == std::string::npos) return "";
   int port = 0;
-  const char* const end = address.data() + address.size();
-  const auto [rest, error] = std::from_chars(address.data() + colon + 1, end, port);
-  return error == std::errc{} && rest == end && port >= 1 && port <= 65'535 ? "" : kNoAddress;
+  const bool is_number = read_number(std::string_view(address).substr(colon + 1), port);
+  return is_number && port >= 1 && port <= 65'535 ? "" : kNoAddress;
 }
 
 }  // namespace

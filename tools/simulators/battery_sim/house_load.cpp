@@ -1,13 +1,13 @@
 #include "tools/simulators/battery_sim/house_load.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <random>
 #include <span>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
@@ -15,11 +15,6 @@ namespace {
 
 constexpr int kDays = 366;
 constexpr int kMinutesOfDay = 1'440;
-
-bool parse_watts(std::string_view text, double& power_w) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), power_w);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(power_w);
-}
 
 /// Load of one day, drawn at random.
 class Day {
@@ -89,7 +84,7 @@ HouseLoad HouseLoad::from_csv(std::string_view text, std::string_view name) {
 HouseLoad HouseLoad::from_option(const std::string& text, std::uint64_t seed) {
   double power_w = 0;
   if (text == "daily") return daily(seed);
-  if (parse_watts(text, power_w)) return constant(power_w);
+  if (read_number(text, power_w) && std::isfinite(power_w)) return constant(power_w);
   return from_csv(read_file(text), text);
 }
 

@@ -2,11 +2,11 @@
 
 #include <httplib.h>
 
-#include <charconv>
 #include <chrono>
 #include <thread>
 
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
@@ -17,9 +17,7 @@ constexpr const char* kJson = "application/json";
 /// Limits of the API: limit 1 to 100, offset + limit at most 10,000.
 bool parse_number(const httplib::Request& request, const char* name, int min, int max, int& value) {
   if (!request.has_param(name)) return true;
-  const std::string text = request.get_param_value(name);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && value >= min && value <= max;
+  return read_number(request.get_param_value(name), value) && value >= min && value <= max;
 }
 
 bool parse_query(const httplib::Request& request, RecordsQuery& query, std::string& problem) {
