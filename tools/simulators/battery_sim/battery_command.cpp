@@ -66,12 +66,11 @@ void run_replay(const ReplayOptions& options, const BatteryServerSettings& serve
   const ScaledClock clock = clock_options.clock();
   RecordedDevice device(options.path,
                         options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused);
-  ReplayedBus replayed(device, clock);
   static RegisterMap no_points;  // the recording answers
   no_points.unit = device.head().unit;
   SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
   BatteryServer battery(server, no_points, unused, clock);
-  battery.replay(replayed);
+  battery.replay(device);
   const std::string place = place_of(server, battery);
   std::printf(
       "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "

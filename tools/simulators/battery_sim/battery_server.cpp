@@ -48,35 +48,8 @@ void add_word(Bytes& bytes, int word) {
   bytes.push_back(static_cast<std::uint8_t>(word));
 }
 
-}  // namespace
-
-BusExchange ReplayedBus::answer(const BusRequest& request) {
-  BusExchange exchange;
-  const std::int64_t now_ns = clock_.now_utc_ns();
-  if (!has_begun_ && clock_.is_real_time()) shift_ns_ = device_.first_utc_ns() - now_ns;
-  has_begun_ = true;
-  exchange.utc_ns = now_ns + shift_ns_;
-  if (!read_request(request, exchange)) {
-    exchange.outcome = BusOutcome::kException;
-    exchange.exception = kIllegalFunction;
-    return exchange;
-  }
-  const std::string reported = device_.answer(exchange);
-  if (!reported.empty()) {
-    std::printf("%s %s\n", utc_text(exchange.utc_ns / kNanosecondsPerSecond).c_str(),
-                reported.c_str());
-    std::fflush(stdout);
-  }
-  return exchange;
-}
-
-std::int32_t ReplayedBus::latency_ms(const BusExchange& answer) const {
-  constexpr std::int64_t kLatencyMsMax = 60'000;
-  const std::int64_t simulated_us = answer.latency_us * device_.head().time_scale;
-  return static_cast<std::int32_t>(std::min(simulated_us / clock_.scale / 1'000, kLatencyMsMax));
-}
-
-Bytes ReplayedBus::content(const BusExchange& answer) {
+/// Unit and PDU of a good reply.
+Bytes content_of(const BusExchange& answer) {
   Bytes bytes = {static_cast<std::uint8_t>(answer.unit), answer.function};
   if (answer.is_write()) {
     add_word(bytes, answer.address);
@@ -89,8 +62,6 @@ Bytes ReplayedBus::content(const BusExchange& answer) {
   }
   return bytes;
 }
-
-namespace {
 
 constexpr int kBytesMax = 256;  ///< unit, PDU of 253, CRC
 constexpr int kBytesMin = 4;
@@ -243,7 +214,7 @@ void BatteryServer::serve(Client& client) {
   BusRequest request{};
   if (!receive(client, request)) return;
   // Other unit or half-open connection: no answer, as on a bus.
-  const bool is_here = recorded_ != nullptr ? recorded_->serves_unit(request.unit())
+  const bool is_here = recorded_ != nullptr ? recorded_->has_unit(request.unit())
                                             : device_->serves_unit(request.unit());
   if (!is_here || client.half_open) return;
   if (recorded_ != nullptr) return answer_as_recorded(client, request);
@@ -251,9 +222,34 @@ void BatteryServer::serve(Client& client) {
   answer_with_fault(client, request, device_->on_request(request, clock_.now_utc_ns()));
 }
 
+/// Recorded result. Prints one line if the recording has none.
+BusExchange BatteryServer::recorded_answer(const BusRequest& request) {
+  BusExchange exchange;
+  const std::int64_t now_ns = clock_.now_utc_ns();
+  if (!has_begun_ && clock_.is_real_time()) shift_ns_ = recorded_->first_utc_ns() - now_ns;
+  has_begun_ = true;
+  exchange.utc_ns = now_ns + shift_ns_;
+  if (!read_request(request, exchange)) {
+    exchange.outcome = BusOutcome::kException;
+    exchange.exception = kIllegalFunction;
+    return exchange;
+  }
+  const std::string reported = recorded_->answer(exchange);
+  if (!reported.empty()) {
+    std::printf("%s %s\n", utc_text(exchange.utc_ns / kNanosecondsPerSecond).c_str(),
+                reported.c_str());
+    std::fflush(stdout);
+  }
+  return exchange;
+}
+
 void BatteryServer::answer_as_recorded(Client& client, const BusRequest& request) {
-  const BusExchange recorded = recorded_->answer(request);
-  if (!wait(recorded_->latency_ms(recorded))) return;
+  constexpr std::int64_t kLatencyMsMax = 60'000;
+  const BusExchange recorded = recorded_answer(request);
+  // Wall time: a recording replayed faster has shorter latencies.
+  const std::int64_t simulated_us = recorded.latency_us * recorded_->head().time_scale;
+  const std::int64_t latency_ms = std::min(simulated_us / clock_.scale / 1'000, kLatencyMsMax);
+  if (!wait(static_cast<std::int32_t>(latency_ms))) return;
   switch (recorded.outcome) {
     case BusOutcome::kTimeout:
       return;
@@ -269,7 +265,7 @@ void BatteryServer::answer_as_recorded(Client& client, const BusRequest& request
   // The recording does not contain the fault of a bad reply.
   const bool is_bad = recorded.outcome == BusOutcome::kBadReply;
   const BatteryFault fault = is_bad ? BatteryFault::kWrongUnit : BatteryFault::kNone;
-  send(client, device_->frame(request, ReplayedBus::content(recorded), fault));
+  send(client, device_->frame(request, content_of(recorded), fault));
 }
 
 void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,

@@ -20,30 +20,6 @@
 
 namespace bess {
 
-// Recorded device on the bus of the simulator: request -> recorded answer and latency.
-
-class ReplayedBus {
- public:
-  /// In simulated time a request has the time of the recording; in real time the first request
-  /// corresponds to its first exchange. `device` must outlive this object.
-  ReplayedBus(RecordedDevice& device, const ScaledClock& clock) : device_(device), clock_(clock) {}
-
-  [[nodiscard]] bool serves_unit(std::int32_t unit) const { return device_.has_unit(unit); }
-  /// Recorded result. Prints one line if the recording has none.
-  BusExchange answer(const BusRequest& request);
-  /// Wall time of the answer; a recording replayed faster has shorter latencies.
-  [[nodiscard]] std::int32_t latency_ms(const BusExchange& answer) const;
-
-  /// Unit and PDU of a good reply.
-  static Bytes content(const BusExchange& answer);
-
- private:
-  RecordedDevice& device_;
-  ScaledClock clock_;
-  std::int64_t shift_ns_ = 0;  ///< from now to the time of the recording
-  bool has_begun_ = false;
-};
-
 // Requests on a serial line: complete frames for any unit. libmodbus reads frames of one unit only,
 // and takes the frame after a request to another unit for its reply.
 
@@ -80,8 +56,10 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
-  /// Answers all further requests as recorded; the registers are unchanged.
-  void replay(ReplayedBus& recorded) { recorded_ = &recorded; }
+  /// Answers all further requests as recorded; the registers are unchanged. In simulated time a
+  /// request has the time of the recording; in real time the first request corresponds to its first
+  /// exchange. `recorded` must outlive this object.
+  void replay(RecordedDevice& recorded) { recorded_ = &recorded; }
   /// Serves until `stop_fd` becomes readable. Throws UserError when the serial line disappears.
   void run(int stop_fd);
 
@@ -95,6 +73,7 @@ class BatteryServer {
   void accept_client();
   [[nodiscard]] bool receive(Client& client, BusRequest& request);
   void serve(Client& client);
+  BusExchange recorded_answer(const BusRequest& request);
   void answer_as_recorded(Client& client, const BusRequest& request);
   void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
   void send(Client& client, const Bytes& bytes);
@@ -105,7 +84,9 @@ class BatteryServer {
   BatteryServerSettings settings_;
   bool rtu_;
   const RegisterMap& map_;
-  ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
+  RecordedDevice* recorded_ = nullptr;  ///< null: the registers answer
+  std::int64_t shift_ns_ = 0;           ///< from now to the time of the recording
+  bool has_begun_ = false;              ///< the recording
   ScaledClock clock_;
   ModbusContext context_;
   std::optional<FaultyDevice> device_;
