@@ -78,26 +78,18 @@ BatteryFault FaultPlan::draw(FaultChance chance, double at_s) {
 }
 
 bool FaultPlan::lasts(BatteryFault fault, double at_s) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+  return std::ranges::any_of(parts_, [&](const Part& part) {
     return part.is_in_span(at_s) &&
-           std::any_of(part.possible.begin(), part.possible.end(),
-                       [&](const auto& info) { return info.fault == fault; });
+           std::ranges::find(part.possible, fault, &BatteryFaultInfo::fault) != part.possible.end();
   });
 }
 
-bool FaultPlan::Part::acts() const {
-  return std::any_of(possible.begin(), possible.end(),
-                     [](const auto& info) { return is_by_period(info.fault); });
-}
-
-bool FaultPlan::acts() const {
-  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
-}
-
 std::int32_t FaultPlan::period_s() const {
-  const auto found =
-      std::find_if(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
-  return found == parts_.end() ? parts_.front().schedule.period_s : found->schedule.period_s;
+  for (const Part& part : parts_) {
+    const bool acts = std::ranges::any_of(part.possible, is_by_period, &BatteryFaultInfo::fault);
+    if (acts) return part.schedule.period_s;
+  }
+  return 0;
 }
 
 }  // namespace bess

@@ -149,8 +149,7 @@ class FaultPlan {
   BatteryFault draw(FaultChance chance, double at_s);
   /// Whether a lasting fault is active.
   [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
-  /// Whether a fault acts by itself, every `period_s`.
-  [[nodiscard]] bool acts() const;
+  /// Period of a fault that acts by itself; 0: none does.
   [[nodiscard]] std::int32_t period_s() const;
   /// Schedule of the last fault.
   [[nodiscard]] std::size_t struck() const { return struck_; }
@@ -164,7 +163,6 @@ class FaultPlan {
     std::int64_t chances = 0;
 
     [[nodiscard]] bool is_in_span(double at_s) const;
-    [[nodiscard]] bool acts() const;
     BatteryFault draw(FaultChance chance, double at_s);
   };
 

@@ -120,8 +120,8 @@ void FaultyDevice::live_until(std::int64_t utc_ns) {
   show_grid_as_of(utc_ns);
   if (map_.is_meter) return;
   const auto plant = hold_plant();
-  for (; plan_.acts() && next_action_ns_ <= utc_ns;
-       next_action_ns_ += plan_.period_s() * kNanosecondsPerSecond) {
+  const std::int64_t period_ns = plan_.period_s() * kNanosecondsPerSecond;
+  for (; period_ns > 0 && next_action_ns_ <= utc_ns; next_action_ns_ += period_ns) {
     apply_lasting_faults(next_action_ns_);
     act_on_order(next_action_ns_);
   }
