@@ -29,22 +29,12 @@ bool is_for_simulators(ScenarioEvent::EventKind kind) {
 
 using Registers = std::vector<std::uint16_t>;
 
-/// Registers read or written so far: an order may be in percent of a displayed rating.
-class KnownRegisters {
- public:
-  void learn(const BusExchange& exchange) {
-    int address = exchange.address;
-    for (const std::uint16_t value : exchange.values()) values_[address++] = value;
-  }
-  void show_in(Registers& registers) const {
-    for (const auto& [address, value] : values_) {
-      registers[static_cast<std::size_t>(address)] = value;
-    }
-  }
+/// Registers by address, read or written so far: an order may be in percent of a displayed rating.
+using KnownRegisters = std::map<int, std::uint16_t>;
 
- private:
-  std::map<int, std::uint16_t> values_;
-};
+void show(const KnownRegisters& known, Registers& registers) {
+  for (const auto& [address, value] : known) registers[static_cast<std::size_t>(address)] = value;
+}
 
 void read_recording(const std::string& path, std::vector<BusExchange>& exchanges) {
   BusRecordingReader reader;
@@ -129,11 +119,13 @@ std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& rec
   RegisterImage image(map, battery, image_holding, image_input);
   KnownRegisters holding, input;
   for (const BusExchange& exchange : exchanges) {
-    (exchange.function == 4 ? input : holding).learn(exchange);
+    KnownRegisters& known = exchange.function == 4 ? input : holding;
+    int address = exchange.address;
+    for (const std::uint16_t value : exchange.values()) known[address++] = value;
     if (!exchange.is_write()) continue;
     image.refresh(exchange.utc_ns);
-    holding.show_in(image_holding);
-    input.show_in(image_input);
+    show(holding, image_holding);
+    show(input, image_input);
     image.apply_write(exchange.address, exchange.count);
   }
   image.refresh(end_utc_ns);
