@@ -44,8 +44,7 @@ void change_content(BatteryFault fault, Bytes& content) {
 
 }  // namespace
 
-BusReply::BusReply(_modbus* context, bool rtu)
-    : context_(context), rtu_(rtu), header_(rtu ? 0 : kTcpHeaderBytes) {
+BusReply::BusReply(_modbus* context, bool rtu) : context_(context), rtu_(rtu) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tap_) != 0)
     fail("cannot create a socket pair");
 }
@@ -62,14 +61,15 @@ Bytes BusReply::answer(const BusRequest& request, _modbus_mapping_t& registers) 
 }
 
 Bytes BusReply::exception(const BusRequest& request, int code) {
-  return frame(request,
-               {request.bytes[header_], static_cast<std::uint8_t>(request.function() | 0x80),
-                static_cast<std::uint8_t>(code)});
+  return frame(request, {static_cast<std::uint8_t>(request.unit()),
+                         static_cast<std::uint8_t>(request.function() | 0x80),
+                         static_cast<std::uint8_t>(code)});
 }
 
 Bytes BusReply::spoil(const BusRequest& request, Bytes reply, BatteryFault fault,
                       std::mt19937_64& random) {
-  const bool is_exception = reply.size() > std::size_t(header_) + 1 && reply[header_ + 1] >= 0x80;
+  const bool is_exception =
+      reply.size() > std::size_t(request.header) + 1 && reply[request.header + 1] >= 0x80;
   switch (fault) {
     case BatteryFault::kWrongUnit:
     case BatteryFault::kWrongFunction:
@@ -77,7 +77,7 @@ Bytes BusReply::spoil(const BusRequest& request, Bytes reply, BatteryFault fault
     case BatteryFault::kWrongValue:
     case BatteryFault::kFewerRegisters: {
       if (is_exception) return reply;  // no content to change
-      Bytes content(reply.begin() + header_, reply.end() - (rtu_ ? kCrcBytes : 0));
+      Bytes content(reply.begin() + request.header, reply.end() - (rtu_ ? kCrcBytes : 0));
       change_content(fault, content);
       return frame(request, content);
     }

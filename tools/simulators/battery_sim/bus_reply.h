@@ -53,7 +53,6 @@ class BusReply {
 
   _modbus* context_;
   bool rtu_;
-  int header_;
   int tap_[2] = {-1, -1};
 };
 
