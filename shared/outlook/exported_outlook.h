@@ -32,7 +32,6 @@ static_assert(BESS_STUDENT_OUTLOOK_HASH == detail::hash_of_exported_outlook(),
               "the outlook of student_weights.h is damaged or was edited by hand: export it again");
 static_assert(sizeof bess_student_outlook == sizeof(OutlookModel),
               "student_weights.h has an outlook of another format: export it again");
-inline constexpr bool kHasExportedOutlook = true;
 inline constexpr std::uint32_t kExportedOutlookHash = BESS_STUDENT_OUTLOOK_HASH;
 
 /// Null for another context of the student.
@@ -48,7 +47,6 @@ inline int count_exported_outlook_failures() {
 }
 inline constexpr int kExportedOutlookCheckCount = 1;
 #else
-inline constexpr bool kHasExportedOutlook = false;
 inline constexpr std::uint32_t kExportedOutlookHash = 0;
 inline const OutlookModel* exported_outlook() { return nullptr; }
 inline int count_exported_outlook_failures() { return 0; }
