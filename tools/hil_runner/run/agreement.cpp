@@ -155,21 +155,18 @@ std::string agreement_table(const std::vector<Agreement>& agreements) {
 }
 
 Json agreement_json(const std::vector<Agreement>& agreements) {
-  Json all = Json::list();
-  for (const Agreement& a : agreements) {
-    Json otherwise = Json::list();
-    for (const OrderDifference& o : a.otherwise) {
-      otherwise.add(Json::object({{"utc", utc_text(o.in_virtual.utc_s).view()},
-                                  {"virtual_w", o.in_virtual.ordered_power_w},
-                                  {"wall_w", o.in_wall.ordered_power_w},
-                                  {"met", o.met}}));
-    }
+  const auto difference_json = [](const OrderDifference& o) {
+    return Json::object({{"utc", utc_text(o.in_virtual.utc_s).view()},
+                         {"virtual_w", o.in_virtual.ordered_power_w},
+                         {"wall_w", o.in_wall.ordered_power_w},
+                         {"met", o.met}});
+  };
+  return Json::list_from(agreements, [&](const Agreement& a) {
     Json json = Json::object({{"scenario", a.scenario}, {"cycles", a.cycles}});
     if (!a.not_compared.empty()) json.set("not_compared", a.not_compared);
-    json.set("otherwise", std::move(otherwise));
-    all.add(std::move(json));
-  }
-  return all;
+    json.set("otherwise", Json::list_from(a.otherwise, difference_json));
+    return json;
+  });
 }
 
 std::string agreement_line(const std::vector<Agreement>& agreements) {

@@ -301,13 +301,11 @@ void run(const RunOptions& options) {
       std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.skipped.empty(); });
   const auto ran = std::ssize(outcomes) - skipped;
   if (options.json) {
-    Json runs = Json::list();
-    for (const Outcome& outcome : outcomes) runs.add(json_of(outcome));
     fmt::print("{}\n", Json::object({{"passed", ran - failed},
                                      {"failed", failed - late},
                                      {"late", late},
                                      {"skipped", skipped},
-                                     {"runs", std::move(runs)}})
+                                     {"runs", Json::list_from(outcomes, json_of)}})
                            .line());
   } else {
     fmt::print("{} passed, {} failed, {} skipped{}\n", ran - failed, failed - late, skipped,
