@@ -52,9 +52,7 @@ void RecordedDevice::add(const BusExchange& exchange) {
                       .latency_us = exchange.latency_us,
                       .outcome = exchange.outcome,
                       .exception = exchange.exception,
-                      .first_value = values_.size(),
-                      .value_count = values.size()});
-  values_.insert(values_.end(), values.begin(), values.end());
+                      .values = {values.begin(), values.end()}});
   if (exchange.outcome != BusOutcome::kAnswered || exchange.is_write()) return;
   int address = exchange.address;
   for (const std::uint16_t value : values) {
@@ -98,25 +96,22 @@ const RecordedDevice::Entry& RecordedDevice::now_in(RequestHistory& history,
   return entry(history.next - 1);
 }
 
-void RecordedDevice::give(const Entry& entry, BusExchange& request) const {
+void RecordedDevice::give(const Entry& entry, BusExchange& request) {
   request.outcome = entry.outcome;
   request.exception = entry.exception;
   request.latency_us = entry.latency_us;
   if (request.is_write()) return;
-  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(entry.first_value), entry.value_count,
-              request.registers.begin());
+  std::ranges::copy(entry.values, request.registers.begin());
 }
 
 /// The reaction of a device to other values than the recorded ones is unknown.
-std::string RecordedDevice::difference(const Entry& entry, const BusExchange& request) const {
+std::string RecordedDevice::difference(const Entry& entry, const BusExchange& request) {
   if (!request.is_write()) return "";
-  const auto recorded = values_.begin() + static_cast<std::ptrdiff_t>(entry.first_value);
   const std::span<const std::uint16_t> written = request.values();
-  if (std::equal(written.begin(), written.end(), recorded)) return "";
-  return fmt::format(
-      "{}: [{}], at {} it was [{}]: the device continues as recorded", request_text(request),
-      fmt::join(written, " "), instant_text(entry.utc_ns),
-      fmt::join(recorded, recorded + static_cast<std::ptrdiff_t>(entry.value_count), " "));
+  if (std::ranges::equal(written, entry.values)) return "";
+  return fmt::format("{}: [{}], at {} it was [{}]: the device continues as recorded",
+                     request_text(request), fmt::join(written, " "), instant_text(entry.utc_ns),
+                     fmt::join(entry.values, " "));
 }
 
 /// False if one of the registers was never read.

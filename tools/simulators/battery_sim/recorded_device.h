@@ -39,8 +39,7 @@ class RecordedDevice {
     std::int64_t latency_us = 0;
     BusOutcome outcome = BusOutcome::kAnswered;
     std::int32_t exception = 0;
-    std::size_t first_value = 0;  ///< in values_
-    std::size_t value_count = 0;
+    std::vector<std::uint16_t> values;  ///< read or written
   };
   struct RequestHistory {
     std::vector<std::size_t> entries;  ///< in the order of time
@@ -54,14 +53,13 @@ class RecordedDevice {
 
   void add(const BusExchange& exchange);
   [[nodiscard]] const Entry& now_in(RequestHistory& history, std::int64_t utc_ns) const;
-  void give(const Entry& entry, BusExchange& request) const;
-  [[nodiscard]] std::string difference(const Entry& entry, const BusExchange& request) const;
+  static void give(const Entry& entry, BusExchange& request);
+  static std::string difference(const Entry& entry, const BusExchange& request);
   [[nodiscard]] bool assemble(BusExchange& request) const;
 
   RecordingHead head_;
   std::int64_t first_utc_ns_ = 0, last_utc_ns_ = 0;
   std::vector<Entry> entries_;
-  std::vector<std::uint16_t> values_;
   std::map<Key, RequestHistory> histories_;
   std::map<Place, std::vector<Reading>> readings_;
 };
