@@ -60,10 +60,8 @@ class MarketFaultPlan {
     if (request % schedule_.every != 0) return MarketFault::kNone;
     ++faults_;
     if (schedule_.fault != MarketFault::kAll) return schedule_.fault;
-    constexpr MarketFault kTurns[] = {MarketFault::kNull,     MarketFault::kHttp500,
-                                      MarketFault::kStale,    MarketFault::kGarbage,
-                                      MarketFault::kTrailing, MarketFault::kTwice};
-    return kTurns[request / schedule_.every % std::ssize(kTurns)];
+    constexpr auto kCount = static_cast<std::int64_t>(MarketFault::kAll) - 1;  // without none
+    return MarketFault(1 + request / schedule_.every % kCount);
   }
   [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< faulty answers so far
 
