@@ -65,6 +65,7 @@ Bytes content_of(const BusExchange& answer) {
 
 constexpr int kBytesMax = 256;  ///< unit, PDU of 253, CRC
 constexpr int kBytesMin = 4;
+constexpr int kByteTimeoutMs = 500;  ///< within a frame on a serial line, as in libmodbus
 
 /// Missing bytes of the frame; known after seven bytes at most.
 int missing_bytes(const BusRequest& request) {
@@ -110,12 +111,6 @@ SerialRead read_serial_request(int fd, int byte_timeout_ms, BusRequest& request)
   tcflush(fd, TCIFLUSH);
   return SerialRead::kNoise;
 }
-
-namespace {
-
-constexpr int kByteTimeoutMs = 500;  ///< within a frame on a serial line, as in libmodbus
-
-}  // namespace
 
 BatteryServer::BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                              SimulatedBattery& battery, const ScaledClock& clock,
