@@ -39,6 +39,14 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, error) || place_of(a) == place_of(b);
 }
 
+struct Slot {
+  std::atomic<bool> is_taken{false};
+  std::atomic<bool> is_named{false};
+  char path[PATH_MAX];
+};
+std::array<Slot, 16> slots;  // more than the usual number of writing threads
+std::atomic<bool> is_ending{false};
+
 }  // namespace
 
 void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
@@ -62,18 +70,6 @@ std::vector<NamedPath> named_paths(const std::string& option,
   for (const std::string& path : paths) named.push_back({option, path});
   return named;
 }
-
-namespace {
-
-struct Slot {
-  std::atomic<bool> is_taken{false};
-  std::atomic<bool> is_named{false};
-  char path[PATH_MAX];
-};
-std::array<Slot, 16> slots;  // more than the usual number of writing threads
-std::atomic<bool> is_ending{false};
-
-}  // namespace
 
 UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path) {
   if (path.empty() || path.size() >= PATH_MAX) return;
@@ -107,8 +103,6 @@ void remove_unfinished_files() {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Opens for reading. Waits for the writer of a pipe, but not forever.
 int open_to_read(const fs::path& path) {
