@@ -65,31 +65,20 @@ class SavedSignalMask {
   sigset_t mask_{};
 };
 
-/// Decoder of the wire with the manufacturer's table only.
-class WireDecoder {
- public:
-  WireDecoder(const RegisterMap& map, std::vector<WireReading>& readings)
-      : table_(manufacturer_table(map.name.view(), map.variant.view())), readings_(readings) {
-    if (table_ == nullptr) {
-      fail("witness: no manufacturer table for the map \"{}\"", map.name.view());
-    }
-  }
-
-  void see(WireMemory::Frame request, WireMemory::Frame answer, std::int64_t utc_ns) {
-    if (!wire_.exchanged(request, answer)) return;
+/// Decodes the wire with the manufacturer's table only.
+VirtualBus::WireListener wire_decoder(const RegisterMap& map, std::vector<WireReading>& readings) {
+  const ManufacturerTable* const table = manufacturer_table(map.name.view(), map.variant.view());
+  if (table == nullptr) fail("witness: no manufacturer table for the map \"{}\"", map.name.view());
+  return [table, &readings, wire = WireMemory()](
+             WireMemory::Frame request, WireMemory::Frame answer, std::int64_t utc_ns) mutable {
+    if (!wire.exchanged(request, answer)) return;
     const WireReading reading{.utc_ns = utc_ns,
-                              .soc_frac = table_->soc_frac(wire_),
-                              .power_w = table_->power_w(wire_),
-                              .ordered_w = table_->ordered_w(wire_)};
-    if (readings_.empty() || !reading.shows_the_same(readings_.back()))
-      readings_.push_back(reading);
-  }
-
- private:
-  const ManufacturerTable* table_;
-  WireMemory wire_;
-  std::vector<WireReading>& readings_;
-};
+                              .soc_frac = table->soc_frac(wire),
+                              .power_w = table->power_w(wire),
+                              .ordered_w = table->ordered_w(wire)};
+    if (readings.empty() || !reading.shows_the_same(readings.back())) readings.push_back(reading);
+  };
+}
 
 /// Runs an edge from start to end; returns its exit code.
 int run_edge(const EdgeConfig& config, VirtualWorld& world) {
@@ -128,13 +117,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .from_s = 60 * scenario.price_fault.span.from_min,
                           .to_s = 60 * scenario.price_fault.span.to_min});
   Evidence evidence;
-  std::optional<WireDecoder> decoder;
-  if (scenario.witness) {
-    decoder.emplace(config.battery.map, evidence.wire);
-    bus.show_to([&](auto request, auto answer, std::int64_t utc_ns) {
-      decoder->see(request, answer, utc_ns);
-    });
-  }
+  if (scenario.witness) bus.show_to(wire_decoder(config.battery.map, evidence.wire));
   EdgeState state;
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
   VirtualOperator site_operator;
