@@ -1,6 +1,6 @@
 #include "workstation/correction/distillation/constraint_layer.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,8 +65,6 @@ ConstraintLayer::ConstraintLayer(std::vector<DifferenceRow> rows, int states)
 
 void ConstraintLayer::add_block(const std::vector<std::size_t>& rows) {
   Block block{.variables = {}, .rows = rows, .program = nullptr, .point = {}, .gradient = {}};
-  const auto inequalities = std::stable_partition(
-      block.rows.begin(), block.rows.end(), [&](std::size_t i) { return rows_[i].is_equality; });
   std::map<int, int> column_of;
   for (const std::size_t i : rows) {
     for (const DifferenceTerm& term : rows_[i].terms) column_of[variable_of(term)] = 0;
@@ -80,7 +78,6 @@ void ConstraintLayer::add_block(const std::vector<std::size_t>& rows) {
   LinearConstraints constraints;
   constraints.normals.resize(count, variables);
   constraints.bounds.resize(count);
-  constraints.equalities = static_cast<int>(inequalities - block.rows.begin());
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < count; ++i) {
     const DifferenceRow& row = rows_[block.rows[static_cast<std::size_t>(i)]];
@@ -96,45 +93,33 @@ void ConstraintLayer::add_block(const std::vector<std::size_t>& rows) {
   blocks_.push_back(std::move(block));
 }
 
-std::optional<RowClash> ConstraintLayer::project(Block& block) const {
+void ConstraintLayer::project(Block& block) const {
   for (std::size_t i = 0; i < block.variables.size(); ++i) {
     block.point[static_cast<Eigen::Index>(i)] = differences_[block.variables[i]];
   }
   const QuadraticOutcome outcome = block.program->solve(block.point);
-  if (outcome == QuadraticOutcome::kSolved) return {};
+  if (outcome == QuadraticOutcome::kContradiction) fail("{}", contradiction(block));
   if (outcome == QuadraticOutcome::kStalled) {
     fail("rule \"{}\" and those coupled to it: factors and bounds are too badly scaled to solve",
          rows_[block.rows.front()].rule);
   }
-  RowClash clash;
+}
+
+std::string ConstraintLayer::contradiction(const Block& block) const {
+  std::vector<std::size_t> rows;
   for (const ClashingRow& part : block.program->clash()) {
-    clash.rows.push_back(block.rows[static_cast<std::size_t>(part.row)]);
+    rows.push_back(block.rows[static_cast<std::size_t>(part.row)]);
   }
-  std::ranges::sort(clash.rows);
-  for (const std::size_t row : clash.rows) {
-    if (std::ranges::find(clash.rules, rows_[row].rule) == clash.rules.end()) {
-      clash.rules.push_back(rows_[row].rule);
-    }
+  std::ranges::sort(rows);
+  std::vector<std::string> rules;  // distinct, in the order of the rows
+  for (const std::size_t row : rows) {
+    const std::string quoted = fmt::format("\"{}\"", rows_[row].rule);
+    if (std::ranges::find(rules, quoted) == rules.end()) rules.push_back(quoted);
   }
-  return clash;
-}
-
-std::optional<RowClash> ConstraintLayer::clash() {
-  differences_.setZero();
-  for (Block& block : blocks_) {
-    if (std::optional<RowClash> found = project(block)) return found;
-  }
-  return {};
-}
-
-std::string ConstraintLayer::contradiction(const RowClash& clash) const {
-  std::string rules;
-  for (const std::string& rule : clash.rules) {
-    rules += fmt::format("{}\"{}\"", rules.empty() ? "" : " and ", rule);
-  }
-  return fmt::format("{} {} at state {} of the batch: remove one or change its bound", rules,
-                     clash.rules.size() == 1 ? "contradicts itself" : "contradict each other",
-                     rows_[clash.rows.front()].terms.front().state);
+  return fmt::format("{} {} at state {} of the batch: remove one or change its bound",
+                     fmt::join(rules, " and "),
+                     rules.size() == 1 ? "contradicts itself" : "contradict each other",
+                     rows_[rows.front()].terms.front().state);
 }
 
 void ConstraintLayer::forward(const Eigen::MatrixXd& logits, Eigen::MatrixXd& corrected) {
@@ -144,7 +129,7 @@ void ConstraintLayer::forward(const Eigen::MatrixXd& logits, Eigen::MatrixXd& co
     differences_[2 * c + 1] = difference.v;
   }
   for (Block& block : blocks_) {
-    if (const std::optional<RowClash> found = project(block)) fail("{}", contradiction(*found));
+    project(block);
     for (std::size_t i = 0; i < block.variables.size(); ++i) {
       differences_[block.variables[i]] = block.program->x()[static_cast<Eigen::Index>(i)];
     }
@@ -176,12 +161,6 @@ void ConstraintLayer::backward(const Eigen::MatrixXd& gradient_corrected,
   for (Eigen::Index c = 0; c < g.cols(); ++c) {
     set_logit_gradient(g, {differences_[2 * c], differences_[2 * c + 1]}, gradient_logits, c);
   }
-}
-
-int ConstraintLayer::largest_block() const {
-  std::size_t largest = 0;
-  for (const Block& block : blocks_) largest = std::max(largest, block.variables.size());
-  return static_cast<int>(largest);
 }
 
 }  // namespace bess

@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +40,11 @@ struct DifferenceTerm {
   double factor;
 };
 
-/// sum of factor * difference >= bound, or = bound.
+/// sum of factor * difference >= bound.
 struct DifferenceRow {
   std::string rule;  ///< name of the rule, for reports
   std::vector<DifferenceTerm> terms;
   double bound = 0;
-  bool is_equality = false;
 };
 
 // Logits [3] of a state and their differences u = z_charge - z_idle and v = z_idle - z_discharge.
@@ -95,12 +93,6 @@ inline void set_logit_gradient(const Eigen::MatrixXd& gradient_corrected,
   gradient(static_cast<int>(Action::kCharge), c) = mean + difference.u;
 }
 
-/// Minimal infeasible set of rows: without any one of them the others can be satisfied.
-struct RowClash {
-  std::vector<std::size_t> rows;   ///< indices into the layer's rows, ascending
-  std::vector<std::string> rules;  ///< their distinct rules, in the order of the rows
-};
-
 class ConstraintLayer {
  public:
   /// For batches of `states` columns. Throws UserError, naming the rule, for a state outside the
@@ -113,25 +105,20 @@ class ConstraintLayer {
   /// dL/dlogits from dL/dcorrected at the last forward.
   void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
 
-  /// The rows that contradict each other, if any. Independent of logits.
-  [[nodiscard]] std::optional<RowClash> clash();
-
-  [[nodiscard]] const std::vector<DifferenceRow>& rows() const { return rows_; }
-  /// Variables of the largest block.
-  [[nodiscard]] int largest_block() const;
-
  private:
   /// Differences connected by rows, and their projection.
   struct Block {
-    std::vector<int> variables;     ///< 2 * state + (v ? 1 : 0)
-    std::vector<std::size_t> rows;  ///< equalities first, as the program requires
+    std::vector<int> variables;  ///< 2 * state + (v ? 1 : 0)
+    std::vector<std::size_t> rows;
     std::unique_ptr<QuadraticProgram> program;
     Eigen::VectorXd point, gradient;
   };
   void add_block(const std::vector<std::size_t>& rows);
-  /// Projects into block.program->x(); returns the rows if they are infeasible.
-  [[nodiscard]] std::optional<RowClash> project(Block& block) const;
-  [[nodiscard]] std::string contradiction(const RowClash& clash) const;
+  /// Projects into block.program->x(); throws UserError naming the rules of infeasible rows.
+  void project(Block& block) const;
+  /// Names the rules of a minimal infeasible set of rows: without any one of them the others can be
+  /// satisfied.
+  [[nodiscard]] std::string contradiction(const Block& block) const;
 
   std::vector<DifferenceRow> rows_;
   std::vector<Block> blocks_;

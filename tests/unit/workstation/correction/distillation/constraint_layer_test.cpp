@@ -10,7 +10,6 @@
 namespace bess {
 namespace {
 
-using testing::ElementsAre;
 using testing::ThrowsMessage;
 constexpr Difference kU = Difference::kU;
 constexpr Difference kV = Difference::kV;
@@ -60,12 +59,10 @@ TEST(ConstraintLayer, RowsOfOneState) {
       {"reserve", {{1, kV, 1}}, 0.5},  // does not discharge
       {"cheap", {{2, kU, 1}}, 1},      // charges
       {"cheap", {{2, kV, 1}}, 0},
-      {"not up", {{3, kU, 1}, {3, kV, 1}}, 2},       // charge beats discharge by 2
-      {"even", {{4, kU, 1}, {4, kV, -1}}, 0, true},  // u = v
+      {"not up", {{3, kU, 1}, {3, kV, 1}}, 2},  // charge beats discharge by 2
+      {"even", {{4, kU, 1}, {4, kV, -1}}, 0},   // u >= v
   };
   ConstraintLayer layer(rows, 6);
-  EXPECT_EQ(layer.largest_block(), 2);
-  EXPECT_FALSE(layer.clash());
   Eigen::MatrixXd corrected;
   const Eigen::MatrixXd logits =
       logits_of_pairs({{-7, -9}, {-1, -3}, {-2, -4}, {-1, 1}, {1, 5}, {2, 3}});
@@ -84,7 +81,6 @@ TEST(ConstraintLayer, WithoutRowsNothingMoves) {
   Eigen::MatrixXd corrected, back;
   layer.forward(logits, corrected);
   layer.backward(gradient, back);
-  EXPECT_EQ(layer.largest_block(), 0);
   EXPECT_LT((corrected - logits).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LT((back - gradient).cwiseAbs().maxCoeff(), 1e-12);
 }
@@ -109,7 +105,6 @@ TEST(ConstraintLayer, RulesHoldTogetherWithTheProperties) {
   const LatticeAxes axes = even_axes(12, 6);
   const std::vector<DifferenceRow> rows = rows_with_rules(options, axes);
   ConstraintLayer layer(rows, 72);
-  EXPECT_EQ(layer.largest_block(), 144) << "the total ties u and v together";
   Eigen::MatrixXd corrected, again;
   layer.forward(random_logits(72, random, 2), corrected);
   const std::vector<double> differences = differences_of_states(corrected);
@@ -135,11 +130,6 @@ TEST(ConstraintLayer, ContradictingRulesAreNamed) {
       {"fill before the evening", {{5, kU, 1}}, 1},
   };
   ConstraintLayer layer(rows, 6);
-  const std::optional<RowClash> clash = layer.clash();
-  ASSERT_TRUE(clash);
-  EXPECT_THAT(clash->rows, ElementsAre(1, 3, 4));
-  EXPECT_THAT(clash->rules, ElementsAre("never charge when dear", "monotone in price",
-                                        "fill before the evening"));
   Eigen::MatrixXd corrected;
   EXPECT_THAT([&] { layer.forward(Eigen::MatrixXd::Zero(kActionCount, 6), corrected); },
               ThrowsMessage<UserError>(Names(
