@@ -112,7 +112,7 @@ LinearConstraints order_with_bounds(int rows, int columns, const RowBounds& boun
     if (c < columns) builder.add({{c, 1}}, -bounds.lower);
     if (c >= cells - columns) builder.add({{c, -1}}, bounds.upper);
   }
-  return builder.build(0);
+  return builder.build();
 }
 
 /// The isotonic projection and the general program on the same problem, alternating.
@@ -209,7 +209,7 @@ void register_correction_benchmarks() {
     add_quadratic_program(fmt::format("qp-order-{}", variables), ProgramKind::kOrder, variables);
     add_quadratic_program(fmt::format("qp-rows-{}", variables), ProgramKind::kSparseRows,
                           variables);
-    add_quadratic_program(fmt::format("qp-dense-{}", variables), ProgramKind::kDenseHessian,
+    add_quadratic_program(fmt::format("qp-dense-{}", variables), ProgramKind::kDenseRows,
                           variables);
   }
 }

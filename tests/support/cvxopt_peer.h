@@ -26,7 +26,7 @@ class CvxoptPeer {
     const std::int64_t count = static_cast<std::int64_t>(programs.size());
     put(&count, 1);
     for (const TestProgram& program : programs) {
-      const auto& [normals, bounds, equalities] = program.constraints;
+      const auto& [normals, bounds] = program.constraints;
       std::vector<std::int64_t> rows, columns;
       std::vector<double> factors;
       for (int i = 0; i < normals.rows(); ++i) {
@@ -36,11 +36,9 @@ class CvxoptPeer {
           factors.push_back(t.value());
         }
       }
-      const std::array<std::int64_t, 5> head{normals.cols(), normals.rows(), equalities,
-                                             static_cast<std::int64_t>(factors.size()),
-                                             program.hessian.size() == 0 ? 0 : 1};
+      const std::array<std::int64_t, 3> head{normals.cols(), normals.rows(),
+                                             static_cast<std::int64_t>(factors.size())};
       put(head.data(), head.size());
-      put(program.hessian.data(), static_cast<std::size_t>(program.hessian.size()));
       put(program.g.data(), static_cast<std::size_t>(program.g.size()));
       put(rows.data(), rows.size());
       put(columns.data(), columns.size());

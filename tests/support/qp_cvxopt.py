@@ -4,10 +4,9 @@
 #                                                       each, on one thread, at cvxopt's own
 #                                                       tolerances, matrices sparse or dense: the
 #                                                       faster
-# min 1/2 x'Px - g'x, first rows a'x = b, others a'x >= b. PROGRAMS is binary, numbers of this
-# machine: how many programs; each: variables, rows, equalities, terms, 1 if a Hessian follows (all
-# 64-bit integers); Hessian; g; the terms' rows, their columns (integers), their factors; bounds
-# (all else double). ANSWERS: doubles.
+# min 1/2 |x - g|^2, rows a'x >= b. PROGRAMS is binary, numbers of this machine: how many programs;
+# each: variables, rows, terms (all 64-bit integers); g; the terms' rows, their columns (integers),
+# their factors; bounds (all else double). ANSWERS: doubles.
 import array
 import os
 import statistics
@@ -31,20 +30,14 @@ def read(file, kind, count):
 
 
 def read_program(file):
-    n, rows, equalities, terms, has_hessian = read(file, "q", 5)
-    if has_hessian:
-        hessian = matrix(read(file, "d", n * n), (n, n))
-    else:
-        hessian = spmatrix(1.0, range(n), range(n))
+    n, rows, terms = read(file, "q", 3)
+    hessian = spmatrix(1.0, range(n), range(n))
     linear = -matrix(read(file, "d", n), (n, 1))
     of_row, of_column, factors = read(file, "q", terms), read(file, "q",
                                                               terms), read(file, "d", terms)
     bounds = matrix(read(file, "d", rows), (rows, 1))
     normals = spmatrix(list(factors), list(of_row), list(of_column), (rows, n))
-    problem = [hessian, linear, -normals[equalities:, :], -bounds[equalities:]]
-    if equalities:
-        problem += [normals[:equalities, :], bounds[:equalities]]
-    return problem
+    return [hessian, linear, -normals, -bounds]
 
 
 def seconds_of(problem):

@@ -12,26 +12,21 @@
 
 namespace bess {
 
-/// min 1/2 x'Gx - g'x under `constraints`; an empty hessian is the identity.
+/// min 1/2 |x - g|^2 under `constraints`.
 struct TestProgram {
-  Eigen::MatrixXd hessian;
   LinearConstraints constraints;
   Eigen::VectorXd g;
 
-  [[nodiscard]] QuadraticProgram solver() const {
-    return hessian.size() == 0 ? QuadraticProgram(constraints)
-                               : QuadraticProgram(hessian, constraints);
-  }
+  [[nodiscard]] QuadraticProgram solver() const { return QuadraticProgram(constraints); }
 };
 
 enum class ProgramKind {
-  kSparseRows,    ///< projection onto rows of two to four terms
-  kDenseHessian,  ///< some Hessian, rows of all variables
-  kOrder,         ///< a lattice that must not increase along rows and columns
-  kDegenerate,    ///< rows repeated, scaled, summed; many of them active at one point
-  kEqualities,    ///< a quarter of the rows are equalities
+  kSparseRows,  ///< rows of two to four terms
+  kDenseRows,   ///< rows of all variables
+  kOrder,       ///< a lattice that must not increase along rows and columns
+  kDegenerate,  ///< rows repeated, scaled, summed; many of them active at one point
 };
-inline constexpr int kProgramKinds = 5;
+inline constexpr int kProgramKinds = 4;
 
 inline Eigen::VectorXd normal_vector(Eigen::Index size, Random& random) {
   Eigen::VectorXd v(size);
@@ -51,13 +46,12 @@ class RowBuilder {
     }
     bounds_.push_back(value - slack);
   }
-  [[nodiscard]] LinearConstraints build(int equalities) const {
+  [[nodiscard]] LinearConstraints build() const {
     LinearConstraints constraints;
     constraints.normals.resize(static_cast<int>(bounds_.size()), static_cast<int>(inside_.size()));
     constraints.normals.setFromTriplets(entries_.begin(), entries_.end());
     constraints.bounds =
         Eigen::Map<const Eigen::VectorXd>(bounds_.data(), static_cast<int>(bounds_.size()));
-    constraints.equalities = equalities;
     return constraints;
   }
 
@@ -90,7 +84,7 @@ inline LinearConstraints order_constraints(int variables) {
     if (c % columns + 1 < columns && c + 1 < variables) builder.add({{c, 1}, {c + 1, -1}}, 0);
     if (c < columns) builder.add({{c, 1}}, -1);
   }
-  return builder.build(0);
+  return builder.build();
 }
 
 /// Feasible by construction, with the free minimum outside.
@@ -103,12 +97,11 @@ inline TestProgram random_program(ProgramKind kind, int variables, Random& rando
   }
   const Eigen::VectorXd inside = normal_vector(variables, random);
   RowBuilder builder(inside);
-  const bool dense = kind == ProgramKind::kDenseHessian;
+  const bool dense = kind == ProgramKind::kDenseRows;
   const bool degenerate = kind == ProgramKind::kDegenerate;
   const int rows = degenerate ? (variables + 1) / 2 : variables + variables / 2;
-  const int equalities = kind == ProgramKind::kEqualities ? variables / 4 : 0;
   for (int i = 0; i < rows; ++i) {
-    const bool tight = i < equalities || random.uniform() < (degenerate ? 0.5 : 0.1);
+    const bool tight = random.uniform() < (degenerate ? 0.5 : 0.1);
     const double slack = tight ? 0 : random.uniform();
     auto terms = random_terms(variables, dense, random);
     builder.add(terms, slack);
@@ -121,15 +114,8 @@ inline TestProgram random_program(ProgramKind kind, int variables, Random& rando
     builder.add(other, slack);
     builder.add(sum, 2 * slack);  // follows from the two
   }
-  program.constraints = builder.build(equalities);
+  program.constraints = builder.build();
   program.g = inside + 2 * normal_vector(variables, random);
-  if (dense) {
-    Eigen::MatrixXd root(variables, variables);
-    for (double& value : root.reshaped()) value = random.normal();
-    program.hessian =
-        root * root.transpose() / variables + 0.1 * Eigen::MatrixXd::Identity(variables, variables);
-    program.g = program.hessian * program.g;
-  }
   return program;
 }
 

@@ -14,36 +14,24 @@ constexpr std::size_t kBits = 64;  ///< per word
 
 }  // namespace
 
-VariableGroups::VariableGroups(const Eigen::MatrixXd& inverse_root)
-    : words_((static_cast<std::size_t>(inverse_root.rows()) + kBits - 1) / kBits),
-      of_variable_(static_cast<std::size_t>(inverse_root.rows())),
+VariableGroups::VariableGroups(Eigen::Index size)
+    : words_((static_cast<std::size_t>(size) + kBits - 1) / kBits),
+      of_variable_(static_cast<std::size_t>(size)),
       of_column_(of_variable_.size()),
       variables_(of_variable_.size() * words_),
-      count_(static_cast<int>(of_variable_.size())) {
+      columns_(variables_.size()) {
+  reset();
+}
+
+void VariableGroups::reset() {
   std::iota(of_variable_.begin(), of_variable_.end(), 0);
-  std::iota(of_column_.begin(), of_column_.end(), 0);
+  of_column_ = of_variable_;
+  std::ranges::fill(variables_, 0);
   for (std::size_t v = 0; v < of_variable_.size(); ++v) {
     variables_[v * words_ + v / kBits] |= std::uint64_t{1} << v % kBits;
   }
   columns_ = variables_;
-  for (Eigen::Index column = 0; column < inverse_root.cols(); ++column) {
-    for (Eigen::Index row = 0; row < inverse_root.rows(); ++row) {
-      if (inverse_root(row, column) == 0) continue;
-      const int groups[] = {of_column(row), of_column(column)};
-      if (groups[0] != groups[1]) tie(groups);
-    }
-  }
-  start_of_ = of_variable_;
-  start_ = variables_;
-  start_count_ = count_;
-}
-
-void VariableGroups::reset() {
-  of_variable_ = start_of_;
-  of_column_ = start_of_;
-  variables_ = start_;
-  columns_ = start_;
-  count_ = start_count_;
+  count_ = static_cast<int>(of_variable_.size());
 }
 
 void VariableGroups::find(std::span<const int> variables, std::vector<int>& groups) const {
@@ -142,25 +130,24 @@ RowImage::RowImage(Eigen::Index size) : d(Eigen::VectorXd::Zero(size)) {
   }
 }
 
-ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
-    : start_(inverse_root.transpose()),
-      basis_(start_),
-      triangle_(start_.rows(), start_.rows()),
-      groups_(inverse_root),
-      scratch_(start_.rows()),
-      cosines_(start_.rows()),
-      sines_(start_.rows()) {
-  places_.reserve(static_cast<std::size_t>(start_.rows()));
+ActiveSetFactors::ActiveSetFactors(Eigen::Index size)
+    : basis_(Eigen::MatrixXd::Identity(size, size)),
+      triangle_(size, size),
+      groups_(size),
+      scratch_(size),
+      cosines_(size),
+      sines_(size) {
+  places_.reserve(static_cast<std::size_t>(size));
 }
 
 void ActiveSetFactors::reset() {
-  basis_ = start_;
+  basis_.setIdentity();
   groups_.reset();
   active_ = 0;
 }
 
 void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
-                                double sign, RowImage& image, bool of_free) {
+                                RowImage& image, bool of_free) {
   const Eigen::Index from = of_free ? active_ : 0;
   groups_.find(variables, image.groups);
   groups_.list_columns(image.groups, from, active_, image.held);
@@ -168,7 +155,7 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
   const Eigen::Index count = size() - from;
   if (kColumnsARow * variables.size() > static_cast<std::size_t>(size())) {
     scratch_.setZero();
-    for (std::size_t t = 0; t < variables.size(); ++t) scratch_[variables[t]] = sign * factors[t];
+    for (std::size_t t = 0; t < variables.size(); ++t) scratch_[variables[t]] = factors[t];
     image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * scratch_;
   } else {
     const auto entry = [&](int k) {
@@ -176,7 +163,7 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
       for (std::size_t t = 0; t < variables.size(); ++t) {
         sum += factors[t] * basis_(variables[t], k);
       }
-      return sign * sum;
+      return sum;
     };
     image.d.tail(count).setZero();
     for (const int k : image.held) image.d[k] = entry(k);

@@ -1,14 +1,14 @@
-// Factors of the active set of a strictly convex quadratic program with Hessian G = L L' [Goldfarb
-// and Idnani 1983]. With N the active constraints' normals as columns,
+// Factors of the active set of a projection onto linear constraints [Goldfarb and Idnani 1983, for
+// the Hessian I]. With N the active constraints' normals as columns,
 //
-//   L^-1 N = Q [R; 0]      J = L^-T Q = [J1 J2]      J1: as many columns as N, J2: the rest
+//   N = Q [R; 0]      J = Q = [J1 J2]      J1: as many columns as N, J2: the rest
 //
 // and for a normal n with d = J'n, split alike into d1 and d2,
 //
 //   z = J2 d2      the direction in x along which n'x grows fastest with the active rows
 //                  unchanged, by |d2|^2 per unit
 //   r = R^-1 d1    decrease of the active multipliers along it
-//   J2 J2'         the inverse of G on the free directions of the active rows
+//   J2 J2'         the projector onto the free directions of the active rows
 //
 // Adding a row takes one Householder reflection of the columns of J2 with d2 != 0, dropping one
 // takes Givens rotations. d is 0 outside the groups of the row's variables (VariableGroups). In J2
@@ -25,7 +25,7 @@
 
 namespace bess {
 
-// Groups of variables that the Hessian or active rows couple, with their columns of J.
+// Groups of variables that active rows couple, with their columns of J.
 //
 // Rows without a common variable, directly or through other active rows, are independent: sorted by
 // group, J and R are block diagonal. For orders between neighbours the groups are the blocks of
@@ -35,10 +35,9 @@ namespace bess {
 
 class VariableGroups {
  public:
-  /// `inverse_root` is L^-1 [n x n]; its nonzero entries couple variables.
-  explicit VariableGroups(const Eigen::MatrixXd& inverse_root);
+  explicit VariableGroups(Eigen::Index size);
 
-  /// Restores the groups of the constructor.
+  /// Each of the n variables is a group of its own again.
   void reset();
 
   /// The distinct groups of these variables; `groups` must have capacity n.
@@ -68,10 +67,7 @@ class VariableGroups {
   std::size_t words_;
   std::vector<int> of_variable_, of_column_;  ///< group of each, named by one of its variables
   Words variables_, columns_;
-  int count_;  ///< number of groups
-  std::vector<int> start_of_;
-  Words start_;
-  int start_count_;
+  int count_ = 0;  ///< number of groups
 };
 
 /// Image of a row's normal n under the factors; valid until they change.
@@ -82,23 +78,24 @@ struct RowImage {
   std::vector<int> groups;  ///< groups of the row's variables
   std::vector<int> held;    ///< their columns of J1, ascending
   std::vector<int> free;    ///< columns of J2 whose d is not 0, ascending
-  double independence = 0;  ///< |d2|: distance of n from the span of N in the G^-1 norm
+  double independence = 0;  ///< |d2|: distance of n from the span of N
 };
 
 class ActiveSetFactors {
  public:
-  /// `inverse_root` is L^-1 [n x n].
-  explicit ActiveSetFactors(const Eigen::MatrixXd& inverse_root);
+  /// For n variables.
+  explicit ActiveSetFactors(Eigen::Index size);
 
   /// Empties the active set.
   void reset();
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// Image of the normal with `factors` at `variables` and 0 elsewhere; its length is 1 in the G^-1
-  /// norm. With `of_free` only the J2 part is computed and `held` stays empty.
-  void image_of(std::span<const int> variables, std::span<const double> factors, double sign,
-                RowImage& image, bool of_free = false);
+  /// Image of the normal with `factors` at `variables` and 0 elsewhere; its length is 1. With
+  /// `of_free` only the J2 part is computed and `held` stays empty.
+  void image_of(std::span<const int> variables, std::span<const double> factors, RowImage& image,
+                bool of_free = false);
+
   /// Variables that the row can move, ascending; `list` must have capacity n.
   void list_variables(const RowImage& image, std::vector<int>& list) const {
     groups_.list_variables(image.groups, list);
@@ -131,7 +128,6 @@ class ActiveSetFactors {
   void turn_rows(Eigen::Index row);
   void close_gap(Eigen::Index gap);
 
-  Eigen::MatrixXd start_;     ///< J without active rows, L^-T [n x n]
   Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
   Eigen::MatrixXd triangle_;  ///< R in its upper left corner [n x n]
   VariableGroups groups_;

@@ -1,17 +1,15 @@
 #include "workstation/correction/distillation/quadratic_program.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace bess {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Rows have unit length in the G^-1 norm, so slacks and multipliers are distances. Tolerances on
-// them are relative to the size of the terms of a slack.
+// Rows have unit length, so slacks and multipliers are distances. Tolerances on them are relative to
+// the size of the terms of a slack.
 constexpr double kViolation = 1e-12;     ///< minimum violation of a row
 constexpr double kContradiction = 1e-9;  ///< minimum contradiction of rows; below, they just meet
 constexpr double kWeakly = 1e-9;         ///< smaller slacks and multipliers are 0 in the derivative
@@ -26,27 +24,10 @@ constexpr int kRebuildsMax = 3;
 constexpr double kDenseShare = 0.2;
 constexpr int kStepsMaxPerRow = 50;
 
-Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& hessian) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
-  if (factor.info() != Eigen::Success) {
-    throw std::invalid_argument("quadratic program: the Hessian is not positive definite");
-  }
-  return factor.matrixL().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
-}
-
 }  // namespace
 
 QuadraticProgram::QuadraticProgram(LinearConstraints constraints)
-    : QuadraticProgram(
-          std::move(constraints),
-          Eigen::MatrixXd::Identity(constraints.normals.cols(), constraints.normals.cols())) {}
-
-QuadraticProgram::QuadraticProgram(const Eigen::MatrixXd& hessian, LinearConstraints constraints)
-    : QuadraticProgram(std::move(constraints), inverse_root_of(hessian)) {}
-
-QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
-                                   const Eigen::MatrixXd& inverse_root)
-    : rows_(std::move(constraints)), factors_(inverse_root), image_(inverse_root.rows()) {
+    : rows_(std::move(constraints)), factors_(rows_.normals.cols()), image_(rows_.normals.cols()) {
   const Eigen::Index variables = rows_.normals.cols();
   const Eigen::Index count = rows_.normals.rows();
   for (Eigen::VectorXd* v : {&free_minimum_, &x_, &z_, &r_}) v->setZero(variables);
@@ -60,17 +41,16 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   is_claimed_.resize(static_cast<std::size_t>(variables));
   candidates_.reserve(static_cast<std::size_t>(count));
   moved_.reserve(static_cast<std::size_t>(variables));
-  is_projection_ = inverse_root.isIdentity(0);
-  scale_rows(inverse_root);
+  scale_rows();
 }
 
 /// A row of zeros is unchanged: it is satisfied or infeasible by itself.
-void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
+void QuadraticProgram::scale_rows() {
   rows_.normals.makeCompressed();
   for (int i = 0; i < rows_.normals.rows(); ++i) {
     z_.setZero();
     for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
-      z_ += term.value() * inverse_root.col(term.col());
+      z_[term.col()] = term.value();
     }
     const double length = z_.norm();
     row_scale_[i] = length > 0 ? 1 / length : 1;
@@ -90,10 +70,7 @@ void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
 
 QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
   start(g);
-  if (is_projection_ && rows_.equalities == 0) take_in_disjoint_rows();
-  for (int row = 0; row < rows_.equalities; ++row) {
-    if (!take_in(row, slack_of(row) > 0 ? -1 : 1)) return QuadraticOutcome::kContradiction;
-  }
+  take_in_disjoint_rows();
   const auto steps_max = kStepsMaxPerRow * (rows_.normals.rows() + rows_.normals.cols());
   int rebuilds = 0;
   while (steps_ <= steps_max) {
@@ -109,7 +86,7 @@ QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
         return QuadraticOutcome::kSolved;
       }
     }
-    if (!take_in(row, 1)) return QuadraticOutcome::kContradiction;
+    if (!take_in(row)) return QuadraticOutcome::kContradiction;
   }
   return QuadraticOutcome::kStalled;
 }
@@ -122,13 +99,12 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   neglected_.clear();
   passed_over_.setZero();
   steps_ = 0;
-  factors_.project_free(g, free_minimum_);
-  x_ = free_minimum_;
+  free_minimum_ = g;
+  x_ = g;
   measure();
 }
 
-/// Rows without common variables are independent: at the start of a projection each is added by
-/// itself, the most violated first. The more expensive steps over all active rows begin with these.
+/// Rows without common variables are independent: at the start each is added by itself, the most violated first. The more expensive steps over all active rows begin with these.
 void QuadraticProgram::take_in_disjoint_rows() {
   candidates_.clear();
   for (int row = 0; row < slacks_.size(); ++row) {
@@ -138,12 +114,12 @@ void QuadraticProgram::take_in_disjoint_rows() {
   std::ranges::fill(is_claimed_, 0);
   for (const int row : candidates_) {
     if (!claim_variables(row)) continue;
-    image_of(row, 1);
+    image_of(row);
     if (image_.independence <= kDependent) continue;  // a row of zeros
     const double violation = -slacks_[row];
     factors_.add(image_, z_);
     move(violation);
-    activate(row, 1, violation);
+    activate(row, violation);
     ++steps_;
   }
 }
@@ -185,12 +161,11 @@ void QuadraticProgram::measure() {
   }
 }
 
-/// The image of the row times its sign.
-void QuadraticProgram::image_of(int row, double sign, bool of_free) {
+void QuadraticProgram::image_of(int row, bool of_free) {
   const auto begin = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row]);
   const auto end = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row + 1]);
   factors_.image_of({rows_.normals.innerIndexPtr() + begin, end - begin},
-                    {rows_.normals.valuePtr() + begin, end - begin}, sign, image_, of_free);
+                    {rows_.normals.valuePtr() + begin, end - begin}, image_, of_free);
 }
 
 double QuadraticProgram::slack_of(int row) const {
@@ -220,62 +195,54 @@ void QuadraticProgram::move(double step) {
   }
 }
 
-/// The inequality that x violates most, or -1.
+/// The row that x violates most, or -1.
 int QuadraticProgram::most_violated() const {
-  const Eigen::Index inequalities = slacks_.size() - rows_.equalities;
-  if (inequalities == 0) return -1;
-  const double least = (slacks_ + passed_over_).tail(inequalities).minCoeff();
+  if (slacks_.size() == 0) return -1;
+  const double least = (slacks_ + passed_over_).minCoeff();
   if (!(least < -kViolation * scale_)) return -1;
-  int worst = rows_.equalities;
+  int worst = 0;
   while (slacks_[worst] + passed_over_[worst] != least) ++worst;
   return worst;
 }
 
-Eigen::Index QuadraticProgram::active_equalities() const {
-  const auto is_equality = [this](const ActiveRow& row) { return row.row < rows_.equalities; };
-  return std::ranges::partition_point(active_, is_equality) - active_.begin();
-}
-
-/// Largest step along -r before the multiplier of an inequality reaches 0.
+/// Largest step along -r before a multiplier reaches 0.
 QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   Limit limit{kInfinity, 0};
   if (image_.held.empty()) return limit;
   const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
-  const Eigen::Index equalities = active_equalities();
   for (const int k : image_.held) {
     // The rarer condition first: the sign of r is unpredictable.
     const bool is_nearer = active_multipliers_[k] < limit.step * r_[k];
-    if (is_nearer && r_[k] > falling && k >= equalities) {
+    if (is_nearer && r_[k] > falling) {
       limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
     }
   }
   return limit;
 }
 
-/// Clips rounding errors: multipliers of inequalities are not negative.
+/// Clips rounding errors: multipliers are not negative.
 void QuadraticProgram::keep_signs() {
-  const Eigen::Index equalities = active_equalities();
-  auto signed_ones = active_multipliers_.segment(equalities, factors_.active() - equalities);
-  signed_ones = signed_ones.cwiseMax(0);
+  auto of_active = active_multipliers_.head(factors_.active());
+  of_active = of_active.cwiseMax(0);
 }
 
 /// Step 2 of the paper: moves towards the row until it is tight and drops blocking active rows.
 /// False if the row contradicts the active ones.
-bool QuadraticProgram::take_in(int row, double sign) {
+bool QuadraticProgram::take_in(int row) {
   double multiplier = 0;
   while (true) {
     ++steps_;
-    image_of(row, sign);
+    image_of(row);
     factors_.solve(image_, r_);
     const double independence = image_.independence;
     const bool is_dependent = independence <= kDependent;
-    const double violation = std::max(0.0, -sign * slack_of(row));
+    const double violation = std::max(0.0, -slack_of(row));
     const double full = is_dependent ? kInfinity : violation / (independence * independence);
     const Limit limit = limit_by_multipliers();
     const double step = std::min(full, limit.step);
     if (step == kInfinity) {
       if (violation > kContradiction * scale_) {
-        keep_clash(row, sign);
+        keep_clash(row);
         return false;
       }
       neglected_.push_back(row);
@@ -288,7 +255,7 @@ bool QuadraticProgram::take_in(int row, double sign) {
     if (full <= limit.step) {
       factors_.add(image_, z_);
       move(step);
-      activate(row, sign, multiplier);
+      activate(row, multiplier);
       for (const int other : neglected_) passed_over_[other] = 0;
       neglected_.clear();
       return true;
@@ -301,9 +268,9 @@ bool QuadraticProgram::take_in(int row, double sign) {
   }
 }
 
-void QuadraticProgram::activate(int row, double sign, double multiplier) {
+void QuadraticProgram::activate(int row, double multiplier) {
   active_multipliers_[static_cast<Eigen::Index>(active_.size())] = multiplier;
-  active_.push_back({row, sign});
+  active_.push_back(row);
   mark(row, true);
 }
 
@@ -314,16 +281,16 @@ void QuadraticProgram::mark(int row, bool active) {
 }
 
 /// Adds the row to the factors unless it depends on the active ones.
-bool QuadraticProgram::hold(int row, double sign) {
-  image_of(row, sign, true);  // most of these rows depend on the others
+bool QuadraticProgram::hold(int row) {
+  image_of(row, true);  // most of these rows depend on the others
   if (image_.independence <= kDependent) return false;
-  image_of(row, sign);
+  image_of(row);
   factors_.add(image_, z_);
   return true;
 }
 
 void QuadraticProgram::let_go(std::size_t position) {
-  mark(active_[position].row, false);
+  mark(active_[position], false);
   const std::span<const int> places = factors_.drop(static_cast<Eigen::Index>(position));
   for (std::size_t k = 1; k < places.size(); ++k) {
     active_[static_cast<std::size_t>(places[k - 1])] = active_[static_cast<std::size_t>(places[k])];
@@ -332,28 +299,27 @@ void QuadraticProgram::let_go(std::size_t position) {
   active_.pop_back();
 }
 
-/// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0
+/// The row is the sum of r times active ones, and no r is positive: row - sum = 0
 /// while the bounds sum to the violation. The active rows are independent, so the sum is unique:
 /// without any one of these rows the others can be satisfied.
-void QuadraticProgram::keep_clash(int row, double sign) {
+void QuadraticProgram::keep_clash(int row) {
   const double least =
       kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());
-  clash_.push_back({row, sign * row_scale_[row]});
+  clash_.push_back({row, row_scale_[row]});
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const double part = -r_[static_cast<Eigen::Index>(k)];
     if (std::fabs(part) <= least) continue;
-    const ActiveRow& other = active_[k];
-    clash_.push_back({other.row, part * other.sign * row_scale_[other.row]});
+    clash_.push_back({active_[k], part * row_scale_[active_[k]]});
   }
 }
 
 /// x and multipliers of the active set, from the factors alone:
-///   y = R^-T (b - N'G^-1 g)    x = G^-1 g + J1 y    multipliers = R^-1 y
+///   y = R^-T (b - N'g)    x = g + J1 y    multipliers = R^-1 y
 /// Returns the largest slack of the active rows.
 double QuadraticProgram::recompute() {
   x_ = free_minimum_;
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    z_[static_cast<Eigen::Index>(k)] = -active_[k].sign * slack_of(active_[k].row);
+    z_[static_cast<Eigen::Index>(k)] = -slack_of(active_[k]);
   }
   factors_.solve_transposed(z_);
   factors_.add_combination(z_, x_);
@@ -362,16 +328,16 @@ double QuadraticProgram::recompute() {
   active_multipliers_.head(factors_.active()) = z_.head(factors_.active());
   keep_signs();
   double distance = 0;
-  for (const ActiveRow& row : active_) distance = std::max(distance, std::fabs(slacks_[row.row]));
+  for (const int row : active_) distance = std::max(distance, std::fabs(slacks_[row]));
   return distance;
 }
 
 /// Recomputes the factors of the active set.
 void QuadraticProgram::rebuild() {
   factors_.reset();
-  std::erase_if(active_, [this](const ActiveRow& row) {
-    const bool held = hold(row.row, row.sign);
-    mark(row.row, held);
+  std::erase_if(active_, [this](int row) {
+    const bool held = hold(row);
+    mark(row, held);
     return !held;
   });
 }
@@ -379,23 +345,22 @@ void QuadraticProgram::rebuild() {
 void QuadraticProgram::publish_multipliers() {
   multipliers_.setZero();
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    const auto& [row, sign] = active_[k];
-    multipliers_[row] = active_multipliers_[static_cast<Eigen::Index>(k)] * sign * row_scale_[row];
+    const int row = active_[k];
+    multipliers_[row] = active_multipliers_[static_cast<Eigen::Index>(k)] * row_scale_[row];
   }
 }
 
 void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
   const double weak = kWeakly * scale_;
   // Kept: every tight row.
-  for (int row = rows_.equalities; row < slacks_.size(); ++row) {
+  for (int row = 0; row < slacks_.size(); ++row) {
     if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
-    if (hold(row, 1)) activate(row, 1, 0);
+    if (hold(row)) activate(row, 0);
   }
   factors_.project_free(gradient_x, gradient_g);
   // Dropped: those without a multiplier.
   const std::size_t held = active_.size();
-  const Eigen::Index equalities = active_equalities();
-  for (Eigen::Index k = factors_.active(); k-- > equalities;) {
+  for (Eigen::Index k = factors_.active(); k-- > 0;) {
     if (active_multipliers_[k] <= weak) let_go(static_cast<std::size_t>(k));
   }
   if (active_.size() == held) return;

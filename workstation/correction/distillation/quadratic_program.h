@@ -1,10 +1,10 @@
-// Strictly convex quadratic program, dense in the variables and sparse in the rows, with its
-// derivative:
+// Projection onto linear constraints, a quadratic program that is dense in the variables and sparse
+// in the rows, with its derivative:
 //
-//   x = argmin 1/2 x'Gx - g'x   s.t.  a_i'x = b_i  for the first rows, a_i'x >= b_i for the others
+//   x = argmin 1/2 |x - g|^2   s.t.  a_i'x >= b_i
 //
 // Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the
-// unconstrained minimum G^-1 g and adds the most violated row, dropping active rows whose
+// unconstrained minimum g and adds the most violated row, dropping active rows whose
 // multipliers would become negative, until none is violated. Each step raises the dual value, so it
 // terminates. A row that depends on the active ones takes a step in the multipliers only. If no
 // step is possible, no x satisfies all rows, and the multipliers name the contradicting rows
@@ -13,7 +13,7 @@
 //
 // Derivative: near g the same rows S are active, and x is an affine function of g [dQP, arXiv
 // 2410.06324]. The adjoint w solves one linear system,
-//   [G N; N' 0] [w; .] = [dL/dx; 0]        hence        dL/dg = w = J2 J2' dL/dx.
+//   [I N; N' 0] [w; .] = [dL/dx; 0]        hence        dL/dg = w = J2 J2' dL/dx.
 // If a row is tight with multiplier 0 the derivative is not unique. The result is the mean of the
 // derivatives with all such rows kept and with all dropped: for one such row, the central
 // difference.
@@ -30,11 +30,10 @@
 
 namespace bess {
 
-/// Rows a_i'x >= b_i, [rows x variables]; the first `equalities` of them are a_i'x = b_i.
+/// Rows a_i'x >= b_i, [rows x variables].
 struct LinearConstraints {
   Eigen::SparseMatrix<double, Eigen::RowMajor> normals;
   Eigen::VectorXd bounds;
-  int equalities = 0;
 };
 
 enum class QuadraticOutcome {
@@ -43,8 +42,8 @@ enum class QuadraticOutcome {
   kStalled,        ///< no convergence because of rounding: badly scaled numbers
 };
 
-/// A row's part in a contradiction: the weighted rows sum to 0 >= a positive number. Weights of
-/// inequalities are positive.
+/// A row's part in a contradiction: with these positive weights the rows sum to 0 >= a positive
+/// number.
 struct ClashingRow {
   int row;
   double weight;
@@ -52,16 +51,13 @@ struct ClashingRow {
 
 class QuadraticProgram {
  public:
-  /// Projection onto the rows: G is the identity.
   explicit QuadraticProgram(LinearConstraints constraints);
-  /// G [n x n] symmetric and positive definite; throws std::invalid_argument otherwise.
-  QuadraticProgram(const Eigen::MatrixXd& hessian, LinearConstraints constraints);
 
-  /// Solves for the linear term g [n]; finite numbers.
+  /// Projects g [n]; finite numbers.
   QuadraticOutcome solve(const Eigen::VectorXd& g);
 
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
-  /// [rows], of the rows as given: 0 for inactive rows, >= 0 for inequalities.
+  /// [rows], of the rows as given: 0 for inactive rows.
   [[nodiscard]] const Eigen::VectorXd& multipliers() const { return multipliers_; }
   /// Valid after kContradiction.
   [[nodiscard]] const std::vector<ClashingRow>& clash() const { return clash_; }
@@ -72,11 +68,6 @@ class QuadraticProgram {
   void backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g);
 
  private:
-  /// A row in the active set; its sign is -1 where an equality was approached from above.
-  struct ActiveRow {
-    int row;
-    double sign;
-  };
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor>;
   struct Limit {
@@ -84,37 +75,34 @@ class QuadraticProgram {
     std::size_t position;  ///< active row whose multiplier reaches 0 there
   };
 
-  QuadraticProgram(LinearConstraints&& constraints, const Eigen::MatrixXd& inverse_root);
-  void scale_rows(const Eigen::MatrixXd& inverse_root);
+  void scale_rows();
   void start(const Eigen::VectorXd& g);
   void take_in_disjoint_rows();
   [[nodiscard]] bool claim_variables(int row);
   void mark(int row, bool active);
   void measure();
-  [[nodiscard]] Eigen::Index active_equalities() const;
   void move(double step);
-  void activate(int row, double sign, double multiplier);
-  void image_of(int row, double sign, bool of_free = false);
+  void activate(int row, double multiplier);
+  void image_of(int row, bool of_free = false);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
   [[nodiscard]] Limit limit_by_multipliers() const;
   void keep_signs();
-  [[nodiscard]] bool take_in(int row, double sign);
-  bool hold(int row, double sign);
+  [[nodiscard]] bool take_in(int row);
+  bool hold(int row);
   void let_go(std::size_t position);
-  void keep_clash(int row, double sign);
+  void keep_clash(int row);
   double recompute();
   void rebuild();
   void publish_multipliers();
 
-  LinearConstraints rows_;     ///< scaled to |L^-1 a| = 1
+  LinearConstraints rows_;     ///< scaled to |a| = 1
   Columns columns_;            ///< the same normals, by variable; empty if dense_ is used
   Eigen::MatrixXd dense_;      ///< the same normals, if many of their factors are not 0
-  bool is_projection_;         ///< G is the identity
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
   RowImage image_;                      ///< of the current row
-  std::vector<ActiveRow> active_;       ///< equalities first
+  std::vector<int> active_;             ///< rows in the active set
   Eigen::VectorXd active_multipliers_;  ///< [n] of the active rows, in their order
   std::vector<char> is_active_;         ///< [rows]
   std::vector<int> neglected_;          ///< rows violated by no more than rounding, and dependent
@@ -123,7 +111,7 @@ class QuadraticProgram {
   std::vector<int> candidates_;         ///< violated rows at the start
   std::vector<int> moved_;              ///< variables that a step moves
   std::vector<ClashingRow> clash_;
-  Eigen::VectorXd free_minimum_;  ///< G^-1 g [n]
+  Eigen::VectorXd free_minimum_;  ///< g [n]
   Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
   Eigen::VectorXd multipliers_;   ///< [rows] of the rows as given
   Eigen::VectorXd slacks_;        ///< [rows] of the scaled rows at x

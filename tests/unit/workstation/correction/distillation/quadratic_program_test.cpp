@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "tests/support/count_allocations.h"
 #include "tests/support/cvxopt_peer.h"
@@ -24,7 +23,7 @@ Vector vector_of(std::initializer_list<double> values) {
 
 /// Rows from dense lines.
 LinearConstraints constraints_of(int variables, const std::vector<std::vector<double>>& lines,
-                                 const std::vector<double>& bounds, int equalities = 0) {
+                                 const std::vector<double>& bounds) {
   LinearConstraints constraints;
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
@@ -33,7 +32,6 @@ LinearConstraints constraints_of(int variables, const std::vector<std::vector<do
   constraints.normals.resize(static_cast<int>(lines.size()), variables);
   constraints.normals.setFromTriplets(entries.begin(), entries.end());
   constraints.bounds = Eigen::Map<const Vector>(bounds.data(), static_cast<int>(bounds.size()));
-  constraints.equalities = equalities;
   return constraints;
 }
 
@@ -57,12 +55,6 @@ TEST(QuadraticProgram, HandCases) {
        vector_of({0, 10}), vector_of({8, 8}), vector_of({2, 6})},
       {"the farther row implies the nearer", constraints_of(2, {{1, 0}, {1, 1}}, {1, 4}),
        vector_of({0, 0}), vector_of({2, 2}), vector_of({0, 2})},
-      {"equality from below", constraints_of(2, {{1, 1}}, {4}, 1), vector_of({0, 0}),
-       vector_of({2, 2}), vector_of({2})},
-      {"equality from above", constraints_of(2, {{1, 1}}, {4}, 1), vector_of({5, 5}),
-       vector_of({2, 2}), vector_of({-3})},
-      {"an equality twice", constraints_of(2, {{1, 1}, {2, 2}}, {4, 8}, 2), vector_of({0, 0}),
-       vector_of({2, 2}), vector_of({2, 0})},
       {"a row of zeros that holds", constraints_of(2, {{0, 0}, {1, 0}}, {-1, 5}), vector_of({3, 4}),
        vector_of({5, 4}), vector_of({0, 2})},
       {"no rows", constraints_of(2, {}, {}), vector_of({3, 4}), vector_of({3, 4}), Vector(0)},
@@ -77,37 +69,20 @@ TEST(QuadraticProgram, HandCases) {
   }
 }
 
-TEST(QuadraticProgram, HessianIsTheMetric) {
-  Eigen::Matrix2d hessian;
-  hessian << 2, 1, 1, 4;
-  QuadraticProgram program(hessian, constraints_of(2, {{1, 1}}, {3}));
-  ASSERT_EQ(program.solve(vector_of({2, 1})), QuadraticOutcome::kSolved);
-  // G x = g + u (1, 1) and x1 + x2 = 3: u = 3.5
-  EXPECT_LT((program.x() - vector_of({2.5, 0.5})).norm(), 1e-12) << program.x().transpose();
-  EXPECT_NEAR(program.multipliers()[0], 3.5, 1e-12);
-  const Eigen::Matrix2d indefinite = hessian - 3 * Eigen::Matrix2d::Identity();
-  EXPECT_THROW(QuadraticProgram(indefinite, constraints_of(2, {}, {})), std::invalid_argument);
-}
-
 /// Optimality conditions of a convex program, for a solution of any solver.
 void expect_optimal(const TestProgram& program, const QuadraticProgram& solver, double tolerance) {
-  const auto& [normals, bounds, equalities] = program.constraints;
+  const auto& [normals, bounds] = program.constraints;
   const Vector& x = solver.x();
   const Vector& u = solver.multipliers();
   const Vector slack = normals * x - bounds;
   for (int i = 0; i < slack.size(); ++i) {
-    if (i < equalities) {
-      EXPECT_NEAR(slack[i], 0, tolerance) << "row " << i;
-      continue;
-    }
     EXPECT_GE(slack[i], -tolerance) << "row " << i;
     EXPECT_GE(u[i], 0) << "row " << i;
     if (u[i] > 0) {
       EXPECT_NEAR(slack[i], 0, tolerance) << "row " << i;
     }
   }
-  const Vector gradient = (program.hessian.size() == 0 ? x : Vector(program.hessian * x)) -
-                          program.g - normals.transpose() * u;
+  const Vector gradient = x - program.g - normals.transpose() * u;
   EXPECT_LT(gradient.cwiseAbs().maxCoeff(), tolerance * (1 + u.cwiseAbs().maxCoeff()));
 }
 
@@ -183,13 +158,11 @@ TEST(QuadraticProgram, AgreesWithCvxopt) {
 /// Weighted by the certificate the rows sum to 0 >= a positive number; and without any one of them
 /// the others have a feasible point.
 void expect_certificate(const TestProgram& program, const QuadraticProgram& solver) {
-  const auto& [normals, bounds, equalities] = program.constraints;
+  const auto& [normals, bounds] = program.constraints;
   Vector sum = Vector::Zero(program.g.size());
   double bound = 0;
   for (const ClashingRow& part : solver.clash()) {
-    if (part.row >= equalities) {
-      EXPECT_GT(part.weight, 0) << "row " << part.row;
-    }
+    EXPECT_GT(part.weight, 0) << "row " << part.row;
     sum += part.weight * Vector(normals.row(part.row));
     bound += part.weight * bounds[part.row];
   }
@@ -201,17 +174,15 @@ void expect_certificate(const TestProgram& program, const QuadraticProgram& solv
     std::vector<double> kept;
     for (const ClashingRow& part : solver.clash()) {
       if (part.row == left_out.row) continue;
-      const double sign = part.row < equalities && part.weight < 0 ? -1 : 1;
       const Vector normal = normals.row(part.row);
       for (int v = 0; v < normal.size(); ++v) {
-        entries.emplace_back(static_cast<int>(kept.size()), v, sign * normal[v]);
+        entries.emplace_back(static_cast<int>(kept.size()), v, normal[v]);
       }
-      kept.push_back(sign * bounds[part.row]);
+      kept.push_back(bounds[part.row]);
     }
     rest.constraints.normals.resize(static_cast<int>(kept.size()), normals.cols());
     rest.constraints.normals.setFromTriplets(entries.begin(), entries.end());
     rest.constraints.bounds = Eigen::Map<const Vector>(kept.data(), static_cast<int>(kept.size()));
-    rest.constraints.equalities = 0;  // the sign of its weight shows which side conflicts
     QuadraticProgram of_the_rest = rest.solver();
     EXPECT_EQ(of_the_rest.solve(rest.g), QuadraticOutcome::kSolved) << "without " << left_out.row;
   }
@@ -227,8 +198,6 @@ TEST(QuadraticProgram, ContradictionsByHand) {
       {"two bounds", constraints_of(1, {{1}, {-1}}, {2, -1}), {0, 1}},
       {"a bystander", constraints_of(2, {{0, 1}, {1, 0}, {-1, 0}}, {7, 2, -1}), {1, 2}},
       {"a row of zeros", constraints_of(2, {{1, 0}, {0, 0}}, {5, 1}), {1}},
-      {"two equalities", constraints_of(2, {{1, 1}, {1, 1}}, {1, 2}, 2), {0, 1}},
-      {"equality and row", constraints_of(2, {{1, 1}, {-1, -1}}, {4, -3}, 1), {0, 1}},
       {"a ring", constraints_of(3, {{1, -1, 0}, {0, 1, -1}, {-1, 0, 1}}, {1, 1, 1}), {0, 1, 2}},
       {"three of four",
        constraints_of(2, {{1, 0}, {0, 1}, {-1, -1}, {1, 1}}, {1, 1, -1.5, -9}),
@@ -236,7 +205,7 @@ TEST(QuadraticProgram, ContradictionsByHand) {
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
-    TestProgram program{{}, c.constraints, Vector::Zero(c.constraints.normals.cols())};
+    TestProgram program{c.constraints, Vector::Zero(c.constraints.normals.cols())};
     QuadraticProgram solver = program.solver();
     ASSERT_EQ(solver.solve(program.g), QuadraticOutcome::kContradiction);
     std::vector<int> rows;
@@ -253,7 +222,7 @@ TEST(QuadraticProgram, ContradictionsAreNamed) {
     SCOPED_TRACE(round);
     const int variables = 2 + static_cast<int>(random.index(40));
     TestProgram program = random_program(kind_of(round), variables, random);
-    const auto& [normals, bounds, equalities] = program.constraints;
+    const auto& [normals, bounds] = program.constraints;
     const auto old_rows = static_cast<int>(normals.rows());
     Vector sum = Vector::Zero(variables);
     double bound = 0;
@@ -333,8 +302,6 @@ TEST(QuadraticProgram, BackwardAtAKink) {
        vector_of({1.5, 2.5})},
       {"next to an active bound", constraints_of(2, {{1, 0}, {0, 1}}, {5, 4}), vector_of({3, 4}),
        vector_of({0, 1.5})},
-      {"an equality has one side", constraints_of(2, {{1, 0}}, {3}, 1), vector_of({3, 4}),
-       vector_of({0, 3})},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
