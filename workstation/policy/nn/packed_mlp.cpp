@@ -59,34 +59,32 @@ void PackedGradient::add_to(MutableMlp& gradient) const {
   }
 }
 
-void forward_hidden(const TileKernels& kernels, const PackedMlp& net, const MatrixRef& x,
-                    MlpActivations& tile) {
+void forward_hidden(const PackedMlp& net, const MatrixRef& x, MlpActivations& tile) {
   tile.h1.resize(net.w1.padded_lanes(), x.cols());
   tile.h2.resize(net.w2.padded_lanes(), x.cols());
-  kernels.affine(x, net.w1, net.b1.data(), Activation::kRelu, tile.h1.all());
-  kernels.affine(tile.h1.rows(net.w2.depth()), net.w2, net.b2.data(), Activation::kRelu,
-                 tile.h2.all());
+  kernels::affine(x, net.w1, net.b1.data(), Activation::kRelu, tile.h1.all());
+  kernels::affine(tile.h1.rows(net.w2.depth()), net.w2, net.b2.data(), Activation::kRelu,
+                  tile.h2.all());
 }
 
-void forward_head(const TileKernels& kernels, const PackedMlp& net, int group, MlpActivations& tile,
-                  TileMatrix& z) {
+void forward_head(const PackedMlp& net, int group, MlpActivations& tile, TileMatrix& z) {
   const PackedMlp::Head& head = net.heads[static_cast<std::size_t>(group)];
   const auto h2 = tile.h2.rows(head.w.depth());
   z.resize(head.w.padded_lanes(), h2.cols());
-  kernels.affine(h2, head.w, head.bias.data(), Activation::kLinear, z.all());
+  kernels::affine(h2, head.w, head.bias.data(), Activation::kLinear, z.all());
 }
 
-void backward(const TileKernels& kernels, const PackedMlp& net, int group, const MatrixRef& x,
-              const MatrixRef& dz, MlpActivations& tile, PackedGradient& gradient) {
+void backward(const PackedMlp& net, int group, const MatrixRef& x, const MatrixRef& dz,
+              MlpActivations& tile, PackedGradient& gradient) {
   const PackedMlp::Head& head = net.heads[static_cast<std::size_t>(group)];
   PackedGradient::Head& head_gradient = gradient.heads[static_cast<std::size_t>(group)];
   head_gradient.b.head(dz.rows()) += dz.rowwise().sum();
-  kernels.add_outer_products(tile.h2.all(), dz, head_gradient.w);
+  kernels::add_outer_products(tile.h2.all(), dz, head_gradient.w);
   tile.dh2.resize(head.w_back.padded_lanes(), x.cols());
-  kernels.backward(dz, head.w_back, tile.h2.all(), tile.dh2.all(), gradient.b2.data());
-  kernels.add_outer_products(tile.dh2.all(), tile.h1.rows(net.w2.depth()), gradient.w2);
-  kernels.backward_to_inputs(tile.dh2.rows(net.w2_back.depth()), net.w2_back, tile.h1.all(), x,
-                             gradient.w1, gradient.b1.data());
+  kernels::backward(dz, head.w_back, tile.h2.all(), tile.dh2.all(), gradient.b2.data());
+  kernels::add_outer_products(tile.dh2.all(), tile.h1.rows(net.w2.depth()), gradient.w2);
+  kernels::backward_to_inputs(tile.dh2.rows(net.w2_back.depth()), net.w2_back, tile.h1.all(), x,
+                              gradient.w1, gradient.b1.data());
 }
 
 }  // namespace bess

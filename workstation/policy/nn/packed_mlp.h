@@ -69,13 +69,11 @@ struct MlpActivations {
 };
 
 /// h1 = relu(W1 x + b1), h2 = relu(W2 h1 + b2). x is [inputs x samples].
-void forward_hidden(const TileKernels& kernels, const PackedMlp& net, const MatrixRef& x,
-                    MlpActivations& tile);
+void forward_hidden(const PackedMlp& net, const MatrixRef& x, MlpActivations& tile);
 /// z = W3 h2 + b3 for the outputs of one group. z becomes [padded group outputs x samples].
-void forward_head(const TileKernels& kernels, const PackedMlp& net, int group, MlpActivations& tile,
-                  TileMatrix& z);
+void forward_head(const PackedMlp& net, int group, MlpActivations& tile, TileMatrix& z);
 /// Adds the gradient of all layers from dz = dL/dz [group outputs x samples] of one group.
-void backward(const TileKernels& kernels, const PackedMlp& net, int group, const MatrixRef& x,
-              const MatrixRef& dz, MlpActivations& tile, PackedGradient& gradient);
+void backward(const PackedMlp& net, int group, const MatrixRef& x, const MatrixRef& dz,
+              MlpActivations& tile, PackedGradient& gradient);
 
 }  // namespace bess

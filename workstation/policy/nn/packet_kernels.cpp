@@ -135,6 +135,26 @@ EIGEN_ALWAYS_INLINE void store(const Block<Rows>& block, const Columns<float>& t
   }
 }
 
+/// Passes a block of dh where h > 0 and adds it to db.
+template <int Rows>
+EIGEN_ALWAYS_INLINE void mask_and_sum(const Columns<const float>& h, Index lane, Index first,
+                                      Block<Rows>& block, float* db) {
+  for (int v = 0; v < kPackets; ++v) {
+    Packet sum = ploadu<Packet>(db + lane + v * kLanes);
+    for (int r = 0; r < Rows; ++r) {
+      block.at[r][v] = where_positive(h.at(lane + v * kLanes, first + r), block.at[r][v]);
+      sum = padd(sum, block.at[r][v]);
+    }
+    pstoreu(db + lane + v * kLanes, sum);
+  }
+}
+
+constexpr auto kFromZero = [](Index) { return zero(); };
+
+}  // namespace
+
+namespace kernels {
+
 [[gnu::flatten]] void affine(const MatrixRef& x, const Panels& w, const float* bias,
                              Activation activation, MatrixOut y) {
   const auto start = [=](Index lane) { return ploadu<Packet>(bias + lane); };
@@ -152,22 +172,6 @@ EIGEN_ALWAYS_INLINE void store(const Block<Rows>& block, const Columns<float>& t
     store(block, to, lane, first);
   });
 }
-
-/// Passes a block of dh where h > 0 and adds it to db.
-template <int Rows>
-EIGEN_ALWAYS_INLINE void mask_and_sum(const Columns<const float>& h, Index lane, Index first,
-                                      Block<Rows>& block, float* db) {
-  for (int v = 0; v < kPackets; ++v) {
-    Packet sum = ploadu<Packet>(db + lane + v * kLanes);
-    for (int r = 0; r < Rows; ++r) {
-      block.at[r][v] = where_positive(h.at(lane + v * kLanes, first + r), block.at[r][v]);
-      sum = padd(sum, block.at[r][v]);
-    }
-    pstoreu(db + lane + v * kLanes, sum);
-  }
-}
-
-constexpr auto kFromZero = [](Index) { return zero(); };
 
 [[gnu::flatten]] void backward(const MatrixRef& dy, const Panels& w, const MatrixRef& h,
                                MatrixOut dh, float* db) {
@@ -251,12 +255,6 @@ SoftmaxSums exponentials(const float* z, Index count, float* e) {
   return {top, predux(sum)};
 }
 
-}  // namespace
-
-const TileKernels& packet_kernels() {
-  static constexpr TileKernels kernels{
-      "packets", affine, backward, backward_to_inputs, add_outer_products, exponentials};
-  return kernels;
-}
+}  // namespace kernels
 
 }  // namespace bess

@@ -1,7 +1,7 @@
-// Tile kernels: the five loops that dominate a gradient step, over one tile of samples, behind one
-// table. The product version is register-blocked with vector packets (packet_kernels.cpp); tests
-// compare it with plain Eigen. Samples are columns, features are contiguous; a matrix whose
-// features run along vector lanes has its rows padded to whole panels.
+// Tile kernels: the five loops that dominate a gradient step, over one tile of samples,
+// register-blocked with vector packets (packet_kernels.cpp); tests compare them with plain Eigen.
+// Samples are columns, features are contiguous; a matrix whose features run along vector lanes has
+// its rows padded to whole panels.
 #pragma once
 
 #include "workstation/policy/nn/mlp.h"
@@ -54,34 +54,31 @@ struct SoftmaxSums {
   float sum;
 };
 
-struct TileKernels {
-  const char* name;
+namespace kernels {
 
-  /// y = activation(W x + bias).
-  /// x [depth x samples], W [lanes x depth], bias [padded lanes], y [padded lanes x samples].
-  void (*affine)(const MatrixRef& x, const Panels& w, const float* bias, Activation activation,
-                 MatrixOut y);
+/// y = activation(W x + bias).
+/// x [depth x samples], W [lanes x depth], bias [padded lanes], y [padded lanes x samples].
+void affine(const MatrixRef& x, const Panels& w, const float* bias, Activation activation,
+            MatrixOut y);
 
-  /// Backward through a layer and the preceding ReLU: dh = (W' dy) where h > 0, else 0; db += sum
-  /// of dh over samples. dy [depth x samples], W' [lanes x depth], h and dh [padded lanes x
-  /// samples], db [padded lanes].
-  void (*backward)(const MatrixRef& dy, const Panels& w, const MatrixRef& h, MatrixOut dh,
-                   float* db);
+/// Backward through a layer and the preceding ReLU: dh = (W' dy) where h > 0, else 0; db += sum of
+/// dh over samples. dy [depth x samples], W' [lanes x depth], h and dh [padded lanes x samples], db
+/// [padded lanes].
+void backward(const MatrixRef& dy, const Panels& w, const MatrixRef& h, MatrixOut dh, float* db);
 
-  /// As `backward`, for the layer next to the inputs: dh is used directly in dw += dh x^T and not
-  /// stored. x [inputs x samples], dw [padded lanes x inputs].
-  void (*backward_to_inputs)(const MatrixRef& dy, const Panels& w, const MatrixRef& h,
-                             const MatrixRef& x, MatrixOut dw, float* db);
+/// As `backward`, for the layer next to the inputs: dh is used directly in dw += dh x^T and not
+/// stored. x [inputs x samples], dw [padded lanes x inputs].
+void backward_to_inputs(const MatrixRef& dy, const Panels& w, const MatrixRef& h,
+                        const MatrixRef& x, MatrixOut dw, float* db);
 
-  /// dw += lanes rows^T, summed over samples. lanes [padded lanes x samples], rows [n x samples],
-  /// dw [padded lanes x n].
-  void (*add_outer_products)(const MatrixRef& lanes, const MatrixRef& rows, MatrixOut dw);
+/// dw += lanes rows^T, summed over samples. lanes [padded lanes x samples], rows [n x samples], dw
+/// [padded lanes x n].
+void add_outer_products(const MatrixRef& lanes, const MatrixRef& rows, MatrixOut dw);
 
-  /// e_i = exp(z_i - max z), i < count; zero up to the next multiple of kPanelLanes. z must be
-  /// readable up to there; e may be z. No alignment required.
-  SoftmaxSums (*exponentials)(const float* z, Eigen::Index count, float* e);
-};
+/// e_i = exp(z_i - max z), i < count; zero up to the next multiple of kPanelLanes. z must be
+/// readable up to there; e may be z. No alignment required.
+SoftmaxSums exponentials(const float* z, Eigen::Index count, float* e);
 
-const TileKernels& packet_kernels();
+}  // namespace kernels
 
 }  // namespace bess

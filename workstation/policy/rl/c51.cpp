@@ -64,9 +64,8 @@ namespace {
 
 /// Projected distribution of each sample's greedy next action -> tile.m.
 void project_targets(const GradientStep& step, const TileRange& range, C51Tile& tile) {
-  forward_hidden(step.kernels, step.target,
-                 step.batch.next_state.middleCols(range.first, range.count), tile.net);
-  forward_head(step.kernels, step.target, 0, tile.net, tile.z_next);
+  forward_hidden(step.target, step.batch.next_state.middleCols(range.first, range.count), tile.net);
+  forward_head(step.target, 0, tile.net, tile.z_next);
   const int count = tile.support.count;
   tile.m.resize(count, range.count);
   for (Eigen::Index n = 0; n < range.count; ++n) {
@@ -75,7 +74,7 @@ void project_targets(const GradientStep& step, const TileRange& range, C51Tile& 
     float sum[kActionCount];
     for (int a = 0; a < kActionCount; ++a) {
       float* p = tile.next.distribution(a);
-      sum[a] = step.kernels.exponentials(tile.z_next.sample(n) + a * count, count, p).sum;
+      sum[a] = kernels::exponentials(tile.z_next.sample(n) + a * count, count, p).sum;
       value[a] = tile.atoms.dot(Eigen::Map<const Eigen::VectorXf>(p, tile.atoms.size())) / sum[a] +
                  advantage[a];
     }
@@ -100,7 +99,7 @@ double distribution_loss(const GradientStep& step, C51Tile& tile, Eigen::Index s
     const auto m = tile.m.all().col(n);
     // log p = z - max z - log sum, so the loss needs no logarithm of a small probability.
     const float weighted = m.dot(z);
-    const SoftmaxSums sums = step.kernels.exponentials(z.data(), tile.support.count, z.data());
+    const SoftmaxSums sums = kernels::exponentials(z.data(), tile.support.count, z.data());
     loss += sums.largest - weighted;
     tile.sums[n] = sums.sum;
     z *= weight / sums.sum;
@@ -121,11 +120,10 @@ double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Ti
                          PackedGradient& gradient) {
   project_targets(step, range, tile);
   const auto x = step.batch.state.middleCols(range.first, range.count);
-  forward_hidden(step.kernels, step.online, x, tile.net);
-  forward_head(step.kernels, step.online, range.action, tile.net, tile.z);
+  forward_hidden(step.online, x, tile.net);
+  forward_head(step.online, range.action, tile.net, tile.z);
   const double loss = distribution_loss(step, tile, range.count);
-  backward(step.kernels, step.online, range.action, x, tile.z.rows(tile.support.count), tile.net,
-           gradient);
+  backward(step.online, range.action, x, tile.z.rows(tile.support.count), tile.net, gradient);
   return loss;
 }
 

@@ -13,7 +13,6 @@ namespace bess {
 // Inputs common to the tiles of a gradient step, for all methods.
 
 struct GradientStep {
-  const TileKernels& kernels;
   const PackedMlp& online;  ///< head in one group per action
   const PackedMlp& target;  ///< head in one group
   const MiniBatch& batch;

@@ -5,13 +5,12 @@ namespace bess {
 double dqn_tile_gradient(const GradientStep& step, const TileRange& range, DqnTile& tile,
                          PackedGradient& gradient) {
   const MiniBatch& batch = step.batch;
-  forward_hidden(step.kernels, step.target, batch.next_state.middleCols(range.first, range.count),
-                 tile.net);
-  forward_head(step.kernels, step.target, 0, tile.net, tile.q_next);
+  forward_hidden(step.target, batch.next_state.middleCols(range.first, range.count), tile.net);
+  forward_head(step.target, 0, tile.net, tile.q_next);
 
   const auto x = batch.state.middleCols(range.first, range.count);
-  forward_hidden(step.kernels, step.online, x, tile.net);
-  forward_head(step.kernels, step.online, range.action, tile.net, tile.q);
+  forward_hidden(step.online, x, tile.net);
+  forward_head(step.online, range.action, tile.net, tile.q);
   double loss = 0;
   const auto q_next = tile.q_next.rows(kActionCount);
   auto q = tile.q.rows(1);
@@ -23,7 +22,7 @@ double dqn_tile_gradient(const GradientStep& step, const TileRange& range, DqnTi
     loss += 0.5 * static_cast<double>(error) * error;
     q(0, n) = error / static_cast<float>(batch.size());
   }
-  backward(step.kernels, step.online, range.action, x, q, tile.net, gradient);
+  backward(step.online, range.action, x, q, tile.net, gradient);
   return loss;
 }
 

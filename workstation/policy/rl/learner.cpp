@@ -24,11 +24,10 @@ void for_tiles(int action, Eigen::Index begin, Eigen::Index end, const Body& bod
 }  // namespace
 
 Learner::Learner(Method method, const Support& support, double gamma, std::uint64_t seed,
-                 int threads, double mean_weight, const TileKernels& kernels)
+                 int threads, double mean_weight)
     : method_(method),
       gamma_(static_cast<float>(gamma)),
       mean_weight_(static_cast<float>(mean_weight)),
-      kernels_(kernels),
       shape_(teacher_shape(method, support)),
       online_(initial_parameters(shape_, seed)),
       target_(online_),
@@ -51,7 +50,7 @@ void Learner::run_tiles(const MiniBatch& batch, int worker_index) {
   worker.gradient.set_zero(shape_, kActionCount);
   worker.loss = 0;
   worker.c51.edge_mass = 0;
-  const GradientStep step{kernels_, packed_online_, packed_target_, batch, gamma_, mean_weight_};
+  const GradientStep step{packed_online_, packed_target_, batch, gamma_, mean_weight_};
   const Eigen::Index begin = batch.size() * worker_index / team_.size();
   const Eigen::Index end = batch.size() * (worker_index + 1) / team_.size();
   for (int action = 0; action < kActionCount; ++action) {

@@ -17,9 +17,9 @@ namespace bess {
 
 class Learner {
  public:
-  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or a test's version.
+  /// `mean_weight`: see c51_tile_gradient.
   Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
-          double mean_weight = 0, const TileKernels& kernels = packet_kernels());
+          double mean_weight = 0);
 
   struct StepResult {
     double loss;            ///< mean over the minibatch
@@ -54,7 +54,6 @@ class Learner {
   Method method_;
   float gamma_;
   float mean_weight_;
-  const TileKernels& kernels_;
   MlpShape shape_;
   Parameters online_;
   Parameters target_;

@@ -18,7 +18,6 @@ std::ostream& operator<<(std::ostream& out, const Shape& s) {
 
 class Kernels : public testing::TestWithParam<Shape> {
  protected:
-  const TileKernels& kernels = packet_kernels();
   const Shape shape = GetParam();
   const Eigen::Index padded = padded_to_panels(shape.lanes);
   Random random{91};
@@ -52,10 +51,10 @@ class Kernels : public testing::TestWithParam<Shape> {
 TEST_P(Kernels, Affine) {
   const Matrix bias = with_padding(random_matrix(shape.lanes, 1));
   Matrix y(padded, shape.samples);
-  kernels.affine(x, panels, bias.data(), Activation::kLinear, y);
+  kernels::affine(x, panels, bias.data(), Activation::kLinear, y);
   const Eigen::MatrixXd expected = product.colwise() + bias.col(0).head(shape.lanes).cast<double>();
   expect_lanes(y, expected, shape.depth);
-  kernels.affine(x, panels, bias.data(), Activation::kRelu, y);
+  kernels::affine(x, panels, bias.data(), Activation::kRelu, y);
   expect_lanes(y, expected.cwiseMax(0), shape.depth);
 }
 
@@ -67,7 +66,7 @@ TEST_P(Kernels, Backward) {
   const Matrix start = with_padding(random_matrix(shape.lanes, 1));
   Matrix dh(padded, shape.samples);
   Matrix db = start;
-  kernels.backward(x, panels, h, dh, db.data());
+  kernels::backward(x, panels, h, dh, db.data());
   expect_lanes(dh, expected, shape.depth);
   expect_lanes(db - start, expected.rowwise().sum(), shape.samples * shape.depth);
 }
@@ -82,7 +81,7 @@ TEST_P(Kernels, BackwardToInputs) {
   const Matrix start = with_padding(random_matrix(shape.lanes, kInputs));
   Matrix dw = start;
   Matrix db = Matrix::Zero(padded, 1);
-  kernels.backward_to_inputs(x, panels, h, inputs, dw, db.data());
+  kernels::backward_to_inputs(x, panels, h, inputs, dw, db.data());
   expect_lanes(dw - start, dh * inputs.cast<double>().transpose(), shape.samples * shape.depth);
   expect_lanes(db, dh.rowwise().sum(), shape.samples * shape.depth);
 }
@@ -91,7 +90,7 @@ TEST_P(Kernels, AddOuterProducts) {
   const Matrix lanes = with_padding(random_matrix(shape.lanes, shape.samples));
   const Matrix start = with_padding(random_matrix(shape.lanes, shape.depth));
   Matrix dw = start;
-  kernels.add_outer_products(lanes, x, dw);
+  kernels::add_outer_products(lanes, x, dw);
   expect_lanes(dw - start, lanes.topRows(shape.lanes).cast<double>() * x.cast<double>().transpose(),
                shape.samples);
 }
@@ -103,11 +102,11 @@ TEST_P(Kernels, Exponentials) {
     const Eigen::ArrayXd logits = z.col(0).segment(1, shape.lanes).cast<double>().array();
     const Eigen::ArrayXd expected = (logits - logits.maxCoeff()).exp();
     Matrix e = Matrix::Constant(padded, 1, -1);
-    const SoftmaxSums sums = kernels.exponentials(z.data() + 1, shape.lanes, e.data());
+    const SoftmaxSums sums = kernels::exponentials(z.data() + 1, shape.lanes, e.data());
     EXPECT_EQ(sums.largest, logits.maxCoeff());
     EXPECT_LT(std::abs(sums.sum / expected.sum() - 1), 1e-6);
     expect_lanes(e, expected.matrix(), 0);
-    kernels.exponentials(z.data() + 1, shape.lanes, z.data() + 1);
+    kernels::exponentials(z.data() + 1, shape.lanes, z.data() + 1);
     EXPECT_LT((z.col(0).segment(1, padded) - e.col(0)).cwiseAbs().maxCoeff(), 2e-7F) << "in place";
   }
 }
@@ -139,7 +138,6 @@ TEST_P(PackedNetwork, IsThePlainNetwork) {
   Matrix plain_z;
   forward_hidden(mlp, x, plain_tile);
   forward_head(mlp, plain_tile, plain_z);
-  const TileKernels& kernels = packet_kernels();
   MlpActivations tile;
   TileMatrix z;
   PackedGradient packed_gradient;
@@ -148,12 +146,12 @@ TEST_P(PackedNetwork, IsThePlainNetwork) {
   Parameters expected = Parameters::Zero(parameters.size());
   MutableMlp expected_view(shape, expected.data());
   for (int group = 0; group < kGroups; ++group) {
-    forward_hidden(kernels, packed, x, tile);
-    forward_head(kernels, packed, group, tile, z);
+    forward_hidden(packed, x, tile);
+    forward_head(packed, group, tile, z);
     EXPECT_LT((z.rows(outputs) - plain_z.middleRows(group * outputs, outputs)).norm(),
               1e-6F * plain_z.norm());
     const Matrix dz = Matrix::NullaryExpr(outputs, kSamples, draw);
-    backward(kernels, packed, group, x, dz, tile, packed_gradient);
+    backward(packed, group, x, dz, tile, packed_gradient);
     all_dz.setZero();
     all_dz.middleRows(group * outputs, outputs) = dz;
     forward_hidden(mlp, x, plain_tile);
