@@ -34,14 +34,12 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) 
   double count = 0;
   double sum = 0;
   double squares = 0;
-  for (const MarketDay& day : training) {
-    for (const MarketStep& step : market.of(day)) {
-      const double level = step.level_eur_per_mwh();
-      count += 1;
-      sum += level;
-      squares += level * level;
-    }
-  }
+  for_each_step(market, training, [&](const MarketStep& step) {
+    const double level = step.level_eur_per_mwh();
+    count += 1;
+    sum += level;
+    squares += level * level;
+  });
   const double mean = sum / count;
   const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
   const int width =
@@ -61,13 +59,11 @@ ContextClasses fit_outlook_classes(const MarketSteps& market, const PlanCache& p
       static_cast<double>(plan_cache.model().soc_max_e4) / kSocFullE4 - low_frac;
   std::vector<std::int32_t> prices_centi;
   std::size_t drawn = 0;
-  for (const MarketDay& day : training) {
-    for (const MarketStep& step : market.of(day)) {
-      constexpr std::size_t kStride = 37;  // coprime: every SoC with every hour
-      const auto soc = static_cast<double>(drawn++ * kStride % kSocCount) / (kSocCount - 1);
-      prices_centi.push_back(plan_cache.break_even_centi(step, low_frac + soc * width_frac));
-    }
-  }
+  for_each_step(market, training, [&](const MarketStep& step) {
+    constexpr std::size_t kStride = 37;  // coprime: every SoC with every hour
+    const auto soc = static_cast<double>(drawn++ * kStride % kSocCount) / (kSocCount - 1);
+    prices_centi.push_back(plan_cache.break_even_centi(step, low_frac + soc * width_frac));
+  });
   std::ranges::sort(prices_centi);
   ContextClasses classes{.kind = ContextKind::kOutlook};
   for (int e = 0; e < kEdges; ++e) {

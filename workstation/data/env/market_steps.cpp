@@ -80,9 +80,7 @@ std::string MarketDay::date() const { return fmt::format("{:04}-{:02}-{:02}", ye
 std::vector<double> MarketSteps::prices_of(const std::vector<MarketDay>& of_days,
                                            double MarketStep::*price) const {
   std::vector<double> prices;
-  for (const MarketDay& day : of_days) {
-    for (const MarketStep& step : of(day)) prices.push_back(step.*price);
-  }
+  for_each_step(*this, of_days, [&](const MarketStep& step) { prices.push_back(step.*price); });
   return prices;
 }
 

@@ -109,6 +109,14 @@ struct MarketSteps {
   [[nodiscard]] UtcSpan span_of(const std::vector<MarketDay>& days) const;
 };
 
+/// Calls visit(step) for every step of these days.
+template <typename Visit>
+void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : market.of(day)) visit(step);
+  }
+}
+
 /// Minimum number of tradable steps of a day (a 23-hour day has exactly 690).
 inline constexpr std::size_t kCompleteDaySteps = 690;
 

@@ -16,20 +16,10 @@
 namespace bess {
 namespace {
 
-constexpr int kQuarterHours = 96;
-constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
-constexpr int kUsualDays = 4;              ///< backward induction after the end of a plan
-constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
+constexpr int kUsualDays = 4;  ///< backward induction after the end of a plan
 constexpr std::size_t kRow = std::size_t{DeviationChain::kBins} * OutlookProgram::kSocPoints;
 constexpr int kTerms = 4;                             ///< terms of usual(): constant, D, h, L
 constexpr std::size_t kKeptMax = 180 * kStepsPerDay;  ///< cached steps, 2 kB each
-
-template <typename Visit>
-void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) visit(step);
-  }
-}
 
 int quarter_hour_of(std::int64_t utc_s) { return local_minute_of(utc_s).quarter_hour; }
 
@@ -41,37 +31,6 @@ std::int64_t quarter_hour_start(std::int64_t utc_s) {
 std::int64_t row_utc_s(const MarketStep& step) {
   return step.utc_s - 60 * std::int64_t{step.observed_age_min};
 }
-
-/// Sums by quarter-hour, for a smoothed mean.
-struct MeanByQuarterHour {
-  std::array<double, kQuarterHours> sum{}, count{};
-
-  void add(int quarter_hour, double value) {
-    sum[static_cast<std::size_t>(quarter_hour)] += value;
-    count[static_cast<std::size_t>(quarter_hour)] += 1;
-  }
-  [[nodiscard]] double weight() const {
-    double all = 0;
-    for (const double n : count) all += n;
-    return all;
-  }
-  [[nodiscard]] std::array<double, kQuarterHours> smoothed(double sigma) const {
-    std::array<double, kQuarterHours> mean{};
-    double all_sum = 0;
-    for (const double s : sum) all_sum += s;
-    for (int q = 0; q < kQuarterHours; ++q) {
-      double weighted = 0, weight = 0;
-      for (int d = -kSmoothedQuarterHours; d <= kSmoothedQuarterHours; ++d) {
-        const double k = smoothing_kernel(d, sigma);
-        const auto near = static_cast<std::size_t>((q + d + kQuarterHours) % kQuarterHours);
-        weighted += k * sum[near];
-        weight += k * count[near];
-      }
-      mean[static_cast<std::size_t>(q)] = weight > 0 ? weighted / weight : all_sum / this->weight();
-    }
-    return mean;
-  }
-};
 
 /// Starts of the two minutes of a step, which may lie in different quarter-hours.
 std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
@@ -236,12 +195,7 @@ void OutlookProgram::fit_levels(const MarketSteps& market, const std::vector<Mar
     squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
     count += 1;
   });
-  const double mean = sum / count;
-  const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  const int last = std::max(2, options_.levels) - 1;
-  for (int i = 0; i <= last; ++i) {
-    levels_.push_back(mean + (2.0 * i / last - 1) * kLevelReach * std::max(1.0, deviation));
-  }
+  levels_ = levels_around(sum / count, squares / count, std::max(2, options_.levels));
 }
 
 void OutlookProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
@@ -355,20 +309,12 @@ const std::vector<float>& OutlookProgram::continuation_of(int level, Plan& plan)
   return continuation;
 }
 
-DeviationChain::BinPosition OutlookProgram::between_levels(double level) const {
-  const double step = levels_[1] - levels_[0];
-  const auto count = static_cast<int>(levels_.size());
-  const double x = std::clamp((level - levels_[0]) / step, 0.0, count - 1.0);
-  const int lower = std::min(static_cast<int>(x), count - 2);
-  return {lower, x - lower};
-}
-
 OutlookProgram::GridPosition OutlookProgram::grid_position_of(const MarketStep& step,
                                                               Plan& plan) const {
   const double level = step.level_eur_per_mwh();
   const auto bins =
       chain_.between(step.observed_eur_per_mwh - usual_at(plan, row_utc_s(step), level));
-  const auto anchors = between_levels(level);
+  const auto anchors = between_levels(levels_, level);
   const auto row =
       static_cast<std::size_t>((step.utc_s - plan.from_utc_s) / kSecondsPerStep) * kRow +
       static_cast<std::size_t>(bins.lower) * kSocPoints;

@@ -124,7 +124,6 @@ class OutlookProgram {
   void solve_usual_days();
   [[nodiscard]] double height_before(const MarketStep& step) const;
   const std::vector<float>& continuation_of(int level, Plan& plan) const;
-  [[nodiscard]] DeviationChain::BinPosition between_levels(double level) const;
 
   BatteryParameters battery_;
   OutlookOptions options_;

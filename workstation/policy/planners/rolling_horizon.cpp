@@ -33,7 +33,7 @@ int steps_of(int quarter_hour) { return quarter_hour % 2 == 0 ? 8 : 7; }
 
 /// Remaining steps of this quarter-hour, this one included.
 int steps_left(const MarketStep& step) {
-  return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.minute_of_quarter_hour) / 2;
+  return (kMinutesPerQuarterHour + 1 - step.minute_of_quarter_hour) / 2;
 }
 
 std::size_t row_of(int quarter_hour, int deviation) {
@@ -61,16 +61,15 @@ RollingHorizonPolicy::RollingHorizonPolicy(const MarketSteps& market,
 
 void RollingHorizonPolicy::fit_usual_prices(const MarketSteps& market,
                                             const std::vector<MarketDay>& days) {
-  std::array<double, kQuarterHours> sum{};
-  std::array<double, kQuarterHours> count{};
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) {
-      if (step.minute_of_quarter_hour == kStraddlingMinute) continue;
-      sum[step.quarter_hour] += step.paid_eur_per_mwh;
-      count[step.quarter_hour] += 1;
-    }
-  }
-  for (int q = 0; q < kQuarterHours; ++q) usual_eur_per_mwh_[q] = ratio_or_zero(sum[q], count[q]);
+  std::array<double, kQuarterHourCount> sum{};
+  std::array<double, kQuarterHourCount> count{};
+  for_each_step(market, days, [&](const MarketStep& step) {
+    if (step.minute_of_quarter_hour == kStraddlingMinute) return;
+    sum[step.quarter_hour] += step.paid_eur_per_mwh;
+    count[step.quarter_hour] += 1;
+  });
+  for (int q = 0; q < kQuarterHourCount; ++q)
+    usual_eur_per_mwh_[q] = ratio_or_zero(sum[q], count[q]);
 }
 
 void RollingHorizonPolicy::fit_persistence(const MarketSteps& market,
@@ -94,21 +93,18 @@ void RollingHorizonPolicy::fit_persistence(const MarketSteps& market,
 
 void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
                                          const std::vector<MarketDay>& days) {
-  std::array<double, kQuarterHourMinutes> product{};
-  std::array<double, kQuarterHourMinutes> square{};
-  ordinary_age_quarter_hours_.fill(kQuarterHours);
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) {
-      const Observation seen = observe(step);
-      const double is = step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour];
-      product[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * is;
-      square[step.minute_of_quarter_hour] +=
-          seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
-      ordinary_age_quarter_hours_[step.minute_of_quarter_hour] = std::min(
-          ordinary_age_quarter_hours_[step.minute_of_quarter_hour], seen.quarter_hours_ago);
-    }
-  }
-  for (int t = 0; t < kQuarterHourMinutes; ++t) {
+  std::array<double, kMinutesPerQuarterHour> product{};
+  std::array<double, kMinutesPerQuarterHour> square{};
+  ordinary_age_quarter_hours_.fill(kQuarterHourCount);
+  for_each_step(market, days, [&](const MarketStep& step) {
+    const Observation seen = observe(step);
+    const double is = step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour];
+    product[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * is;
+    square[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
+    ordinary_age_quarter_hours_[step.minute_of_quarter_hour] =
+        std::min(ordinary_age_quarter_hours_[step.minute_of_quarter_hour], seen.quarter_hours_ago);
+  });
+  for (int t = 0; t < kMinutesPerQuarterHour; ++t) {
     shrinkage_[t] = std::clamp(ratio_or_zero(product[t], square[t]), 0.0, 1.0);
   }
 }
@@ -137,17 +133,17 @@ void RollingHorizonPolicy::value_from(const std::vector<float>& table, int quart
 }
 
 void RollingHorizonPolicy::tabulate_values() {
-  value_.assign(row_of(kQuarterHours, 0), 0.0F);
+  value_.assign(row_of(kQuarterHourCount, 0), 0.0F);
   std::vector<float> shorter;
   std::array<float, kSocPoints> next{};
   std::array<float, kSocPoints> now{};
   for (int horizon = 1; horizon <= kHorizonQuarterHours; ++horizon) {
     shorter = value_;
-    for (int q = 0; q < kQuarterHours; ++q) {
+    for (int q = 0; q < kQuarterHourCount; ++q) {
       for (int d = 0; d < kDeviations; ++d) {
         const double deviation = deviation_at(d);
         const auto price = static_cast<float>(usual_eur_per_mwh_[q] + deviation);
-        value_from(shorter, (q + 1) % kQuarterHours, persistence_ * deviation, next.data());
+        value_from(shorter, (q + 1) % kQuarterHourCount, persistence_ * deviation, next.data());
         for (int s = 0; s < steps_of(q); ++s) {
           sweep_.run(next.data(), q, price, now.data());
           std::swap(next, now);
@@ -163,7 +159,7 @@ RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& s
   const auto price = static_cast<float>(usual_eur_per_mwh_[step.quarter_hour] + deviation);
   Values next;
   Values now;
-  value_from(value_, (step.quarter_hour + 1) % kQuarterHours, persistence_ * deviation,
+  value_from(value_, (step.quarter_hour + 1) % kQuarterHourCount, persistence_ * deviation,
              next.data());
   for (int s = 0; s < steps; ++s) {
     sweep_.run(next.data(), step.quarter_hour, price, now.data());

@@ -33,9 +33,6 @@ class RollingHorizonPolicy final : public Policy {
   static constexpr int kSocPoints = 121;
   using Values = std::array<float, kSocPoints>;
 
-  static constexpr int kQuarterHours = 96;
-  static constexpr int kQuarterHourMinutes = 15;
-
  private:
   /// Deviation of the newest price and its age in quarter-hours.
   struct Observation {
@@ -57,9 +54,9 @@ class RollingHorizonPolicy final : public Policy {
   BatteryParameters battery_;
   SocGrid grid_;
   BellmanSweep sweep_;
-  std::array<double, kQuarterHours> usual_eur_per_mwh_{};
-  std::array<double, kQuarterHourMinutes> shrinkage_{};  ///< s
-  std::array<int, kQuarterHourMinutes>
+  std::array<double, kQuarterHourCount> usual_eur_per_mwh_{};
+  std::array<double, kMinutesPerQuarterHour> shrinkage_{};  ///< s
+  std::array<int, kMinutesPerQuarterHour>
       ordinary_age_quarter_hours_{};  ///< in quarter-hours, of the training days
   double persistence_ = 0;            ///< rho
   std::vector<float> value_;          ///< [quarter-hour][deviation][SoC point] EUR

@@ -7,6 +7,51 @@
 
 namespace bess {
 
+double MeanByQuarterHour::weight() const {
+  double all = 0;
+  for (const double n : count) all += n;
+  return all;
+}
+
+std::array<double, kQuarterHourCount> MeanByQuarterHour::smoothed(double sigma) const {
+  constexpr int kReach = 24;  ///< quarter-hours, on both sides
+  std::array<double, kQuarterHourCount> mean{};
+  double all_sum = 0;
+  for (const double s : sum) all_sum += s;
+  for (int q = 0; q < kQuarterHourCount; ++q) {
+    double weighted = 0, weight = 0;
+    for (int d = -kReach; d <= kReach; ++d) {
+      const double k = smoothing_kernel(d, sigma);
+      const auto near = static_cast<std::size_t>((q + d + kQuarterHourCount) % kQuarterHourCount);
+      weighted += k * sum[near];
+      weight += k * count[near];
+    }
+    mean[static_cast<std::size_t>(q)] = weight > 0 ? weighted / weight : all_sum / this->weight();
+  }
+  return mean;
+}
+
+std::vector<double> levels_around(double mean, double mean_square, int count) {
+  constexpr double kReach = 3;  ///< standard deviations
+  const double deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
+  const int last = count - 1;
+  std::vector<double> levels;
+  for (int i = 0; i <= last; ++i) {
+    const double place = last == 0 ? 0.0 : 2.0 * i / last - 1;
+    levels.push_back(mean + place * kReach * std::max(1.0, deviation));
+  }
+  return levels;
+}
+
+DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level) {
+  const auto count = static_cast<int>(levels.size());
+  if (count == 1) return {0, 0};
+  const double step = levels[1] - levels[0];
+  const double x = std::clamp((level - levels[0]) / step, 0.0, count - 1.0);
+  const int lower = std::min(static_cast<int>(x), count - 2);
+  return {lower, x - lower};
+}
+
 namespace {
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -89,9 +134,7 @@ void StorageRecursion::step_back(const DeviationChain& chain, int phase, int qua
 
 namespace {
 
-constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
-constexpr int kDays = 4;                   ///< of backward induction: greedy actions have converged
-constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
+constexpr int kDays = 4;  ///< of backward induction: greedy actions have converged
 
 int step_of_day(const MarketStep& step) {
   return (step.quarter_hour * kMinutesPerQuarterHour + step.minute_of_quarter_hour) /
@@ -105,13 +148,6 @@ int quarter_hour_of(int step) { return step * kMinutesPerStep / kMinutesPerQuart
 std::array<int, 2> paid_quarter_hours(int step) {
   const int minute = step * kMinutesPerStep;
   return {minute / kMinutesPerQuarterHour, (minute + 1) / kMinutesPerQuarterHour};
-}
-
-template <typename Visit>
-void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) visit(step);
-  }
 }
 
 }  // namespace
@@ -167,49 +203,23 @@ double StochasticProgram::usual_paid(int step, double level) const {
   return 0.5 * (usual(first, level) + usual(second, level));
 }
 
-StochasticProgram::BinPosition StochasticProgram::between_levels(double level) const {
-  const auto count = static_cast<int>(levels_.size());
-  if (count == 1) return {0, 0};
-  const double step = levels_[1] - levels_[0];
-  const double x = std::clamp((level - levels_[0]) / step, 0.0, count - 1.0);
-  const int lower = std::min(static_cast<int>(x), count - 2);
-  return {lower, x - lower};
-}
-
 void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  std::array<double, kQuarterHours> sum{}, count{};
+  MeanByQuarterHour paid;
   std::array<std::array<int, 2>, kMinutesPerQuarterHour> age_count{};
-  double level_sum = 0, level_squares = 0, all = 0, paid_sum = 0;
+  double level_sum = 0, level_squares = 0, all = 0;
   for_each_step(market, days, [&](const MarketStep& step) {
     ++age_count[step.minute_of_quarter_hour][step.quarter_hours_ago() > 0 ? 1 : 0];
-    sum[step.quarter_hour] += step.paid_eur_per_mwh;
-    count[step.quarter_hour] += 1;
+    paid.add(step.quarter_hour, step.paid_eur_per_mwh);
     level_sum += step.level_eur_per_mwh();
     level_squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
-    paid_sum += step.paid_eur_per_mwh;
     all += 1;
   });
   level_mean_ = level_sum / all;
   for (int minute = 0; minute < kMinutesPerQuarterHour; ++minute) {
     row_age_[minute] = age_count[minute][1] > age_count[minute][0] ? 1 : 0;
   }
-  for (int q = 0; q < kQuarterHours; ++q) {
-    double weighted = 0, weight = 0;
-    for (int d = -kSmoothedQuarterHours; d <= kSmoothedQuarterHours; ++d) {
-      const double k = smoothing_kernel(d, options_.hour_smoothing);
-      const int near = (q + d + kQuarterHours) % kQuarterHours;
-      weighted += k * sum[near];
-      weight += k * count[near];
-    }
-    usual_[q] = weight > 0 ? weighted / weight : paid_sum / all;
-  }
-  const double deviation =
-      std::sqrt(std::max(0.0, level_squares / all - level_mean_ * level_mean_));
-  const int last = std::max(1, options_.levels) - 1;
-  for (int i = 0; i <= last; ++i) {
-    const double place = last == 0 ? 0.0 : 2.0 * i / last - 1;
-    levels_.push_back(level_mean_ + place * kLevelReach * std::max(1.0, deviation));
-  }
+  usual_ = paid.smoothed(options_.hour_smoothing);
+  levels_ = levels_around(level_mean_, level_squares / all, std::max(1, options_.levels));
 }
 
 void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
@@ -243,7 +253,7 @@ void StochasticProgram::solve() {
 StochasticProgram::Outlook StochasticProgram::outlook(const MarketState& at) const {
   const double level = at.level_eur_per_mwh;
   const BinPosition bins = chain_.between(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
-  const BinPosition anchors = between_levels(level);
+  const BinPosition anchors = between_levels(levels_, level);
   const int phase = at.step_of_day % kPhases;
   Outlook outlook{};
   outlook.price_eur_per_mwh = chain_.paid(phase, bins) + usual_paid(at.step_of_day, level);

@@ -31,6 +31,27 @@ inline double smoothing_kernel(int distance, double sigma) {
   return std::exp(-0.5 * distance * distance / (sigma * sigma));
 }
 
+/// Sums by local quarter-hour, for a smoothed mean.
+struct MeanByQuarterHour {
+  std::array<double, kQuarterHourCount> sum{}, count{};
+
+  void add(int quarter_hour, double value) {
+    sum[static_cast<std::size_t>(quarter_hour)] += value;
+    count[static_cast<std::size_t>(quarter_hour)] += 1;
+  }
+  [[nodiscard]] double weight() const;
+  /// Where no quarter-hour within reach has a value: the mean of all.
+  [[nodiscard]] std::array<double, kQuarterHourCount> smoothed(double sigma) const;
+};
+
+// Price levels with values, and the present level between them.
+
+/// `count` levels, evenly spaced within three standard deviations of the mean; a single one is the
+/// mean.
+std::vector<double> levels_around(double mean, double mean_square, int count);
+
+DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
+
 // Backward step of the stochastic programs: present value of stored energy, by bin of the deviation
 // and point of the SoC grid, from the value one step later.
 //   ahead[b][i] = gamma * sum over b' of P(b' | b, phase) * value[b'][i]
@@ -84,7 +105,6 @@ class StochasticProgram {
   static constexpr int kPhases = DeviationChain::kPhases;
   static constexpr int kBins = DeviationChain::kBins;
   static constexpr int kSocPoints = 121;
-  static constexpr int kQuarterHours = 96;
 
   /// Inputs of a decision without the SoC.
   struct MarketState {
@@ -107,8 +127,8 @@ class StochasticProgram {
   /// minutes it is the previous quarter-hour.
   [[nodiscard]] int row_quarter_hour(int quarter_hour, int minute_of_quarter_hour) const {
     return (quarter_hour - row_age_[static_cast<std::size_t>(minute_of_quarter_hour)] +
-            kQuarterHours) %
-           kQuarterHours;
+            kQuarterHourCount) %
+           kQuarterHourCount;
   }
   /// Value of each action, EUR over an infinite horizon, up to a constant: [discharge, idle,
   /// charge].
@@ -128,7 +148,6 @@ class StochasticProgram {
   using BinPosition = DeviationChain::BinPosition;
   [[nodiscard]] double usual(int quarter_hour, double level) const;
   [[nodiscard]] double usual_paid(int step_of_day, double level) const;
-  [[nodiscard]] BinPosition between_levels(double level) const;
   void fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve();
@@ -148,7 +167,7 @@ class StochasticProgram {
   BatteryParameters battery_;
   StochasticProgramOptions options_;
   SocGrid grid_;
-  std::array<double, kQuarterHours> usual_{};  ///< EUR/MWh at the mean level
+  std::array<double, kQuarterHourCount> usual_{};  ///< EUR/MWh at the mean level
   std::array<int, kMinutesPerQuarterHour>
       row_age_{};  ///< quarter-hours ago, by minute of the quarter-hour
   double level_mean_ = 0;
