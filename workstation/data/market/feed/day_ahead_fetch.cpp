@@ -15,37 +15,6 @@ namespace {
 
 constexpr int kDaysOfARequest = 366;
 
-/// One answer, with retries; nothing if interrupted.
-std::optional<std::string> get_day_ahead(const DayAheadRequest& request, const std::string& url,
-                                         const std::atomic<bool>& interrupted) {
-  using Kind = HttpOutcome::Kind;
-  int slow = 0;
-  for (int attempt = 1; !interrupted; ++attempt) {
-    HttpOutcome outcome = http_get(url, interrupted, request.retry.limits);
-    if (outcome.kind == Kind::kDone) return std::move(outcome.body);
-    if (outcome.kind == Kind::kInterrupted) break;
-    slow += outcome.kind == Kind::kSlow ? 1 : 0;
-    const int attempts_max = outcome.kind == Kind::kUnreachable
-                                 ? request.retry.attempts_unreachable_max
-                                 : request.retry.attempts_max;
-    if (outcome.kind == Kind::kRefused || attempt >= attempts_max ||
-        slow >= request.retry.attempts_slow_max) {
-      fail("{} ({}): day-ahead prices from {}; check --base-url and the network and try again",
-           outcome.reason, counted(static_cast<std::size_t>(attempt), "attempt"),
-           host_of(request.base_url));
-    }
-    const double backoff_s = request.retry.first_wait_s * static_cast<double>(1 << (attempt - 1));
-    const double wait_s = std::max(outcome.wait_s.value_or(0.0), backoff_s);
-    if (wait_s > request.retry.wait_max_s) {
-      fail("{}; the server asks to wait {}: day-ahead prices from {}; then try again",
-           outcome.reason, describe_wait(wait_s), host_of(request.base_url));
-    }
-    fmt::print(stderr, "day-ahead: {}; next attempt in {:.0f} s\n", outcome.reason, wait_s);
-    request.sleep(wait_s, interrupted);
-  }
-  return std::nullopt;
-}
-
 /// Last day whose prices must be published: tomorrow from one hour after the usual time.
 LocalDate last_published_day(std::int64_t now_utc_s) {
   constexpr int kLate_min = 60;
@@ -86,9 +55,16 @@ std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
     const std::string url =
         fmt::format("{}/price?bzn={}&start={}&end={}", request.base_url, url_encoded(request.zone),
                     format_local_date(from), format_local_date(to));
-    const std::optional<std::string> answer = get_day_ahead(request, url, interrupted);
-    if (!answer) return std::nullopt;
-    for (const DayAheadRow& row : parse_energy_charts(*answer, host_of(request.base_url))) {
+    std::string answer;
+    const auto read = [&answer](HttpOutcome outcome) {
+      answer = std::move(outcome.body);
+      return outcome;
+    };
+    const RetriedRequest retried{url, "day-ahead",
+                                 "day-ahead prices from " + host_of(request.base_url), "try again",
+                                 "then try again"};
+    if (!get_with_retries(retried, request.retry, request.sleep, interrupted, read)) return {};
+    for (const DayAheadRow& row : parse_energy_charts(answer, host_of(request.base_url))) {
       const LocalDate date = local_date_of(row.utc_s);
       if (date >= from && date <= to) rows.push_back(row);
     }

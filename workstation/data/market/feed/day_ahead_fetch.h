@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,7 +21,7 @@ struct DayAheadRequest {
   std::int64_t now_utc_s;
   RetryPolicy retry;
   bool allow_gaps = false;
-  std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
+  Sleep sleep;
 };
 
 /// Nothing if interrupted. Throws UserError if the server does not answer, the answer is invalid,

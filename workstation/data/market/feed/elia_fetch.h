@@ -68,6 +68,9 @@ struct RetryPolicy {
   double wait_max_s = 900;          ///< longer requested waits end the run, which is resumable
 };
 
+/// Wait between attempts; returns early if interrupted.
+using Sleep = std::function<void(double seconds, const std::atomic<bool>& interrupted)>;
+
 struct FetchRequest {
   FetchSpan span;
   std::filesystem::path out;
@@ -76,8 +79,7 @@ struct FetchRequest {
   RetryPolicy retry;
   bool allow_gaps = false;      ///< false: missing rows are an error without output
   AcceptedFindings accepted{};  ///< findings about the prices
-  /// Wait between attempts; returns early if interrupted.
-  std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
+  Sleep sleep;
 };
 
 /// Folder of the complete windows.

@@ -119,67 +119,47 @@ struct Attempts {
 };
 
 /// Seconds until the next attempt; throws if there is none.
-double next_wait_s(const FetchRequest& request, const FetchWindow& window, const Attempts& attempts,
-                   const HttpOutcome& outcome) {
-  const RetryPolicy& retry = request.retry;
+double next_wait_s(const RetriedRequest& request, const RetryPolicy& retry,
+                   const Attempts& attempts, const HttpOutcome& outcome) {
   const bool unreachable = outcome.kind == Kind::kUnreachable;
   const int attempts_max = unreachable ? retry.attempts_unreachable_max : retry.attempts_max;
   if (outcome.kind == Kind::kRefused || attempts.all >= attempts_max ||
       attempts.unreadable >= retry.attempts_unreadable_max ||
       attempts.slow >= retry.attempts_slow_max) {
-    fail(
-        "{} ({}): {}; check --base-url and the network and run the same command again, finished "
-        "windows are kept",
-        outcome.reason, counted(static_cast<std::size_t>(attempts.all), "attempt"),
-        describe_window(request, window));
+    fail("{} ({}): {}; check --base-url and the network and {}", outcome.reason,
+         counted(static_cast<std::size_t>(attempts.all), "attempt"), request.subject,
+         request.again);
   }
   const double backoff_s = retry.first_wait_s * static_cast<double>(1 << (attempts.all - 1));
   const double wait_s = std::max(outcome.wait_s.value_or(0.0), backoff_s);
   if (wait_s > retry.wait_max_s) {
-    fail(
-        "{}; the server asks to wait {}: {}; run the same command again then, finished windows are "
-        "kept",
-        outcome.reason, describe_wait(wait_s), describe_window(request, window));
+    fail("{}; the server asks to wait {}: {}; {}", outcome.reason, describe_wait(wait_s),
+         request.subject, request.again_then);
   }
   return wait_s;
-}
-
-/// An unreadable answer is requested again, since a proxy may have changed it; a readable answer of
-/// another dataset is final.
-HttpOutcome get_rows(const FetchRequest& request, const FetchWindow& window,
-                     const std::atomic<bool>& interrupted, WindowDownload& download,
-                     Attempts& attempts) {
-  ++attempts.all;
-  HttpOutcome outcome =
-      http_get(rows_url(request.base_url, window), interrupted, request.retry.limits);
-  attempts.slow += outcome.kind == Kind::kSlow ? 1 : 0;
-  if (outcome.kind != Kind::kDone) return outcome;
-  try {
-    download.rows = rows_in_window(outcome.body, window.dataset, window, request.now_utc_s);
-    download.text = std::move(outcome.body);
-    return outcome;
-  } catch (const NotMarketData& error) {
-    return {Kind::kRefused, {}, error.what(), {}};
-  } catch (const UserError& error) {
-    ++attempts.unreadable;
-    return {Kind::kTransient, {}, fmt::format("cannot read the answer: {}", error.what()), {}};
-  }
 }
 
 /// Nothing if interrupted.
 std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchWindow& window,
                                        const std::atomic<bool>& interrupted) {
   WindowDownload download;
-  for (Attempts attempts; !interrupted;) {
-    const HttpOutcome outcome = get_rows(request, window, interrupted, download, attempts);
-    if (outcome.kind == Kind::kDone) return download;
-    if (outcome.kind == Kind::kInterrupted) break;
-    const double wait_s = next_wait_s(request, window, attempts, outcome);
-    fmt::print(stderr, "{}: {}; next attempt in {:.0f} s\n", window.dataset, outcome.reason,
-               wait_s);
-    request.sleep(wait_s, interrupted);
-  }
-  return std::nullopt;
+  const auto read = [&](HttpOutcome outcome) -> HttpOutcome {
+    try {
+      download.rows = rows_in_window(outcome.body, window.dataset, window, request.now_utc_s);
+      download.text = std::move(outcome.body);
+      return outcome;
+    } catch (const NotMarketData& error) {  // of another dataset
+      return {Kind::kRefused, {}, error.what(), {}};
+    } catch (const UserError& error) {
+      return {Kind::kTransient, {}, fmt::format("cannot read the answer: {}", error.what()), {}};
+    }
+  };
+  const RetriedRequest retried{rows_url(request.base_url, window), window.dataset,
+                               describe_window(request, window),
+                               "run the same command again, finished windows are kept",
+                               "run the same command again then, finished windows are kept"};
+  if (!get_with_retries(retried, request.retry, request.sleep, interrupted, read)) return {};
+  return download;
 }
 
 /// Number of rows by the server; nothing if not stated or larger than the calendar allows (then it
@@ -359,6 +339,26 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
   if (download->rows.total && !pager.lacks_rows_of_total()) return download;
   if (!pager.complete()) return std::nullopt;
   return download;
+}
+
+bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, const Sleep& sleep,
+                      const std::atomic<bool>& interrupted,
+                      const std::function<HttpOutcome(HttpOutcome)>& read) {
+  for (Attempts attempts; !interrupted;) {
+    ++attempts.all;
+    HttpOutcome outcome = http_get(request.url, interrupted, retry.limits);
+    attempts.slow += outcome.kind == Kind::kSlow ? 1 : 0;
+    if (outcome.kind == Kind::kDone) {
+      outcome = read(std::move(outcome));
+      attempts.unreadable += outcome.kind == Kind::kTransient ? 1 : 0;
+    }
+    if (outcome.kind == Kind::kDone) return true;
+    if (outcome.kind == Kind::kInterrupted) break;
+    const double wait_s = next_wait_s(request, retry, attempts, outcome);
+    fmt::print(stderr, "{}: {}; next attempt in {:.0f} s\n", request.label, outcome.reason, wait_s);
+    sleep(wait_s, interrupted);
+  }
+  return false;
 }
 
 std::string host_of(const std::string& url) {

@@ -56,6 +56,22 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
                                               const FetchWindow& window,
                                               const std::atomic<bool>& interrupted);
 
+/// A request and the texts of its retries.
+struct RetriedRequest {
+  std::string url;
+  std::string label;       ///< of the lines on standard error
+  std::string subject;     ///< of an error: what is requested from which server
+  std::string again;       ///< remedy
+  std::string again_then;  ///< remedy after a wait
+};
+
+/// Requests until `read` takes an answer; false if interrupted. `read` returns its argument, or
+/// kRefused for an answer that is final, or kTransient for an unreadable one, which is requested
+/// again, since a proxy may have changed it. Throws UserError after the last attempt.
+bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, const Sleep& sleep,
+                      const std::atomic<bool>& interrupted,
+                      const std::function<HttpOutcome(HttpOutcome)>& read);
+
 /// "opendata.elia.be" of a URL.
 std::string host_of(const std::string& url);
 
