@@ -14,21 +14,10 @@ namespace {
 
 void add_day_ahead_period(const EntsoeElement& element, bool repeats,
                           std::vector<DayAheadRow>& rows) {
-  const EntsoeElement interval = element.required("timeInterval");
-  const std::int64_t start_utc_s = entsoe_time_of(interval.required("start"));
-  const std::int64_t span_s = entsoe_time_of(interval.required("end")) - start_utc_s;
-  const std::int64_t step_s = entsoe_resolution_s_of(element.required("resolution"));
-  if (span_s <= 0 || span_s > kEntsoePeriodSecondsMax) {
-    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
-         span_s);
-  }
-  std::vector<double> prices(static_cast<std::size_t>(span_s / step_s), kNotPublished);
+  const EntsoePeriod period = entsoe_period_of(element);
+  std::vector<double> prices(static_cast<std::size_t>(period.positions), kNotPublished);
   for (const EntsoeElement& point : element.children("Point")) {
-    const auto position = entsoe_number_of<std::int64_t>(point.required("position"));
-    if (position < 1 || position > static_cast<std::int64_t>(prices.size())) {
-      fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
-           point.place(), position, prices.size());
-    }
+    const std::int64_t position = entsoe_position_of(point, period);
     double& price = prices[static_cast<std::size_t>(position - 1)];
     if (is_published(price)) {
       fail("{}: position {} comes twice; download it again", point.place(), position);
@@ -38,14 +27,9 @@ void add_day_ahead_period(const EntsoeElement& element, bool repeats,
   for (std::size_t p = 0; p < prices.size(); ++p) {
     if (repeats && p > 0 && !is_published(prices[p])) prices[p] = prices[p - 1];
     if (!is_published(prices[p])) continue;
-    rows.push_back({start_utc_s + static_cast<std::int64_t>(p) * step_s, prices[p],
-                    static_cast<int>(step_s / 60)});
+    rows.push_back({period.start_utc_s + static_cast<std::int64_t>(p) * period.step_s, prices[p],
+                    static_cast<int>(period.step_s / 60)});
   }
-}
-
-/// Zone of a series.
-std::string zone_of(const EntsoeElement& series) {
-  return std::string(series.child("out_Domain.mRID").text());
 }
 
 std::int64_t sequence_of(const EntsoeElement& series) {
@@ -70,14 +54,8 @@ DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name
   std::vector<SequencedRows> found;
   for (const pugi::xml_node& root : document) {
     for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
-      require_entsoe_unit(series.child("currency_Unit.name"), "EUR");
-      require_entsoe_unit(series.child("price_Measure_Unit.name"), "MWH");
-      const std::string zone = zone_of(series);
-      if (!file.zone.empty() && !zone.empty() && zone != file.zone) {
-        fail("{}: prices of the zone {} after those of {}; import one zone at a time",
-             series.place(), one_line(zone, 20), one_line(file.zone, 20));
-      }
-      if (!zone.empty()) file.zone = zone;
+      require_entsoe_units(series);
+      set_entsoe_zone(series, series.child("out_Domain.mRID").text(), file.zone);
       SequencedRows of_series{.sequence = sequence_of(series)};
       const bool repeats = series.child("curveType").text() == "A03";
       for (const EntsoeElement& period : series.children("Period")) {

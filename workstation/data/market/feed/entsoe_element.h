@@ -9,6 +9,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "shared/host/plain_text.h"
@@ -19,9 +20,6 @@
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {
-
-inline constexpr std::int64_t kEntsoePeriodSecondsMax =
-    366LL * kSecondsPerDay;  ///< the platform returns at most one year
 
 struct EntsoeSource {
   std::string_view text;
@@ -99,6 +97,38 @@ inline std::int64_t entsoe_resolution_s_of(const EntsoeElement& element) {
        one_line(text, 20));
 }
 
+/// Time interval of a Period and its points' steps.
+struct EntsoePeriod {
+  std::int64_t start_utc_s = 0;
+  std::int64_t step_s = 0;
+  std::int64_t positions = 0;
+};
+
+inline EntsoePeriod entsoe_period_of(const EntsoeElement& element) {
+  const EntsoeElement interval = element.required("timeInterval");
+  EntsoePeriod period{.start_utc_s = entsoe_time_of(interval.required("start"))};
+  const std::int64_t span_s = entsoe_time_of(interval.required("end")) - period.start_utc_s;
+  period.step_s = entsoe_resolution_s_of(element.required("resolution"));
+  constexpr std::int64_t kSpanMax_s =
+      366LL * kSecondsPerDay;  // the platform returns at most a year
+  if (span_s <= 0 || span_s > kSpanMax_s) {
+    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
+         span_s);
+  }
+  period.positions = span_s / period.step_s;
+  return period;
+}
+
+/// Position of a Point in its period, from 1.
+inline std::int64_t entsoe_position_of(const EntsoeElement& point, const EntsoePeriod& period) {
+  const auto position = entsoe_number_of<std::int64_t>(point.required("position"));
+  if (position < 1 || position > period.positions) {
+    fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
+         point.place(), position, period.positions);
+  }
+  return position;
+}
+
 /// Reads a document whose roots are of `kind` (`what` in words). Throws UserError otherwise, also
 /// for ENTSO-E's answer without prices.
 inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSource& source,
@@ -126,11 +156,25 @@ inline void load_entsoe_document(pugi::xml_document& document, const EntsoeSourc
   }
 }
 
-/// All prices are in EUR/MWh.
-inline void require_entsoe_unit(const EntsoeElement& unit, std::string_view wanted) {
-  if (!unit.node || unit.text() == wanted) return;
-  fail("{}: prices in or per \"{}\" where {} is needed; use an area that publishes EUR per MWH",
-       unit.place(), one_line(unit.text(), 20), wanted);
+/// All prices of a TimeSeries must be in EUR/MWh.
+inline void require_entsoe_units(const EntsoeElement& series) {
+  for (const auto& [name, wanted] :
+       {std::pair{"currency_Unit.name", "EUR"}, std::pair{"price_Measure_Unit.name", "MWH"}}) {
+    const EntsoeElement unit = series.child(name);
+    if (!unit.node || unit.text() == wanted) continue;
+    fail("{}: prices in or per \"{}\" where {} is needed; use an area that publishes EUR per MWH",
+         unit.place(), one_line(unit.text(), 20), wanted);
+  }
+}
+
+/// Refuses a second zone; empty ones are unknown.
+inline void set_entsoe_zone(const EntsoeElement& element, std::string_view named,
+                            std::string& zone) {
+  if (!zone.empty() && !named.empty() && named != zone) {
+    fail("{}: prices of the zone {} after those of {}; import one zone at a time", element.place(),
+         one_line(named, 20), one_line(zone, 20));
+  }
+  if (!named.empty()) zone = named;
 }
 
 }  // namespace bess

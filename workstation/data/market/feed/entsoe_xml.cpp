@@ -23,18 +23,12 @@ struct Point {
 };
 
 struct Period {
-  std::int64_t start_utc_s = 0;
-  std::int64_t resolution_s = 0;
-  std::int64_t positions = 0;
+  EntsoePeriod time;
   std::vector<Point> points{};  ///< by position
 };
 
-Point point_of(const EntsoeElement& element, std::int64_t positions) {
-  Point point{.position = entsoe_number_of<std::int64_t>(element.required("position"))};
-  if (point.position < 1 || point.position > positions) {
-    fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
-         element.place(), point.position, positions);
-  }
+Point point_of(const EntsoeElement& element, const EntsoePeriod& period) {
+  Point point{.position = entsoe_position_of(element, period)};
   const EntsoeElement amount = element.child("imbalance_Price.amount");
   if (amount.node) point.eur_per_mwh = entsoe_number_of<double>(amount);
   const std::string_view category = element.child("imbalance_Price.category").text();
@@ -43,17 +37,9 @@ Point point_of(const EntsoeElement& element, std::int64_t positions) {
 }
 
 Period period_of(const EntsoeElement& element) {
-  const EntsoeElement interval = element.required("timeInterval");
-  Period period{.start_utc_s = entsoe_time_of(interval.required("start")),
-                .resolution_s = entsoe_resolution_s_of(element.required("resolution"))};
-  const std::int64_t span_s = entsoe_time_of(interval.required("end")) - period.start_utc_s;
-  if (span_s <= 0 || span_s > kEntsoePeriodSecondsMax) {
-    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
-         span_s);
-  }
-  period.positions = span_s / period.resolution_s;
+  Period period{entsoe_period_of(element)};
   for (const EntsoeElement& point : element.children("Point")) {
-    period.points.push_back(point_of(point, period.positions));
+    period.points.push_back(point_of(point, period.time));
   }
   // Some documents list all long prices, then all short ones.
   std::ranges::stable_sort(period.points, {}, &Point::position);
@@ -86,15 +72,15 @@ using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC se
 void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
   std::array<std::optional<Point>, kCategoryCount> current;
   auto next = period.points.begin();
-  for (std::int64_t position = 1; position <= period.positions; ++position) {
+  for (std::int64_t position = 1; position <= period.time.positions; ++position) {
     if (!repeats) current = {};
     for (; next != period.points.end() && next->position == position; ++next) {
       current[next->category] = *next;
     }
-    const std::int64_t end_utc_s = period.start_utc_s + position * period.resolution_s;
+    const std::int64_t end_utc_s = period.time.start_utc_s + position * period.time.step_s;
     for (const std::optional<Point>& point : current) {
       if (!point) continue;
-      for (std::int64_t utc_s = end_utc_s - period.resolution_s; utc_s < end_utc_s;
+      for (std::int64_t utc_s = end_utc_s - period.time.step_s; utc_s < end_utc_s;
            utc_s += kSecondsPerQuarterHour) {
         prices[utc_s].set(*point);
       }
@@ -103,8 +89,7 @@ void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
 }
 
 void add_series(const EntsoeElement& series, QuarterHourPrices& prices) {
-  require_entsoe_unit(series.child("currency_Unit.name"), "EUR");
-  require_entsoe_unit(series.child("price_Measure_Unit.name"), "MWH");
+  require_entsoe_units(series);
   const bool repeats = series.child("curveType").text() == "A03";
   for (const EntsoeElement& period : series.children("Period")) {
     add_period(period_of(period), repeats, prices);
@@ -117,12 +102,7 @@ QuarterHourPrices prices_of(const EntsoeSource& source, std::string& zone) {
   QuarterHourPrices prices;
   for (const pugi::xml_node& node : document) {
     const EntsoeElement root{node, source};
-    const std::string_view own = root.child("area_Domain.mRID").text();
-    if (!zone.empty() && !own.empty() && own != zone) {
-      fail("{}: prices of the zone {} after those of {}; import one zone at a time", root.place(),
-           one_line(own, 20), one_line(zone, 20));
-    }
-    if (!own.empty()) zone = own;
+    set_entsoe_zone(root, root.child("area_Domain.mRID").text(), zone);
     for (const EntsoeElement& series : root.children("TimeSeries")) add_series(series, prices);
   }
   if (prices.empty()) fail("{}: has no imbalance prices; choose other days", source.name);
