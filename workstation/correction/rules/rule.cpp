@@ -10,14 +10,6 @@ namespace {
 
 constexpr double kPercentPerSocIndex = 100.0 / (kSocCount - 1);
 
-std::string members_text(std::int32_t bits) {
-  std::vector<int> members;
-  for (int k = 0; k < 12; ++k) {
-    if ((bits >> k & 1) != 0) members.push_back(k + 1);
-  }
-  return fmt::format("{}", fmt::join(members, ", "));
-}
-
 std::string range_text(const std::string& what, double low, double high, bool has_low,
                        bool has_high, const std::string& unit) {
   if (has_low && has_high) return fmt::format("{} {:g} to {:g}{}", what, low, high, unit);
@@ -56,6 +48,14 @@ std::string box_text(const RuleBox& box) {
 
 std::string hour_text(int quarter_hour) {
   return fmt::format("{:02}:{:02}", quarter_hour / 4, quarter_hour % 4 * kMinutesPerQuarterHour);
+}
+
+std::string members_text(std::int32_t bits) {
+  std::vector<int> members;
+  for (int k = 0; k < 12; ++k) {
+    if ((bits >> k & 1) != 0) members.push_back(k + 1);
+  }
+  return fmt::format("{}", fmt::join(members, ", "));
 }
 
 std::string Rule::text() const { return demand->text(box_text(box)); }

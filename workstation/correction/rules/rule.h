@@ -91,4 +91,7 @@ bool holds_in_context(const RuleBox& box, ContextKind kind, int quarter_hour, in
 /// "17:00".
 std::string hour_text(int quarter_hour);
 
+/// "1, 2, 11": the members of a set of months or classes.
+std::string members_text(std::int32_t bits);
+
 }  // namespace bess

@@ -197,12 +197,7 @@ void check_thresholds(const RuleSet& set) {
 }
 
 std::string members_line(std::string_view key, std::int32_t bits) {
-  if (bits == kAllTwelve) return {};
-  std::vector<int> members;
-  for (int k = 0; k < 12; ++k) {
-    if ((bits >> k & 1) != 0) members.push_back(k + 1);
-  }
-  return fmt::format("{} = [{}]\n", key, fmt::join(members, ", "));
+  return bits == kAllTwelve ? "" : fmt::format("{} = [{}]\n", key, members_text(bits));
 }
 
 std::string box_lines(const RuleBox& box) {

@@ -14,15 +14,14 @@ RuleWatch::RuleWatch(std::shared_ptr<Policy> policy, const RuleSet& rules,
       random_(seed),
       counts_(rules.rules.size()) {}
 
-RuleWatch::RuleCheckResult RuleWatch::check_rule(const Rule& rule, Action action,
-                                                 const MarketStep& step, std::size_t index,
-                                                 double soc_frac) const {
+std::optional<bool> RuleWatch::is_broken(const Rule& rule, Action action, const MarketStep& step,
+                                         std::size_t index, double soc_frac) const {
   const Demand& demand = *rule.demand;
-  if (!demand.binds_student()) return {false, false};
+  if (!demand.binds_student()) return {};
   const std::optional<RuleInput> along = demand.pairs_along();
   if (!along) {
-    return {rule.box.contains(rule_point_of(step, soc_frac, classes_)),
-            demand.is_broken(action, action)};
+    if (!rule.box.contains(rule_point_of(step, soc_frac, classes_))) return {};
+    return demand.is_broken(action, action);
   }
   MarketStep next = step;
   double next_soc_frac = soc_frac;
@@ -31,30 +30,30 @@ RuleWatch::RuleCheckResult RuleWatch::check_rule(const Rule& rule, Action action
   } else if (along == RuleInput::kSoc) {
     next_soc_frac += 1.0 / (kSocCount - 1);
   } else {
-    return {false, false};
+    return {};
   }
   const Action after = policy_->decide(next, index, next_soc_frac);
-  return {next_soc_frac <= 1, demand.is_broken(action, after)};
+  if (next_soc_frac > 1) return {};
+  return demand.is_broken(action, after);
 }
 
 Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
   const Action action = policy_->decide(step, index, soc_frac);
   ++decisions_;
-  for (std::size_t r = 0; r < counts_.size(); ++r) {
-    const RuleCheckResult found = check_rule(rules_.rules[r], action, step, index, soc_frac);
-    if (!found.applies) continue;
-    ++counts_[r].visited;
-    counts_[r].visited_broken += found.breaks ? 1 : 0;
-  }
+  const auto count = [&](Action decided, double at_soc_frac, std::int64_t WatchCount::*checked,
+                         std::int64_t WatchCount::*violated) {
+    for (std::size_t r = 0; r < counts_.size(); ++r) {
+      const auto broken = is_broken(rules_.rules[r], decided, step, index, at_soc_frac);
+      if (!broken) continue;
+      ++(counts_[r].*checked);
+      counts_[r].*violated += *broken ? 1 : 0;
+    }
+  };
+  count(action, soc_frac, &WatchCount::visited, &WatchCount::visited_broken);
   for (int n = 0; n < drawn_per_step_; ++n) {
     const double drawn_soc_frac = random_.uniform();
-    const Action drawn = policy_->decide(step, index, drawn_soc_frac);
-    for (std::size_t r = 0; r < counts_.size(); ++r) {
-      const RuleCheckResult found = check_rule(rules_.rules[r], drawn, step, index, drawn_soc_frac);
-      if (!found.applies) continue;
-      ++counts_[r].drawn;
-      counts_[r].drawn_broken += found.breaks ? 1 : 0;
-    }
+    count(policy_->decide(step, index, drawn_soc_frac), drawn_soc_frac, &WatchCount::drawn,
+          &WatchCount::drawn_broken);
   }
   return action;
 }

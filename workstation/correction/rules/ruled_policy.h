@@ -43,12 +43,10 @@ class RuleWatch final : public Policy {
   [[nodiscard]] std::int64_t decisions() const { return decisions_; }
 
  private:
-  /// Whether the rule can be checked here, and whether `action` violates it.
-  struct RuleCheckResult {
-    bool applies, breaks;
-  };
-  [[nodiscard]] RuleCheckResult check_rule(const Rule& rule, Action action, const MarketStep& step,
-                                           std::size_t index, double soc_frac) const;
+  /// Whether `action` violates the rule; none if it cannot be checked here.
+  [[nodiscard]] std::optional<bool> is_broken(const Rule& rule, Action action,
+                                              const MarketStep& step, std::size_t index,
+                                              double soc_frac) const;
 
   std::shared_ptr<Policy> policy_;
   RuleSet rules_;
