@@ -24,7 +24,7 @@ struct ExportArguments {
 
 [[noreturn]] void refuse(const std::string& name, const Certificate& c) {
   fail("{}: refused: {} violations over the lattice ({}); repeat bess-train distil", name,
-       c.violations(), broken_text(demand_counts(c)));
+       c.violations(), round_of(c).text());
 }
 
 void print_next(const ExportArguments& options, const std::filesystem::path& folder) {

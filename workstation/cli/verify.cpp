@@ -78,7 +78,7 @@ void run_verify(const VerifyArguments& options) {
   }
   if (!std::holds_alternative<ProvedStudent>(verdict)) {
     fail("{}: {} violations ({}); repeat bess-train distil before exporting it", name,
-         student.certificate.violations(), broken_text(demand_counts(student.certificate)));
+         student.certificate.violations(), round_of(student.certificate).text());
   }
 }
 

@@ -39,15 +39,6 @@ std::vector<DemandCount> demand_counts(const Certificate& c) {
   return counts;
 }
 
-std::string broken_text(const std::vector<DemandCount>& counts) {
-  std::string text;
-  for (const DemandCount& count : counts) {
-    if (count.violations == 0) continue;
-    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", count.label(), count.violations);
-  }
-  return text;
-}
-
 std::int64_t Certificate::violations() const {
   std::int64_t sum = 0;
   for (const RuleCount& count : counts) sum += count.violations;

@@ -60,7 +60,4 @@ struct DemandCount {
 /// Properties and all rules; rules that were not checked have count 0 and do not bind.
 std::vector<DemandCount> demand_counts(const Certificate& certificate);
 
-/// "property 3: 12, rule \"quiet hours\": 23994": the violations; empty without any.
-std::string broken_text(const std::vector<DemandCount>& counts);
-
 }  // namespace bess

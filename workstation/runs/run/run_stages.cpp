@@ -360,7 +360,7 @@ RunStages::Names RunStages::make_plain_student() {
   const StudentFile& student = student_of(plain.verdict);
   save_student(path(kPlainStudent), student);
   write_file(path(kPlainViolations), counterexamples_csv(student.certificate.counterexamples));
-  const std::string broken = broken_text(demand_counts(student.certificate));
+  const std::string broken = round_of(student.certificate).text();
   report_line(fmt::format("{} violations in {} checked states{}", student.certificate.violations(),
                           student.certificate.states_checked, broken.empty() ? "" : ": " + broken));
   return {kPlainStudent, kPlainViolations};

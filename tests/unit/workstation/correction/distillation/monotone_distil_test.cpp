@@ -147,7 +147,8 @@ std::vector<DemandCount> counts_with_rules(const std::vector<const char*>& rules
   const CorrectionResult result =
       correct_and_prove(school().teacher, school().visited, options, kRunning);
   const std::vector<DemandCount> counts = demand_counts(student_of(result.verdict).certificate);
-  EXPECT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict)) << broken_text(counts);
+  EXPECT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict))
+      << round_of(student_of(result.verdict).certificate).text();
   EXPECT_EQ(counts.size(), kPropertyCount + rules.size());
   for (const DemandCount& count : counts) {
     EXPECT_EQ(count.states > 0, count.binds_student) << count.text;

@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
-#include "workstation/correction/student/certificate.h"
+#include "workstation/correction/student/proof_rounds.h"
 
 namespace bess {
 namespace {
@@ -103,7 +103,7 @@ TEST(StudentFile, CountsOfRulesRoundTrip) {
     EXPECT_EQ(counts[3].violations, violations);
     EXPECT_TRUE(counts[3].binds_student);
     EXPECT_FALSE(counts[4].binds_student);
-    EXPECT_EQ(broken_text(counts), violations == 0 ? "" : "rule \"rest\": 23994");
+    EXPECT_EQ(round_of(again).text(), violations == 0 ? "" : "rule \"rest\": 23994");
   }
 }
 
