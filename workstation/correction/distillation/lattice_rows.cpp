@@ -24,11 +24,10 @@ class RowMaker {
   void add_box(const Rule& rule, const LatticeBox& box) {
     for (int i = 0; i < prices_; ++i) {
       const int price = axes_.price_eur_per_mwh[i] - kLatticePriceMinEurPerMwh;
-      if (price < box.price_first || price > box.price_last) continue;
       for (int j = 0; j < socs_; ++j) {
         const auto nearest = static_cast<int>(std::lround(axes_.soc[j] * kInputOne / kSocScale));
         const int soc = std::clamp(nearest, 0, kSocCount - 1);
-        if (soc >= box.soc_first && soc <= box.soc_last) add_state(rule, i, j);
+        if (box.contains(soc, price)) add_state(rule, i, j);
       }
     }
   }

@@ -79,6 +79,10 @@ struct LatticeBox {
   int price_first, price_last;  ///< indices from kLatticePriceMinEurPerMwh
   int soc_first, soc_last;
   std::int32_t classes;  ///< bit c - 1, of the student's context
+
+  [[nodiscard]] bool contains(int soc, int price) const {
+    return soc >= soc_first && soc <= soc_last && price >= price_first && price <= price_last;
+  }
 };
 
 /// The part of a box that a student with this context sees. Precondition: some of it is on the

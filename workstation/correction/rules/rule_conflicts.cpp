@@ -12,9 +12,7 @@ namespace bess {
 namespace {
 
 /// Range over which a demand applies along an input; "at least" extends towards larger actions.
-template <typename Index>
-void reach(int sign, bool at_least, Index& first, Index& last, Index lowest, Index highest) {
-  if (sign == 0) return;
+void reach(int sign, bool at_least, int& first, int& last, int lowest, int highest) {
   if ((sign < 0) == at_least) {
     first = lowest;
   } else {
@@ -135,19 +133,14 @@ void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Ac
     } else if (direction.input == RuleInput::kContextClass) {
       int first = std::countr_zero(static_cast<unsigned>(box.classes));
       int last = static_cast<int>(std::bit_width(static_cast<unsigned>(box.classes))) - 1;
-      const bool down = (direction.sign < 0) == at_least;
-      for (int c = down ? 0 : first; c <= (down ? last : kContextClassCount - 1); ++c) {
-        box.classes |= 1 << c;
-      }
+      reach(direction.sign, at_least, first, last, 0, kContextClassCount - 1);
+      for (int c = first; c <= last; ++c) box.classes |= 1 << c;
     } else if (direction.input == RuleInput::kQuarterHour) {
       auto& held = bound.quarter_hours;
-      const auto first = std::ranges::find(held, true) - held.begin();
-      const auto last =
-          kQuarterHourCount - 1 - (std::find(held.rbegin(), held.rend(), true) - held.rbegin());
-      const bool down = (direction.sign < 0) == at_least;
-      for (auto q = down ? 0 : first; q <= (down ? last : kQuarterHourCount - 1); ++q) {
-        held[static_cast<std::size_t>(q)] = true;
-      }
+      auto first = static_cast<int>(std::ranges::find(held, true) - held.begin());
+      auto last = static_cast<int>(held.rend() - std::find(held.rbegin(), held.rend(), true)) - 1;
+      reach(direction.sign, at_least, first, last, 0, kQuarterHourCount - 1);
+      std::fill(held.begin() + first, held.begin() + last + 1, true);
     }
   }
   bounds_.push_back(std::move(bound));
@@ -174,8 +167,7 @@ ActionRange ImpliedRanges::at(int quarter_hour, int context_class, int soc_index
   ActionRange range;
   for (const ImpliedBound& bound : bounds_) {
     const LatticeBox& box = bound.box;
-    if (price < box.price_first || price > box.price_last || soc_index < box.soc_first ||
-        soc_index > box.soc_last || (box.classes >> (context_class - 1) & 1) == 0 ||
+    if (!box.contains(soc_index, price) || (box.classes >> (context_class - 1) & 1) == 0 ||
         !bound.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
       continue;
     }

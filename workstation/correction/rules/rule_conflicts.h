@@ -44,7 +44,6 @@ class ImpliedRanges {
   ImpliedRanges(const RuleSet& rules, ContextKind kind);
   [[nodiscard]] ActionRange at(int quarter_hour, int context_class, int soc_index,
                                int price_eur_per_mwh) const;
-  [[nodiscard]] bool empty() const { return bounds_.empty(); }
 
  private:
   friend void require_consistent(const RuleSet&, const PriceThresholds&, ContextKind);

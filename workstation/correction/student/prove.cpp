@@ -20,11 +20,9 @@ constexpr const char* kMoreEffort = "raise [distil] epochs or repair_rounds";
 constexpr int kNearEurPerMwh = 200;
 
 bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
-  const LatticeBox box = lattice_box_of(rule.box, kind);
-  const int price = s.price_eur_per_mwh - kLatticePriceMinEurPerMwh;
   return holds_in_context(rule.box, kind, s.quarter_hour, s.context_class) &&
-         price >= box.price_first && price <= box.price_last && s.soc_index >= box.soc_first &&
-         s.soc_index <= box.soc_last;
+         lattice_box_of(rule.box, kind)
+             .contains(s.soc_index, s.price_eur_per_mwh - kLatticePriceMinEurPerMwh);
 }
 
 /// The neighbour along the input; none after the last value.
