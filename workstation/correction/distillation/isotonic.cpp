@@ -75,7 +75,7 @@ void IsotonicProjection::split(const Block& block, const std::vector<int>& cut, 
 
 void IsotonicProjection::finish_level_set(const Block& block, Rows rows, double mean) {
   const double value = std::clamp(mean, block.clip_low, block.clip_high);
-  const int index = level_set_count();
+  const auto index = static_cast<int>(clipped_.size());
   clipped_.push_back(value != mean ? 1 : 0);
   for (int i = rows.first; i < rows.last; ++i) {
     for (int j = block.begin[i]; j < block.end[i]; ++j) {

@@ -39,8 +39,6 @@ class IsotonicProjection {
   void project(std::span<const double> y, const RowBounds& bounds, std::span<double> x);
   /// dL/dy from dL/dx at the last projection; may alias.
   void backward(std::span<const double> gradient_x, std::span<double> gradient_y) const;
-  /// Level sets of the last projection, clipped ones included.
-  [[nodiscard]] int level_set_count() const { return static_cast<int>(clipped_.size()); }
 
  private:
   /// Cells begin[i] <= j < end[i] of each row; clip range of the solution inside.

@@ -101,7 +101,7 @@ std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapTex
 
 Json regime_marks(const std::vector<std::string>& dates) {
   Json marks = Json::list();
-  for (const PriceRegime& regime : price_regimes()) {
+  for (const PriceRegime& regime : kPriceRegimes) {
     const auto from = std::lower_bound(dates.begin(), dates.end(), regime.from_date);
     if (from == dates.begin() || from == dates.end()) continue;
     marks.add(Json::list_of(static_cast<std::size_t>(from - dates.begin()), regime.change));

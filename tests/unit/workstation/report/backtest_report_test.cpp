@@ -79,7 +79,7 @@ TEST(BacktestReport, ShowsErrorsByMonthNextToThePlainOnes) {
 
 /// The second month is traded although the first is on the other side of a boundary.
 TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
-  const PriceRegime* const regimes = price_regimes().data();
+  const PriceRegime* const regimes = kPriceRegimes;
   BacktestResults crossing = results(5);
   for (WalkForward& policy : crossing.policies) {
     policy.months = {"2024-10", "2024-12"};

@@ -1,6 +1,6 @@
 #include "workstation/data/market/feed/market_files.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -478,12 +478,6 @@ const char* words_for(MarketSource source) {
   return "a file that does not name its source";
 }
 
-std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
-  std::string text;
-  for (const std::string& part : parts) text.append(text.empty() ? "" : separator).append(part);
-  return text;
-}
-
 }  // namespace
 
 MarketRows read_market_files(const std::vector<std::string>& paths, const CustomCsvFormat& own) {
@@ -502,9 +496,9 @@ SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& path
   MarketRows rows = read_market_files(paths);
   if (rows.quarter_hours.empty() && !rows.minutes.empty()) {
     fail("{}: has minute rows without settled prices; use settled quarter-hours (ods047, ods134)",
-         joined(paths, ", "));
+         fmt::join(paths, ", "));
   }
-  if (rows.quarter_hours.empty()) fail("{}: has no rows", joined(paths, ", "));
+  if (rows.quarter_hours.empty()) fail("{}: has no rows", fmt::join(paths, ", "));
   SettledQuarterHours settled;
   settled.sources = rows.sources;
   settled.sources.erase(MarketSource::kDrawn);  // the minutes will be redrawn
@@ -522,13 +516,13 @@ std::string file_names(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     names.push_back(std::filesystem::path(path).filename().string());
   }
-  return joined(names, ", ");
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string attribution_of(const std::set<MarketSource>& sources) {
   std::vector<std::string> names;
   for (const MarketSource source : sources) names.emplace_back(words_for(source));
-  return "Source: " + joined(names, "; ");
+  return fmt::format("Source: {}", fmt::join(names, "; "));
 }
 
 }  // namespace bess

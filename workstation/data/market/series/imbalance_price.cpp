@@ -35,8 +35,6 @@ double imbalance_price_eur_per_mwh(const ImbalanceState& state) {
   return imbalance_price_eur_per_mwh(state, alpha_eur_per_mwh(state));
 }
 
-std::span<const PriceRegime> price_regimes() { return kPriceRegimes; }
-
 std::vector<const PriceRegime*> regimes_met(const UtcSpan& span) {
   std::vector<const PriceRegime*> met;
   for (const PriceRegime* regime = std::begin(kPriceRegimes); regime != std::end(kPriceRegimes);

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -45,9 +44,6 @@ double imbalance_price_eur_per_mwh(const ImbalanceState& state);
 struct UtcSpan {
   std::int64_t from_s, until_s;
 };
-
-/// Ascending; every instant belongs to one.
-std::span<const PriceRegime> price_regimes();
 
 /// Regimes that overlap the span, in order.
 std::vector<const PriceRegime*> regimes_met(const UtcSpan& span);

@@ -8,7 +8,6 @@
 #include "shared/utc_text.h"
 
 namespace bess {
-namespace {}  // namespace
 
 LocalDate parse_local_date(std::string_view text, std::string_view what) {
   std::int64_t utc_s = 0;

@@ -53,8 +53,7 @@ std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int
     if (local_minute_of(utc_s).minute_of_day != 0 || utc_s < from_utc_s) continue;
     const std::int64_t quarter_hours = (utc_s - midnight_utc_s) / kSecondsPerQuarterHour;
     if (midnight_utc_s >= 0 && quarter_hours != kQuarterHourCount) {
-      const LocalMinute day = local_minute_of(midnight_utc_s);
-      changes.push_back({day.year, day.month, day.day, static_cast<int>(quarter_hours)});
+      changes.push_back({local_date_of(midnight_utc_s), static_cast<int>(quarter_hours)});
     }
     midnight_utc_s = utc_s;
   }
@@ -71,7 +70,7 @@ std::vector<RegimeStatistics> regime_statistics(std::span<const double> settled,
   for (const PriceRegime* regime :
        regimes_met({from_utc_s, (first + count) * kSecondsPerQuarterHour})) {
     const PriceRegime* const next = regime + 1;
-    const bool is_last = next == std::to_address(price_regimes().end());
+    const bool is_last = next == std::end(kPriceRegimes);
     const auto begin = end;
     end = is_last ? settled.end()
                   : settled.begin() +
@@ -213,10 +212,6 @@ MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& qua
 
 namespace {
 
-std::string day_of(const ClockChange& change) {
-  return fmt::format("{:04}-{:02}-{:02}", change.year, change.month, change.day);
-}
-
 std::string format_price_text(std::string_view what, const PriceStatistics& price) {
   std::string text = fmt::format("{}, EUR/MWh, {}\n", what, counted(price.count, "quarter-hour"));
   if (price.count == 0) return text;
@@ -324,7 +319,8 @@ Json gaps_json(const std::vector<Gap>& gaps) {
 
 Json clock_changes_json(const std::vector<ClockChange>& changes) {
   return Json::list_from(changes, [](const ClockChange& change) {
-    return Json::object({{"day", day_of(change)}, {"quarter_hours", change.quarter_hours}});
+    return Json::object(
+        {{"day", format_local_date(change.day)}, {"quarter_hours", change.quarter_hours}});
   });
 }
 
@@ -343,7 +339,7 @@ std::string format_statistics_text(const MarketStatistics& statistics, std::stri
   text += describe_gaps(what, statistics.settled_gaps);
   if (statistics.convergence) text += describe_gaps("indicative price", statistics.indicative_gaps);
   for (const ClockChange& change : statistics.clock_changes) {
-    text += fmt::format("clock change: {} has {} quarter-hours\n", day_of(change),
+    text += fmt::format("clock change: {} has {} quarter-hours\n", format_local_date(change.day),
                         change.quarter_hours);
   }
   return text;

@@ -38,7 +38,7 @@ using ConvergenceByMinute = std::array<Convergence, kMinutesPerQuarterHour>;
 
 /// Local day of 23 or 25 hours that the file covers from midnight to midnight.
 struct ClockChange {
-  int year, month, day;
+  LocalDate day;
   int quarter_hours;  ///< 92 or 100
 };
 

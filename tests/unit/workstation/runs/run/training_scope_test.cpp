@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <span>
+
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/training_period.h"
@@ -168,7 +170,7 @@ TEST_F(LearntFor, ARunOnOldPricesReportsItUnlessTheyAreSimulated) {
 TEST(PriceRegimes, BeginAtLocalMidnight) {
   const auto day = [](std::int64_t from_s) { return UtcSpan{from_s, from_s + kDay_s}; };
   const UtcSpan before = day(kPicasso_s - kDay_s);
-  for (const PriceRegime& regime : price_regimes().subspan(1)) {
+  for (const PriceRegime& regime : std::span(kPriceRegimes).subspan(1)) {
     EXPECT_EQ(regime.from_utc_s, local_midnight_utc_s(parse_local_date(regime.from_date, "")));
     EXPECT_EQ(regimes_met(day(regime.from_utc_s)), std::vector{&regime});
     EXPECT_EQ(regimes_met(day(regime.from_utc_s - 60)), (std::vector{&regime - 1, &regime}));

@@ -74,9 +74,9 @@ TEST(Statistics, ClockChangesOfAYear) {
   series.indicative = series.settled;
   const MarketStatistics result = statistics_of_minutes(series);
   ASSERT_EQ(result.clock_changes.size(), 2u);
-  EXPECT_EQ(result.clock_changes[0].month, 3);
+  EXPECT_EQ(result.clock_changes[0].day.month, 3);
   EXPECT_EQ(result.clock_changes[0].quarter_hours, 92);
-  EXPECT_EQ(result.clock_changes[1].day, 29);
+  EXPECT_EQ(result.clock_changes[1].day.day, 29);
   EXPECT_EQ(result.clock_changes[1].quarter_hours, 100);
 }
 
