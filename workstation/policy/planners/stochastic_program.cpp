@@ -305,11 +305,4 @@ void StochasticProgram::continuation(const MarketState& at, float* value_eur) co
   }
 }
 
-void StochasticProgram::values(const MarketState& at, float* value_eur) const {
-  for (int i = 0; i < kSocPoints; ++i) {
-    const auto worth = action_values(at, grid_.at(i));
-    value_eur[i] = static_cast<float>(*std::ranges::max_element(worth));
-  }
-}
-
 }  // namespace bess

@@ -134,8 +134,6 @@ class StochasticProgram {
   /// charge].
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketState& at,
                                                                double soc_frac) const;
-  /// Value of the SoC grid's points [kSocPoints], EUR, for shaping rewards.
-  void values(const MarketState& at, float* value_eur) const;
   /// Parts of action_values(): expected price of the step, and discounted value of the SoC grid's
   /// points [kSocPoints] after it, EUR.
   [[nodiscard]] double expected_price(const MarketState& at) const;

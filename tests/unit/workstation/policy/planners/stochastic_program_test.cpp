@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "shared/host/user_error.h"
 #include "tests/support/market_series.h"
 #include "tests/support/small_market.h"
@@ -31,9 +33,14 @@ TEST(StochasticProgram, EarnsOnTheBenchmarkWhatThePrototypesEarn) {
 TEST(StochasticProgram, EnergyIsWorthLessTheMoreThereIsOfIt) {
   const StochasticProgram program(small_steps(), small_steps().days_of(Split::kTrain), {});
   constexpr int kPoints = StochasticProgram::kSocPoints;
+  const SocGrid grid(BatteryParameters{}, kPoints);
   for (std::size_t i = 0; i < small_steps().steps.size(); i += 997) {
     float value[kPoints];
-    program.values(StochasticProgram::market_state_of(small_steps().steps[i]), value);
+    const auto at = StochasticProgram::market_state_of(small_steps().steps[i]);
+    for (int p = 0; p < kPoints; ++p) {
+      const auto worth = program.action_values(at, grid.at(p));
+      value[p] = static_cast<float>(*std::ranges::max_element(worth));
+    }
     for (int p = 2; p < kPoints; ++p) {
       const float concave = value[p] - 2 * value[p - 1] + value[p - 2];
       EXPECT_LT(concave, 0.01F * std::fabs(value[kPoints - 1] - value[0])) << i << ' ' << p;
