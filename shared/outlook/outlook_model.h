@@ -1,5 +1,5 @@
 // Outlook model in integers: market and battery parameters of the plan on day-ahead prices. Fitted
-// on the workstation (planners/outlook_integers.h), part of a student with context outlook.
+// on the workstation (planners/outlook_integers.cpp), part of a student with context outlook.
 //
 //   usual(t, L) = constant + day_ahead D(t) + hour(quarter-hour of t) + level L
 //

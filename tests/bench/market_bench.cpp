@@ -6,7 +6,6 @@
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/policy/planners/foresight.h"
-#include "workstation/policy/planners/outlook_integers.h"
 #include "workstation/policy/planners/outlook_program.h"
 
 namespace bess {

@@ -1,4 +1,4 @@
-#include "workstation/policy/planners/outlook_integers.h"
+#include "workstation/policy/planners/outlook_program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/outlook/outlook_model.h"
 #include "workstation/data/env/policy.h"
 #include "workstation/policy/planners/deviation_chain.h"
 #include "workstation/policy/planners/soc_grid.h"
@@ -137,6 +138,10 @@ class OutlookProgram {
   std::vector<std::vector<float>> usual_days_;  ///< by level: [bin][SoC point] at midnight, EUR
   std::shared_ptr<ValueCache> cache_;
 };
+
+/// Integer form of the program, used by workstation and edge (shared/outlook): half as many bins, each
+/// two adjacent bins of the chain. Throws UserError for values outside the integer ranges.
+OutlookModel outlook_integers(const OutlookProgram& program);
 
 class OutlookPolicy final : public Policy {
  public:

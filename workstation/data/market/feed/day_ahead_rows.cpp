@@ -15,7 +15,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/feed/entsoe_xml.h"
+#include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/feed/market_rows.h"
 
 namespace bess {

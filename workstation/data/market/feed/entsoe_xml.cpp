@@ -1,4 +1,10 @@
-#include "workstation/data/market/feed/entsoe_xml.h"
+// ENTSO-E A85 reader: settled imbalance prices of other single-price countries from the
+// Transparency Platform (Balancing_MarketDocument, IEC 62325-451-6). A document contains time
+// series, these contain periods, these contain points:
+//   Period: timeInterval/start, timeInterval/end, resolution (PT15M, PT30M, PT60M)
+//   Point:  position (1 = first), imbalance_Price.amount, imbalance_Price.category
+//           A04 = price of a long party, A05 = of a short one; equal under single pricing
+// curveType A03 omits points that repeat the previous one; with A01 a missing point is a gap.
 
 #include <algorithm>
 #include <array>
@@ -9,6 +15,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/market/feed/entsoe_element.h"
+#include "workstation/data/market/feed/market_files.h"
 
 namespace bess {
 namespace {

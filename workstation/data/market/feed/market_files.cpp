@@ -16,7 +16,6 @@
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/feed/entsoe_xml.h"
 
 namespace bess {
 

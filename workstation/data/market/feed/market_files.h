@@ -43,6 +43,14 @@ std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view nam
 /// `name` is used in messages.
 MarketRows parse_market_json(std::string_view text, std::string_view name);
 
+// ENTSO-E A85: settled imbalance prices of other single-price countries (entsoe_xml.cpp).
+
+bool looks_like_xml(std::string_view text);
+
+/// Quarter-hours in order of time. Those with two different prices get none and are counted in
+/// `dual_priced_quarter_hours`. `name` is used in messages. Throws UserError.
+MarketRows parse_entsoe_xml(std::string_view text, std::string_view name);
+
 // CSV: downloads and custom files, `;` `,` or tabs, optional quotes, any column order.
 
 /// Format of a custom file: column names, empty for detection.

@@ -1,6 +1,6 @@
 // Integer plan against the program: its break-even prices separate charging from discharging where
 // the program's own values do, and a policy's plan cache returns them in any order of requests.
-#include "workstation/policy/planners/outlook_integers.h"
+#include "workstation/policy/planners/outlook_program.h"
 
 #include <gtest/gtest.h>
 

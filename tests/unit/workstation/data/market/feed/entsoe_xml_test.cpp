@@ -1,5 +1,5 @@
 // ENTSO-E A85 documents.
-#include "workstation/data/market/feed/entsoe_xml.h"
+#include "workstation/data/market/feed/market_files.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,6 @@
 
 #include "tests/support/market_test_support.h"
 #include "tests/support/tokens.h"
-#include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/model/simulated_market.h"
 
 namespace bess {
