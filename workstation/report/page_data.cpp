@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "shared/utc_text.h"
-#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"

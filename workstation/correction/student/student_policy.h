@@ -1,12 +1,13 @@
-// Integer student as a policy: exactly the edge's computation from price and SoC.
+// Integer student as a policy: exactly the edge's computation from price and SoC. Also the exported
+// policy: student plus the rules that the guard enforces, as on the edge. It includes the cost of
+// power limits, which only the guard applies.
 #pragma once
 
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "shared/nn/student_net.h"
-#include "workstation/data/env/plan_cache.h"
+#include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/policy.h"
 
 namespace bess {
@@ -33,5 +34,8 @@ class StudentPolicy final : public Policy {
   const StudentNet& net_;
   std::shared_ptr<const PlanCache> plan_cache_;
 };
+
+/// Keeps a reference: `student` must outlive it.
+std::unique_ptr<Policy> exported_policy(const StudentFile& student);
 
 }  // namespace bess

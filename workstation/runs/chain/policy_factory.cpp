@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "shared/host/user_error.h"
-#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/policy/planners/baselines.h"
 

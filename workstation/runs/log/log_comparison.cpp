@@ -1,7 +1,7 @@
 #include "workstation/runs/log/log_comparison.h"
 
 #include "shared/host/user_error.h"
-#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/final_charge.h"
 #include "workstation/policy/planners/baselines.h"
 

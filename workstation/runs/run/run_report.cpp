@@ -20,7 +20,6 @@
 #include "workstation/correction/rules/rule_file.h"
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/certificate.h"
-#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/final_charge.h"
 #include "workstation/report/headline.h"

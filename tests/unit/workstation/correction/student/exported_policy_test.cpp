@@ -1,5 +1,5 @@
 // Student as the edge runs it: with the rules of its guard, and nothing more.
-#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
 
 #include <gtest/gtest.h>
 

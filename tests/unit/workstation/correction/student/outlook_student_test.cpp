@@ -12,8 +12,8 @@
 #include "workstation/correction/rules/properties.h"
 #include "workstation/correction/rules/rule_file.h"
 #include "workstation/correction/student/correct_and_prove.h"
-#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_file.h"
+#include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/policy/rl/train.h"
 

@@ -7,7 +7,6 @@
 #include "shared/host/json.h"
 #include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/correction/rules/rule_file.h"
-#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/correction/student/verify.h"
 #include "workstation/report/headline.h"

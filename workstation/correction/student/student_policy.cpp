@@ -1,7 +1,6 @@
-#include "workstation/correction/student/exported_policy.h"
+#include "workstation/correction/student/student_policy.h"
 
 #include "workstation/correction/rules/ruled_policy.h"
-#include "workstation/correction/student/student_policy.h"
 
 namespace bess {
 namespace {
