@@ -8,7 +8,6 @@
 
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/prove.h"
-#include "workstation/correction/student/student_checkpoints.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/policy/rl/train.h"
 #include "workstation/report/comparison.h"

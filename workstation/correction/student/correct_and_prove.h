@@ -10,7 +10,6 @@
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/proof_rounds.h"
 #include "workstation/correction/student/prove.h"
-#include "workstation/correction/student/student_checkpoints.h"
 
 namespace bess {
 

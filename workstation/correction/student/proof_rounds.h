@@ -1,4 +1,5 @@
-// Correction rounds: remaining violations of each round by demand, as progress text and as CSV.
+// Correction rounds: remaining violations of each round by demand, as progress text and as CSV; and
+// the checkpoints of a correction.
 #pragma once
 
 #include <cstdint>
@@ -48,5 +49,27 @@ std::string round_line(const ProofRound& round, const RoundsState& state);
 std::string proof_rounds_csv(const std::vector<ProofRound>& rounds);
 /// Parses it; throws UserError naming `name` and the line.
 std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std::string& name);
+
+// Checkpoints: the students checked, their validation results, and the chosen one.
+
+enum class CheckpointState {
+  kPassedOver,  ///< another one earned more
+  kDisobeys,    ///< earned more than the chosen one but violates a demand
+  kChosen,
+};
+std::string_view checkpoint_state_name(CheckpointState state);  ///< "passed over", ...
+
+struct StudentCheckpoint {
+  int round;  ///< from 1
+  int epoch;  ///< over all rounds
+  double validation_eur_per_day_per_mwh;
+  CheckpointState state;
+};
+
+/// Header `round,epoch,validation_eur_per_day_per_mwh,state`.
+std::string student_checkpoints_csv(const std::vector<StudentCheckpoint>& checkpoints);
+/// Parses it; throws UserError naming `name` and the line.
+std::vector<StudentCheckpoint> parse_student_checkpoints_csv(std::string_view text,
+                                                             const std::string& name);
 
 }  // namespace bess

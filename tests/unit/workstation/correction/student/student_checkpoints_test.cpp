@@ -1,4 +1,4 @@
-#include "workstation/correction/student/student_checkpoints.h"
+#include "workstation/correction/student/proof_rounds.h"
 
 #include <gmock/gmock.h>
 
