@@ -3,7 +3,6 @@
 // deviation of each bin. The calling program defines the usual price.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "workstation/base/binary_file.h"

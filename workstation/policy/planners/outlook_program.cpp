@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "shared/exchange_cost.h"

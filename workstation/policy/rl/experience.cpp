@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/host/user_error.h"
-
 namespace bess {
 namespace {
 

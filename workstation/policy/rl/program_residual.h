@@ -31,7 +31,6 @@
 #include "workstation/data/env/plan_cache.h"
 #include "workstation/policy/planners/outlook_program.h"
 #include "workstation/policy/planners/stochastic_program.h"
-#include "workstation/policy/rl/price_map.h"
 
 namespace bess {
 

@@ -12,12 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "shared/host/plain_text.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 

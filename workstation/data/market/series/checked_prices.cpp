@@ -9,7 +9,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 namespace {
