@@ -235,7 +235,7 @@ PolicyPtr fit(const MarketSteps& market, const BatteryParameters& battery,
 }
 
 PolicyPtr program_by_hour(const MarketSteps& market, const BatteryParameters& battery) {
-  return fit<StochasticProgramPolicy>(market, battery, StochasticProgramOptions{.level_weight = 0});
+  return fit<StochasticProgramPolicy>(market, battery, 0.0);
 }
 
 PolicyPtr foresight(const MarketSteps&, const BatteryParameters& battery) {

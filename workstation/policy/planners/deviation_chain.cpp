@@ -3,13 +3,18 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-
-#include "workstation/policy/planners/stochastic_program.h"
+#include <cmath>
 
 namespace bess {
 namespace {
 
 constexpr int kSmoothedBins = 3;  ///< reach of the smoothing, on both sides
+
+/// Weight of a neighbour in a smoothed mean: Gaussian, not normalised; `sigma` in the same steps as `distance`, 0: no smoothing.
+double smoothing_kernel(int distance, double sigma) {
+  if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
+  return std::exp(-0.5 * distance * distance / (sigma * sigma));
+}
 
 }  // namespace
 
@@ -97,6 +102,50 @@ void DeviationChain::count(const std::vector<Sample>& samples, double bin_smooth
       }
     }
   }
+}
+
+double MeanByQuarterHour::weight() const {
+  double all = 0;
+  for (const double n : count) all += n;
+  return all;
+}
+
+std::array<double, kQuarterHourCount> MeanByQuarterHour::smoothed(double sigma) const {
+  constexpr int kReach = 24;  ///< quarter-hours, on both sides
+  std::array<double, kQuarterHourCount> mean{};
+  double all_sum = 0;
+  for (const double s : sum) all_sum += s;
+  for (int q = 0; q < kQuarterHourCount; ++q) {
+    double weighted = 0, weight = 0;
+    for (int d = -kReach; d <= kReach; ++d) {
+      const double k = smoothing_kernel(d, sigma);
+      const auto near = static_cast<std::size_t>((q + d + kQuarterHourCount) % kQuarterHourCount);
+      weighted += k * sum[near];
+      weight += k * count[near];
+    }
+    mean[static_cast<std::size_t>(q)] = weight > 0 ? weighted / weight : all_sum / this->weight();
+  }
+  return mean;
+}
+
+std::vector<double> levels_around(double mean, double mean_square) {
+  constexpr int kLast = 4;      ///< five levels
+  constexpr double kReach = 3;  ///< standard deviations
+  const double deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
+  std::vector<double> levels;
+  for (int i = 0; i <= kLast; ++i) {
+    levels.push_back(mean + (2.0 * i / kLast - 1) * kReach * std::max(1.0, deviation));
+  }
+  return levels;
+}
+
+DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level) {
+  const auto count = static_cast<int>(levels.size());
+  if (count == 1) return {0, 0};
+  const double step = levels[1] - levels[0];
+  const double x = std::clamp((level - levels[0]) / step, 0.0, count - 1.0);
+  const int lower = std::min(static_cast<int>(x), count - 2);
+  return {lower, x - lower};
 }
 
 }  // namespace bess

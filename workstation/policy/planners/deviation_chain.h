@@ -3,8 +3,10 @@
 // deviation of each bin. The calling program defines the usual price.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "shared/units_and_limits.h"
 #include "workstation/base/binary_file.h"
 
 namespace bess {
@@ -58,5 +60,31 @@ class DeviationChain {
   std::vector<double> paid_;         ///< [phase][bin] mean paid deviation
   std::vector<float> transition_;    ///< [phase][bin][next bin]
 };
+
+// Parts that the two programs share.
+
+inline constexpr double kProgramGamma = 0.9995;  ///< discount per step
+inline constexpr double kHourSmoothing = 4;      ///< of means by hour, quarter-hours
+inline constexpr double kBinSmoothing = 0.5;     ///< of the chain's counts, bins
+
+/// Sums by local quarter-hour, for a smoothed mean.
+struct MeanByQuarterHour {
+  std::array<double, kQuarterHourCount> sum{}, count{};
+
+  void add(int quarter_hour, double value) {
+    sum[static_cast<std::size_t>(quarter_hour)] += value;
+    count[static_cast<std::size_t>(quarter_hour)] += 1;
+  }
+  [[nodiscard]] double weight() const;
+  /// Where no quarter-hour within reach has a value: the mean of all.
+  [[nodiscard]] std::array<double, kQuarterHourCount> smoothed(double sigma) const;
+};
+
+// Price levels with values, and the present level between them.
+
+/// Evenly spaced within three standard deviations of the mean.
+std::vector<double> levels_around(double mean, double mean_square);
+
+DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
 
 }  // namespace bess

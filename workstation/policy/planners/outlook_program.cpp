@@ -64,11 +64,10 @@ struct OutlookProgram::ValueCache {
 };
 
 OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
-                               const BatteryParameters& battery, const OutlookOptions& options)
+                               const BatteryParameters& battery)
     : battery_(battery),
-      options_(options),
       grid_(battery, kSocPoints),
-      recursion_(battery_, grid_, options_.gamma),
+      recursion_(battery_, grid_, gamma_),
       cache_(std::make_shared<ValueCache>()) {
   require_training_days(days.size());
   fit_means(market, days);
@@ -81,7 +80,7 @@ OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<Mark
 
 void OutlookProgram::save(BinaryWriter& out) const {
   out.put(battery_);
-  out.put(options_.gamma);
+  out.put(gamma_);
   out.put(hour_);
   out.put(day_ahead_mean_);
   out.put(coefficients_);
@@ -92,7 +91,7 @@ void OutlookProgram::save(BinaryWriter& out) const {
 
 OutlookProgram::OutlookProgram(BinaryReader& in)
     : battery_(in.take<BatteryParameters>()),
-      options_{.gamma = in.take<double>()},
+      gamma_(in.take<double>()),
       grid_(battery_, kSocPoints),
       hour_(in.take<ByQuarterHour>()),
       day_ahead_mean_(in.take<ByQuarterHour>()),
@@ -100,7 +99,7 @@ OutlookProgram::OutlookProgram(BinaryReader& in)
       row_age_min_(in.take<int>()),
       levels_(in.take_list<double>()),
       chain_(in),
-      recursion_(battery_, grid_, options_.gamma),
+      recursion_(battery_, grid_, gamma_),
       cache_(std::make_shared<ValueCache>()) {
   if (levels_.size() < 2) in.damaged("has a program with an outlook of another size");
   solve_usual_days();
@@ -131,8 +130,8 @@ void OutlookProgram::fit_means(const MarketSteps& market, const std::vector<Mark
     fail("no day-ahead price on the days to fit on; pass a file that covers them (--day-ahead)");
   }
   row_age_min_ = std::ranges::max_element(ages, {}, &std::pair<const int, int>::second)->first;
-  hour_ = paid.smoothed(options_.hour_smoothing);
-  day_ahead_mean_ = day_ahead.smoothed(options_.hour_smoothing);
+  hour_ = paid.smoothed(kHourSmoothing);
+  day_ahead_mean_ = day_ahead.smoothed(kHourSmoothing);
 }
 
 /// Regression slope of a day's mean height over d on that of the previous day.
@@ -194,7 +193,7 @@ void OutlookProgram::fit_levels(const MarketSteps& market, const std::vector<Mar
     squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
     count += 1;
   });
-  levels_ = levels_around(sum / count, squares / count, std::max(2, options_.levels));
+  levels_ = levels_around(sum / count, squares / count);
 }
 
 void OutlookProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
@@ -211,7 +210,7 @@ void OutlookProgram::fit_chain(const MarketSteps& market, const std::vector<Mark
                        step.utc_s == follows_utc_s});
     follows_utc_s = step.utc_s + kSecondsPerStep;
   });
-  chain_ = DeviationChain(samples, options_.bin_smoothing);
+  chain_ = DeviationChain(samples, kBinSmoothing);
 }
 
 void OutlookProgram::solve_usual_days() {

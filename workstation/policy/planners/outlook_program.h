@@ -33,13 +33,6 @@
 
 namespace bess {
 
-struct OutlookOptions {
-  int levels = 5;              ///< number of price levels with values
-  double gamma = 0.9995;       ///< discount per step
-  double hour_smoothing = 4;   ///< of h and d, quarter-hours
-  double bin_smoothing = 0.5;  ///< of the chain's counts, bins
-};
-
 class OutlookProgram {
  public:
   static constexpr int kSocPoints = 121;
@@ -67,7 +60,7 @@ class OutlookProgram {
   /// Fits on `days` of `market`; throws UserError without days, or if no step has a day-ahead
   /// price.
   OutlookProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
-                 const BatteryParameters& battery, const OutlookOptions& options = {});
+                 const BatteryParameters& battery);
 
   /// Known prices at this step, without values.
   [[nodiscard]] Plan plan_of(const MarketStep& step) const;
@@ -91,7 +84,7 @@ class OutlookProgram {
   [[nodiscard]] const ByQuarterHour& day_ahead_mean() const { return day_ahead_mean_; }
   [[nodiscard]] const DeviationChain& chain() const { return chain_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
-  [[nodiscard]] double gamma() const { return options_.gamma; }
+  [[nodiscard]] double gamma() const { return gamma_; }
   /// Most frequent age of the newest price at a decision on the fitted days.
   [[nodiscard]] int row_age_min() const { return row_age_min_; }
 
@@ -126,7 +119,7 @@ class OutlookProgram {
   const std::vector<float>& continuation_of(int level, Plan& plan) const;
 
   BatteryParameters battery_;
-  OutlookOptions options_;
+  double gamma_ = kProgramGamma;
   SocGrid grid_;
   ByQuarterHour hour_{}, day_ahead_mean_{};  ///< h, d
   Coefficients coefficients_;
@@ -145,8 +138,8 @@ OutlookModel outlook_integers(const OutlookProgram& program);
 class OutlookPolicy final : public Policy {
  public:
   OutlookPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
-                const BatteryParameters& battery, const OutlookOptions& options = {})
-      : program_(std::make_shared<const OutlookProgram>(market, days, battery, options)) {}
+                const BatteryParameters& battery)
+      : program_(std::make_shared<const OutlookProgram>(market, days, battery)) {}
   explicit OutlookPolicy(std::shared_ptr<const OutlookProgram> program)
       : program_(std::move(program)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override;

@@ -7,51 +7,6 @@
 
 namespace bess {
 
-double MeanByQuarterHour::weight() const {
-  double all = 0;
-  for (const double n : count) all += n;
-  return all;
-}
-
-std::array<double, kQuarterHourCount> MeanByQuarterHour::smoothed(double sigma) const {
-  constexpr int kReach = 24;  ///< quarter-hours, on both sides
-  std::array<double, kQuarterHourCount> mean{};
-  double all_sum = 0;
-  for (const double s : sum) all_sum += s;
-  for (int q = 0; q < kQuarterHourCount; ++q) {
-    double weighted = 0, weight = 0;
-    for (int d = -kReach; d <= kReach; ++d) {
-      const double k = smoothing_kernel(d, sigma);
-      const auto near = static_cast<std::size_t>((q + d + kQuarterHourCount) % kQuarterHourCount);
-      weighted += k * sum[near];
-      weight += k * count[near];
-    }
-    mean[static_cast<std::size_t>(q)] = weight > 0 ? weighted / weight : all_sum / this->weight();
-  }
-  return mean;
-}
-
-std::vector<double> levels_around(double mean, double mean_square, int count) {
-  constexpr double kReach = 3;  ///< standard deviations
-  const double deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
-  const int last = count - 1;
-  std::vector<double> levels;
-  for (int i = 0; i <= last; ++i) {
-    const double place = last == 0 ? 0.0 : 2.0 * i / last - 1;
-    levels.push_back(mean + place * kReach * std::max(1.0, deviation));
-  }
-  return levels;
-}
-
-DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level) {
-  const auto count = static_cast<int>(levels.size());
-  if (count == 1) return {0, 0};
-  const double step = levels[1] - levels[0];
-  const double x = std::clamp((level - levels[0]) / step, 0.0, count - 1.0);
-  const int lower = std::min(static_cast<int>(x), count - 2);
-  return {lower, x - lower};
-}
-
 namespace {
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -153,9 +108,8 @@ std::array<int, 2> paid_quarter_hours(int step) {
 }  // namespace
 
 StochasticProgram::StochasticProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
-                                     const BatteryParameters& battery,
-                                     const StochasticProgramOptions& options)
-    : battery_(battery), options_(options), grid_(battery, kSocPoints) {
+                                     const BatteryParameters& battery, double level_weight)
+    : battery_(battery), level_weight_(level_weight), grid_(battery, kSocPoints) {
   require_training_days(days.size());
   fit_usual(market, days);
   fit_chain(market, days);
@@ -164,8 +118,8 @@ StochasticProgram::StochasticProgram(const MarketSteps& market, const std::vecto
 
 void StochasticProgram::save(BinaryWriter& out) const {
   out.put(battery_);
-  out.put(options_.level_weight);
-  out.put(options_.gamma);
+  out.put(level_weight_);
+  out.put(gamma_);
   out.put(level_mean_);
   out.put(usual_);
   out.put(row_age_);
@@ -175,8 +129,8 @@ void StochasticProgram::save(BinaryWriter& out) const {
 
 StochasticProgram::StochasticProgram(BinaryReader& in)
     : battery_(in.take<BatteryParameters>()), grid_(battery_, kSocPoints) {
-  options_.level_weight = in.take<double>();
-  options_.gamma = in.take<double>();
+  level_weight_ = in.take<double>();
+  gamma_ = in.take<double>();
   level_mean_ = in.take<double>();
   usual_ = in.take<decltype(usual_)>();
   row_age_ = in.take<decltype(row_age_)>();
@@ -194,8 +148,7 @@ StochasticProgram::MarketState StochasticProgram::market_state_of(const MarketSt
 }
 
 double StochasticProgram::usual(int quarter_hour, double level) const {
-  return usual_[static_cast<std::size_t>(quarter_hour)] +
-         options_.level_weight * (level - level_mean_);
+  return usual_[static_cast<std::size_t>(quarter_hour)] + level_weight_ * (level - level_mean_);
 }
 
 double StochasticProgram::usual_paid(int step, double level) const {
@@ -218,8 +171,8 @@ void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<M
   for (int minute = 0; minute < kMinutesPerQuarterHour; ++minute) {
     row_age_[minute] = age_count[minute][1] > age_count[minute][0] ? 1 : 0;
   }
-  usual_ = paid.smoothed(options_.hour_smoothing);
-  levels_ = levels_around(level_mean_, level_squares / all, std::max(1, options_.levels));
+  usual_ = paid.smoothed(kHourSmoothing);
+  levels_ = levels_around(level_mean_, level_squares / all);
 }
 
 void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
@@ -233,11 +186,11 @@ void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<M
          step.paid_eur_per_mwh - usual_paid(at.step_of_day, level), step.utc_s == follows_utc_s});
     follows_utc_s = step.utc_s + kSecondsPerStep;
   });
-  chain_ = DeviationChain(samples, options_.bin_smoothing);
+  chain_ = DeviationChain(samples, kBinSmoothing);
 }
 
 void StochasticProgram::solve() {
-  const StorageRecursion recursion(battery_, grid_, options_.gamma);
+  const StorageRecursion recursion(battery_, grid_, gamma_);
   continuation_.assign(levels_.size() * kStepsPerDay * kBins * kSocPoints, 0.0F);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     std::vector<float> value(std::size_t{kBins} * kSocPoints, 0.0F);

@@ -23,35 +23,6 @@
 
 namespace bess {
 
-// Weight of a neighbour in a smoothed mean.
-
-/// Gaussian, not normalised; `sigma` in the same steps as `distance`, 0: no smoothing.
-inline double smoothing_kernel(int distance, double sigma) {
-  if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
-  return std::exp(-0.5 * distance * distance / (sigma * sigma));
-}
-
-/// Sums by local quarter-hour, for a smoothed mean.
-struct MeanByQuarterHour {
-  std::array<double, kQuarterHourCount> sum{}, count{};
-
-  void add(int quarter_hour, double value) {
-    sum[static_cast<std::size_t>(quarter_hour)] += value;
-    count[static_cast<std::size_t>(quarter_hour)] += 1;
-  }
-  [[nodiscard]] double weight() const;
-  /// Where no quarter-hour within reach has a value: the mean of all.
-  [[nodiscard]] std::array<double, kQuarterHourCount> smoothed(double sigma) const;
-};
-
-// Price levels with values, and the present level between them.
-
-/// `count` levels, evenly spaced within three standard deviations of the mean; a single one is the
-/// mean.
-std::vector<double> levels_around(double mean, double mean_square, int count);
-
-DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
-
 // Backward step of the stochastic programs: present value of stored energy, by bin of the deviation
 // and point of the SoC grid, from the value one step later.
 //   ahead[b][i] = gamma * sum over b' of P(b' | b, phase) * value[b'][i]
@@ -92,13 +63,7 @@ class StorageRecursion {
   std::array<std::array<Direction, 2>, 2> directions_;  ///< of usual and of cold hours
 };
 
-struct StochasticProgramOptions {
-  double level_weight = 0.6;   ///< w; 0: the usual price depends on the hour only
-  int levels = 5;              ///< number of price levels with values
-  double gamma = 0.9995;       ///< discount per step
-  double hour_smoothing = 4;   ///< of the usual price, quarter-hours
-  double bin_smoothing = 0.5;  ///< of the counts, bins
-};
+inline constexpr double kLevelWeight = 0.6;  ///< w; 0: the usual price depends on the hour only
 
 class StochasticProgram {
  public:
@@ -116,7 +81,7 @@ class StochasticProgram {
 
   /// Fits on `days` of `market`; throws UserError without days.
   StochasticProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
-                    const BatteryParameters& battery, const StochasticProgramOptions& options = {});
+                    const BatteryParameters& battery, double level_weight = kLevelWeight);
 
   /// Fitted values only: reading recomputes the rest, bit-identical.
   void save(BinaryWriter& out) const;
@@ -138,7 +103,7 @@ class StochasticProgram {
   /// points [kSocPoints] after it, EUR.
   [[nodiscard]] double expected_price(const MarketState& at) const;
   void continuation(const MarketState& at, float* value_eur) const;
-  [[nodiscard]] double gamma() const { return options_.gamma; }
+  [[nodiscard]] double gamma() const { return gamma_; }
   [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
 
@@ -163,7 +128,8 @@ class StochasticProgram {
   }
 
   BatteryParameters battery_;
-  StochasticProgramOptions options_;
+  double level_weight_ = 0;
+  double gamma_ = kProgramGamma;
   SocGrid grid_;
   std::array<double, kQuarterHourCount> usual_{};  ///< EUR/MWh at the mean level
   std::array<int, kMinutesPerQuarterHour>
@@ -178,9 +144,8 @@ class StochasticProgram {
 class StochasticProgramPolicy final : public Policy {
  public:
   StochasticProgramPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
-                          const BatteryParameters& battery,
-                          const StochasticProgramOptions& options = {})
-      : program_(market, days, battery, options) {}
+                          const BatteryParameters& battery, double level_weight = kLevelWeight)
+      : program_(market, days, battery, level_weight) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
     const auto worth = program_.action_values(StochasticProgram::market_state_of(step), soc_frac);
     return argmax_action(worth.data());

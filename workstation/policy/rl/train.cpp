@@ -172,12 +172,11 @@ std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
                                                      const BatteryParameters& battery,
                                                      ContextKind context) {
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
-  StochasticProgramOptions options;
-  if (context == ContextKind::kMonth) options.level_weight = 0;
+  const double level_weight = context == ContextKind::kMonth ? 0 : kLevelWeight;
   return std::make_shared<const StochasticProgram>(
       market, training,
-      battery_with_shadow_price<StochasticProgramPolicy>(market, training, battery, options),
-      options);
+      battery_with_shadow_price<StochasticProgramPolicy>(market, training, battery, level_weight),
+      level_weight);
 }
 
 /// Program with an outlook, and classes of its break-even prices.
@@ -190,7 +189,7 @@ void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, in
   }
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   const BatteryParameters mindful =
-      battery_with_shadow_price<OutlookPolicy>(market, training, battery, OutlookOptions{});
+      battery_with_shadow_price<OutlookPolicy>(market, training, battery);
   set_outlook(std::make_shared<const OutlookProgram>(market, training, mindful), teacher);
   // Every validation trades the same days.
   const std::vector<MarketDay> validation = market.days_of(Split::kValidation);

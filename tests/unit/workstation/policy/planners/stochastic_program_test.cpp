@@ -14,8 +14,7 @@ namespace {
 
 double profit(const MarketSteps& market, Split split, bool carry_soc, double level_weight,
               const BatteryParameters& battery = {}) {
-  StochasticProgramPolicy policy(market, market.days_of(Split::kTrain), battery,
-                                 {.level_weight = level_weight});
+  StochasticProgramPolicy policy(market, market.days_of(Split::kTrain), battery, level_weight);
   return evaluate(market, market.days_of(split), policy,
                   {.battery = battery, .carry_soc = carry_soc})
       .profit_eur_per_day_per_mwh();
