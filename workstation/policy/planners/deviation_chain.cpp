@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kSmoothedBins = 3;  ///< reach of the smoothing, on both sides
 
-/// Weight of a neighbour in a smoothed mean: Gaussian, not normalised; `sigma` in the same steps as `distance`, 0: no smoothing.
+/// Weight of a neighbour in a smoothed mean: Gaussian, not normalised; `sigma` in the same steps as
+/// `distance`, 0: no smoothing.
 double smoothing_kernel(int distance, double sigma) {
   if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
   return std::exp(-0.5 * distance * distance / (sigma * sigma));
