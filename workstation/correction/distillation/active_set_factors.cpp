@@ -102,10 +102,6 @@ void VariableGroups::swap_columns(Eigen::Index one, Eigen::Index other) {
   std::swap(of_column_[static_cast<std::size_t>(one)], of_column_[static_cast<std::size_t>(other)]);
 }
 
-void VariableGroups::move_column_back(Eigen::Index from, Eigen::Index to) {
-  for (Eigen::Index column = from; column < to; ++column) swap_columns(column, column + 1);
-}
-
 namespace {
 
 constexpr double kRounding = 4e-16;  ///< smaller entries of d (|d| <= 1) are 0
@@ -326,12 +322,12 @@ void ActiveSetFactors::turn_columns(std::size_t k) {
 void ActiveSetFactors::close_gap(Eigen::Index gap) {
   for (Eigen::Index column = gap; column + 1 < active_; ++column) {
     basis_.col(column).swap(basis_.col(column + 1));
+    groups_.swap_columns(column, column + 1);
     double* const to = triangle_.col(column).data();
     const double* const from = triangle_.col(column + 1).data();
     std::copy_n(from, gap, to);
     std::copy(from + gap + 1, from + column + 2, to + gap);
   }
-  groups_.move_column_back(gap, active_ - 1);
 }
 
 }  // namespace bess

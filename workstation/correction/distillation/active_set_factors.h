@@ -55,8 +55,6 @@ class VariableGroups {
   void tie(std::span<const int> groups);
   /// Swaps two columns.
   void swap_columns(Eigen::Index one, Eigen::Index other);
-  /// Moves column `from` to `to`; those between move up.
-  void move_column_back(Eigen::Index from, Eigen::Index to);
 
  private:
   using Words = std::vector<std::uint64_t>;  ///< one bit per member, words_ words per group

@@ -1,26 +1,17 @@
-
 #include "workstation/correction/rules/demand.h"
-
-#include <array>
-
-/// Every kind of demand, in the order in which error messages list the keys. NAME_kind() is in
-/// NAME_demand.cpp.
-#define BESS_DEMAND_KINDS(ROW) \
-  ROW(action)                  \
-  ROW(direction)               \
-  ROW(power)                   \
-  ROW(threshold)
 
 namespace bess {
 
-#define BESS_DECLARE(name) DemandKind name##_kind();
-BESS_DEMAND_KINDS(BESS_DECLARE)
-#undef BESS_DECLARE
+// Each is in the NAME_demand.cpp of its name.
+DemandKind action_kind();
+DemandKind direction_kind();
+DemandKind power_kind();
+DemandKind threshold_kind();
 
+/// Every kind of demand, in the order in which error messages list the keys.
 std::span<const DemandKind> demand_kinds() {
-#define BESS_LIST(name) name##_kind(),
-  static const auto kKinds = std::to_array<DemandKind>({BESS_DEMAND_KINDS(BESS_LIST)});
-#undef BESS_LIST
+  static const DemandKind kKinds[] = {action_kind(), direction_kind(), power_kind(),
+                                      threshold_kind()};
   return kKinds;
 }
 

@@ -22,10 +22,8 @@ class Policy {
 
   /// Called before each run of consecutive steps that starts at `soc_frac`. Only foresight, which
   /// is a bound and not a policy, uses `ahead`.
-  virtual void begin(std::span<const MarketStep> ahead, double soc_frac) {
-    (void)ahead;
-    (void)soc_frac;
-  }
+  virtual void begin(std::span<const MarketStep> /*ahead*/, double /*soc_frac*/) {}
+
   /// True for foresight only: with the SoC carried over, evaluate() plans and runs the whole series
   /// (evaluate.h).
   [[nodiscard]] virtual bool sees_future() const { return false; }
@@ -35,9 +33,8 @@ class Policy {
   [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
                                       double soc_frac) const = 0;
   /// Usable share of the rated power, 0..1.
-  [[nodiscard]] virtual double power_share_max(const MarketStep& step, double soc_frac) const {
-    (void)step;
-    (void)soc_frac;
+  [[nodiscard]] virtual double power_share_max(const MarketStep& /*step*/,
+                                               double /*soc_frac*/) const {
     return 1;
   }
 };
