@@ -13,7 +13,7 @@ constexpr std::uint64_t kSeed = 1;
 const MinuteSeries& year_of_minutes() {
   static const MinuteSeries series = [] {
     const std::int64_t start = utc_from_civil({2023, 1, 1, 0, 0, 0}) - 3600;
-    const SimulationPeriod period{start, start + std::int64_t{365} * 86'400};
+    const UtcSpan period{start, start + std::int64_t{365} * 86'400};
     return minutes_on_quarter_hours(simulate_quarter_hours(period, kSeed), kSeed);
   }();
   return series;

@@ -28,8 +28,8 @@ void run_prices_simulate(const PricesSimulateArguments& options) {
   require_distinct({{"--out", options.out}, {"--day-ahead-out", options.day_ahead_out}}, {});
   require_writable(options.out);
   if (!options.day_ahead_out.empty()) require_writable(options.day_ahead_out);
-  const SimulationPeriod period{local_midnight_utc_s(start),
-                                local_midnight_utc_s(add_days(start, options.days))};
+  const UtcSpan period{local_midnight_utc_s(start),
+                       local_midnight_utc_s(add_days(start, options.days))};
   const std::vector<QuarterHour> quarter_hours = simulate_quarter_hours(period, options.seed);
   const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, options.seed);
   write_minute_file(

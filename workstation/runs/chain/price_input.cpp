@@ -23,8 +23,7 @@ constexpr std::uint64_t kSeed = 1;
 }  // namespace
 
 MinuteSeries built_in_market() {
-  const SimulationPeriod period{local_midnight_utc_s(kStart),
-                                local_midnight_utc_s(add_days(kStart, kDays))};
+  const UtcSpan period{local_midnight_utc_s(kStart), local_midnight_utc_s(add_days(kStart, kDays))};
   return minutes_on_quarter_hours(simulate_quarter_hours(period, kSeed), kSeed);
 }
 

@@ -22,8 +22,7 @@ namespace bess {
 inline const MarketSteps& small_market() {
   static const MarketSteps market = [] {
     set_market_time_zone();
-    const SimulationPeriod period{local_midnight_utc_s({2023, 1, 1}),
-                                  local_midnight_utc_s({2023, 3, 1})};
+    const UtcSpan period{local_midnight_utc_s({2023, 1, 1}), local_midnight_utc_s({2023, 3, 1})};
     return make_market_steps(minutes_on_quarter_hours(simulate_quarter_hours(period, 3), 3), {});
   }();
   return market;

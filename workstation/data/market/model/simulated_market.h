@@ -11,6 +11,7 @@
 #include "workstation/data/market/model/market_parameters.h"
 #include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/series/day_ahead.h"
+#include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {
@@ -65,13 +66,8 @@ MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_ho
 DayAheadSeries simulate_day_ahead(const std::vector<QuarterHour>& quarter_hours,
                                   std::uint64_t seed);
 
-struct SimulationPeriod {
-  std::int64_t start_utc_s;  ///< a local midnight
-  std::int64_t end_utc_s;    ///< exclusive
-};
-
-/// Needs the market's time zone (set_market_time_zone). The same seed gives the same market on
-/// every machine.
-std::vector<QuarterHour> simulate_quarter_hours(const SimulationPeriod& period, std::uint64_t seed);
+/// `period` starts at a local midnight. Needs the market's time zone (set_market_time_zone). The same
+/// seed gives the same market on every machine.
+std::vector<QuarterHour> simulate_quarter_hours(const UtcSpan& period, std::uint64_t seed);
 
 }  // namespace bess

@@ -93,8 +93,7 @@ inline std::string resealed(std::string bytes) {
 
 inline MarketSteps simulated_market(const LocalDate& first, int days) {
   set_market_time_zone();
-  const SimulationPeriod period{local_midnight_utc_s(first),
-                                local_midnight_utc_s(add_days(first, days))};
+  const UtcSpan period{local_midnight_utc_s(first), local_midnight_utc_s(add_days(first, days))};
   return make_market_steps(minutes_on_quarter_hours(simulate_quarter_hours(period, 5), 5), {});
 }
 

@@ -37,7 +37,7 @@ constexpr double kLateMinuteErrorMax = 2.5;  ///< from minute 12 on; the two day
 constexpr std::array<std::array<double, 2>, 5> kMinuteErrors{
     {{80.8, 32.0}, {41.9, 8.3}, {21.7, 9.4}, {17.0, 7.5}, {4.3, 2.0}}};
 
-SimulationPeriod year_2023() {
+UtcSpan year_2023() {
   return {local_midnight_utc_s({2023, 1, 1}), local_midnight_utc_s({2024, 1, 1})};
 }
 
@@ -114,8 +114,7 @@ TEST(SimulatedMarketYear, HasDailyAndSeasonalShape) {
 }
 
 TEST(SimulatedMarketYear, SeedDecidesEverything) {
-  const SimulationPeriod week{local_midnight_utc_s({2023, 3, 20}),
-                              local_midnight_utc_s({2023, 3, 27})};
+  const UtcSpan week{local_midnight_utc_s({2023, 3, 20}), local_midnight_utc_s({2023, 3, 27})};
   const auto first = simulate_quarter_hours(week, 5);
   const auto again = simulate_quarter_hours(week, 5);
   const auto other = simulate_quarter_hours(week, 6);
@@ -129,8 +128,7 @@ TEST(SimulatedMarketYear, SeedDecidesEverything) {
 }
 
 TEST(SimulatedMarketYear, PricesAreWholeCents) {
-  const SimulationPeriod period{local_midnight_utc_s({2023, 1, 1}),
-                                local_midnight_utc_s({2023, 1, 8})};
+  const UtcSpan period{local_midnight_utc_s({2023, 1, 1}), local_midnight_utc_s({2023, 1, 8})};
   const MinuteSeries series = minutes_on_quarter_hours(simulate_quarter_hours(period, 1), 1);
   for (std::size_t m = 0; m < series.size(); ++m) {
     for (const double price : {series.indicative[m], series.settled[m]}) {
