@@ -113,8 +113,8 @@ struct Learning {
 
 /// The teacher's file names its prices and training days; so does its student's.
 Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
-  TrainResult trained =
-      train_teacher(fold.market, of.config.battery, of.config.train, interruption());
+  TrainResult trained = train_teacher(fold.market, of.config.battery, of.config.train,
+                                      [] { return interruption().load(); });
   const std::vector<MarketDay> days = fold.market.fitted_days();
   trained.teacher.provenance =
       fmt::format("{}, days {} to {}", training_provenance(of.prices, of.config.train, trained),

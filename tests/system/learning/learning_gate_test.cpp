@@ -16,7 +16,7 @@ namespace bess {
 namespace {
 
 TrainResult train_by_default(const MarketSteps& market, const RunConfig& config) {
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   TrainResult result = train_teacher(market, config.battery, config.train, interrupted);
   fmt::print("trained for {:.0f} s, kept at step {} of {}\n", result.seconds, result.best_step,
              config.train.steps);

@@ -497,11 +497,4 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   return training.take_result();
 }
 
-TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options, const std::atomic<bool>& interrupted,
-                          const CheckpointOptions& checkpoint) {
-  const auto is_raised = [&interrupted] { return interrupted.load(); };
-  return train_teacher(market, battery, options, is_raised, checkpoint);
-}
-
 }  // namespace bess

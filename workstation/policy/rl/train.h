@@ -4,7 +4,6 @@
 // of daily episodes). Validation days, SoC carried over, select the kept weights (kept_point).
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -133,10 +132,6 @@ struct CheckpointUnusable : UserError {
 /// (runs/chain/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::function<bool()>& interrupted,
-                          const CheckpointOptions& checkpoint = {});
-/// The same, ended by a flag that a signal sets.
-TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options, const std::atomic<bool>& interrupted,
                           const CheckpointOptions& checkpoint = {});
 
 }  // namespace bess

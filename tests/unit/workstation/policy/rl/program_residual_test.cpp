@@ -205,7 +205,7 @@ TEST(ProgramResidual, ValidationHasTheProgramAsItsFirstCandidate) {
   options.batch_size = 96;
   options.steps = 60;
   options.validate_every = 30;
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   const TrainResult result = train_teacher(market(), {}, options, interrupted);
   options.method = Method::kSdp;
   const TrainResult program = train_teacher(market(), {}, options, interrupted);

@@ -51,7 +51,7 @@ TrainOptions options_of(const TrainCase& c) {
 }
 
 TrainResult train(const TrainOptions& options) {
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   return train_teacher(small_market(), {}, options, interrupted);
 }
 
@@ -114,7 +114,7 @@ TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
   const TrainResult broken_off =
       train_teacher(small_market(), {}, options, interrupted_after(options.steps / 2 + 7), first);
   ASSERT_LT(broken_off.curve.size(), whole.curve.size());  // between two validations
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   const CheckpointOptions second{first.path, true, "this run"};
   const TrainResult resumed = train_teacher(small_market(), {}, options, interrupted, second);
   EXPECT_EQ(resumed.teacher.parameters, whole.teacher.parameters);
@@ -149,7 +149,7 @@ TEST(Train, LearnsToEarn) {
 }
 
 TEST(Train, InterruptedBeforeTheStartReturnsNothingValidated) {
-  const std::atomic<bool> interrupted = true;
+  const auto interrupted = [] { return true; };
   const TrainResult result = train_teacher(small_market(), {}, small_options(), interrupted);
   EXPECT_TRUE(result.curve.empty());
   EXPECT_EQ(result.best_step, 0);
@@ -178,7 +178,7 @@ TEST(Train, MissingDaysAreNamedWithTheRemedy) {
                {"training only", {2023, 1, 2}, 4, true},
                {"test only", {2023, 1, 27}, 3, true},
                {"validation and test", {2023, 1, 24}, 5, false}};
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   for (const auto& c : cases) {
     const MarketSteps market = simulated_market(c.first, c.days);
     const std::string message =
@@ -191,7 +191,7 @@ TEST(Train, MissingDaysAreNamedWithTheRemedy) {
 TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.checkpoint");
-  const std::atomic<bool> interrupted = false;
+  const auto interrupted = [] { return false; };
   TrainOptions options = small_options();
   options.steps = 30;
   const auto refusal = [&](const std::string& identity) {
