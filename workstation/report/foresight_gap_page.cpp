@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/ruled_policy.h"
+#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/policy_map.h"
-#include "workstation/report/page_data.h"
 
 namespace bess {
 namespace {
@@ -154,6 +155,14 @@ std::string moment_html(const DayLoss& day, double capacity_mwh) {
       number(m.eur / capacity_mwh));
 }
 
+/// Days by profit gap, largest first.
+std::vector<const DayLoss*> by_missed(const std::vector<DayLoss>& losses) {
+  std::vector<const DayLoss*> order;
+  for (const DayLoss& day : losses) order.push_back(&day);
+  std::ranges::stable_sort(order, std::ranges::greater{}, &DayLoss::missed_eur);
+  return order;
+}
+
 std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   std::string text =
       "<figure id=\"lost-days\"><figcaption>Worst days<small>largest gap to perfect "
@@ -235,33 +244,18 @@ PictureTable day_table(const std::vector<DayLoss>& losses, double capacity_mwh) 
 }  // namespace
 
 std::vector<DayLoss> losses_of(const ReportInputs& in) {
-  if (in.corrected == nullptr && in.uncorrected == nullptr) return {};
-  const ShownPolicy shown = std::move(shown_policies(in).front());
-  LossChain chain{*shown.policy};
-  std::shared_ptr<StudentPolicy> plain;
-  std::unique_ptr<RuledPolicy> under_rules;
-  if (in.corrected != nullptr && in.uncorrected != nullptr) {
-    plain = std::make_shared<StudentPolicy>(in.uncorrected->net, in.uncorrected->outlook);
-    chain.plain = plain.get();
-    const RuleSet rules = projected_rules(in.corrected->certificate.rules);
-    if (!rules.empty()) {
-      under_rules = std::make_unique<RuledPolicy>(plain, rules, in.uncorrected->net.context);
-      chain.under_rules = under_rules.get();
-    }
-  }
+  const std::unique_ptr<Policy> exported = exported_policy(in.corrected);
+  const auto plain = std::make_shared<StudentPolicy>(in.uncorrected.net, in.uncorrected.outlook);
+  LossChain chain{.policy = *exported, .plain = plain.get()};
+  std::optional<RuledPolicy> under_rules;
+  const RuleSet rules = projected_rules(in.corrected.certificate.rules);
+  if (!rules.empty())
+    chain.under_rules = &under_rules.emplace(plain, rules, in.uncorrected.net.context);
   return foresight_gap(in.market, in.market.days_of(Split::kTest), chain, in.battery,
                        in.initial_soc_frac);
 }
 
-std::vector<const DayLoss*> by_missed(const std::vector<DayLoss>& losses) {
-  std::vector<const DayLoss*> order;
-  for (const DayLoss& day : losses) order.push_back(&day);
-  std::ranges::stable_sort(order, std::ranges::greater{}, &DayLoss::missed_eur);
-  return order;
-}
-
 std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
-  if (losses.empty()) return {};
   const Means means(losses, capacity_mwh);
   return fmt::format(
              "<p>Perfect foresight would have earned {} EUR per day per MWh of capacity more.</p>\n"
@@ -282,7 +276,6 @@ std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capaci
 
 std::vector<PictureTable> foresight_gap_tables(const std::vector<DayLoss>& losses,
                                                double capacity_mwh) {
-  if (losses.empty()) return {};
   return {cause_table(losses, capacity_mwh), hour_table(losses, capacity_mwh),
           day_table(losses, capacity_mwh)};
 }

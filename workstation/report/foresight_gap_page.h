@@ -10,14 +10,10 @@
 
 namespace bess {
 
-/// Losses of the exported policy, or of another own student, over the test days; empty without a
-/// student.
+/// Losses of the exported policy over the test days.
 std::vector<DayLoss> losses_of(const ReportInputs& inputs);
 
-/// Days by profit gap, largest first.
-std::vector<const DayLoss*> by_missed(const std::vector<DayLoss>& losses);
-
-/// Empty without losses. EUR per MWh of capacity.
+/// EUR per MWh of capacity.
 std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capacity_mwh);
 
 /// Data of foresight_gap_html: lost_causes, lost_hours, lost_days (all days).

@@ -108,9 +108,8 @@ PictureTable map_table(const ReportInputs& in) {
                       "price_from_eur_per_mwh", "price_to_eur_per_mwh", "action"},
                      {}};
   const PolicyContext context = first_map(in);
-  const auto add = [&](const char* name, const StudentFile* student) {
-    if (student == nullptr) return;
-    const ActionGrid grid = student_grid(student->net, context);
+  const auto add = [&](const char* name, const StudentNet& net) {
+    const ActionGrid grid = student_grid(net, context);
     const auto prices = static_cast<int>(grid.size()) / kSocCount;
     for (int soc = 0; soc < kSocCount; ++soc) {
       const std::int8_t* row = &grid[static_cast<std::size_t>(soc) * prices];
@@ -127,8 +126,8 @@ PictureTable map_table(const ReportInputs& in) {
       }
     }
   };
-  if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
-  add(kPlainName, in.uncorrected);
+  add(own_student_name(in.corrected.certificate), in.corrected.net);
+  add(kPlainName, in.uncorrected.net);
   return table;
 }
 
@@ -148,32 +147,6 @@ std::string teacher_name(const Teacher& teacher) {
 
 const char* own_student_name(const Certificate& certificate) {
   return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;
-}
-
-std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
-  std::vector<ShownPolicy> policies;
-  if (in.corrected) {
-    policies.push_back(
-        {own_student_name(in.corrected->certificate), exported_policy(*in.corrected)});
-  }
-  if (in.uncorrected) {
-    policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net,
-                                                                    in.uncorrected->outlook)});
-  }
-  if (in.teacher) policies.push_back({"teacher", std::make_unique<TeacherPolicy>(*in.teacher)});
-  if (policies.empty()) {
-    policies.push_back(
-        {"rule-based controller",
-         std::make_unique<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh)});
-  }
-  return policies;
-}
-
-double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
-  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-  const EvaluationOptions options{.battery = battery, .carry_soc = true};
-  return evaluate(market, market.days_of(Split::kValidation), rule, options)
-      .profit_eur_per_day_per_mwh();
 }
 
 namespace {
@@ -203,12 +176,16 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
 /// Day-reset accounting, as in the section on the profit gap.
 std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
   std::vector<PolicySteps> all;
-  for (const ShownPolicy& shown : shown_policies(in)) {
-    PolicySteps steps{shown.name, {}};
-    evaluate(in.market, days, *shown.policy, {in.battery, in.initial_soc_frac, false},
-             &steps.records);
-    all.push_back(std::move(steps));
-  }
+  const auto add = [&](const std::string& name, Policy& policy) {
+    all.push_back({name, {}});
+    evaluate(in.market, days, policy, {in.battery, in.initial_soc_frac, false},
+             &all.back().records);
+  };
+  StudentPolicy plain(in.uncorrected.net, in.uncorrected.outlook);
+  TeacherPolicy teacher(in.teacher);
+  add(own_student_name(in.corrected.certificate), *exported_policy(in.corrected));
+  add(kPlainName, plain);
+  add("teacher", teacher);
   return all;
 }
 
@@ -235,6 +212,15 @@ std::vector<double> against_foresight(const ReportInputs& in, std::vector<double
   return profits;
 }
 
+/// Class of a step; by outlook for a battery in the middle of its SoC window.
+int context_class_of(const ReportInputs& in, const MarketStep& step) {
+  const StudentFile& student = in.corrected;
+  const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
+  return student.net.context.class_of(
+      step.month, student.outlook ? student.outlook->break_even_centi(step, middle_frac)
+                                  : step.level_centi_eur_per_mwh);
+}
+
 Json archive_json(const ReportInputs& in, const PageSteps& steps) {
   Json archive = step_archive(in.market, steps.days, steps.policies, steps.kept,
                               [&](const MarketStep& step) { return context_class_of(in, step); });
@@ -251,15 +237,28 @@ Json layer_json(const Affine<kInputs, kOutputs>& layer) {
   return Json::object({{"weight", std::move(weight)}, {"bias", std::span(layer.bias)}});
 }
 
-Json students_json(const ReportInputs& in) {
-  Json students = Json::list();
-  const auto add = [&](const char* name, const StudentFile* student) {
-    if (student == nullptr) return;
-    students.add(Json::object({{"name", name}, {"net", student_json(student->net)}}));
-  };
-  if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
-  add(kPlainName, in.uncorrected);
-  return students;
+/// Integers of a net.
+Json student_json(const char* name, const StudentNet& net) {
+  Json layer1 = layer_json(net.layer1);
+  layer1.set("shift", net.relu1.shift);
+  Json layer2 = layer_json(net.layer2);
+  layer2.set("shift", net.relu2.shift);
+  return Json::object({{"name", name},
+                       {"net", Json::object({{"price_map", std::span(net.price_map)},
+                                             {"layer1", std::move(layer1)},
+                                             {"layer2", std::move(layer2)},
+                                             {"layer3", layer_json(net.layer3)}})}});
+}
+
+/// Scales of the inputs of a net.
+Json lattice_json() {
+  return Json::object({{"minute_scale", kMinuteOfQuarterHourScale},
+                       {"quarter_hour_scale", kQuarterHourScale},
+                       {"context_scale", kContextClassScale},
+                       {"soc_scale", kSocScale},
+                       {"soc_count", kSocCount},
+                       {"price_min", kLatticePriceMinEurPerMwh},
+                       {"price_max", kLatticePriceMaxEurPerMwh}});
 }
 
 Json state_json(const LatticeState& s) {
@@ -275,11 +274,15 @@ Json broken_json(const ReportInputs& in) {
   });
 }
 
+/// Student whose counterexamples are shown: the corrected one if it has any, else the plain one.
+const Certificate& shown_as_wrong(const ReportInputs& in) {
+  const Certificate& corrected = in.corrected.certificate;
+  return corrected.counterexamples.empty() ? in.uncorrected.certificate : corrected;
+}
+
 Json counterexamples_json(const ReportInputs& in) {
   Json list = Json::list();
-  const StudentFile* wrong = shown_as_wrong(in);
-  if (wrong == nullptr) return list;
-  const auto& found = wrong->certificate.counterexamples;
+  const auto& found = shown_as_wrong(in).counterexamples;
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
   for (std::size_t i = 0; i < found.size(); i += stride) list.add(state_json(found[i]));
   return list;
@@ -295,6 +298,14 @@ Json contexts_json(const ContextClasses& classes) {
   Json contexts = Json::list();
   for (int c = 1; c <= kContextClassCount; ++c) contexts.add(context_text(classes, c));
   return contexts;
+}
+
+/// Profit of the paper's rule on the validation days, SoC carried over, as for the teacher.
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  const EvaluationOptions options{.battery = battery, .carry_soc = true};
+  return evaluate(market, market.days_of(Split::kValidation), rule, options)
+      .profit_eur_per_day_per_mwh();
 }
 
 Json learning_json(const ReportInputs& in) {
@@ -359,27 +370,6 @@ std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, 
   return order;
 }
 
-Json student_json(const StudentNet& net) {
-  Json layer1 = layer_json(net.layer1);
-  layer1.set("shift", net.relu1.shift);
-  Json layer2 = layer_json(net.layer2);
-  layer2.set("shift", net.relu2.shift);
-  return Json::object({{"price_map", std::span(net.price_map)},
-                       {"layer1", std::move(layer1)},
-                       {"layer2", std::move(layer2)},
-                       {"layer3", layer_json(net.layer3)}});
-}
-
-Json lattice_json() {
-  return Json::object({{"minute_scale", kMinuteOfQuarterHourScale},
-                       {"quarter_hour_scale", kQuarterHourScale},
-                       {"context_scale", kContextClassScale},
-                       {"soc_scale", kSocScale},
-                       {"soc_count", kSocCount},
-                       {"price_min", kLatticePriceMinEurPerMwh},
-                       {"price_max", kLatticePriceMaxEurPerMwh}});
-}
-
 PageSteps page_steps(const ReportInputs& in) {
   PageSteps steps{in.market.days_of(Split::kTest), {}, {}};
   steps.policies = all_steps(in, steps.days);
@@ -408,13 +398,12 @@ Json rivals_json() {
 
 Json page_data(const ReportInputs& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
-  const ContextClasses classes = context_classes_of(in);
+  const Certificate& certificate = in.corrected.certificate;
+  const ContextClasses& classes = in.corrected.net.context;
+  const char* const own_name = own_student_name(certificate);
   std::vector<std::string> dates;
   for (const MarketDay& day : days) dates.push_back(day.date());
-  const bool has_own = in.corrected != nullptr;
-  Json data = Json::object(
-      {{"exported", has_own ? own_student_name(in.corrected->certificate) : kCorrectedName},
-       {"foresight", kForesightName}});
+  Json data = Json::object({{"exported", own_name}, {"foresight", kForesightName}});
   data.set("battery", battery_json(in.battery));
   data.set("dates", Json::list_from(dates));
   data.set("marks", regime_marks(dates));
@@ -423,12 +412,13 @@ Json page_data(const ReportInputs& in, const PageSteps& steps) {
   data.set("archive", archive_json(in, steps));
   data.set("lattice", lattice_json());
   data.set("contexts", contexts_json(classes));
-  data.set("thresholds", thresholds_json(thresholds_of(in)));
-  data.set("students", students_json(in));
+  data.set("thresholds", thresholds_json(certificate.thresholds));
+  data.set("students", Json::list_of(student_json(own_name, in.corrected.net),
+                                     student_json(kPlainName, in.uncorrected.net)));
   data.set("counterexamples", counterexamples_json(in));
-  data.set("counterexamples_of", shown_as_wrong_name(in));
+  data.set("counterexamples_of", &shown_as_wrong(in) == &certificate ? own_name : kPlainName);
   data.set("broken", broken_json(in));
-  if (has_own) data.set("rules", rules_json(in.corrected->certificate.rules, classes.kind));
+  data.set("rules", rules_json(certificate.rules, classes.kind));
   data.set("first_map", map_json(first_map(in)));
   data.set("learning", learning_json(in));
   data.set("prices", prices_json(in.market));

@@ -35,10 +35,6 @@ inline constexpr std::size_t kWorstDaysKept = 25;
 /// Indices of the days to keep, ascending; `profit_eur` by day, in time order.
 std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, std::size_t most);
 
-/// Integers of a net, and scales of its inputs.
-Json student_json(const StudentNet& net);
-Json lattice_json();
-
 /// Steps of the run's own policies on the test days.
 struct PageSteps {
   std::vector<MarketDay> days;        ///< all test days
@@ -58,23 +54,10 @@ Json page_data(const ReportInputs& inputs, const PageSteps& steps);
 
 std::vector<PictureTable> page_pictures(const ReportInputs& inputs, const PageSteps& steps);
 
-// Own policies of a run: corrected (or unproved) student, plain student, teacher.
-
-struct ShownPolicy {
-  std::string name;
-  std::unique_ptr<Policy> policy;
-};
-
 /// Name of a run's teacher: "c51 teacher".
 std::string teacher_name(const Teacher& teacher);
 
 /// Name of a run's own student: kCorrectedName, or kUnprovedName if it has violations.
 const char* own_student_name(const Certificate& certificate);
-
-/// Available policies, end of the chain first; else the paper's rule. `inputs` must outlive them.
-std::vector<ShownPolicy> shown_policies(const ReportInputs& inputs);
-
-/// Profit of the paper's rule on the validation days, SoC carried over, as for the teacher.
-double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery);
 
 }  // namespace bess

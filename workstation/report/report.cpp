@@ -26,11 +26,6 @@ constexpr const char* kPage = "report.html";
 constexpr const char* kPageKind = "Battery arbitrage: trained, corrected and proved policy";
 constexpr const char* kFailedKind = "Battery arbitrage: trained policy, proof failed";
 
-/// Rules of the corrected student.
-RuleSet rules_of(const ReportInputs& in) {
-  return in.corrected ? in.corrected->certificate.rules : RuleSet{};
-}
-
 /// "8 MW, 16 MWh" or "4 kW, 8 kWh"
 std::string size_text(const BatteryParameters& battery) {
   const bool is_small = battery.power_w_max < 1e6;
@@ -66,12 +61,10 @@ std::string standing_html(const ReportInputs& in) {
 }
 
 std::string head_of(const ReportInputs& in) {
-  std::string text;
-  if (in.corrected) {
-    const bool proved = in.corrected->certificate.covers_lattice_without_violation();
-    text += fmt::format("<p class=\"verdict {}\">{}</p>\n", proved ? "proved" : "unproved",
-                        proof_sentence(in.corrected->certificate));
-  }
+  const Certificate& certificate = in.corrected.certificate;
+  const bool proved = certificate.covers_lattice_without_violation();
+  const std::string text = fmt::format("<p class=\"verdict {}\">{}</p>\n",
+                                       proved ? "proved" : "unproved", proof_sentence(certificate));
   const std::optional<Headline> headline = headline_of(in.evaluations);
   if (headline) return text + headline_html(*headline) + standing_html(in);
   return text + "<p>No corrected student was evaluated, so there is no policy to export.</p>\n";
@@ -81,10 +74,6 @@ std::string section_of(const std::string& id, const std::string& title, const st
   if (body.empty()) return {};
   return fmt::format("<section id=\"{}\" class=\"card\">\n<h2>{}</h2>\n{}</section>\n", id, title,
                      body);
-}
-
-const Certificate* certificate_of(const StudentFile* student) {
-  return student == nullptr ? nullptr : &student->certificate;
 }
 
 std::string same_program_html(const std::vector<NamedEvaluation>& evaluations) {
@@ -102,6 +91,8 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   const bool has_failed = !in.broken.empty();
+  const Certificate& plain = in.uncorrected.certificate;
+  const Certificate& corrected = in.corrected.certificate;
   return format_report_page(
       {{"title", html_escaped(title_of(in))},
        {"kind", has_failed ? kFailedKind : kPageKind},
@@ -114,56 +105,18 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
                        whole_battery_html(in.evaluations))},
        {"lost", section_of("lost", "Gap to perfect foresight",
                            foresight_gap_html(losses, capacity_mwh_of(in)))},
-       {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Gap to foresight</a></li>\n"},
+       {"lost_link", "<li><a href=\"#lost\">Gap to foresight</a></li>\n"},
        {"rules", section_of("rules", "Rules",
-                            rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
-                                       context_classes_of(in).kind, prices ? &*prices : nullptr))},
-       {"rules_link", rules_of(in).empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
-       {"proof",
-        section_of("proof", "Proof",
-                   proof_html(certificate_of(in.uncorrected), certificate_of(in.corrected)))},
+                            rules_html(plain, corrected, in.corrected.net.context.kind,
+                                       prices ? &*prices : nullptr))},
+       {"rules_link", corrected.rules.empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
+       {"proof", section_of("proof", "Proof", proof_html(plain, corrected))},
        {"provenance",
         section_of("provenance", "Provenance", provenance_html(facts, in.provenance))}},
       page_data(in, steps));
 }
 
 }  // namespace
-
-const StudentFile* shown_as_wrong(const ReportInputs& in) {
-  if (in.corrected != nullptr && !in.corrected->certificate.counterexamples.empty()) {
-    return in.corrected;
-  }
-  return in.uncorrected;
-}
-
-const char* shown_as_wrong_name(const ReportInputs& in) {
-  const StudentFile* wrong = shown_as_wrong(in);
-  return wrong == in.corrected && wrong != nullptr ? own_student_name(wrong->certificate)
-                                                   : kPlainName;
-}
-
-ContextClasses context_classes_of(const ReportInputs& in) {
-  if (in.corrected) return in.corrected->net.context;
-  if (in.uncorrected) return in.uncorrected->net.context;
-  return in.teacher ? in.teacher->context : ContextClasses{};
-}
-
-int context_class_of(const ReportInputs& in, const MarketStep& step) {
-  const StudentFile* student = in.corrected != nullptr ? in.corrected : in.uncorrected;
-  const std::shared_ptr<const PlanCache> plan_cache = student != nullptr ? student->outlook
-                                                      : in.teacher != nullptr
-                                                          ? in.teacher->plan_cache
-                                                          : nullptr;
-  const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
-  return context_classes_of(in).class_of(
-      step.month,
-      plan_cache ? plan_cache->break_even_centi(step, middle_frac) : step.level_centi_eur_per_mwh);
-}
-
-PriceThresholds thresholds_of(const ReportInputs& in) {
-  if (in.corrected) return in.corrected->certificate.thresholds;
-  return in.uncorrected ? in.uncorrected->certificate.thresholds : PriceThresholds{};
-}
 
 std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path& folder) {
   if (inputs.market.days_of(Split::kTest).empty()) {

@@ -25,27 +25,14 @@ struct ReportInputs {
   std::vector<CurvePoint> training_curve = {};      ///< may be empty
   std::vector<DistilPoint> distil_curve = {};       ///< may be empty
   std::vector<StudentCheckpoint> checkpoints = {};  ///< of the corrected student; may be empty
-  const Teacher* teacher = nullptr;                 ///< null pointers are omitted
-  const StudentFile* uncorrected = nullptr;         ///< both students with their certificate
-  const StudentFile* corrected = nullptr;
+  const Teacher& teacher;
+  const StudentFile& uncorrected;  ///< both students with their certificate
+  const StudentFile& corrected;
   std::vector<BrokenDemand> broken = {};  ///< of an unproved student
   WalkForwardOfRun walk_forward = {};
   std::string provenance = {};             ///< shown unchanged
   std::vector<ProvenanceLine> facts = {};  ///< date, host, inputs and command
 };
-
-/// Of the corrected student, else the uncorrected student, else the teacher.
-ContextClasses context_classes_of(const ReportInputs& inputs);
-/// Class of a step; by outlook for a battery in the middle of its SoC window.
-int context_class_of(const ReportInputs& inputs, const MarketStep& step);
-/// Price thresholds of the proof.
-PriceThresholds thresholds_of(const ReportInputs& inputs);
-
-/// Student whose counterexamples are shown: the corrected one if it has any, else the uncorrected
-/// one; may be null.
-const StudentFile* shown_as_wrong(const ReportInputs& inputs);
-/// Its name on the page.
-const char* shown_as_wrong_name(const ReportInputs& inputs);
 
 /// Writes report.html and a CSV file for each picture into `folder` atomically; returns their
 /// names. Throws UserError when writing fails, or without test days.

@@ -125,21 +125,20 @@ std::string capital(std::string text) {
   return text;
 }
 
-std::string rules_table(const Certificate* uncorrected, const Certificate& corrected,
+std::string rules_table(const Certificate& uncorrected, const Certificate& corrected,
                         ContextKind kind) {
   HtmlTable table{"Rules and their violations",
                   {"Rule", "Enforced by", "States", "Plain student: violations, %",
                    capital(own_student_name(corrected)) + ": violations"},
                   {}};
   const std::vector<DemandCount> after = demand_counts(corrected);
-  const std::vector<DemandCount> before =
-      uncorrected == nullptr ? std::vector<DemandCount>{} : demand_counts(*uncorrected);
+  const std::vector<DemandCount> before = demand_counts(uncorrected);
   for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
     const bool is_bound = after[d].binds_student;
     table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
                           held_by(corrected.rules.rules[d - kPropertyCount], kind),
                           text_or_dash(is_bound, grouped(after[d].states)),
-                          d < before.size() ? percent_broken(before[d]) : kNotThere,
+                          percent_broken(before[d]),
                           text_or_dash(is_bound, grouped(after[d].violations))});
   }
   return format_table(table);
@@ -175,17 +174,13 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
       html_escaped(reference_wear_meaning(configured_wear_eur_per_mwh(evaluations))));
 }
 
-std::string proof_html(const Certificate* uncorrected, const Certificate* corrected) {
-  HtmlTable table{"Violations before and after the correction",
-                  {"Student", "States checked", "Not charging at low price",
-                   "Not discharging at high price", "Pairs out of order"},
-                  {}};
-  if (uncorrected != nullptr) table.rows.push_back(proof_cells(kPlainName, *uncorrected));
-  if (corrected != nullptr) {
-    table.rows.push_back(proof_cells(own_student_name(*corrected), *corrected));
-  }
-  if (table.rows.empty()) return {};
-  const PriceThresholds t = (corrected != nullptr ? corrected : uncorrected)->thresholds;
+std::string proof_html(const Certificate& uncorrected, const Certificate& corrected) {
+  HtmlTable table{
+      "Violations before and after the correction",
+      {"Student", "States checked", "Not charging at low price", "Not discharging at high price",
+       "Pairs out of order"},
+      {proof_cells(kPlainName, uncorrected), proof_cells(own_student_name(corrected), corrected)}};
+  const PriceThresholds t = corrected.thresholds;
   return fmt::format(
       "{}<p class=\"note\">Checked over all lattice states of minute, quarter-hour, context class, "
       "SoC and price: charge at or below {} EUR/MWh{}, discharge at or above {}{}, and never more "
@@ -195,12 +190,12 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
       guard_alone_note(t.high_binds_student()));
 }
 
-std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
+std::string rules_html(const Certificate& uncorrected, const Certificate& corrected,
                        ContextKind kind, const RulePrices* prices) {
-  if (corrected == nullptr || corrected->rules.empty()) return {};
-  std::string text = rules_table(uncorrected, *corrected, kind);
+  if (corrected.rules.empty()) return {};
+  std::string text = rules_table(uncorrected, corrected, kind);
   std::string note = fmt::format("The plain student is checked on a sample, the {} in all states.",
-                                 own_student_name(*corrected));
+                                 own_student_name(corrected));
   if (prices != nullptr) {
     text += format_table("Effect of the rules", rule_prices_table(*prices));
     note += fmt::format(

@@ -33,8 +33,8 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations);
 /// Available accountings, with the meaning of the columns.
 std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
 
-/// Violations before and after; either may be null.
-std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
+/// Violations before and after.
+std::string proof_html(const Certificate& uncorrected, const Certificate& corrected);
 /// Broken demands of a failed proof; empty if none. Buttons have the index of the demand as
 /// data-broken.
 std::string failure_html(const std::vector<BrokenDemand>& broken);
@@ -43,7 +43,7 @@ std::string proof_sentence(const Certificate& certificate);
 
 /// Operator rules with demand, scope, violations and cost. Empty without rules; `kind` is the
 /// students' context; `prices` may be null.
-std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
+std::string rules_html(const Certificate& uncorrected, const Certificate& corrected,
                        ContextKind kind, const RulePrices* prices);
 
 /// Names and values, then `lines` unchanged.
