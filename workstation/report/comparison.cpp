@@ -14,8 +14,8 @@ namespace {
 
 const Evaluation* foresight_of(const std::vector<NamedEvaluation>& evaluations,
                                EvaluationField field, const NamedEvaluation* given) {
-  const auto found = std::ranges::find(evaluations, kForesightName, &NamedEvaluation::name);
-  const NamedEvaluation* bound = found == evaluations.end() ? given : &*found;
+  const NamedEvaluation* found = find_evaluation(evaluations, kForesightName);
+  const NamedEvaluation* bound = found == nullptr ? given : found;
   return bound == nullptr || (bound->*field).days.empty() ? nullptr : &(bound->*field);
 }
 
@@ -26,6 +26,18 @@ PairedDifference gain_of(const ComparisonRow& row) {
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
   return fmt::format("{}, {}; EUR per day per MWh of capacity\n{}", title,
                      counted(rows.front().days, "day"), figures_table(rows).text());
+}
+
+/// Treatment of the final charge in both accountings, as text with line ends.
+std::string charge_meaning(const NamedEvaluation& evaluations) {
+  std::string text;
+  if (!evaluations.day_reset.days.empty()) {
+    text =
+        "same SoC each day: the more favourable accounting, as the end of each day is not valued\n";
+  }
+  const Evaluation& carried = evaluations.carried_over;
+  if (!carried.values_charge_left()) return text;
+  return text + "carried over: " + charge_left_meaning(carried.charge_price_eur_per_mwh) + "\n";
 }
 
 constexpr const char* kComparisonCsvKeys =
@@ -41,6 +53,12 @@ constexpr const char* kComparisonAnswerKeys =
     "charge_value_eur_per_day_per_mwh";
 
 }  // namespace
+
+const NamedEvaluation* find_evaluation(const std::vector<NamedEvaluation>& evaluations,
+                                       std::string_view name) {
+  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
+  return found == evaluations.end() ? nullptr : &*found;
+}
 
 ComparisonRow comparison_row(const std::string& name, const Evaluation& evaluation,
                              const Evaluation* first, const Evaluation* foresight) {
@@ -105,7 +123,8 @@ Table figures_table(const std::vector<ComparisonRow>& rows) {
       {{"switches_per_day", "switches", "{:.1f}", 4, "Switches/day"}, &R::switches_per_day},
       {{key::kShareOfForesight, "foresight", "{:.1f} %", 6, "Of foresight"},
        [](const R& r) { return r.foresight_share.value_or(NAN); }},
-      {{kReferenceWearKey, kReferenceWearHead, "{:.1f}", 4, "At wear 10, EUR/day/MWh"},
+      {{"profit_at_wear_10_eur_per_day_per_mwh", kReferenceWearHead, "{:.1f}", 4,
+        "At wear 10, EUR/day/MWh"},
        &R::profit_at_reference_wear},
       {{"soc_end_frac_mean", "", "", 5}, &R::soc_end_frac_mean},
       {{"charge_price_eur_per_mwh", "", "", 4},
@@ -139,10 +158,11 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
         "cycles, switches: per day; foresight: share of the perfect-foresight profit\n",
         evaluations.front().name);
   }
-  text += fmt::format("by month: {}\n", by_month_meaning(months_of(evaluations)));
-  text += charge_meaning(evaluations);
+  const NamedEvaluation& first = evaluations.front();
+  text += fmt::format("by month: {}\n", by_month_meaning(first.any().errors().months));
+  text += charge_meaning(first);
   text += fmt::format("{}: {}\n", kReferenceWearHead,
-                      reference_wear_meaning(configured_wear_eur_per_mwh(evaluations)));
+                      reference_wear_meaning(first.any().wear_eur_per_mwh));
   for (const NamedEvaluation& named : evaluations) {
     if (!named.description.empty()) text += fmt::format("{}: {}\n", named.name, named.description);
   }
@@ -156,32 +176,11 @@ std::string charge_left_meaning(double price_eur_per_mwh) {
       price_eur_per_mwh);
 }
 
-std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations) {
-  const Evaluation& carried = evaluations.front().carried_over;
-  std::string text;
-  if (!evaluations.front().day_reset.days.empty()) {
-    text =
-        "same SoC each day: the more favourable accounting, as the end of each day is not valued\n";
-  }
-  if (!carried.values_charge_left()) return text;
-  return text + "carried over: " + charge_left_meaning(carried.charge_price_eur_per_mwh) + "\n";
-}
-
-int months_of(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation& any = evaluations.front();
-  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).errors().months;
-}
-
 std::string reference_wear_meaning(double wear_eur_per_mwh) {
   return fmt::format(
       "profit of the same decisions at a wear cost of {:g} EUR per MWh charged or discharged;\n"
       "other columns use the configured wear cost: {:g}",
       kReferenceWearEurPerMwh, wear_eur_per_mwh);
-}
-
-double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation& any = evaluations.front();
-  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).wear_eur_per_mwh;
 }
 
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,

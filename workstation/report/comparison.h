@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "workstation/base/table.h"
@@ -18,12 +19,20 @@ struct NamedEvaluation {
   Evaluation day_reset;
   Evaluation carried_over;
   std::string description{};  ///< fitted parameters; may be empty
+
+  /// One that was made: both have the same battery, wear and months.
+  [[nodiscard]] const Evaluation& any() const {
+    return day_reset.days.empty() ? carried_over : day_reset;
+  }
 };
+
+/// Null if there is none of this name.
+const NamedEvaluation* find_evaluation(const std::vector<NamedEvaluation>& evaluations,
+                                       std::string_view name);
 
 /// Reference wear cost: every table also shows the profit at this wear, to compare policies with
 /// different throughput.
 inline constexpr double kReferenceWearEurPerMwh = 10;
-inline constexpr const char* kReferenceWearKey = "profit_at_wear_10_eur_per_day_per_mwh";
 
 /// One row of a table, in EUR per day per MWh of capacity.
 struct ComparisonRow {
@@ -67,19 +76,10 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
 
 /// Valuation of the final charge, as text.
 std::string charge_left_meaning(double price_eur_per_mwh);
-/// Treatment of the final charge in both accountings, as text with line ends.
-std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations);
-
-/// Number of months of the days, which are the same for all.
-int months_of(const std::vector<NamedEvaluation>& evaluations);
-
 /// Head of its column.
 inline constexpr const char* kReferenceWearHead = "at wear 10";
 /// Meaning of the profit at the reference wear, as text; `wear_eur_per_mwh` is configured.
 std::string reference_wear_meaning(double wear_eur_per_mwh);
-/// Wear cost included in the profits.
-double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations);
-
 /// Header `policy,soc,days,...`; an empty field is "not applicable".
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
                            const NamedEvaluation* foresight = nullptr);

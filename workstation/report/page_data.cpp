@@ -202,8 +202,8 @@ std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const Pol
 
 /// Profits minus those of perfect foresight, if evaluated: the ranking of days on the page.
 std::vector<double> against_foresight(const ReportInputs& in, std::vector<double> profits) {
-  const auto bound = std::ranges::find(in.evaluations, kForesightName, &NamedEvaluation::name);
-  if (bound == in.evaluations.end() || bound->day_reset.days.size() != profits.size()) {
+  const NamedEvaluation* bound = find_evaluation(in.evaluations, kForesightName);
+  if (bound == nullptr || bound->day_reset.days.size() != profits.size()) {
     return profits;
   }
   for (std::size_t d = 0; d < profits.size(); ++d) {

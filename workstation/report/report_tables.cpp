@@ -16,19 +16,8 @@ namespace bess {
 
 namespace {
 
-constexpr const char* kNoFigure = "\u2013";
 constexpr const char* kProgramAsTeacher = "sdp teacher";
 constexpr std::string_view kTeacherEnd = " teacher";  ///< end of its name
-
-const NamedEvaluation* evaluation_named(const std::vector<NamedEvaluation>& evaluations,
-                                        std::string_view name) {
-  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() ? nullptr : &*found;
-}
-
-double capacity_mwh_in(const NamedEvaluation& any) {
-  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).capacity_mwh;
-}
 
 /// "8 MWh", "8 kWh".
 std::string capacity_text(double capacity_mwh) {
@@ -38,7 +27,7 @@ std::string capacity_text(double capacity_mwh) {
 
 /// EUR per day of the whole battery.
 std::string eur_per_day(const Evaluation& evaluation) {
-  if (evaluation.days.empty()) return kNoFigure;
+  if (evaluation.days.empty()) return kNoValue;
   return fmt::format("{:.{}f}", evaluation.profit_eur_per_day_per_mwh() * evaluation.capacity_mwh,
                      evaluation.capacity_mwh < 1 ? 2 : 1);
 }
@@ -48,7 +37,7 @@ std::string eur_per_day(const Evaluation& evaluation) {
 std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) {
   if (evaluations.empty()) return {};
   HtmlTable table{
-      "The configured battery of " + capacity_text(capacity_mwh_in(evaluations.front())),
+      "The configured battery of " + capacity_text(evaluations.front().any().capacity_mwh),
       {"Policy", "EUR of this battery per day, day-reset",
        "EUR of this battery per day, SoC carried over"},
       {}};
@@ -66,13 +55,13 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
   return fmt::format(
       "the configured battery of {}: {} {} EUR per day, {} with the SoC carried over (only the "
       "ratio power_w / capacity_wh matters to the student; [battery] sets the size)\n",
-      capacity_text(capacity_mwh_in(*exported)), exported->name, eur_per_day(exported->day_reset),
+      capacity_text(exported->any().capacity_mwh), exported->name, eur_per_day(exported->day_reset),
       eur_per_day(exported->carried_over));
 }
 
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* program = evaluation_named(evaluations, kOutlookProgramName);
-  if (program == nullptr) program = evaluation_named(evaluations, kProgramName);
+  const NamedEvaluation* program = find_evaluation(evaluations, kOutlookProgramName);
+  if (program == nullptr) program = find_evaluation(evaluations, kProgramName);
   const auto is_teacher = [](const NamedEvaluation& e) { return e.name.ends_with(kTeacherEnd); };
   const auto teacher = std::ranges::find_if(evaluations, is_teacher);
   if (program == nullptr || teacher == evaluations.end()) return {};
@@ -96,10 +85,8 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
 
 namespace {
 
-constexpr const char* kNotThere = "\u2013";
-
 std::string text_or_dash(bool present, const std::string& text) {
-  return present ? text : kNotThere;
+  return present ? text : kNoValue;
 }
 
 std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
@@ -114,7 +101,7 @@ std::vector<std::string> proof_cells(const std::string& name, const Certificate&
 }
 
 std::string percent_broken(const DemandCount& count) {
-  if (!count.binds_student || count.states == 0) return kNotThere;
+  if (!count.binds_student || count.states == 0) return kNoValue;
   return fmt::format(
       "{:.2f}", 100.0 * static_cast<double>(count.violations) / static_cast<double>(count.states));
 }
@@ -169,9 +156,9 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
       comparison_table("SoC carried over from day to day", carried),
       comparison_table("Day-reset: each day starts at the same SoC", reset),
       html_escaped(evaluations.front().name),
-      html_escaped(by_month_meaning(months_of(evaluations))), kIntervalMeaning,
+      html_escaped(by_month_meaning(evaluations.front().any().errors().months)), kIntervalMeaning,
       kReferenceWearEurPerMwh,
-      html_escaped(reference_wear_meaning(configured_wear_eur_per_mwh(evaluations))));
+      html_escaped(reference_wear_meaning(evaluations.front().any().wear_eur_per_mwh)));
 }
 
 std::string proof_html(const Certificate& uncorrected, const Certificate& corrected) {

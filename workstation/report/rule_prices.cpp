@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
 namespace bess {
 namespace {
 
@@ -20,8 +18,8 @@ struct Part {
 
 const NamedEvaluation* carried_over_by(const std::vector<NamedEvaluation>& evaluations,
                                        std::string_view name) {
-  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
+  const NamedEvaluation* found = find_evaluation(evaluations, name);
+  return found == nullptr || found->carried_over.days.empty() ? nullptr : found;
 }
 
 std::string under_rule_name(const std::string& rule) {

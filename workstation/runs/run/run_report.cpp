@@ -138,8 +138,8 @@ std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps
 namespace {
 
 const NamedEvaluation& exported(const RunSummary& run) {
-  const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
-  if (found == run.evaluations.end()) {
+  const NamedEvaluation* found = find_evaluation(run.evaluations, kExportedPolicy);
+  if (found == nullptr) {
     fail("{}: \"{}\" is missing; repeat the run", run.folder.file(run_file::kDays).string(),
          kExportedPolicy);
   }

@@ -54,9 +54,8 @@ std::string state_text(const RunLine& run) {
 
 const Evaluation* exported_days(const RunLine& run, EvaluationField field) {
   if (!run.summary) return nullptr;
-  const auto found =
-      std::ranges::find(run.summary->evaluations, kExportedPolicy, &NamedEvaluation::name);
-  return found == run.summary->evaluations.end() ? nullptr : &((*found).*field);
+  const NamedEvaluation* found = find_evaluation(run.summary->evaluations, kExportedPolicy);
+  return found == nullptr ? nullptr : &(found->*field);
 }
 
 /// Gain over the first finished run with the same days.
