@@ -7,14 +7,11 @@
 namespace bess {
 namespace {
 
-std::string table_row(const std::vector<std::string>& cells, const std::vector<std::string>& header,
-                      const std::string& link) {
+std::string table_row(const std::vector<std::string>& cells,
+                      const std::vector<std::string>& header) {
   std::string text = "<tr>";
-  const std::string name = html_escaped(cells.front());
-  const std::string linked =
-      link.empty() ? name : fmt::format("<a href=\"{}\">{}</a>", html_escaped(link), name);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    text += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", linked)
+    text += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", html_escaped(cells[i]))
                    : fmt::format("<td data-label=\"{}\">{}</td>", html_escaped(header[i]),
                                  html_escaped(with_true_minus(cells[i])));
   }
@@ -30,9 +27,7 @@ std::string format_table(const HtmlTable& table) {
     text += fmt::format("<th scope=\"col\">{}</th>", html_escaped(cell));
   }
   text += "</tr></thead>\n<tbody>\n";
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    text += table_row(table.rows[r], table.header, table.links.empty() ? "" : table.links[r]);
-  }
+  for (const auto& row : table.rows) text += table_row(row, table.header);
   return text + "</tbody></table></div>\n";
 }
 

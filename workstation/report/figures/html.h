@@ -19,7 +19,6 @@ struct HtmlTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> links{};  ///< of the first cells; none, or one per row
 };
 std::string format_table(const HtmlTable& table);
 /// Shows columns with a title.
