@@ -131,14 +131,10 @@ PictureTable map_table(const ReportInputs& in) {
   return table;
 }
 
-PictureTable price_table(const ReportInputs& in) {
-  return histogram_table("prices_seen", price_histogram(in.market));
-}
-
 }  // namespace
 
 std::vector<PictureTable> page_pictures(const ReportInputs& in, const PageSteps& steps) {
-  return {step_table(in, steps), map_table(in), price_table(in)};
+  return {step_table(in, steps), map_table(in), histogram_table(price_histogram(in.market))};
 }
 
 std::string teacher_name(const Teacher& teacher) {

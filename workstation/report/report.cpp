@@ -131,10 +131,7 @@ std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path
   std::vector<PictureTable> pictures = page_pictures(inputs, steps);
   std::ranges::move(foresight_gap_tables(losses, capacity_mwh_of(inputs)),
                     std::back_inserter(pictures));
-  for (const PictureTable& table : pictures) {
-    write_picture(table, folder);
-    names.push_back(picture_file(table));
-  }
+  for (const PictureTable& table : pictures) names.push_back(write_picture(table, folder));
   write_file(folder / kPage, page_of(inputs, steps, losses));
   return names;
 }

@@ -58,10 +58,11 @@ PriceHistogram price_histogram(const MarketSteps& market) {
   return histogram;
 }
 
-PictureTable histogram_table(const std::string& name, const PriceHistogram& shown) {
+PictureTable histogram_table(const PriceHistogram& shown) {
   const std::vector<double> train = shown.percent_by_bin(shown.train);
   const std::vector<double> test = shown.percent_by_bin(shown.test);
-  PictureTable table{name, {"from_eur_per_mwh", "training_days_percent", "test_days_percent"}, {}};
+  PictureTable table{
+      "prices_seen", {"from_eur_per_mwh", "training_days_percent", "test_days_percent"}, {}};
   for (std::size_t b = 0; b < train.size(); ++b) {
     const double from = shown.low + static_cast<double>(b) * kPriceBinEurPerMwh;
     table.rows.push_back({fmt::format("{:g}", from), exact(train[b]), exact(test[b])});

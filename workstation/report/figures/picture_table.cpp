@@ -11,12 +11,8 @@ namespace {
 
 std::string line_of(const std::vector<std::string>& fields) {
   std::string line;
-  for (const std::string& field : fields) {
-    line += csv_field(field);
-    line += ',';
-  }
-  if (!line.empty()) line.pop_back();
-  line += '\n';
+  for (const std::string& field : fields) line += csv_field(field) + ',';
+  line.back() = '\n';
   return line;
 }
 
@@ -27,18 +23,12 @@ std::string exact(double value) {
   return text == "-0.000000" ? text.substr(1) : text;
 }
 
-std::string picture_file(const PictureTable& table) {
-  return table.name + (table.packed ? ".csv.gz" : ".csv");
-}
-
-std::string picture_csv(const PictureTable& table) {
+std::string write_picture(const PictureTable& table, const std::filesystem::path& folder) {
   std::string text = line_of(table.columns);
   for (const auto& row : table.rows) text += line_of(row);
-  return text;
-}
-
-void write_picture(const PictureTable& table, const std::filesystem::path& folder) {
-  write_file(folder / picture_file(table), picture_csv(table));
+  std::string file = table.name + (table.packed ? ".csv.gz" : ".csv");
+  write_file(folder / file, text);
+  return file;
 }
 
 std::string csv_link(std::string_view file) {

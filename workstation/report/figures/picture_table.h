@@ -19,10 +19,8 @@ struct PictureTable {
   bool packed = false;                         ///< compressed file
 };
 
-/// "lost_days.csv", or ".csv.gz" if packed.
-std::string picture_file(const PictureTable& table);
-std::string picture_csv(const PictureTable& table);
-void write_picture(const PictureTable& table, const std::filesystem::path& folder);
+/// Writes "lost_days.csv", or ".csv.gz" if packed, and returns this name.
+std::string write_picture(const PictureTable& table, const std::filesystem::path& folder);
 
 /// Link to a file in the folder of the page.
 std::string csv_link(std::string_view file);

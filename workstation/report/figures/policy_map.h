@@ -1,7 +1,6 @@
 // Heat maps: a student's actions over price and SoC, and a result over two settings.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,7 +46,6 @@ struct PolicyContext {
   int context_class;           ///< 1..12
   int quarter_hour;            ///< local, 0..95
   int minute_of_quarter_hour;  ///< minute of the quarter-hour, 0..14
-  friend auto operator<=>(const PolicyContext&, const PolicyContext&) = default;
 };
 
 /// Action's integers, [SoC index][price index], kSocCount x kPriceCount.
