@@ -43,12 +43,9 @@ RunConfig canonical(RunConfig config, double rate_step_percent) {
 }
 
 std::string learning_key(const RunConfig& config, const std::string& rules) {
-  const Entries entries = config_entries(config);
-  const std::vector<ConfigKey> keys = config_keys();
   std::string text;
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    if (keys[k].use == KeyUse::kEvaluation) continue;
-    text.append(entries[k].first).append(" = ").append(entries[k].second).append("\n");
+  for (const auto& [key, value] : learning_entries(config)) {
+    text.append(key).append(" = ").append(value).append("\n");
   }
   return text + rules;
 }

@@ -14,15 +14,17 @@
 namespace bess {
 namespace {
 
-using enum KeyUse;
-
 struct Key {
   std::string section;
   std::string name;
-  KeyUse use;
   std::string comment;
   std::function<void(TomlTable&)> read;
   std::function<std::string()> get;
+  bool is_learning = true;  ///< else of evaluation alone
+
+  [[nodiscard]] std::pair<std::string, std::string> entry() const {
+    return {fmt::format("[{}] {}", section, name), get()};
+  }
 };
 
 /// Keys bound to the fields of one configuration.
@@ -34,16 +36,15 @@ class KeyList {
  private:
   void section(std::string name) { section_ = std::move(name); }
 
-  void number(const char* name, KeyUse use, double& field, double low, double high,
-              const char* comment) {
-    keys_.push_back({section_, name, use, fmt::format("{} ({:g} .. {:g})", comment, low, high),
+  void number(const char* name, double& field, double low, double high, const char* comment) {
+    keys_.push_back({section_, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
                      [=, &field](TomlTable& table) { table.number(name, field, low, high); },
                      [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0 avoids -0
   }
   template <typename Integer>
-  void integer(const char* name, KeyUse use, Integer& field, std::int64_t low, std::int64_t high,
+  void integer(const char* name, Integer& field, std::int64_t low, std::int64_t high,
                const char* comment) {
-    keys_.push_back({section_, name, use, fmt::format("{} ({} .. {})", comment, low, high),
+    keys_.push_back({section_, name, fmt::format("{} ({} .. {})", comment, low, high),
                      [=, &field](TomlTable& table) {
                        auto wide = static_cast<std::int64_t>(field);
                        table.integer(name, wide, low, high);
@@ -51,16 +52,16 @@ class KeyList {
                      },
                      [&field] { return fmt::format("{}", field); }});
   }
-  void boolean(const char* name, KeyUse use, bool& field, const char* comment) {
-    keys_.push_back({section_, name, use, comment,
+  void boolean(const char* name, bool& field, const char* comment) {
+    keys_.push_back({section_, name, comment,
                      [name, &field](TomlTable& table) { table.boolean(name, field); },
                      [&field] { return std::string(field ? "true" : "false"); }});
   }
   template <typename Enum>
-  void choice(const char* name, KeyUse use, Enum& field,
-              std::initializer_list<std::string_view> choices, const char* comment) {
+  void choice(const char* name, Enum& field, std::initializer_list<std::string_view> choices,
+              const char* comment) {
     const std::vector<std::string_view> names(choices);
-    keys_.push_back({section_, name, use, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
+    keys_.push_back({section_, name, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
                      [=, &field](TomlTable& table) {
                        int index = static_cast<int>(field);
                        table.choice(name, index, names);
@@ -71,6 +72,9 @@ class KeyList {
                      }});
   }
 
+  /// The last key does not change a student.
+  void of_evaluation() { keys_.back().is_learning = false; }
+
   void list(RunConfig& c);
 
   std::string section_;
@@ -79,113 +83,108 @@ class KeyList {
 
 void KeyList::list(RunConfig& c) {
   section("market");
-  integer("observation_delay_min", kLearning, c.market.observation_delay_min, 0, 5,
+  integer("observation_delay_min", c.market.observation_delay_min, 0, 5,
           "newest row visible at minute t is t - delay; 0 is the paper's ideal");
-  choice("settlement", kLearning, c.market.settlement, {"minute", "step"},
+  choice("settlement", c.market.settlement, {"minute", "step"},
          "settlement per minute, or per step at the quarter-hour of its start");
-  integer("day_ahead_published_min", kEvaluation, c.market.day_ahead_published_min, 0, 1439,
+  integer("day_ahead_published_min", c.market.day_ahead_published_min, 0, 1439,
           "local minute of the previous day at which day-ahead prices are published; 780 is 13:00");
+  of_evaluation();
 
   section("battery");
   for (const BatteryKey& key : kBatteryKeys) {
-    number(key.name, kLearning, key.of(c.battery), key.low, key.high, key.comment);
+    number(key.name, key.of(c.battery), key.low, key.high, key.comment);
   }
-  number("wear_eur_per_mwh", kLearning, c.battery.wear_eur_per_mwh, 0, 1000,
+  number("wear_eur_per_mwh", c.battery.wear_eur_per_mwh, 0, 1000,
          "wear cost of energy charged or discharged, EUR/MWh; all profits are net of it");
-  number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,
+  number("cycles_per_day_max", c.battery.cycles_per_day_max, 0, 1000,
          "full cycles per local day, then idle until midnight; 0 is no limit");
-  number("fade_percent_per_1000_cycles", kEvaluation, c.battery.fade_percent_per_1000_cycles, 0,
-         100, "capacity fade per 1000 full cycles, %; planners ignore it");
-  number("minimum_run_min", kEvaluation, c.battery.minimum_run_min, 0, 240,
+  number("fade_percent_per_1000_cycles", c.battery.fade_percent_per_1000_cycles, 0, 100,
+         "capacity fade per 1000 full cycles, %; planners ignore it");
+  of_evaluation();
+  number("minimum_run_min", c.battery.minimum_run_min, 0, 240,
          "minimum run time of a direction, min; planners ignore it");
-  number("initial_soc", kLearning, c.initial_soc_frac, 0, 1,
-         "SoC at the start of each evaluated day");
+  of_evaluation();
+  number("initial_soc", c.initial_soc_frac, 0, 1, "SoC at the start of each evaluated day");
 
   section("costs");
   TradingCosts& costs = c.battery.costs;
-  number("import_adder_eur_per_mwh", kLearning, costs.import_adder_eur_per_mwh, 0, 1000,
+  number("import_adder_eur_per_mwh", costs.import_adder_eur_per_mwh, 0, 1000,
          "surcharge on charged energy, EUR/MWh: grid fee, taxes, supplier");
-  number("import_percent", kLearning, costs.import_percent, 0, 100,
+  number("import_percent", costs.import_percent, 0, 100,
          "surcharge in % of the absolute price: at -100 and 5 %, the receipt is 95");
-  number("export_fee_eur_per_mwh", kLearning, costs.export_fee_eur_per_mwh, 0, 1000,
+  number("export_fee_eur_per_mwh", costs.export_fee_eur_per_mwh, 0, 1000,
          "fee on discharged energy, EUR/MWh: grid fee, supplier");
-  number("export_percent", kLearning, costs.export_percent, 0, 100,
+  number("export_percent", costs.export_percent, 0, 100,
          "fee in % of the absolute price: at -100 and 5 %, the payment is 105");
 
   section("train");
-  choice("method", kLearning, c.train.method, {"c51", "dqn", "sdp"},
+  choice("method", c.train.method, {"c51", "dqn", "sdp"},
          "distributional or plain Q-learning, or the stochastic program (SDP)");
-  choice("context", kLearning, c.train.context, {"month", "level", "outlook"},
+  choice("context", c.train.context, {"month", "level", "outlook"},
          "the student's third input: local month, class of the trailing price level, or class of "
          "the break-even price of a day-ahead plan (default with --day-ahead)");
-  choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
+  choice("source", c.train.source, {"counterfactual", "replay"},
          "experience: each price move for every SoC and action, or epsilon-greedy days");
-  choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},
+  choice("horizon", c.train.horizon, {"continuing", "day"},
          "midnight truncates the episode, or ends it");
-  integer("steps", kLearning, c.train.steps, 1, 10'000'000, "gradient steps");
-  integer("batch_size", kLearning, c.train.batch_size, 1, 1 << 20, "transitions per gradient step");
-  number("learning_rate", kLearning, c.train.learning_rate, 1e-7, 1,
-         "initial learning rate of Adam");
-  number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1,
+  integer("steps", c.train.steps, 1, 10'000'000, "gradient steps");
+  integer("batch_size", c.train.batch_size, 1, 1 << 20, "transitions per gradient step");
+  number("learning_rate", c.train.learning_rate, 1e-7, 1, "initial learning rate of Adam");
+  number("learning_rate_end", c.train.learning_rate_end, 0, 1,
          "final learning rate of the cosine schedule");
-  number("gamma", kLearning, c.train.gamma, 0, 0.999999,
-         "discount per step; no effect with residual");
-  boolean("residual", kLearning, c.train.residual,
+  number("gamma", c.train.gamma, 0, 0.999999, "discount per step; no effect with residual");
+  boolean("residual", c.train.residual,
           "c51, dqn: learn a residual on the SDP, initialised to zero");
-  number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
+  number("residual_gamma", c.train.residual_gamma, 0, 0.9995,
          "discount per step of the residual, instead of gamma");
-  number("tau", kLearning, c.train.tau, 1e-6, 1,
-         "target <- tau * online + (1 - tau) * target, each step");
-  integer("atoms", kLearning, c.train.atoms, 2, 1001, "atoms of the value distribution");
-  number("value_min_eur_per_h", kLearning, c.train.value_min_eur_per_h, -1e9, 1e9,
-         "lowest atom, EUR/h");
-  number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9,
-         "highest atom, EUR/h");
+  number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
+  integer("atoms", c.train.atoms, 2, 1001, "atoms of the value distribution");
+  number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom, EUR/h");
+  number("value_max_eur_per_h", c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom, EUR/h");
   number(
-      "mean_weight", kLearning, c.train.mean_weight, 0, 1000,
+      "mean_weight", c.train.mean_weight, 0, 1000,
       "c51: weight of the squared error of the mean, added to the cross-entropy; 0 is plain C51");
-  number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,
+  number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
          "standard deviation of a random quarter-hour shift, against overfitting");
-  number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
-         "the same for the context class");
-  number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
+  number("jitter_classes", c.train.jitter.classes, 0, 12, "the same for the context class");
+  number("average_decay", c.train.average_decay, 0, 0.999999,
          "decay of the averaged weights that are validated and kept");
-  integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");
+  integer("validate_every", c.train.validate_every, 1, 1'000'000, "gradient steps");
 
   section("distil");
-  choice("method", kLearning, c.distil.method, {"construction", "layer"},
+  choice("method", c.distil.method, {"construction", "layer"},
          "monotone by weight signs, or the paper's optimisation layer");
-  number("fidelity", kLearning, c.distil.fidelity, 0, 100,
+  number("fidelity", c.distil.fidelity, 0, 100,
          "construction: weight of imitating the teacher relative to regret");
-  number("level_shift_eur_per_mwh", kLearning, c.distil.level_shift_eur_per_mwh, 0, 1000,
+  number("level_shift_eur_per_mwh", c.distil.level_shift_eur_per_mwh, 0, 1000,
          "construction with an SDP-based teacher: standard deviation of price shifts, EUR/MWh");
-  number("omega", kLearning, c.distil.omega, 1e-8, 1,
+  number("omega", c.distil.omega, 1e-8, 1,
          "layer: the paper's trade-off; larger follows the teacher more closely");
-  number("temperature_eur_per_h", kLearning, c.distil.temperature_eur_per_h, 1e-3, 1e6,
+  number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
          "temperature of the teacher's softmax over action values, EUR/h");
   integer(
-      "epochs", kLearning, c.distil.epochs, 1, 1'000'000,
+      "epochs", c.distil.epochs, 1, 1'000'000,
       "epochs of 16 Adam steps (construction), or 64 lattices and 32,768 visited states (layer)");
-  integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64, "Adam steps per epoch");
-  number("learning_rate", kLearning, c.distil.learning_rate, 1e-7, 1,
+  integer("steps_per_epoch", c.distil.steps_per_epoch, 1, 64, "Adam steps per epoch");
+  number("learning_rate", c.distil.learning_rate, 1e-7, 1,
          "initial learning rate of Adam, falling to a hundredth (construction) or a tenth (layer)");
-  integer("repair_rounds", kLearning, c.distil.repair_rounds, 0, 1000,
+  integer("repair_rounds", c.distil.repair_rounds, 0, 1000,
           "maximum failed proofs; each retrains on its counterexamples");
-  integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000,
-          "epochs of each repair");
+  integer("repair_epochs", c.distil.repair_epochs, 1, 1'000'000, "epochs of each repair");
 
   section("correction");
   PriceThresholds& thresholds = c.distil.correction.thresholds;
-  integer("low_price_eur_per_mwh", kLearning, thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
+  integer("low_price_eur_per_mwh", thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
           kThresholdMaxEurPerMwh, "property 1: charge at or below; binds the student from -500 up");
-  integer("high_price_eur_per_mwh", kLearning, thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
+  integer("high_price_eur_per_mwh", thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
           kThresholdMaxEurPerMwh,
           "property 2: discharge at or above; binds the student up to 1500");
-  number("logit_margin", kLearning, c.distil.correction.logit_margin, 0.01, 100,
+  number("logit_margin", c.distil.correction.logit_margin, 0.01, 100,
          "logit margin at the thresholds");
-  number("price_slope", kLearning, c.distil.correction.price_slope, 0, 100,
+  number("price_slope", c.distil.correction.price_slope, 0, 100,
          "layer: minimum logit slope over the price range");
-  number("soc_slope", kLearning, c.distil.correction.soc_slope, 0, 100,
+  number("soc_slope", c.distil.correction.soc_slope, 0, 100,
          "layer: minimum logit slope over the SoC range");
 }
 
@@ -282,22 +281,20 @@ void require_consistent(const RunConfig& config, const std::string& name) {
   require_plausible(config, name);
 }
 
-std::vector<ConfigKey> config_keys() {
-  RunConfig config;
-  const KeyList list(config);
-  std::vector<ConfigKey> keys;
-  for (const Key& key : list.keys()) {
-    keys.push_back({fmt::format("[{}] {}", key.section, key.name), key.use});
-  }
-  return keys;
-}
-
-std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config) {
+Entries config_entries(const RunConfig& config) {
   RunConfig copy = config;
   const KeyList list(copy);
-  std::vector<std::pair<std::string, std::string>> entries;
+  Entries entries;
+  for (const Key& key : list.keys()) entries.push_back(key.entry());
+  return entries;
+}
+
+Entries learning_entries(const RunConfig& config) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  Entries entries;
   for (const Key& key : list.keys()) {
-    entries.emplace_back(fmt::format("[{}] {}", key.section, key.name), key.get());
+    if (key.is_learning) entries.push_back(key.entry());
   }
   return entries;
 }

@@ -5,11 +5,10 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "shared/battery_model.h"
 #include "shared/host/toml_document.h"
+#include "workstation/base/answer.h"
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/policy/rl/train.h"
@@ -42,16 +41,10 @@ void apply_config_text(RunConfig& config, std::string_view text, const std::stri
 /// Throws UserError when keys are contradictory or implausible; `name` is the file's.
 void require_consistent(const RunConfig& config, const std::string& name);
 
-/// Use of a key. Keys of evaluation alone do not change a student.
-enum class KeyUse : std::uint8_t { kLearning, kEvaluation };
-struct ConfigKey {
-  std::string name;  ///< "[section] name"
-  KeyUse use;
-};
-std::vector<ConfigKey> config_keys();
-
 /// Every key as "[section] name", with its value in TOML.
-std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config);
+Entries config_entries(const RunConfig& config);
+/// The keys that change a student; the others are of evaluation alone.
+Entries learning_entries(const RunConfig& config);
 
 /// Configuration as commented TOML; reading it gives the same values.
 std::string format_run_config(const RunConfig& config);
