@@ -113,8 +113,9 @@ void combine_with_set(std::vector<Entries>& points, const std::string& set) {
   combine(points, set.substr(0, equals), *document.find("v"));
 }
 
-}  // namespace
-
+/// Points of a plan file (may be empty): each [[list]] with every combination of [grid] and `sets`,
+/// KEY=VALUE[,VALUE...], the last fastest. One empty point when nothing varies. Throws UserError
+/// naming file and line.
 std::vector<Entries> read_points(const std::string& plan, const std::vector<std::string>& sets) {
   std::vector<Entries> points(1);
   TomlValue document;
@@ -133,8 +134,6 @@ std::vector<Entries> read_points(const std::string& plan, const std::vector<std:
   for (const std::string& set : sets) combine_with_set(points, set);
   return points;
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -196,8 +195,19 @@ RunConfig config_of(const SiteRow& site, RunConfig config) {
   return config;
 }
 
-}  // namespace
+/// Training inputs of a class.
+struct SiteClass {
+  std::string name;   ///< 16 hexadecimal digits of its key
+  RunConfig config;   ///< at the canonical size
+  std::string rules;  ///< as one file; empty: none
+};
 
+struct Sites {
+  std::vector<Site> sites;
+  std::vector<SiteClass> classes;  ///< in the order of their first site
+};
+
+/// Throws UserError naming file, line and column.
 Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_percent) {
   const std::string text = read_file(csv);
   const CsvTable table(text, csv.string());
@@ -237,6 +247,7 @@ Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_pe
   return read;
 }
 
+/// One member per line, with its class.
 std::string format_sites(const std::vector<Site>& sites) {
   std::string text = fmt::format("{}\n", kSitesHeader);
   for (const Site& site : sites) {
@@ -245,18 +256,6 @@ std::string format_sites(const std::vector<Site>& sites) {
   }
   return text;
 }
-
-std::vector<Site> parse_sites(const std::string& text, const std::string& name) {
-  const CsvTable table(text, name, kSitesHeader);
-  std::vector<Site> sites;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    sites.push_back({table.text(row, 0), table.text(row, 4), table.number(row, 2),
-                     table.number(row, 3), table.text(row, 1)});
-  }
-  return sites;
-}
-
-namespace {
 
 std::string_view take_field(std::string_view& rest) {
   const std::size_t end = rest.find('\t');
@@ -294,6 +293,8 @@ std::string settings_shown(const Entries& settings) {
   return settings.empty() ? "as configured" : joined(settings, ", ", " ");
 }
 
+namespace {
+
 std::string format_tasks(const std::vector<SweepTask>& tasks) {
   std::string text;
   for (const SweepTask& task : tasks) {
@@ -301,30 +302,6 @@ std::string format_tasks(const std::vector<SweepTask>& tasks) {
   }
   return text;
 }
-
-std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name) {
-  std::vector<SweepTask> tasks;
-  while (!text.empty()) {
-    std::string_view line = take_line(text);
-    SweepTask task{static_cast<int>(tasks.size()) + 1, {}};
-    if (take_field(line) != std::to_string(task.number)) {
-      fail("{}:{}: does not start with its number; plan the sweep again in another folder", name,
-           task.number);
-    }
-    while (!line.empty()) {
-      const std::string_view field = take_field(line);
-      const std::size_t equals = field.find('=');
-      if (equals == field.npos) fail("{}:{}: \"{}\" has no value", name, task.number, field);
-      task.settings.emplace_back(field.substr(0, equals), field.substr(equals + 1));
-    }
-    tasks.push_back(std::move(task));
-  }
-  return tasks;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 /// Limit of the six digits in folder names.
 constexpr std::size_t kTasksMax = 999'999;
@@ -535,12 +512,38 @@ SweepRecord load_own_sweep(const SweepFolder& folder) {
 }
 
 std::vector<SweepTask> load_tasks(const SweepFolder& folder) {
-  return parse_tasks(read_file(folder.tasks()), folder.tasks().string());
+  const std::string name = folder.tasks().string();
+  const std::string text = read_file(name);
+  std::string_view rest = text;
+  std::vector<SweepTask> tasks;
+  while (!rest.empty()) {
+    std::string_view line = take_line(rest);
+    SweepTask task{static_cast<int>(tasks.size()) + 1, {}};
+    if (take_field(line) != std::to_string(task.number)) {
+      fail("{}:{}: does not start with its number; plan the sweep again in another folder", name,
+           task.number);
+    }
+    while (!line.empty()) {
+      const std::string_view field = take_field(line);
+      const std::size_t equals = field.find('=');
+      if (equals == field.npos) fail("{}:{}: \"{}\" has no value", name, task.number, field);
+      task.settings.emplace_back(field.substr(0, equals), field.substr(equals + 1));
+    }
+    tasks.push_back(std::move(task));
+  }
+  return tasks;
 }
 
 std::vector<Site> load_sites(const SweepFolder& folder) {
-  if (!fs::exists(folder.sites())) return {};
-  return parse_sites(read_file(folder.sites()), folder.sites().string());
+  const std::string name = folder.sites().string();
+  if (!fs::exists(name)) return {};
+  const CsvTable table(read_file(name), name, kSitesHeader);
+  std::vector<Site> sites;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    sites.push_back({table.text(row, 0), table.text(row, 4), table.number(row, 2),
+                     table.number(row, 3), table.text(row, 1)});
+  }
+  return sites;
 }
 
 RunConfig config_of_task(const SweepFolder& folder, const RunConfig& base, const SweepTask& task) {

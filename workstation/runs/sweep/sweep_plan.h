@@ -18,14 +18,6 @@
 
 namespace bess {
 
-// Points of a sweep: configuration keys with values, validated by the list of keys where they are
-// read.
-
-/// Points of a plan file (may be empty): each [[list]] with every combination of [grid] and `sets`,
-/// KEY=VALUE[,VALUE...], the last fastest. One empty point when nothing varies. Throws UserError
-/// naming file and line.
-std::vector<Entries> read_points(const std::string& plan, const std::vector<std::string>& sets);
-
 // Fleet members of a sweep, and classes that share a student (chain/learning_class.h). Prices,
 // seed, commit and instruction set are the same in a whole sweep.
 //
@@ -42,26 +34,6 @@ struct Site {
   double capacity_wh = 0;
   std::string student;  ///< the class
 };
-
-/// Training inputs of a class.
-struct SiteClass {
-  std::string name;   ///< 16 hexadecimal digits of its key
-  RunConfig config;   ///< at the canonical size
-  std::string rules;  ///< as one file; empty: none
-};
-
-struct Sites {
-  std::vector<Site> sites;
-  std::vector<SiteClass> classes;  ///< in the order of their first site
-};
-
-/// Throws UserError naming file, line and column.
-Sites read_sites(const std::filesystem::path& csv, const RunConfig& base,
-                 double rate_step_percent = 0);
-
-/// One member per line, with its class; and the reverse.
-std::string format_sites(const std::vector<Site>& sites);
-std::vector<Site> parse_sites(const std::string& text, const std::string& name);
 
 // Task of a sweep: number and settings, one line of tasks.tsv.
 
@@ -81,14 +53,10 @@ struct SweepTask {
   [[nodiscard]] Entries without_seed_and_fold() const;
 };
 
-/// "seed=1 <tab> distil.fidelity=2"; equal settings give equal text.
+/// "seed=1 <tab> distil.fidelity=2", as in tasks.tsv; equal settings give equal text.
 std::string settings_text(const Entries& settings);
 /// For output: "seed 1, distil.fidelity 2".
 std::string settings_shown(const Entries& settings);
-
-std::string format_tasks(const std::vector<SweepTask>& tasks);
-/// Throws UserError naming `name` and the line.
-std::vector<SweepTask> parse_tasks(std::string_view text, const std::string& name);
 
 struct SweepRequest {
   std::string plan;  ///< TOML file with [grid] and [[list]]; or empty
