@@ -119,7 +119,8 @@ Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
   trained.teacher.provenance =
       fmt::format("{}, days {} to {}", training_provenance(of.prices, of.config.train, trained),
                   days.front().date(), days.back().date());
-  trained.teacher.learnt_for = learnt_for(of.config, of.series, fold.market, days);
+  trained.teacher.learnt_for =
+      learnt_for(of.config, prices_hash(of.series, fold.market.span_of(days)));
   return std::move(trained.teacher);
 }
 

@@ -73,7 +73,7 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
   TrainResult result =
       train_teacher(market, config.battery, config.train, watch_from_first_call(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
-  result.teacher.learnt_for = learnt_for(config, series);
+  result.teacher.learnt_for = learnt_for(config, prices_hash(series));
   if (!result.curve.empty()) {
     save_teacher(out, result.teacher);
     if (!options.curve_out.empty()) {

@@ -44,14 +44,13 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
                               : "widen [train] value_min_eur_per_h and value_max_eur_per_h");
 }
 
-std::string prices_hash(std::uint32_t checksum, std::int64_t minutes, std::int64_t from_utc_s) {
-  return fmt::format("crc32 {:08x}, {} minutes from {}", checksum, minutes,
-                     utc_text(from_utc_s).view());
+std::string prices_hash(const MinuteSeries& series, const UtcSpan& part) {
+  return fmt::format("crc32 {:08x}, {} minutes from {}", prices_checksum(series),
+                     (part.until_s - part.from_s) / 60, utc_text(part.from_s).view());
 }
 
 std::string prices_hash(const MinuteSeries& series) {
-  return prices_hash(prices_checksum(series), static_cast<std::int64_t>(series.size()),
-                     series.start_utc_s);
+  return prices_hash(series, {series.start_utc_s, series.utc_s(series.size())});
 }
 
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,

@@ -7,6 +7,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
 #include "workstation/correction/student/correct_and_prove.h"
+#include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/policy/rl/train.h"
 
 namespace bess {
@@ -22,7 +23,7 @@ std::uint32_t prices_checksum(const MinuteSeries& series);
 /// "crc32 1234abcd, 525600 minutes from 2023-01-01T00:00:00Z"
 std::string prices_hash(const MinuteSeries& series);
 /// For a part of the prices; the checksum covers the whole.
-std::string prices_hash(std::uint32_t checksum, std::int64_t minutes, std::int64_t from_utc_s);
+std::string prices_hash(const MinuteSeries& series, const UtcSpan& part);
 
 /// The student could not be proved.
 struct ProofFailed : UserError {

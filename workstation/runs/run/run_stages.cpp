@@ -329,9 +329,10 @@ RunStages::Names RunStages::train_teacher_here() {
   end_when_interrupted(how_to_go_on(folder_, record_));
   warn_narrow_support(config_.train, trained);
   trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
-  trained.teacher.learnt_for = record_.value(kFoldKey).empty()
-                                   ? learnt_for(config_, series_)
-                                   : learnt_for(config_, series_, market_, market_.fitted_days());
+  trained.teacher.learnt_for =
+      learnt_for(config_, record_.value(kFoldKey).empty()
+                              ? prices_hash(series_)
+                              : prices_hash(series_, market_.span_of(market_.fitted_days())));
   save_teacher(path(kTeacher), trained.teacher);
   (void)teacher();  // read now: by outlook it reuses the plans of the training
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));

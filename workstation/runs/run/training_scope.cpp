@@ -11,7 +11,6 @@
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/policy/rl/teacher.h"
-#include "workstation/runs/chain/chain_steps.h"
 
 namespace bess {
 namespace {
@@ -31,18 +30,9 @@ Entries with_defaults(Entries there, const Entries& here) {
 
 }  // namespace
 
-Entries learnt_for(const RunConfig& config, const MinuteSeries& series) {
+Entries learnt_for(const RunConfig& config, const std::string& prices) {
   Entries entries = circumstances_of(config_entries(config));
-  entries.emplace_back(kPricesKey, prices_hash(series));
-  return entries;
-}
-
-Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
-                   const std::vector<MarketDay>& days) {
-  const auto [from_utc_s, until_utc_s] = market.span_of(days);
-  Entries entries = circumstances_of(config_entries(config));
-  entries.emplace_back(kPricesKey, prices_hash(prices_checksum(series),
-                                               (until_utc_s - from_utc_s) / 60, from_utc_s));
+  entries.emplace_back(kPricesKey, prices);
   return entries;
 }
 

@@ -10,11 +10,9 @@
 
 namespace bess {
 
-/// Training scope of a teacher: market, battery and costs of `config`, and the prices.
-Entries learnt_for(const RunConfig& config, const MinuteSeries& series);
-/// The same for training on `days` of `market` only (not empty).
-Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
-                   const std::vector<MarketDay>& days);
+/// Training scope of a teacher: market, battery and costs of `config`, and prices_hash() of the
+/// prices.
+Entries learnt_for(const RunConfig& config, const std::string& prices);
 
 /// Scope stored in the model file or the run in its folder; empty when unknown.
 Entries learnt_for_of(const std::filesystem::path& model);
