@@ -59,7 +59,7 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                         const BacktestArguments& options) {
   const std::string day_ahead =
       config.train.context == ContextKind::kOutlook
-          ? fmt::format(", day-ahead {}", file_mark(options.day_ahead.path()))
+          ? fmt::format(", day-ahead {}", file_mark(options.day_ahead.path))
           : "";
   const auto& [window_days, lag_days, traded_days] = options.plan;
   return fmt::format("# bess-train {}, prices {:08x}{}, window {} days{}{}, seed {}\n{}",
@@ -162,7 +162,7 @@ void run_backtest(const BacktestArguments& options) {
   const fs::path folder = options.out;
   std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
   inputs.push_back({"--config", options.common.config_path});
-  inputs.push_back({"--day-ahead", options.day_ahead.path()});
+  inputs.push_back({"--day-ahead", options.day_ahead.path});
   std::vector<NamedPath> outputs;
   for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
     outputs.push_back({"--out", folder / name});
@@ -171,12 +171,11 @@ void run_backtest(const BacktestArguments& options) {
   std::vector<std::string> baselines = options.policies;
   std::erase_if(baselines, is_learnt);
   require_policies(baselines);
-  require_outlook(baselines, options.day_ahead.path());
+  require_outlook(baselines, options.day_ahead.path);
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
   const std::string prices = name_of(options.prices);
   MarketSteps market = market_of(series, config.market, prices);
-  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
-                                                  config.market.day_ahead_published_min));
+  options.day_ahead.attach_to(market, series, options.price_input.accepted(), config.market);
   const Folds folds = make_folds(market, options.plan);
   require_writable(folder / "backtest.csv");
   const FolderLock lock(folder);

@@ -71,7 +71,7 @@ void run_distil(const DistilArguments& options) {
   require_distinct({{"--out", options.out}, {"--curve-out", options.curve_out}},
                    {{"--prices", options.prices},
                     {"--teacher", options.teacher},
-                    {"--day-ahead", options.day_ahead.path()},
+                    {"--day-ahead", options.day_ahead.path},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher);
@@ -80,8 +80,7 @@ void run_distil(const DistilArguments& options) {
   options.rule_files.apply(config, teacher.context.kind);
   const MinuteSeries series = options.price_input.read(options.prices);
   MarketSteps market = market_of(series, config.market, options.prices);
-  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
-                                                  config.market.day_ahead_published_min));
+  options.day_ahead.attach_to(market, series, options.price_input.accepted(), config.market);
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),

@@ -185,19 +185,12 @@ NamedEvaluation evaluate_policy(const std::string& name, const EvaluationSetup& 
   return named;
 }
 
-std::vector<std::string> dates_of(const EvaluationSetup& setup) {
-  if (setup.only_day) return {setup.only_day->date()};
-  std::vector<std::string> dates;
-  for (const MarketDay& day : setup.days) dates.push_back(day.date());
-  return dates;
-}
-
 /// Checked first, so that a wrong name costs no time.
 void require_outputs_writable(const EvaluateArguments& options) {
   std::vector<NamedPath> inputs = named_paths("--policy", options.policies);
   inputs.push_back({"--prices", options.prices});
   inputs.push_back({"--fit", options.fit});
-  inputs.push_back({"--day-ahead", options.day_ahead.path()});
+  inputs.push_back({"--day-ahead", options.day_ahead.path});
   inputs.push_back({"--config", options.common.config_path});
   require_distinct({{"--csv", options.csv},
                     {"--days-out", options.days_out},
@@ -212,14 +205,12 @@ void run_evaluate(const EvaluateArguments& options) {
   require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
   require_policies(options.policies);
-  require_outlook(options.policies, options.day_ahead.path());
+  require_outlook(options.policies, options.day_ahead.path);
   const MinuteSeries series = options.price_input.read(options.prices);
   MarketSteps market = market_of(series, config.market, options.prices);
   MarketSteps fitting = fitting_market(series, config, options);
-  const auto day_ahead = options.day_ahead.read(series, options.price_input.accepted(),
-                                                config.market.day_ahead_published_min);
-  attach_day_ahead(market, day_ahead);
-  attach_day_ahead(fitting, day_ahead);
+  options.day_ahead.attach_to(market, series, options.price_input.accepted(), config.market);
+  attach_day_ahead(fitting, market.day_ahead);
   EvaluationSetup setup{market, fitting, market.days_of(parse_split(options.split)),
                         {},     config,  options};
   if (setup.days.empty()) {
@@ -227,7 +218,9 @@ void run_evaluate(const EvaluateArguments& options) {
          options.split);
   }
   if (!options.date.empty()) setup.only_day = select_day(market, setup.days, options.date);
-  const JudgedDays judged{parse_split(options.split), dates_of(setup), last_learnt_day(fitting)};
+  JudgedDays judged = judged_days(market, parse_split(options.split));
+  judged.last_learnt = last_learnt_day(fitting);
+  if (setup.only_day) judged.dates = {setup.only_day->date()};
   const NamedEvaluation foresight = evaluate_policy(kForesightName, setup, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;

@@ -75,8 +75,8 @@ void fetch_day_ahead_to(const RefreshArguments& options, const fs::path& out) {
 
 void provide_day_ahead(const RefreshArguments& options, const fs::path& out,
                        const MinuteSeries& settled) {
-  if (!options.day_ahead.path().empty()) {
-    write_file(out, read_file(options.day_ahead.path()));
+  if (!options.day_ahead.path.empty()) {
+    write_file(out, read_file(options.day_ahead.path));
   } else if (options.prices.empty()) {
     fetch_day_ahead_to(options, out);
   } else {

@@ -34,7 +34,7 @@ void require_files(const SizeArguments& options) {
   std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
   inputs.push_back({"--plan", options.plan});
   inputs.push_back({"--config", options.common.config_path});
-  inputs.push_back({"--day-ahead", options.day_ahead.path()});
+  inputs.push_back({"--day-ahead", options.day_ahead.path});
   std::vector<NamedPath> outputs;
   for (const char* name : {"size.csv", "size.html", "best.toml"}) {
     outputs.push_back({"--out", fs::path(options.out) / name});
@@ -54,7 +54,7 @@ std::string how_to_learn_it(const SizeArguments& options, const RunConfig& base,
                                   : fmt::format("bess-train prices import {} --out {} && ",
                                                 fmt::join(options.prices, " "), all);
   const std::string day_ahead =
-      options.day_ahead.path().empty() ? "" : " --day-ahead " + options.day_ahead.path();
+      options.day_ahead.path.empty() ? "" : " --day-ahead " + options.day_ahead.path;
   return fmt::format("its student: {}bess-train run --prices {}{} --config {} --out {}", join,
                      is_one ? options.prices.front() : all, day_ahead, config.string(),
                      (fs::path(options.out) / "student").string());
@@ -65,11 +65,10 @@ void run_size(const SizeArguments& options) {
   const RunConfig base = options.common.resolve(options.day_ahead.context_unless_said());
   const SizePlan plan = read_size_plan(options.plan, base);
   require_policies({plan.policy});
-  require_outlook({plan.policy}, options.day_ahead.path());
+  require_outlook({plan.policy}, options.day_ahead.path);
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
   MarketSteps market = market_of(series, base.market, options.prices.front());
-  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
-                                                  base.market.day_ahead_published_min));
+  options.day_ahead.attach_to(market, series, options.price_input.accepted(), base.market);
   const Folds folds = make_folds(market, {plan.window_days});
   const fs::path folder = options.out;
   require_writable(folder / "size.csv");

@@ -69,7 +69,7 @@ std::string result_json(const fs::path& out, const RunConfig& config, const Trai
 TrainResult train_one(const fs::path& out, const TrainArguments& options, const RunConfig& config,
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
-                                     identity_of(config, series, options.day_ahead.path())};
+                                     identity_of(config, series, options.day_ahead.path)};
   TrainResult result =
       train_teacher(market, config.battery, config.train, watch_from_first_call(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
@@ -101,7 +101,7 @@ void run_train(const TrainArguments& options) {
                     {"--curve-out", options.curve_out},
                     {"the checkpoint", checkpoint_path(options.out)}},
                    {{"--prices", options.prices},
-                    {"--day-ahead", options.day_ahead.path()},
+                    {"--day-ahead", options.day_ahead.path},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
   const FolderLock folder_lock(fs::path(options.out).parent_path(),
@@ -109,8 +109,7 @@ void run_train(const TrainArguments& options) {
   const FileLock lock(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
   MarketSteps market = market_of(series, config.market, options.prices);
-  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
-                                                  config.market.day_ahead_published_min));
+  options.day_ahead.attach_to(market, series, options.price_input.accepted(), config.market);
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);
   const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {

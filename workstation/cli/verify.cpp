@@ -58,7 +58,7 @@ void run_verify(const VerifyArguments& options) {
   const std::string name = compiled ? "compiled array" : options.student;
   const RunConfig config = options.common.resolve();
   StudentFile claimed = compiled ? compiled_student() : load_student(options.student);
-  if (options.rule_files.given()) {
+  if (!options.rule_files.paths.empty()) {
     claimed.certificate.rules = options.rule_files.read();
     require_consistent(claimed.certificate.rules, claimed.certificate.thresholds,
                        claimed.net.context.kind);

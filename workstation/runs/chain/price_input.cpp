@@ -32,15 +32,17 @@ std::string built_in_market_provenance() {
 }
 
 void DayAheadInput::add(ProgramCommand& command) {
-  command.option("--day-ahead", path_,
+  command.option("--day-ahead", path,
                  "day-ahead prices for planning: file of 'prices fetch --day-ahead', "
                  "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
 }
 
-std::shared_ptr<const DayAheadPublication> DayAheadInput::read(const MinuteSeries& settled,
-                                                               const AcceptedFindings& accepted,
-                                                               int published_min) const {
-  return path_.empty() ? nullptr : read_day_ahead(path_, settled, accepted, published_min);
+void DayAheadInput::attach_to(MarketSteps& market, const MinuteSeries& settled,
+                              const AcceptedFindings& accepted,
+                              const MarketOptions& options) const {
+  if (path.empty()) return;
+  attach_day_ahead(market,
+                   read_day_ahead(path, settled, accepted, options.day_ahead_published_min));
 }
 
 std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& path,
@@ -55,20 +57,30 @@ std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& pat
   return std::make_shared<DayAheadPublication>(std::move(series), published_min);
 }
 
+namespace {
+
+/// Reads the files again to name rows, only if there are findings.
+void judge_files(const std::vector<Finding>& found, const std::vector<std::string>& files,
+                 const AcceptedFindings& accepted) {
+  if (found.empty()) return;
+  std::vector<std::string> contents;
+  contents.reserve(files.size());  // keeps the views of `texts` valid
+  std::vector<PriceText> texts;
+  for (const std::string& file : files) {
+    contents.push_back(std::filesystem::is_regular_file(file) ? read_file(file) : std::string());
+    texts.push_back({file, contents.back()});
+  }
+  judge(found, accepted, texts);
+}
+
+}  // namespace
+
 void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings& accepted,
                             const std::vector<std::string>& files, const std::string& provenance,
                             const std::string& out) {
   std::vector<Finding> found = joined.findings;
   for (Finding& finding : implausible_day_ahead(joined.series)) found.push_back(std::move(finding));
-  std::vector<std::string> contents;
-  contents.reserve(files.size());  // keeps the views of `texts` valid
-  std::vector<PriceText> texts;
-  for (const std::string& file : files) {
-    contents.push_back(!found.empty() && std::filesystem::is_regular_file(file) ? read_file(file)
-                                                                                : std::string());
-    texts.push_back({file, contents.back()});
-  }
-  judge(found, accepted, texts);
+  judge_files(found, files, accepted);
   const std::string description = describe_day_ahead(joined);
   write_day_ahead_file(out, joined.series, provenance + "\n" + description);
   fmt::print("{}written to {}\n", description, out);
@@ -103,7 +115,7 @@ std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
 
 void PriceInput::add(ProgramCommand& command) {
   command
-      .option("--accept", accept_, "price checks to downgrade from errors to warnings, NAME[,NAME]")
+      .option("--accept", accept, "price checks to downgrade from errors to warnings, NAME[,NAME]")
       .value_name("NAMES")
       .check([](const std::string& list) -> std::string {
         try {
@@ -143,15 +155,7 @@ MarketSteps market_of(const MinuteSeries& series, const MarketOptions& options,
 void judge_market(const MinuteSeries& series, std::vector<Finding> found,
                   const std::vector<std::string>& files, const AcceptedFindings& accepted) {
   for (Finding& finding : implausible(series)) found.push_back(std::move(finding));
-  if (found.empty()) return;
-  std::vector<std::string> contents;
-  contents.reserve(files.size());  // keeps the views of `texts` valid
-  std::vector<PriceText> texts;
-  for (const std::string& file : files) {
-    contents.push_back(std::filesystem::is_regular_file(file) ? read_file(file) : std::string());
-    texts.push_back({file, contents.back()});
-  }
-  judge(found, accepted, texts);
+  judge_files(found, files, accepted);
 }
 
 void warn_untrained_months(const MarketSteps& market, bool learns_by_month) {

@@ -28,21 +28,19 @@ std::string built_in_market_provenance();
 /// Start of the provenance of simulated prices.
 inline constexpr const char* kSimulatedProvenance = "Simulated, not real";
 
-class PriceInput {
- public:
+struct PriceInput {
+  std::string accept;  ///< names of findings
+
   /// Declares --accept.
   void add(ProgramCommand& command);
 
-  [[nodiscard]] AcceptedFindings accepted() const { return AcceptedFindings(accept_); }
+  [[nodiscard]] AcceptedFindings accepted() const { return AcceptedFindings(accept); }
   /// A minute file.
   [[nodiscard]] MinuteSeries read(const std::string& path) const;
   /// Minute files and downloads in any mixture. Throws UserError as join_market() does.
   [[nodiscard]] JoinedMarket read_joined(const std::vector<std::string>& files,
                                          std::set<MarketSource>* sources = nullptr,
                                          const CustomCsvFormat& own = {}) const;
-
- private:
-  std::string accept_;
 };
 
 /// Prices as market steps; errors name the file `name`.
@@ -67,24 +65,18 @@ std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& pat
                                                           const AcceptedFindings& accepted,
                                                           int published_min);
 
-class DayAheadInput {
- public:
-  DayAheadInput() = default;
-  explicit DayAheadInput(std::string path) : path_(std::move(path)) {}
+struct DayAheadInput {
+  std::string path;  ///< empty: none
+
   /// Declares --day-ahead.
   void add(ProgramCommand& command);
-  [[nodiscard]] const std::string& path() const { return path_; }
   /// Default context: outlook when day-ahead prices are given.
   [[nodiscard]] ContextKind context_unless_said() const {
-    return path_.empty() ? ContextKind::kLevel : ContextKind::kOutlook;
+    return path.empty() ? ContextKind::kLevel : ContextKind::kOutlook;
   }
-  /// Null when none is given, else read_day_ahead().
-  [[nodiscard]] std::shared_ptr<const DayAheadPublication> read(const MinuteSeries& settled,
-                                                                const AcceptedFindings& accepted,
-                                                                int published_min) const;
-
- private:
-  std::string path_;
+  /// Attaches the prices of read_day_ahead(), if any.
+  void attach_to(MarketSteps& market, const MinuteSeries& settled, const AcceptedFindings& accepted,
+                 const MarketOptions& options) const;
 };
 
 /// Checks, writes and describes the prices joined from `files`. Throws UserError before writing.

@@ -89,10 +89,10 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
 }
 
 ProgramOption RuleFiles::add(ProgramCommand& command, const std::string& help) {
-  return command.option("--rules", paths_, help);
+  return command.option("--rules", paths, help);
 }
 
-RuleSet RuleFiles::read() const { return load_rules(paths_); }
+RuleSet RuleFiles::read() const { return load_rules(paths); }
 
 void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind) {
   PriceThresholds& thresholds = config.distil.correction.thresholds;
@@ -102,7 +102,7 @@ void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind) {
 }
 
 void RuleFiles::apply(RunConfig& config, ContextKind kind) const {
-  if (given()) use_rules(config, read(), kind);
+  if (!paths.empty()) use_rules(config, read(), kind);
 }
 
 }  // namespace bess

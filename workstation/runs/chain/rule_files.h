@@ -29,19 +29,16 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
 /// when rules conflict.
 void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind);
 
-class RuleFiles {
- public:
+struct RuleFiles {
+  std::vector<std::string> paths;
+
   /// Declares --rules.
   ProgramOption add(ProgramCommand& command, const std::string& help);
 
-  [[nodiscard]] bool given() const { return !paths_.empty(); }
   /// Empty without the option.
   [[nodiscard]] RuleSet read() const;
   /// use_rules() of read(); no effect without the option.
   void apply(RunConfig& config, ContextKind kind) const;
-
- private:
-  std::vector<std::string> paths_;
 };
 
 }  // namespace bess

@@ -23,7 +23,7 @@ void require_free(const RunFolder& folder, const RunRequest& request) {
   for (const std::string& name : RunStages::files())
     outputs.push_back({"--out", folder.file(name)});
   require_distinct(outputs, {{"--prices", request.prices},
-                             {"--day-ahead", request.day_ahead.path()},
+                             {"--day-ahead", request.day_ahead.path},
                              {"--config", request.common.config_path},
                              {"--from-teacher", request.from_teacher}});
   for (const std::string& name : RunStages::files()) {
@@ -101,8 +101,8 @@ RunPlan plan_run(const RunRequest& request) {
     record.prices = known ? known->prices : run_file::kSimulatedPrices;
     record.prices_name = known ? known->prices_name : kBuiltInMarketName;
   }
-  if (!request.day_ahead.path().empty()) {
-    record.day_ahead = absolute(request.day_ahead.path());
+  if (!request.day_ahead.path.empty()) {
+    record.day_ahead = absolute(request.day_ahead.path);
   } else if (known) {
     record.day_ahead = known->day_ahead;
   }

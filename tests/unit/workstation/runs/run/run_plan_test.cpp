@@ -82,7 +82,7 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
       EXPECT_TRUE(append_day_ahead(day_ahead, {t, eur_per_mwh + static_cast<double>(t % 7), 15}));
     }
     write_day_ahead_file(folder_.file(name), day_ahead, "");
-    return DayAheadInput(folder_.file(name));
+    return DayAheadInput{folder_.file(name)};
   };
   RunRequest request = request_;
   request.day_ahead = priced("a.csv", 70);
@@ -99,7 +99,7 @@ TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
   request.day_ahead = {};
   request.common.config_path = folder_.write("o.toml", "[train]\ncontext = \"outlook\"\n");
   EXPECT_THAT(refusal(request), Names("[train] context --day-ahead"));
-  request.day_ahead = DayAheadInput(folder_.file("a.csv"));
+  request.day_ahead = {folder_.file("a.csv")};
   request.common.config_path = folder_.write("level.toml", "[train]\ncontext = \"level\"\n");
   request.out = folder_.file("named");
   const RunPlan named = plan_run(request);
