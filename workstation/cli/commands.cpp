@@ -9,33 +9,7 @@
 
 namespace bess {
 
-void add_commands(ProgramCommand& app) {
-  add_run_command(app);
-  add_report_command(app);
-  add_runs_commands(app);
-  add_refresh_command(app);
-  add_sweep_commands(app);
-  app.group("Run commands", {"run", "report", "runs", "refresh", "sweep"});
-  add_prices_commands(app);
-  add_battery_commands(app);
-  add_rules_commands(app);
-  app.group("Input commands", {"prices", "battery", "rules"});
-  add_train_command(app);
-  add_distil_command(app);
-  add_verify_command(app);
-  add_export_command(app);
-  add_omega_sweep_command(app);
-  app.group("Single-stage commands", {"train", "distil", "verify", "export", "omega-sweep"});
-  add_evaluate_command(app);
-  add_backtest_command(app);
-  add_size_command(app);
-  add_impact_command(app);
-  add_log_commands(app);
-  app.group("Evaluation commands", {"evaluate", "backtest", "size", "impact", "log"});
-  add_config_command(app);
-  add_schema_command(app);
-  app.group("Reference commands", {"config", "schema"});
-}
+namespace {
 
 // bess-train config: every key with its default, range and meaning.
 
@@ -107,6 +81,36 @@ void add_sweep_commands(ProgramCommand& app) {
   add_sweep_task(sweep);
   add_sweep_collect(sweep);
   add_sweep_packages(sweep);
+}
+
+}  // namespace
+
+void add_commands(ProgramCommand& app) {
+  add_run_command(app);
+  add_report_command(app);
+  add_runs_commands(app);
+  add_refresh_command(app);
+  add_sweep_commands(app);
+  app.group("Run commands", {"run", "report", "runs", "refresh", "sweep"});
+  add_prices_commands(app);
+  add_battery_commands(app);
+  add_rules_commands(app);
+  app.group("Input commands", {"prices", "battery", "rules"});
+  add_train_command(app);
+  add_distil_command(app);
+  add_verify_command(app);
+  add_export_command(app);
+  add_omega_sweep_command(app);
+  app.group("Single-stage commands", {"train", "distil", "verify", "export", "omega-sweep"});
+  add_evaluate_command(app);
+  add_backtest_command(app);
+  add_size_command(app);
+  add_impact_command(app);
+  add_log_commands(app);
+  app.group("Evaluation commands", {"evaluate", "backtest", "size", "impact", "log"});
+  add_config_command(app);
+  add_schema_command(app);
+  app.group("Reference commands", {"config", "schema"});
 }
 
 }  // namespace bess

@@ -94,6 +94,24 @@ std::string rules_text(const HeadlineGain& rules) {
                     : "none, they earn " + difference_text(d);
 }
 
+/// Accounting of the result, as text, with the day-reset figure.
+std::string headline_accounting(const Headline& headline) {
+  std::string text = "The SoC is carried over from day to day";
+  if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
+    text += fmt::format(
+        "; the final charge is valued at {:.1f} EUR/MWh, the mean settled price of these "
+        "days, with losses and costs: {} of the result, EUR per day per MWh of capacity",
+        headline.charge_left.price_eur_per_mwh,
+        signed_text(headline.charge_left.value_eur_per_day_per_mwh));
+  }
+  text += ".";
+  if (!headline.reset_profit) return text;
+  return text + fmt::format(
+                    " Day-reset accounting (each day starts at the same SoC, its end is not "
+                    "valued): {:.1f} EUR per day per MWh of capacity.",
+                    *headline.reset_profit);
+}
+
 }  // namespace
 
 Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh) {
@@ -163,23 +181,6 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
     if (most > 0) headline.foresight_share = headline.profit / most;
   }
   return headline;
-}
-
-std::string headline_accounting(const Headline& headline) {
-  std::string text = "The SoC is carried over from day to day";
-  if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
-    text += fmt::format(
-        "; the final charge is valued at {:.1f} EUR/MWh, the mean settled price of these "
-        "days, with losses and costs: {} of the result, EUR per day per MWh of capacity",
-        headline.charge_left.price_eur_per_mwh,
-        signed_text(headline.charge_left.value_eur_per_day_per_mwh));
-  }
-  text += ".";
-  if (!headline.reset_profit) return text;
-  return text + fmt::format(
-                    " Day-reset accounting (each day starts at the same SoC, its end is not "
-                    "valued): {:.1f} EUR per day per MWh of capacity.",
-                    *headline.reset_profit);
 }
 
 std::string headline_text(const Headline& headline) {

@@ -69,8 +69,6 @@ std::string gains_text(const Headline& headline);
 /// "+5.2 ± 1.1 (1.4 by month)", with a true minus; unknown errors are left out.
 std::string difference_text(const PairedDifference& difference);
 
-/// Accounting of the result, as text, with the day-reset figure.
-std::string headline_accounting(const Headline& headline);
 /// Result and accounting, for the terminal.
 std::string headline_text(const Headline& headline);
 /// Result with errors, value of the final charge, and day-reset figure.

@@ -24,13 +24,14 @@ std::string duration_text(double hours) {
                               : fmt::format("{:.0f} years", hours / (365 * 24));
 }
 
-}  // namespace
-
+/// Expected training time of a network, h; 0 for the SDP.
 double training_hours(const TrainOptions& options) {
   if (options.method == Method::kSdp) return 0;
   return kTransition_core_s * static_cast<double>(options.steps) *
          static_cast<double>(options.batch_size) / std::max(1, options.threads) / 3600;
 }
+
+}  // namespace
 
 void warn_long_training(const RunConfig& config) {
   const double hours = training_hours(config.train);

@@ -12,9 +12,7 @@ namespace bess {
 /// unusual efficiencies. `name` is the file's.
 void require_plausible(const RunConfig& config, const std::string& name);
 
-/// Expected training time of a network, h; 0 for the SDP.
-double training_hours(const TrainOptions& options);
-/// Warning on stderr when it is more than an hour.
+/// Warning on stderr when the training of a network takes more than an hour.
 void warn_long_training(const RunConfig& config);
 
 }  // namespace bess

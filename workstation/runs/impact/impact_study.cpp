@@ -32,6 +32,26 @@ constexpr int kWarmUpDays = 5;
 /// Additional wear in the planning of a cautious fleet, EUR/MWh.
 constexpr double kShynesses[] = {0, 20, 50, 100, 200, 400};
 
+/// Variant of the fleet.
+struct ImpactVariant {
+  std::string name;
+  bool is_spread = false, has_small_steps = false;
+  bool is_shy = false;  ///< plans with the additional wear that was best on the training days
+  int round = 0;        ///< number of retrainings
+};
+
+/// "as it is", "spread in time", "small steps", "shy", "round 1", ...
+std::vector<ImpactVariant> impact_variants(const ImpactPlan& plan) {
+  std::vector<ImpactVariant> variants{{"as it is"},
+                                      {"spread in time", true},
+                                      {"small steps", false, true},
+                                      {"shy", false, false, true}};
+  for (int round = 1; round <= plan.rounds; ++round) {
+    variants.push_back({fmt::format("round {}", round), false, false, false, round});
+  }
+  return variants;
+}
+
 using Policies = std::vector<std::shared_ptr<Policy>>;
 
 std::vector<FleetPart> fleet_of(const Policies& policies, const ImpactVariant& variant,
@@ -181,17 +201,6 @@ ImpactRow row_of(const std::vector<ImpactFigures>& seeds) {
 }
 
 }  // namespace
-
-std::vector<ImpactVariant> impact_variants(const ImpactPlan& plan) {
-  std::vector<ImpactVariant> variants{{"as it is"},
-                                      {"spread in time", true},
-                                      {"small steps", false, true},
-                                      {"shy", false, false, true}};
-  for (int round = 1; round <= plan.rounds; ++round) {
-    variants.push_back({fmt::format("round {}", round), false, false, false, round});
-  }
-  return variants;
-}
 
 std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
                                       const FleetOptions& options) {

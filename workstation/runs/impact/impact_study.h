@@ -24,16 +24,6 @@ struct ImpactPlan {
   int threads = 1;
 };
 
-/// Variant of the fleet.
-struct ImpactVariant {
-  std::string name;
-  bool is_spread = false, has_small_steps = false;
-  bool is_shy = false;  ///< plans with the additional wear that was best on the training days
-  int round = 0;        ///< number of retrainings
-};
-/// "as it is", "spread in time", "small steps", "shy", "round 1", ...
-std::vector<ImpactVariant> impact_variants(const ImpactPlan& plan);
-
 /// Results on the test days.
 struct ImpactFigures {
   double eur_per_mw_day;

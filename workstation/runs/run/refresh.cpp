@@ -89,6 +89,8 @@ std::string candidate_text(const CandidateRun& candidate) {
   return text;
 }
 
+namespace {
+
 Json candidate_json(const CandidateRun& candidate) {
   return Json::object(
       {{"days", candidate.before.days.size()},
@@ -100,8 +102,6 @@ Json candidate_json(const CandidateRun& candidate) {
        {"standard_error", Decimals{candidate.gain.standard_error, 4}},
        {"standard_error_by_month", Decimals{candidate.gain.standard_error_by_month, 4}}});
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 using namespace run_file;

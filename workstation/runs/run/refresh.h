@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "shared/action.h"
-#include "shared/host/json.h"
 #include "shared/host/minute_file.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/evaluate.h"
@@ -54,7 +53,6 @@ CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
 /// Header `utc,price_eur_mwh,paid_eur_mwh,soc,before,now`.
 std::string differing_decisions_csv(const CandidateRun& candidate);
 std::string candidate_text(const CandidateRun& candidate);
-Json candidate_json(const CandidateRun& candidate);
 
 /// Maximum and minimum number of evaluation days of a candidate.
 inline constexpr int kJudgedDays = 30;

@@ -96,8 +96,7 @@ std::string span_text(const MarketSteps& market) {
                      days(Split::kValidation), days(Split::kTest));
 }
 
-}  // namespace
-
+/// Date, run, host, command and times; with SOURCE_DATE_EPOCH only the date.
 std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
   std::vector<ProvenanceLine> facts;
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
@@ -114,6 +113,8 @@ std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
   if (!times.empty()) facts.push_back({"stages", times});
   return facts;
 }
+
+}  // namespace
 
 std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
 
@@ -189,6 +190,12 @@ void require_unchanged(const RunRecord& record, const RunFolder& folder) {
   }
 }
 
+JudgedDays judged_days_of(const RunSummary& run) {
+  JudgedDays judged{Split::kTest, {}, run.record.figures->last_learnt_day};
+  for (const DayResult& day : exported(run).carried_over.days) judged.dates.push_back(day.date);
+  return judged;
+}
+
 /// Evaluation days, and the walk-forward result of each run that has one.
 std::string standing_text(const std::vector<RunSummary>& runs) {
   std::string text = "\n";
@@ -242,12 +249,6 @@ std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& run
     }
   }
   return keys;
-}
-
-JudgedDays judged_days_of(const RunSummary& run) {
-  JudgedDays judged{Split::kTest, {}, run.record.figures->last_learnt_day};
-  for (const DayResult& day : exported(run).carried_over.days) judged.dates.push_back(day.date);
-  return judged;
 }
 
 RunSummary load_run_summary(const RunFolder& folder) {

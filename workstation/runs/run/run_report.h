@@ -20,8 +20,6 @@ namespace bess {
 
 // Provenance of a run's page: date, run, host, command, program and prices.
 
-/// Date, run, host, command and times; with SOURCE_DATE_EPOCH only the date.
-std::vector<ProvenanceLine> making_facts(const RunFolder& folder);
 /// "bess-train 0.1.0, BUILD"
 std::string program_text();
 
@@ -41,9 +39,6 @@ struct RunSummary {
   RunRecord record;
   std::vector<NamedEvaluation> evaluations;
 };
-
-/// Evaluation days.
-JudgedDays judged_days_of(const RunSummary& run);
 
 /// Throws UserError with a remedy when there is no finished run.
 RunSummary load_run_summary(const RunFolder& folder);

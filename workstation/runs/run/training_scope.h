@@ -20,10 +20,6 @@ Entries learnt_for_of(const std::filesystem::path& model);
 /// "KEY is A there and B here; ..." for each key of `here` with another value in `there`.
 std::string learnt_otherwise(const Entries& there, const Entries& here);
 
-/// Price regimes of `days` without training days, in a sentence; empty when none, or unknown.
-std::string unknown_regimes(const Entries& there, const MarketSteps& market,
-                            const std::vector<MarketDay>& days);
-
 /// Warning on stderr when `days` of `market` are in a price regime without training or validation
 /// days in `fitting`.
 void warn_unknown_regimes(const std::string& what, const MarketSteps& fitting,

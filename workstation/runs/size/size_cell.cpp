@@ -203,6 +203,9 @@ std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double 
   return std::move(meter).peaks();
 }
 
+namespace {
+
+/// One class for each of the canonical `configs`. Throws UserError.
 std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
                                      const SizeBacktest& backtest) {
   std::vector<SizeClass> classes(configs.size());
@@ -211,8 +214,6 @@ std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
                [&](std::size_t c) { classes[c] = trade_class(configs[c], backtest); });
   return classes;
 }
-
-namespace {
 
 constexpr double kDaysPerYear = 365.25;
 constexpr int kMonthsPerYear = 12;

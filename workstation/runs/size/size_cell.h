@@ -82,10 +82,6 @@ struct SizeBacktest {
   int threads;
 };
 
-/// One class for each of the canonical `configs`. Throws UserError.
-std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
-                                     const SizeBacktest& backtest);
-
 /// Highest quarter-hour of each local month; `steps` ascending. A step in two quarter-hours counts
 /// half in each.
 std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max);
