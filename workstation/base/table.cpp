@@ -26,10 +26,6 @@ Json json_value(const TableValue& value, int decimals) {
 
 }  // namespace
 
-void Table::add(const Table& right) {
-  columns_.insert(columns_.end(), right.columns_.begin(), right.columns_.end());
-}
-
 Table Table::only(std::string_view keys) const {
   Table picked;
   CsvFields fields(keys);

@@ -62,7 +62,6 @@ class Table {
     columns_.push_back({column.name, {}});
     for (const Row& row : rows) columns_.back().values.push_back(column.value(row));
   }
-  void add(const Table& right);
   /// The columns with these keys ("policy,days"), in this order.
   [[nodiscard]] Table only(std::string_view keys) const;
 
