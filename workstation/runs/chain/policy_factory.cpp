@@ -12,25 +12,24 @@ namespace {
 
 constexpr std::string_view kCompiled = "compiled";
 
-/// Policy that owns its model.
-template <typename Model, typename ModelPolicy, typename View>
-std::shared_ptr<Policy> owning(Model model, View view) {
+/// Policies that own their model.
+std::shared_ptr<Policy> teacher_policy(Teacher teacher) {
   struct Holder {
-    Model model;
-    ModelPolicy policy;
-    Holder(Model m, View v) : model(std::move(m)), policy(v(model)) {}
+    Teacher teacher;
+    TeacherPolicy policy{teacher};
+    explicit Holder(Teacher t) : teacher(std::move(t)) {}
   };
-  auto holder = std::make_shared<Holder>(std::move(model), view);
+  const auto holder = std::make_shared<Holder>(std::move(teacher));
   return {holder, &holder->policy};
 }
 
 std::shared_ptr<Policy> student_policy(StudentFile student) {
   struct Holder {
     StudentFile student;
-    std::unique_ptr<Policy> policy;
+    std::unique_ptr<Policy> policy = exported_policy(student);
+    explicit Holder(StudentFile s) : student(std::move(s)) {}
   };
-  const auto holder = std::make_shared<Holder>(Holder{std::move(student), nullptr});
-  holder->policy = exported_policy(holder->student);
+  const auto holder = std::make_shared<Holder>(std::move(student));
   return {holder, holder->policy.get()};
 }
 
@@ -48,8 +47,7 @@ std::shared_ptr<Policy> model_policy(const std::string& path, const MarketSteps*
   if (is_teacher_file(path)) {
     Teacher teacher = load_teacher(path);
     require_day_ahead(teacher.context);
-    return owning<Teacher, TeacherPolicy>(std::move(teacher),
-                                          [](const Teacher& t) -> const Teacher& { return t; });
+    return teacher_policy(std::move(teacher));
   }
   StudentFile student = load_student(path);
   require_day_ahead(student.net.context);
