@@ -62,6 +62,13 @@ std::vector<std::pair<LocalDate, LocalDate>> stretches(const std::vector<MarketD
   return all;
 }
 
+/// Appends the days of a fold.
+void append(const Evaluation& fold, Evaluation& all) {
+  all.capacity_mwh = fold.capacity_mwh;
+  all.wear_eur_per_mwh = fold.wear_eur_per_mwh;
+  all.days.insert(all.days.end(), fold.days.begin(), fold.days.end());
+}
+
 double mean_settled_of(const Evaluation& traded, const MarketSteps& market) {
   std::vector<MarketDay> days = market.days;
   std::erase_if(days, [&](const MarketDay& day) {
@@ -147,17 +154,10 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
       options.initial_soc_frac = evaluation.days.back().soc_end_frac;
     }
     if (and_day_reset) {
-      const Evaluation reset =
-          evaluate(fold.market, traded, *policy, {battery, initial_soc_frac, false});
-      result.day_reset.capacity_mwh = reset.capacity_mwh;
-      result.day_reset.wear_eur_per_mwh = reset.wear_eur_per_mwh;
-      result.day_reset.days.insert(result.day_reset.days.end(), reset.days.begin(),
-                                   reset.days.end());
+      append(evaluate(fold.market, traded, *policy, {battery, initial_soc_frac, false}),
+             result.day_reset);
     }
-    result.total.capacity_mwh = evaluation.capacity_mwh;
-    result.total.wear_eur_per_mwh = evaluation.wear_eur_per_mwh;
-    result.total.days.insert(result.total.days.end(), evaluation.days.begin(),
-                             evaluation.days.end());
+    append(evaluation, result.total);
     result.months.push_back(fold.month);
     result.by_month.push_back(std::move(evaluation));
   }
