@@ -103,8 +103,7 @@ void add_impact_command(ProgramCommand& app) {
       .range(0, 20)
       .with_default();
   command.flag("--json", options->json, "one JSON object");
-  command.option("--threads", options->common.threads, "threads (default: all cores)")
-      .range(1, 256);
+  options->common.add_threads(command);
   command.option("--delay", options->common.delay_min, "observation delay, minutes (default 1)")
       .range(1, 5);
   options->common.add_config(command);

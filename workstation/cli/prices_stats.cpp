@@ -19,34 +19,25 @@ struct PricesStatsArguments {
   bool json = false;
 };
 
-struct FileStatistics {
-  MarketStatistics statistics;
-  std::string_view what = "settled price";
-};
-
-FileStatistics describe_minutes(const MinuteSeries& series) {
-  return {statistics_of_minutes(series)};
-}
-
-FileStatistics describe_minute_file(std::string_view text, const std::string& name) {
+MarketStatistics describe_minute_file(std::string_view text, const std::string& name) {
   const MinuteSeries series = parse_minute_csv(text, name);
   judge_minutes(series, {name, text}, AcceptedFindings::all());
-  return describe_minutes(series);
+  return statistics_of_minutes(series);
 }
 
-FileStatistics describe_download(std::string_view text, const std::string& name) {
+MarketStatistics describe_download(std::string_view text, const std::string& name) {
   MarketRows rows = parse_market_text(text, name);
   const bool minutes = !rows.minutes.empty();
   JoinReport report;
   const std::vector<QuarterHour> quarter_hours = sorted_quarter_hours(rows.quarter_hours, report);
   const JoinedMarket market = join_market(std::move(rows), name);
   judge_market(market.series, {}, {name}, AcceptedFindings::all());
-  if (minutes) return describe_minutes(market.series);
-  return {statistics_of_quarter_hours(quarter_hours)};
+  return minutes ? statistics_of_minutes(market.series)
+                 : statistics_of_quarter_hours(quarter_hours);
 }
 
 /// Statistics as of settled quarter-hours; findings are warnings.
-FileStatistics describe_day_ahead_file(std::string_view text, const std::string& name) {
+MarketStatistics describe_day_ahead_file(std::string_view text, const std::string& name) {
   const DayAheadSeries series = parse_day_ahead_csv(text, name);
   judge(implausible_day_ahead(series), AcceptedFindings::all(), {{name, text}});
   std::vector<QuarterHour> quarter_hours;
@@ -54,19 +45,20 @@ FileStatistics describe_day_ahead_file(std::string_view text, const std::string&
     if (!is_published(series.eur_per_mwh[q])) continue;
     quarter_hours.push_back({.utc_s = series.utc_s(q), .price_eur_per_mwh = series.eur_per_mwh[q]});
   }
-  return {statistics_of_quarter_hours(quarter_hours), "day-ahead price"};
+  return statistics_of_quarter_hours(quarter_hours);
 }
 
 void run_prices_stats(const PricesStatsArguments& options) {
   const std::string text = read_file(options.file);
-  const FileStatistics described = is_minute_csv(text) ? describe_minute_file(text, options.file)
-                                   : is_day_ahead_csv(text)
-                                       ? describe_day_ahead_file(text, options.file)
-                                       : describe_download(text, options.file);
+  const bool is_day_ahead = is_day_ahead_csv(text);
+  const MarketStatistics statistics = is_minute_csv(text) ? describe_minute_file(text, options.file)
+                                      : is_day_ahead ? describe_day_ahead_file(text, options.file)
+                                                     : describe_download(text, options.file);
   if (options.json) {
-    fmt::print("{}\n", format_statistics_json(described.statistics));
+    fmt::print("{}\n", format_statistics_json(statistics));
   } else {
-    fmt::print("{}", format_statistics_text(described.statistics, described.what));
+    fmt::print("{}", format_statistics_text(statistics,
+                                            is_day_ahead ? "day-ahead price" : "settled price"));
   }
 }
 

@@ -120,8 +120,12 @@ class Pricing {
   std::vector<MarketDay> days_;
 };
 
-void price_by_projection(const PriceArguments& options, const RunConfig& config,
-                         const MarketSteps& market, const RuleSet& rules, const Pricing& pricing) {
+void run_rules_price(const PriceArguments& options) {
+  const RunConfig config = options.common.resolve();
+  const RuleSet rules = options.rule_files.read();
+  const MarketSteps market =
+      market_of(options.price_input.read(options.prices), config.market, options.prices);
+  const Pricing pricing(options, config, market);
   const ContextClasses classes = context_of_policy(options.policy, market, config.train.context);
   require_consistent(rules, config.distil.correction.thresholds, classes.kind);
   const std::shared_ptr<Policy> policy = make_policy(options.policy, market, config.battery);
@@ -146,15 +150,6 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
     }
   }
   if (rules.rules.size() > 1) price("all together", rules);
-}
-
-void run_rules_price(const PriceArguments& options) {
-  const RunConfig config = options.common.resolve();
-  const RuleSet rules = options.rule_files.read();
-  const MarketSteps market =
-      market_of(options.price_input.read(options.prices), config.market, options.prices);
-  const Pricing pricing(options, config, market);
-  price_by_projection(options, config, market, rules, pricing);
 }
 
 }  // namespace
