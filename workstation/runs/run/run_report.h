@@ -13,7 +13,6 @@
 #include "workstation/report/report.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/runs/chain/run_config.h"
-#include "workstation/runs/run/run_folder.h"
 #include "workstation/runs/run/run_record.h"
 
 namespace bess {

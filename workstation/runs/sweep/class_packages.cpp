@@ -10,7 +10,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
 #include "workstation/correction/student/export.h"
-#include "workstation/runs/run/run_folder.h"
+#include "workstation/runs/run/run_record.h"
 
 namespace bess {
 namespace {

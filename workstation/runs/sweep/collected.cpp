@@ -20,7 +20,6 @@
 #include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/checked_prices.h"
 #include "workstation/runs/chain/chain_steps.h"
-#include "workstation/runs/run/run_folder.h"
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/run_stages.h"

@@ -6,7 +6,7 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/report/comparison.h"
-#include "workstation/runs/run/run_folder.h"
+#include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"
 
 namespace bess {
