@@ -8,7 +8,6 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/runs/chain/config_plausibility.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_backtest.h"

@@ -14,7 +14,6 @@
 #include "workstation/report/figures/curves.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/common_options.h"
-#include "workstation/runs/chain/config_plausibility.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_record.h"

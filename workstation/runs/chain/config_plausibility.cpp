@@ -1,10 +1,9 @@
-#include "workstation/runs/chain/config_plausibility.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
 
 #include "shared/host/user_error.h"
+#include "workstation/runs/chain/run_config.h"
 
 namespace bess {
 namespace {

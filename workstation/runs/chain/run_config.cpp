@@ -9,7 +9,6 @@
 #include "shared/host/text.h"
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
-#include "workstation/runs/chain/config_plausibility.h"
 
 namespace bess {
 namespace {

@@ -41,6 +41,15 @@ void apply_config_text(RunConfig& config, std::string_view text, const std::stri
 /// Throws UserError when keys are contradictory or implausible; `name` is the file's.
 void require_consistent(const RunConfig& config, const std::string& name);
 
+// Plausibility across keys (config_plausibility.cpp): values in MW instead of W, unrealistic
+// efficiencies, training times of years.
+
+/// Throws UserError naming the keys when power, capacity or their ratio is implausible; warns about
+/// unusual efficiencies. `name` is the file's.
+void require_plausible(const RunConfig& config, const std::string& name);
+/// Warning on stderr when the training of a network takes more than an hour.
+void warn_long_training(const RunConfig& config);
+
 /// Every key as "[section] name", with its value in TOML.
 Entries config_entries(const RunConfig& config);
 /// The keys that change a student; the others are of evaluation alone.
