@@ -1,5 +1,3 @@
-#include "workstation/report/step_archive.h"
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -7,7 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <stdexcept>
+
+#include "workstation/report/page_data.h"
 
 namespace bess {
 namespace {

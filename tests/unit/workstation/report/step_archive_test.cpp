@@ -1,5 +1,3 @@
-#include "workstation/report/step_archive.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
