@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "workstation/data/env/evaluate.h"
+#include "workstation/report/figures/picture_table.h"
 
 namespace bess {
 
@@ -94,5 +95,20 @@ struct LossChain {
 std::vector<DayLoss> foresight_gap(const MarketSteps& market, const std::vector<MarketDay>& days,
                                    const LossChain& chain, const BatteryParameters& battery,
                                    double initial_soc_frac);
+
+// Page section on the profit gap (foresight_gap_page.cpp): by cause, by hour and month, and the
+// worst days.
+
+struct ReportInputs;
+
+/// Losses of the exported policy over the test days.
+std::vector<DayLoss> losses_of(const ReportInputs& inputs);
+
+/// EUR per MWh of capacity.
+std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capacity_mwh);
+
+/// Data of foresight_gap_html: lost_causes, lost_hours, lost_days (all days).
+std::vector<PictureTable> foresight_gap_tables(const std::vector<DayLoss>& losses,
+                                               double capacity_mwh);
 
 }  // namespace bess

@@ -1,5 +1,3 @@
-#include "workstation/report/foresight_gap_page.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -14,6 +12,8 @@
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/policy_map.h"
+#include "workstation/report/foresight_gap.h"
+#include "workstation/report/report.h"
 
 namespace bess {
 namespace {

@@ -73,7 +73,7 @@ PolicyContext first_map(const ReportInputs& inputs);
 Json page_data(const ReportInputs& inputs, const PageSteps& steps);
 
 // CSV data of pictures that no other file of the run contains: steps, initial maps and prices.
-// foresight_gap_page.h has its own; days, checkpoints and losses are in evaluation_days.csv,
+// foresight_gap.h has its own; days, checkpoints and losses are in evaluation_days.csv,
 // training_curve.csv, student_checkpoints.csv and distil_curve.csv.
 
 std::vector<PictureTable> page_pictures(const ReportInputs& inputs, const PageSteps& steps);

@@ -12,7 +12,7 @@
 #include "shared/units_and_limits.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/foresight_gap_page.h"
+#include "workstation/report/foresight_gap.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/report_page.h"
