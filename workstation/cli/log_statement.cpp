@@ -6,7 +6,6 @@
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/log/log_input.h"
-#include "workstation/runs/log/statement_page.h"
 
 namespace bess {
 namespace {

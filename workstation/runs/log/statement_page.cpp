@@ -1,8 +1,7 @@
-#include "workstation/runs/log/statement_page.h"
-
 #include <fmt/format.h>
 
 #include "workstation/report/figures/html.h"
+#include "workstation/runs/log/log_input.h"
 
 namespace bess {
 namespace {

@@ -12,7 +12,6 @@
 #include "tests/support/user_error_of.h"
 #include "workstation/runs/log/log_comparison.h"
 #include "workstation/runs/log/log_replay.h"
-#include "workstation/runs/log/statement_page.h"
 
 namespace bess {
 namespace {
