@@ -1,6 +1,13 @@
 #include "workstation/base/answer.h"
 
+#include <algorithm>
+
 namespace bess {
+
+std::string value_in(const Entries& entries, std::string_view name) {
+  const auto found = std::ranges::find(entries, name, &Entries::value_type::first);
+  return found == entries.end() ? std::string() : found->second;
+}
 
 Json answer(const char* kind) {
   return Json::object({{"schema_version", kSchemaVersion}, {"answer", kind}});

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace bess {
 // Ordered names and values, such as the contents of a run or the training scope of a model.
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
+
+/// Empty without this name.
+std::string value_in(const Entries& entries, std::string_view name);
 
 /// Incremented when a member is removed or changes its meaning, not when one is added.
 inline constexpr int kSchemaVersion = 1;

@@ -76,11 +76,6 @@ std::string file_mark(const fs::path& path) {
   return fmt::format("crc32 {:08x}, {} bytes", crc.value(), bytes);
 }
 
-std::string RunRecord::value(const std::string& key) const {
-  const auto found = find(identity, key);
-  return found == identity.end() ? std::string() : found->second;
-}
-
 RunConfig RunRecord::config(const RunFolder& folder) const {
   std::string toml;
   std::string section;
@@ -185,20 +180,17 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
   }
   if (json.value()["figures"].is_object()) {
     const JsonReader figures = reader.object("figures");
-    const auto count = [&](const char* key) {
-      return figures.whole(key, 0, std::int64_t{1} << 52);
+    const auto count = [](const JsonReader& in, const char* key) {
+      return in.whole(key, 0, std::int64_t{1} << 52);
     };
-    record.figures = {figures.text("provenance"), figures.text("weights_hash"),
-                      count("states_checked"),    count("states_checked_plain"),
-                      count("violations_plain"),  count("violations_corrected")};
+    record.figures = {figures.text("provenance"),         figures.text("weights_hash"),
+                      count(figures, "states_checked"),   count(figures, "states_checked_plain"),
+                      count(figures, "violations_plain"), count(figures, "violations_corrected")};
     record.figures->last_learnt_day = json.value()["figures"]["last_learnt_day"].text_or("");
     for (const JsonValue demand : json.value()["figures"]["demands"]) {
       const JsonReader of(demand, name, kKind);
-      const auto violations = [&](const char* key) {
-        return of.whole(key, 0, std::int64_t{1} << 52);
-      };
       record.figures->demands.push_back(
-          {of.text("demand"), violations("violations_plain"), violations("violations_corrected")});
+          {of.text("demand"), count(of, "violations_plain"), count(of, "violations_corrected")});
     }
   }
   return record;

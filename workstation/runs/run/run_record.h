@@ -99,7 +99,7 @@ struct RunRecord {
   std::vector<StageRecord> stages;
   std::optional<RunFigures> figures;
 
-  [[nodiscard]] std::string value(const std::string& key) const;  ///< of `identity`, else empty
+  [[nodiscard]] std::string value(const std::string& key) const { return value_in(identity, key); }
   [[nodiscard]] bool is_lean() const { return value(kStagesKey) == kLean; }
   [[nodiscard]] RunConfig config(const RunFolder& folder) const;
   /// Null unless the stage is finished and its `inputs` and outputs are unchanged.

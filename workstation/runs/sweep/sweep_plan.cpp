@@ -38,8 +38,7 @@ std::string canonical_value(const std::string& key, const TomlValue& value) {
   set_config_key(config, key, value);
   const std::size_t dot = key.find('.');
   const std::string listed = fmt::format("[{}] {}", key.substr(0, dot), key.substr(dot + 1));
-  const Entries entries = config_entries(config);
-  return std::ranges::find(entries, listed, &Entries::value_type::first)->second;
+  return value_in(config_entries(config), listed);
 }
 
 std::vector<std::string> canonical_values(const std::string& key, const TomlValue& value) {
@@ -273,11 +272,6 @@ std::string joined(const Entries& settings, const char* between, const char* equ
 }
 
 }  // namespace
-
-std::string SweepTask::value(std::string_view name) const {
-  const auto found = std::ranges::find(settings, name, &Entries::value_type::first);
-  return found == settings.end() ? std::string() : found->second;
-}
 
 Entries SweepTask::without_seed_and_fold() const {
   Entries kept = settings;

@@ -49,7 +49,7 @@ struct SweepTask {
   int number = 0;    ///< from 1
   Entries settings;  ///< those above, then "section.key" with its value in TOML
 
-  [[nodiscard]] std::string value(std::string_view name) const;  ///< empty: none
+  [[nodiscard]] std::string value(std::string_view name) const { return value_in(settings, name); }
   [[nodiscard]] Entries without_seed_and_fold() const;
 };
 
