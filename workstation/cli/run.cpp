@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 
 struct RunArguments {
   RunRequest request;
-  std::string out;
   bool json = false;
 };
 
@@ -81,7 +80,7 @@ void add_run_command(ProgramCommand& app) {
   request.price_input.add(command);
   request.day_ahead.add(command);
   request.rule_files.add(command, "rule files: operator rules to train and prove as well");
-  command.option("--out", options->out, "run folder").value_name("DIR").required();
+  command.option("--out", request.out, "run folder").value_name("DIR").required();
   command.flag("--resume", request.resume,
                "resume the run in --out; options not given keep their value");
   command
@@ -102,10 +101,7 @@ void add_run_command(ProgramCommand& app) {
       "  bess-train run --prices market.csv.gz --from-teacher runs/second --config "
       "other.toml --out runs/third\n"
       "Several seeds: bess-train sweep plan --seeds 3");
-  command.runs([options] {
-    options->request.out = options->out;
-    run_single(*options);
-  });
+  command.runs([options] { run_single(*options); });
 }
 
 }  // namespace bess

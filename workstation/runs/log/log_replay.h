@@ -40,15 +40,12 @@ struct LogReplay {
   std::vector<ReplayedCycle> others;  ///< all changed decisions, oldest first
   /// [logged decision][new decision].
   std::array<std::array<int, kActionCount>, kActionCount> decisions{};
-  int compared = 0;
+  int compared = 0;  ///< not 0
   int differing = 0;
   int without_context = 0;  ///< by outlook: cycles without a break-even price
   double gained_eur = 0;
 
-  /// 0 if nothing was compared.
-  [[nodiscard]] double differing_percent() const {
-    return compared == 0 ? 0 : 100.0 * differing / compared;
-  }
+  [[nodiscard]] double differing_percent() const { return 100.0 * differing / compared; }
   [[nodiscard]] std::string text() const;
   /// Answer of --json (answers.schema.json).
   [[nodiscard]] Json json() const;

@@ -19,7 +19,7 @@ struct RunRequest {
   RuleFiles rule_files;
   std::string prices;        ///< empty: built-in market, or with `resume` those of the folder
   std::string from_teacher;  ///< file or run folder; empty: train one, or with `resume` the same
-  std::filesystem::path out;
+  std::string out;           ///< run folder
   bool resume = false;
 };
 

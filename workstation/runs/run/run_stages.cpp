@@ -269,7 +269,7 @@ void RunStages::report_again() {
   std::erase_if(record_.stages, [](const StageRecord& done) {
     return done.name == kReportStage || done.name == kFailureStage;
   });
-  if (record_.has_failed()) return report_the_failure();
+  if (record_.has_failed()) return go_through(stage_named(kFailureStage));
   go_through(stage_named(kEvaluationStage));
   go_through(stage_named(kReportStage));
 }
@@ -406,14 +406,13 @@ void RunStages::fail_the_proof() {
   const std::string what = describe_failed_proof(
       unproved_student(), parse_proof_rounds_csv(read_file(rounds), rounds), config_.distil.method);
   if (record_.is_lean()) throw ProofFailed(what);
-  announce(stage_named(kFailureStage));
-  report_the_failure();
+  const Stage& failure = stage_named(kFailureStage);
+  announce(failure);
+  go_through(failure);
   throw ProofFailed(what + fmt::format("\n  {} shows where; repeat the correction: bess-train run "
                                        "--from-teacher {} --config NEW --out ANOTHER",
                                        path(kReport).string(), folder_.path.string()));
 }
-
-void RunStages::report_the_failure() { go_through(stage_named(kFailureStage)); }
 
 /// The same page for an unproved student.
 RunStages::Names RunStages::make_failure_report() {

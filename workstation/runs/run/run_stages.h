@@ -71,7 +71,6 @@ class RunStages {
   Names make_plain_student();
   Names make_corrected_student();
   [[noreturn]] void fail_the_proof();
-  void report_the_failure();
   [[nodiscard]] StudentFile unproved_student() const;
   Names make_failure_report();
   Names make_header();
