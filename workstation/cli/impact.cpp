@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 
 #include "shared/host/file.h"
@@ -30,16 +29,9 @@ struct ImpactArguments {
 };
 
 std::vector<double> fleets_of(const std::vector<std::string>& texts) {
-  std::vector<double> fleets;
-  for (const std::string& text : texts) {
-    double mw = -1;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), mw);
-    const bool is_whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
-    if (!is_whole || !(mw >= 0 && mw <= kFleetMwMax)) {
-      fail("--fleet-mw {}: use megawatts from 0 (no impact) to {:g}", text, kFleetMwMax);
-    }
-    fleets.push_back(mw);
-  }
+  std::vector<double> fleets =
+      numbers_in(texts, 0, kFleetMwMax, "--fleet-mw",
+                 fmt::format("megawatts from 0 (no impact) to {:g}", kFleetMwMax));
   std::ranges::sort(fleets);
   fleets.erase(std::unique(fleets.begin(), fleets.end()), fleets.end());
   return fleets;

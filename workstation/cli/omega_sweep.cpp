@@ -1,7 +1,6 @@
 // bess-train omega-sweep: measured trade-off of the paper's loss.
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -36,20 +35,6 @@ struct OmegaSweepArguments {
   std::optional<int> epochs;
   bool json = false;
 };
-
-std::vector<double> parse_omegas(const std::vector<std::string>& words) {
-  std::vector<double> omegas;
-  for (const std::string& word : words) {
-    double omega = 0;
-    const char* const end = word.data() + word.size();
-    const auto read = std::from_chars(word.data(), end, omega);
-    if (read.ec != std::errc() || read.ptr != end || !(omega >= kOmegaMin && omega <= kOmegaMax)) {
-      fail("--omega {}: use numbers from {:g} to {:g}", word, kOmegaMin, kOmegaMax);
-    }
-    omegas.push_back(omega);
-  }
-  return omegas;
-}
 
 /// Decides as the teacher and counts decisions that the student shares.
 class AgreementCounter final : public Policy {
@@ -120,7 +105,9 @@ void print_json(const OmegaPoint& point, const Evaluation& teacher) {
 }
 
 void run_omega_sweep(const OmegaSweepArguments& options) {
-  const std::vector<double> omegas = parse_omegas(options.omegas);
+  const std::vector<double> omegas =
+      numbers_in(options.omegas, kOmegaMin, kOmegaMax, "--omega",
+                 fmt::format("numbers from {:g} to {:g}", kOmegaMin, kOmegaMax));
   RunConfig config = options.common.resolve();
   config.distil.method = CorrectionMethod::kLayer;
   config.distil.repair_rounds = 0;

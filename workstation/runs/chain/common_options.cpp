@@ -1,5 +1,6 @@
 #include "workstation/runs/chain/common_options.h"
 
+#include <charconv>
 #include <cstdlib>
 #include <thread>
 
@@ -49,6 +50,21 @@ RunConfig CommonOptions::resolve(RunConfig config) const {
     config.initial_soc_frac = *initial_soc_frac;
   }
   return config;
+}
+
+std::vector<double> numbers_in(const std::vector<std::string>& texts, double low, double high,
+                               const std::string& option, const std::string& usage) {
+  std::vector<double> numbers;
+  for (const std::string& text : texts) {
+    double number = 0;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, number);
+    if (read.ec != std::errc() || read.ptr != end || !(number >= low && number <= high)) {
+      fail("{} {}: use {}", option, text, usage);
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
 }
 
 std::string checked_base_url(std::string url, const std::string& option) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "shared/host/command_line.h"
 #include "workstation/runs/chain/run_config.h"
@@ -32,6 +33,10 @@ struct CommonOptions {
   /// The same on top of `config`; ignores --config.
   [[nodiscard]] RunConfig resolve(RunConfig config) const;
 };
+
+/// Each text as a number from `low` to `high`. Throws UserError "`option` TEXT: use `usage`".
+std::vector<double> numbers_in(const std::vector<std::string>& texts, double low, double high,
+                               const std::string& option, const std::string& usage);
 
 /// Root of a web API without a trailing slash. Throws UserError naming `option` if malformed.
 std::string checked_base_url(std::string url, const std::string& option);
