@@ -16,31 +16,15 @@ namespace bess {
 
 namespace {
 
-/// Numeric order for numbers, else alphabetical.
-bool comes_before(const std::string& a, const std::string& b) {
-  char* end_a = nullptr;
-  char* end_b = nullptr;
-  const double x = std::strtod(a.c_str(), &end_a);
-  const double y = std::strtod(b.c_str(), &end_b);
-  const bool are_numbers = !a.empty() && !b.empty() && *end_a == 0 && *end_b == 0;
-  return are_numbers ? x < y : a < b;
-}
-
 std::vector<std::string> values_of(const std::vector<HeatPoint>& points,
                                    std::string HeatPoint::*setting) {
   std::vector<std::string> values;
   for (const HeatPoint& point : points) {
     if (std::ranges::find(values, point.*setting) == values.end()) values.push_back(point.*setting);
   }
-  std::ranges::sort(values, comes_before);
+  std::ranges::sort(values, {}, [](const std::string& value) { return std::stod(value); });
   return values;
 }
-
-struct Mean {
-  double sum = 0, squares = 0;  ///< of values and of their errors
-  int count = 0;
-  [[nodiscard]] HeatValue value() const { return {sum / count, std::sqrt(squares) / count}; }
-};
 
 /// Colour by `share` of the strongest; numbers stay legible in light and dark.
 std::string cell_html(const HeatValue& of, double share, const std::string& label) {
@@ -51,8 +35,6 @@ std::string cell_html(const HeatValue& of, double share, const std::string& labe
       42 * std::abs(share), html_escaped(with_true_minus(fmt::format("{:.1f}", of.value))));
 }
 
-std::string shown(const std::string& value) { return value.empty() ? "as configured" : value; }
-
 }  // namespace
 
 HeatValue shade_of(const HeatValue& cell, const HeatValue& left) {
@@ -62,16 +44,13 @@ HeatValue shade_of(const HeatValue& cell, const HeatValue& left) {
 }
 
 std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text) {
-  std::map<std::pair<std::string, std::string>, Mean> means;  // by down, then across
-  for (const HeatPoint& point : points) {
-    if (std::isnan(point.of.value)) continue;
-    Mean& mean = means[{point.down, point.across}];
-    mean.sum += point.of.value;
-    mean.squares += point.of.error * point.of.error;
-    ++mean.count;
-  }
+  std::map<std::pair<std::string, std::string>, HeatValue> cells;  // by down, then across
   double most = 0;
-  for (const auto& [at, mean] : means) most = std::max(most, std::abs(mean.value().value));
+  for (const auto& [across, down, of] : points) {
+    if (std::isnan(of.value)) continue;
+    cells[{down, across}] = {of.value + 0.0, of.error};  // + 0.0 avoids -0
+    most = std::max(most, std::abs(of.value));
+  }
   const std::vector<std::string> columns = values_of(points, &HeatPoint::across);
   std::string html = fmt::format(
       "<div class=\"wide\"><table id=\"{}\">\n<caption style=\"white-space:nowrap\">{}: "
@@ -80,19 +59,19 @@ std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapTex
       html_escaped(text.id), html_escaped(text.what), html_escaped(text.across),
       html_escaped(text.down), html_escaped(text.down));
   for (const std::string& column : columns) {
-    html += fmt::format("<th scope=\"col\">{}</th>", html_escaped(shown(column)));
+    html += fmt::format("<th scope=\"col\">{}</th>", html_escaped(column));
   }
   html += "</tr></thead>\n<tbody>\n";
   for (const std::string& row : values_of(points, &HeatPoint::down)) {
-    html += fmt::format("<tr><th scope=\"row\">{}</th>", html_escaped(shown(row)));
+    html += fmt::format("<tr><th scope=\"row\">{}</th>", html_escaped(row));
     HeatValue shade{0, 0};
     for (const std::string& column : columns) {
-      const auto found = means.find({row, column});
-      if (found != means.end()) shade = shade_of(found->second.value(), shade);
-      html += found == means.end() ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>",
-                                                 html_escaped(shown(column)), kNoValue)
-                                   : cell_html(found->second.value(),
-                                               most > 0 ? shade.value / most : 0, shown(column));
+      const auto found = cells.find({row, column});
+      if (found != cells.end()) shade = shade_of(found->second, shade);
+      html += found == cells.end()
+                  ? fmt::format("<td data-label=\"{}\"><span>{}</span></td>", html_escaped(column),
+                                kNoValue)
+                  : cell_html(found->second, most > 0 ? shade.value / most : 0, column);
     }
     html += "</tr>\n";
   }

@@ -10,7 +10,7 @@
 
 namespace bess {
 
-// Heat map of means over two settings, as an accessible table with coloured cells.
+// Heat map over two numeric settings, as an accessible table with coloured cells.
 
 struct HeatValue {
   double value, error;  ///< standard error; NaN: unknown
@@ -21,7 +21,7 @@ struct HeatValue {
 HeatValue shade_of(const HeatValue& cell, const HeatValue& left);
 
 struct HeatPoint {
-  std::string across, down;  ///< values of the two settings; empty: as configured
+  std::string across, down;  ///< values of the two settings
   HeatValue of;              ///< an unknown value is shown empty
 };
 
@@ -33,7 +33,6 @@ struct HeatMapText {
   std::string across, down, what, id;
 };
 
-/// Points with equal settings are averaged.
 std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapText& text);
 
 // Starts of price regimes within the days of a picture.

@@ -34,16 +34,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes as stored, compressed or not; none when the file cannot be read.
-std::optional<std::string> bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path)) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
 /// Command line of this process.
 std::string command_line() {
-  const std::string words = bytes_of("/proc/self/cmdline").value_or("");
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  const std::string words(std::istreambuf_iterator<char>(file), {});
   std::string line;
   for (std::size_t at = 0; at < words.size();) {
     const std::string word = words.substr(at, words.find('\0', at) - at);
