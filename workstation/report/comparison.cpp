@@ -7,7 +7,7 @@
 
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
-#include "workstation/report/rule_prices.h"
+#include "workstation/report/headline.h"
 
 namespace bess {
 namespace {

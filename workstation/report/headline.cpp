@@ -7,7 +7,6 @@
 
 #include "workstation/base/answer.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {

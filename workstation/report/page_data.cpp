@@ -14,7 +14,6 @@
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/rule_prices.h"
 
 namespace bess {
 

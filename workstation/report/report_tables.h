@@ -7,7 +7,7 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/prove.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/rule_prices.h"
+#include "workstation/report/headline.h"
 
 namespace bess {
 

@@ -1,6 +1,6 @@
-#include "workstation/report/rule_prices.h"
-
 #include <fmt/core.h>
+
+#include "workstation/report/headline.h"
 
 namespace bess {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "tests/support/tokens.h"
 #include "workstation/data/env/final_charge.h"
-#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {

@@ -15,7 +15,6 @@
 #include "workstation/data/env/final_charge.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
