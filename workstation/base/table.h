@@ -1,5 +1,5 @@
 // Tables: rows under named columns, written as aligned text, CSV and JSON; report/figures/html.h
-// and sort_table.h write HTML.
+// writes HTML.
 #pragma once
 
 #include <cstddef>

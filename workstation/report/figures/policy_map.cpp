@@ -10,7 +10,6 @@
 #include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/sort_table.h"
 
 namespace bess {
 

@@ -1,9 +1,9 @@
-#include "workstation/report/figures/sort_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 

@@ -16,7 +16,6 @@
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
 #include "workstation/report/figures/picture_table.h"
-#include "workstation/report/figures/sort_table.h"
 #include "workstation/report/report_page.h"
 #include "workstation/runs/chain/policy_factory.h"
 

@@ -12,7 +12,6 @@
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
-#include "workstation/report/figures/sort_table.h"
 #include "workstation/report/report_tables.h"
 
 namespace bess {

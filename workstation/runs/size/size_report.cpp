@@ -11,7 +11,6 @@
 #include "workstation/report/figures/page_files.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/policy_map.h"
-#include "workstation/report/figures/sort_table.h"
 #include "workstation/report/report_page.h"
 
 namespace bess {
