@@ -8,7 +8,6 @@
 #include "shared/host/text.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/run/run_report.h"
-#include "workstation/runs/run/runs_page.h"
 
 namespace bess {
 namespace {

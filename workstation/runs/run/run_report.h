@@ -53,6 +53,22 @@ std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& run
 /// One line per run, and the different settings.
 std::string format_runs_table(const std::vector<RunSummary>& runs);
 
+// Page of many runs (runs_page.cpp): profit, proof, rules and settings, with a link to each run's
+// report. Failed, stopped and edited runs are listed with their state.
+
+struct RunLine {
+  RunFolder folder;
+  RunRecord record;
+  std::optional<RunSummary> summary;  ///< of a finished, unedited run
+  std::string trouble;                ///< why there is none, without a full stop
+};
+
+/// Throws UserError when the folder contains no run.
+RunLine load_run_line(const RunFolder& folder);
+
+/// Gains are over the first finished run. Links are relative to the folder of `page`.
+std::string runs_page(const std::vector<RunLine>& runs, const std::filesystem::path& page);
+
 struct RunResults {
   const RunConfig& config;
   const MarketSteps& market;

@@ -1,5 +1,3 @@
-#include "workstation/runs/run/runs_page.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
 #include "workstation/report/report_tables.h"
+#include "workstation/runs/run/run_report.h"
 
 namespace bess {
 namespace {

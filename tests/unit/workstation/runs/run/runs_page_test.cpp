@@ -1,6 +1,4 @@
 // Many runs on one page: finished ones with figures, and the state of the others.
-#include "workstation/runs/run/runs_page.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/runs/run/run_report.h"
 
 namespace bess {
 namespace {
