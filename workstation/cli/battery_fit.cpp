@@ -12,7 +12,6 @@
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/data/env/battery_fit.h"
-#include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {

@@ -1,9 +1,9 @@
-#include "workstation/runs/chain/learning_class.h"
-
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <cmath>
+
+#include "workstation/runs/chain/run_config.h"
 
 namespace bess {
 

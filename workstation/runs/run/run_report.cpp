@@ -24,7 +24,7 @@
 #include "workstation/data/env/final_charge.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
-#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/chain/run_config.h"
 #include "workstation/runs/run/run_backtest.h"
 
 namespace bess {

@@ -12,8 +12,8 @@
 #include "workstation/data/env/final_charge.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/policy/planners/baselines.h"
-#include "workstation/runs/chain/learning_class.h"
 #include "workstation/runs/chain/policy_factory.h"
+#include "workstation/runs/chain/run_config.h"
 
 namespace bess {
 

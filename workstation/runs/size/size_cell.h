@@ -59,7 +59,7 @@ struct SizePlan {
 SizePlan read_size_plan(const std::string& path, const RunConfig& base);
 
 // Walk-forward results by C-rate and linear contract terms. Profit, throughput and peaks are
-// proportional to size, so a class is traded once at the default size (chain/learning_class.h).
+// proportional to size, so a class is traded once at the default size (chain/run_config.h).
 
 /// Import peak of a calendar month: highest quarter-hour mean, as a share of the rated power.
 struct MonthPeak {

@@ -18,7 +18,7 @@
 #include "workstation/base/binary_file.h"
 #include "workstation/correction/rules/rule_file.h"
 #include "workstation/runs/chain/chain_steps.h"
-#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/chain/run_config.h"
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"

@@ -18,7 +18,7 @@
 
 namespace bess {
 
-// Fleet members of a sweep, and classes that share a student (chain/learning_class.h). Prices,
+// Fleet members of a sweep, and classes that share a student (chain/run_config.h). Prices,
 // seed, commit and instruction set are the same in a whole sweep.
 //
 // CSV, one line per member; only `id` is required:
@@ -65,7 +65,7 @@ struct SweepRequest {
   std::string config;              ///< of all tasks
   RuleFiles rules;                 ///< of all tasks
   std::string sites;               ///< CSV
-  double c_rate_step_percent = 0;  ///< of rounded C-rates (chain/learning_class.h)
+  double c_rate_step_percent = 0;  ///< of rounded C-rates (chain/run_config.h)
   std::vector<std::string> sets;   ///< KEY=VALUES, added to the grid
   int seeds = 1;
   std::string folds;  ///< "monthly" or empty

@@ -6,7 +6,6 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
-#include "workstation/runs/chain/learning_class.h"
 
 namespace bess {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
-#include "workstation/runs/chain/learning_class.h"
+#include "workstation/runs/chain/run_config.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {
