@@ -120,7 +120,11 @@ void write_fit(const FitArguments& options) {
   if (!options.json) fmt::print("{}\n", options.out);
 }
 
-void add_battery_fit(ProgramCommand& battery) {
+}  // namespace
+
+void add_battery_commands(ProgramCommand& app) {
+  ProgramCommand battery = app.subcommand("battery", "battery parameters from measurements: fit");
+  battery.requires_subcommand();
   auto options = std::make_shared<FitArguments>();
   ProgramCommand command = battery.subcommand(
       "fit", "fit efficiency, taper, cold limits and standby power to a controller's log");
@@ -150,14 +154,6 @@ void add_battery_fit(ProgramCommand& battery) {
       "battery.toml\n"
       "  bess-train evaluate --prices market.csv.gz --config battery.toml --policy sdp");
   command.runs([options] { write_fit(*options); });
-}
-
-}  // namespace
-
-void add_battery_commands(ProgramCommand& app) {
-  ProgramCommand battery = app.subcommand("battery", "battery parameters from measurements: fit");
-  battery.requires_subcommand();
-  add_battery_fit(battery);
 }
 
 }  // namespace bess

@@ -22,11 +22,6 @@ struct ExportArguments {
   std::string out;  ///< empty: the source tree's
 };
 
-[[noreturn]] void refuse(const std::string& name, const Certificate& c) {
-  fail("{}: refused: {} violations over the lattice ({}); repeat bess-train distil", name,
-       c.violations(), round_of(c).text());
-}
-
 void print_next(const ExportArguments& options, const std::filesystem::path& folder) {
   if (options.out.empty()) {
     fmt::print("next, here:            cmake --build build --target bess-edge\n");
@@ -49,7 +44,11 @@ void run_export(const ExportArguments& options) {
   const Verdict verdict =
       prove(load_student(options.student), options.common.resolve().train.threads);
   const auto* student = std::get_if<ProvedStudent>(&verdict);
-  if (student == nullptr) refuse(options.student, student_of(verdict).certificate);
+  if (student == nullptr) {
+    const Certificate& c = student_of(verdict).certificate;
+    fail("{}: refused: {} violations over the lattice ({}); repeat bess-train distil",
+         options.student, c.violations(), round_of(c).text());
+  }
   const std::string decided = decision_signature_line(student->file());
   write_file(out, format_weight_header(*student));
   fmt::print("{}: written{}, weights {:08x}, proved\n", out.string(),

@@ -114,18 +114,17 @@ std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSIO
 std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps& market,
                                       const RunFolder& folder) {
   std::vector<ProvenanceLine> facts = making_facts(folder);
-  const int delay_min = config.market.observation_delay_min;
-  facts.push_back({"program", program_text()});
-  facts.push_back({"prices", prices_text(folder)});
-  facts.push_back({"span", span_text(market)});
-  facts.push_back(
-      {"observation delay", fmt::format("{} minute{}", delay_min, delay_min == 1 ? "" : "s")});
-  facts.push_back({"settlement", config.market.settlement == Settlement::kMinute
-                                     ? "per minute, by its quarter-hour"
-                                     : "per step, by the quarter-hour in which it starts"});
-  facts.push_back({"keys changed", changed_keys_text(config)});
-  facts.push_back(
-      {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)});
+  const auto delay_min = static_cast<std::size_t>(config.market.observation_delay_min);
+  facts.insert(facts.end(),
+               {{"program", program_text()},
+                {"prices", prices_text(folder)},
+                {"span", span_text(market)},
+                {"observation delay", counted(delay_min, "minute")},
+                {"settlement", config.market.settlement == Settlement::kMinute
+                                   ? "per minute, by its quarter-hour"
+                                   : "per step, by the quarter-hour in which it starts"},
+                {"keys changed", changed_keys_text(config)},
+                {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)}});
   return facts;
 }
 
@@ -342,13 +341,9 @@ namespace {
 NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
   const RunConfig& config = run.config;
   const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
-  NamedEvaluation named;
-  named.name = name;
-  named.day_reset =
-      evaluate(run.market, days, policy, {config.battery, config.initial_soc_frac, false});
-  named.carried_over =
-      evaluate_carried_over(run.market, days, policy, config.battery, config.initial_soc_frac);
-  return named;
+  return {name,
+          evaluate(run.market, days, policy, {config.battery, config.initial_soc_frac, false}),
+          evaluate_carried_over(run.market, days, policy, config.battery, config.initial_soc_frac)};
 }
 
 /// Violations before and after the correction, by property and rule.
