@@ -88,26 +88,6 @@ TEST(BatteryModel, ConservesEnergyAndStaysInsideForAnyBatteryAndOrder) {
   }
 }
 
-TEST(BatteryModel, RoundTripLosesWhatTheEfficiencySays) {
-  const BatteryParameters battery;
-  double soc = battery.soc_min_frac;
-  double bought_wh = 0;
-  double sold_wh = 0;
-  for (int i = 0; i < 100; ++i) {
-    const BatteryStep step = battery_step(battery, soc, 4e6, kHoursPerStep);
-    bought_wh += step.power_w * kHoursPerStep;
-    soc = step.soc_frac;
-  }
-  ASSERT_EQ(soc, battery.soc_max_frac);
-  for (int i = 0; i < 100; ++i) {
-    const BatteryStep step = battery_step(battery, soc, -4e6, kHoursPerStep);
-    sold_wh -= step.power_w * kHoursPerStep;
-    soc = step.soc_frac;
-  }
-  ASSERT_EQ(soc, battery.soc_min_frac);
-  EXPECT_NEAR(sold_wh / bought_wh, 0.9, 1e-12);
-}
-
 BatteryParameters real_battery() {
   BatteryParameters battery;
   battery.charge_taper = {.width_frac = 0.1, .share = 0.2};

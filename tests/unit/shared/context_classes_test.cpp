@@ -43,17 +43,6 @@ TEST(ContextClasses, ByLevelAClassBeginsAtItsEdge) {
   }
 }
 
-TEST(ContextClasses, TheClassNeverFallsAsTheLevelRises) {
-  const ContextClasses classes = by_level();
-  int before = 1;
-  for (std::int32_t level = -50'000; level <= 150'000; level += 50) {
-    const int now = classes.class_of(7, level);
-    EXPECT_TRUE(now == before || now == before + 1) << level;
-    before = now;
-  }
-  EXPECT_EQ(before, kContextClassCount);
-}
-
 TEST(ContextClasses, EdgesRiseStrictlyAndAMonthHasNone) {
   ContextClasses classes = by_level();
   classes.level_edge_eur_per_mwh[5] = classes.level_edge_eur_per_mwh[4];

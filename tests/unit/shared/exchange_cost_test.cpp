@@ -42,14 +42,6 @@ TEST(ExchangeCost, ByHand) {
   }
 }
 
-TEST(ExchangeCost, APercentageCostsWhateverThePrice) {
-  const TradingCosts costs{.import_percent = 7, .export_percent = 2};
-  for (const double price : {-500.0, -1.0, 0.0, 1.0, 500.0}) {
-    EXPECT_GE(costs.import_eur_per_mwh(price), price);
-    EXPECT_LE(costs.export_eur_per_mwh(price), price);
-  }
-}
-
 TEST(ExchangeCost, WithoutAnyCostIsEnergyTimesPriceToTheBit) {
   Random random(11);
   for (int n = 0; n < 10'000; ++n) {

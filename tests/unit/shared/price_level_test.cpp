@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace bess {
 namespace {
 
@@ -81,19 +79,6 @@ TEST(PriceLevel, RoundsNegativePricesAsPositiveOnes) {
   half = {.centi_q16 = -360, .row_minute_utc_s = kMinute};  // moves by +1/2: up, to 1
   half.observe(kMinute + 120, 0);
   EXPECT_EQ(half.centi_q16, -359);
-}
-
-TEST(PriceLevel, FollowsAStepWithATimeConstantOfADay) {
-  PriceLevel level;
-  level.observe(kMinute, 0);
-  for (int day = 1; day <= 30; ++day) {
-    for (int i = 1; i <= PriceLevel::kDecisions; ++i) {
-      level.observe(level.row_minute_utc_s + 120, 10'000);
-    }
-    const double expected = 10'000 * (1 - std::pow(1 - 1.0 / 720, 720.0 * day));
-    EXPECT_NEAR(level.centi_eur_per_mwh(), expected, 1) << day;
-  }
-  EXPECT_EQ(level.centi_eur_per_mwh(), 10'000);
 }
 
 TEST(PriceLevel, MayStartAtASetPriceAndAnyRowCountsThen) {
