@@ -68,33 +68,5 @@ TEST(CorrectionLayer, OutputHasTheProperties) {
   }
 }
 
-TEST(CorrectionLayer, BackwardIsTheDerivative) {
-  constexpr double kStep = 1e-6;
-  Random random(203);
-  for (const LayerCase& c : kLayerCases) {
-    SCOPED_TRACE(c.name);
-    const LatticeAxes axes = even_axes(c.prices, c.socs);
-    const Eigen::Index columns = c.prices * c.socs;
-    const Eigen::MatrixXd logits = random_logits(columns, random, 1.5);
-    const Eigen::MatrixXd g = random_logits(columns, random, 1);
-    CorrectionLayer layer(c.options, c.prices, c.socs);
-    Eigen::MatrixXd corrected, gradient;
-    layer.forward(axes, logits, corrected);
-    layer.backward(g, gradient);
-    for (int probe = 0; probe < 40; ++probe) {
-      const auto k = static_cast<Eigen::Index>(random.index(static_cast<std::size_t>(3 * columns)));
-      Eigen::MatrixXd up = logits;
-      Eigen::MatrixXd down = logits;
-      up.reshaped()[k] += kStep;
-      down.reshaped()[k] -= kStep;
-      layer.forward(axes, up, corrected);
-      const double loss_up = corrected.cwiseProduct(g).sum();
-      layer.forward(axes, down, corrected);
-      const double loss_down = corrected.cwiseProduct(g).sum();
-      EXPECT_NEAR(gradient.reshaped()[k], (loss_up - loss_down) / (2 * kStep), 1e-6) << k;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace bess

@@ -1,6 +1,6 @@
 #include "workstation/correction/distillation/isotonic.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 namespace bess {
 namespace {
 
-using testing::Pointwise;
 using Values = std::vector<double>;
 
 Values project(int rows, int columns, const Values& y, const RowBounds& bounds = {}) {
@@ -50,43 +49,6 @@ RowBounds random_bounds(int rows, int kind, Random& random) {
   bounds.lower = random.normal() * 0.7 + 0.5;
   bounds.upper = bounds.lower - 0.05 - random.uniform();
   return bounds;
-}
-
-struct HandCase {
-  const char* name;
-  int rows, columns;
-  RowBounds bounds;
-  Values y, x;
-};
-
-TEST(Isotonic, HandCases) {
-  const RowBounds none;
-  const HandCase cases[] = {
-      {"one cell", 1, 1, none, {3}, {3}},
-      {"falling pair stays", 2, 1, none, {5, 1}, {5, 1}},
-      {"rising pair is averaged", 2, 1, none, {0, 10}, {5, 5}},
-      {"clipping is not the projection", 2, 1, {1, 8, 0, 0}, {0, 10}, {8, 8}},
-      {"the same from above", 2, 1, {0, 0, 1, 2}, {0, 10}, {2, 2}},
-      {"loose bound", 2, 1, {1, 4, 0, 0}, {0, 10}, {5, 5}},
-      {"the bound pulls its row alone", 2, 1, {1, 8, 0, 0}, {0, 3}, {8, 3}},
-      {"two bounded rows", 3, 1, {2, 6, 0, 0}, {0, 9, 8}, {6, 6, 6}},
-      {"both ends", 2, 1, {1, 1, 1, -1}, {-3, 4}, {1, -1}},
-      {"both ends, a free row between", 3, 1, {1, 1, 1, -1}, {0, 5, 0}, {2.5, 2.5, -1}},
-      {"one row", 1, 4, none, {1, 3, 2, 0}, {2, 2, 2, 0}},
-      {"one row, bounded below", 1, 3, {1, 1, 0, 0}, {4, 0, -2}, {4, 1, 1}},
-      {"one row, bounded above", 1, 3, {0, 0, 1, 1}, {4, 0, 2}, {1, 1, 1}},
-      {"one column", 4, 1, none, {1, 3, 2, 0}, {2, 2, 2, 0}},
-      {"square, one rising", 2, 2, none, {1, 2, 3, 4}, {2.5, 2.5, 2.5, 2.5}},
-      {"square, off-diagonal", 2, 2, none, {4, 1, 3, 2}, {4, 1.5, 3, 1.5}},
-      {"constant", 2, 3, none, {7, 7, 7, 7, 7, 7}, {7, 7, 7, 7, 7, 7}},
-      {"constant below its bound", 2, 2, {1, 9, 0, 0}, {7, 7, 7, 7}, {9, 9, 7, 7}},
-      {"ties", 3, 2, none, {2, 2, 2, 2, 1, 1}, {2, 2, 2, 2, 1, 1}},
-  };
-  for (const HandCase& c : cases) {
-    SCOPED_TRACE(c.name);
-    EXPECT_THAT(project(c.rows, c.columns, c.y, c.bounds),
-                Pointwise(testing::DoubleNear(1e-12), c.x));
-  }
 }
 
 /// Constant input of any size is one level set: rounding of long sums must not split it.

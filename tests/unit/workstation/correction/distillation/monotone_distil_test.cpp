@@ -270,18 +270,6 @@ TEST(SignBounds, EveryStudentInsideIsMonotone) {
   EXPECT_GT(with_all_actions, 0) << "a constant action would prove nothing";
 }
 
-TEST(SignBounds, OutsideTheStudentIsNot) {
-  const PriceMap map(even_price_table());
-  int rising = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Parameters parameters = wild_parameters(seed);
-    EXPECT_FALSE(SignBounds::monotone().contain(parameters));
-    EXPECT_TRUE(SignBounds::none().contain(parameters));
-    rising += rising_contexts(quantise_student(parameters, map, kSaturation), seed);
-  }
-  EXPECT_GT(rising, 0);
-}
-
 TEST(SignBounds, AWrongSignAnywhereIsOutside) {
   const SignBounds bounds = SignBounds::monotone();
   Parameters inside = initial_parameters(kStudentShape, 3);
