@@ -23,33 +23,6 @@ class AlertList {
   std::vector<ToldAlert> alerts_;
 };
 
-TEST(Alerts, AFaultIsReportedOnceAndItsEndOnce) {
-  AlertList list(300);
-  int reported = 0;
-  for (int s = 0; s < 3'600; s += 30) {
-    for (const AlertEvent& event : list.observe({kLink}, 1'000 + s)) {
-      ++reported;
-      EXPECT_FALSE(event.is_over);
-      EXPECT_EQ(event.alert.key, kLink.key);
-      EXPECT_EQ(event.alert.since_utc_s, 1'000);
-      EXPECT_EQ(s, 300);
-    }
-  }
-  EXPECT_EQ(reported, 1);
-  int over = 0;
-  for (int s = 3'600; s < 7'200; s += 30) {
-    for (const AlertEvent& event : list.observe({}, 1'000 + s)) {
-      ++over;
-      EXPECT_TRUE(event.is_over);
-      EXPECT_EQ(event.alert.since_utc_s, 1'000);
-      EXPECT_EQ(event.alert.seen_utc_s, 1'000 + 3'570);
-      EXPECT_EQ(s, 3'570 + 300);
-    }
-  }
-  EXPECT_EQ(over, 1);
-  EXPECT_TRUE(list.alerts().empty());
-}
-
 TEST(Alerts, AShortFaultIsNotReported) {
   AlertList list(300);
   for (int s = 0; s <= 270; s += 30) EXPECT_TRUE(list.observe({kLink}, s).empty());

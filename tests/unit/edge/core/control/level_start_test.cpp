@@ -51,17 +51,6 @@ TEST(LevelStart, LogThenHistoryThenSettingThenTheFirstPrice) {
   }
 }
 
-TEST(LevelFromLog, OutOfTheLatticeIsRefused) {
-  for (const std::int64_t centi : {150'000, -50'000}) {
-    const PriceLevel edge{.centi_q16 = centi * 65'536, .row_minute_utc_s = kStartUtcS - 120};
-    EXPECT_EQ(level_from_log(edge, kStartUtcS), edge);
-    const PriceLevel beyond{.centi_q16 = edge.centi_q16 + (centi > 0 ? 1 : -1),
-                            .row_minute_utc_s = kStartUtcS - 120};
-    EXPECT_FALSE(level_from_log(beyond, kStartUtcS).is_known());
-  }
-  EXPECT_FALSE(level_from_log({.centi_q16 = 0, .row_minute_utc_s = -60}, kStartUtcS).is_known());
-}
-
 /// Logged while the clock was a year ahead: without the bound no row would count for a year.
 TEST(LevelFromLog, ARowOfTheFutureDoesNotFreezeTheLevel) {
   for (const std::int64_t row :

@@ -18,14 +18,6 @@ PriceLevel level_of(const std::vector<std::pair<std::int64_t, std::int32_t>>& ro
   return level;
 }
 
-TEST(PriceHistory, IsUnknownWithoutRows) {
-  const PriceHistory history(72, kBetweenTicks);
-  EXPECT_FALSE(history.level().is_known());
-  EXPECT_EQ(history.rows(), 0);
-  EXPECT_EQ(history.hours_covered(), 0);
-  EXPECT_EQ(history.first_minute_utc_s(), kLastTick - 72 * 3'600);
-}
-
 TEST(PriceHistory, TakesTheRowsThatDecisionsSaw) {
   PriceHistory history(1, kBetweenTicks);
   for (int minute = 10; minute >= 1; --minute) history.add(kLastTick - 60 * minute, 1'000 * minute);
