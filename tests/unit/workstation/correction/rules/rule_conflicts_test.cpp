@@ -24,11 +24,6 @@ std::string complaint(const std::string& text, ContextKind kind = ContextKind::k
   return refusal_of([&] { require_consistent(parse_rules(text, "test.toml"), thresholds, kind); });
 }
 
-TEST(Conflicts, TheExamplesCanBeObeyedTogether) {
-  EXPECT_NO_THROW(require_consistent(example_rules(), {}, ContextKind::kLevel));
-  EXPECT_NO_THROW(require_consistent(example_rules(), {}, ContextKind::kMonth));
-}
-
 TEST(Conflicts, BothRulesAndAStateAreNamed) {
   const std::string text =
       complaint(named("always charge", "soc_max = 0.2\nprice_max = 50\nis = \"charge\"") +
@@ -69,15 +64,6 @@ TEST(Conflicts, TheThresholdsCount) {
       complaint(named("never sell", "at_least = \"idle\""), ContextKind::kLevel, {-500, 1501}), "");
   EXPECT_THAT(complaint(named("t", "charge_at_or_below = 1500")),
               Names("[correction] 1500 EUR/MWh"));
-}
-
-TEST(Conflicts, NotIdleBetweenTwoThatLeaveOnlyThat) {
-  const std::string least = named("least", "price_max = 100\nat_least = \"idle\"");
-  const std::string most = named("most", "price_min = 50\nat_most = \"idle\"");
-  const std::string gap = named("gap", "price_min = 80\nprice_max = 120\nis_not = \"idle\"");
-  EXPECT_EQ(complaint(least + most), "");
-  EXPECT_THAT(complaint(least + most + gap), Names("\"gap\" 80 EUR/MWh"));
-  EXPECT_EQ(complaint(least + gap), "");
 }
 
 TEST(Conflicts, WhatTheGuardEnforcesIsHeldAgainstTheBareBoxes) {

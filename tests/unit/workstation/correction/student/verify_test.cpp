@@ -175,21 +175,6 @@ TEST(Verify, CountsMatchTheDefinitions) {
   }
 }
 
-TEST(Verify, CountsOfASeededNetMatch) {
-  const StudentNet net = seeded_net(11);
-  const VerifyOptions options{
-      .thresholds = {-200, 700}, .context_stride = kContextCount / 2, .threads = 2};
-  Counts expected;
-  for (const LatticeState& context : {LatticeState{0, 0, 1, 0, 0}, LatticeState{0, 0, 7, 0, 0}}) {
-    const Counts part =
-        brute_force([&net](const LatticeState& s) { return net.decide(s); }, context, -200, 700);
-    expected.low += part.low;
-    expected.high += part.high;
-    expected.order += part.order;
-  }
-  EXPECT_EQ(counts_of(verify_student(net, options)), expected);
-}
-
 TEST(Verify, ThreadsDoNotChangeTheCounts) {
   const StudentNet net = seeded_net(12);
   VerifyOptions options{

@@ -112,19 +112,6 @@ TEST(Evaluate, StandbyIsBoughtWhateverThePolicyDoes) {
   EXPECT_NEAR(with_costs - with_standby, mwh * 120, 1e-9) << "at 100 + 20 EUR/MWh";
 }
 
-TEST(Evaluate, OneKnownStepIsPaidToTheCent) {
-  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 100);
-  series.indicative.assign(series.size(), 50);
-  series.indicative[1] = 200;  // seen by the first step of the day, which then discharges
-  series.settled[2] = 90;
-  const MarketSteps market = make_market_steps(series, {});
-  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-  const Evaluation result = evaluate(market, market.days, rule, {});
-  EXPECT_NEAR(result.days[0].profit_eur, 4.0 / 30 * (90 + 100) / 2, 1e-9);
-  EXPECT_EQ(result.days[0].switches, 2);
-  EXPECT_NEAR(result.days[0].soc_end_frac, 0.5 - 4.0 / 30 / std::sqrt(0.9) / 8, 1e-12);
-}
-
 TEST(Evaluate, FiguresOfSeveralDays) {
   Evaluation result;
   result.capacity_mwh = 2;

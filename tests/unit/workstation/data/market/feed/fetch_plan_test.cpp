@@ -42,18 +42,6 @@ TEST(FetchPlan, TodayHasItsOwnDatasetsAndTomorrowNone) {
                                    "ods162 2025-06-14T22 2025-06-15T22 later"));
 }
 
-TEST(FetchPlan, DaysThatMayStillBeFillingAreAWindowOfTheirOwn) {
-  EXPECT_THAT(described({{2025, 6, 1}, {2025, 6, 14}}),
-              testing::ElementsAre("ods133 2025-05-31T22 2025-06-12T22",
-                                   "ods134 2025-05-31T22 2025-06-12T22",
-                                   "ods133 2025-06-12T22 2025-06-14T22 later",
-                                   "ods134 2025-06-12T22 2025-06-14T22 later"));
-}
-
-TEST(FetchPlan, AYearIsTwelveWindowsOfEachKind) {
-  EXPECT_EQ(plan_fetch({{2023, 1, 1}, {2023, 12, 31}}, kFetchTime_s).size(), 24u);
-}
-
 TEST(FetchPlan, RefusesEmptySpans) {
   EXPECT_THAT(user_error_of([] {
                 (void)plan_fetch({{2023, 2, 1}, {2023, 1, 1}}, kFetchTime_s);
