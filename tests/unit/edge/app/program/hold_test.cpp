@@ -140,9 +140,5 @@ TEST_F(TwoHolds, TheWatchNamesALossOnce) {
   EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
 }
 
-TEST(HoldWatch, NeedsNoStart) {
-  EXPECT_EQ(std::make_unique<HoldWatch>()->latest_hold().latest(), Hold{});
-}
-
 }  // namespace
 }  // namespace bess

@@ -323,13 +323,5 @@ TEST_F(ConfigFile, RealMachinesAskForTomorrowsPricesAtDifferentSeconds) {
   EXPECT_GT(seconds.size(), 50U);
 }
 
-TEST_F(ConfigFile, MissingFileAndFolder) {
-  EXPECT_FALSE(load_edge_config("/nonexistent.toml", *config_, error_));
-  EXPECT_THAT(error_, Names("/nonexistent.toml"));
-  error_.clear();
-  EXPECT_FALSE(load_edge_config("/tmp", *config_, error_));
-  EXPECT_THAT(error_, Names("/tmp"));
-}
-
 }  // namespace
 }  // namespace bess

@@ -199,11 +199,6 @@ TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfThePreviousOne) {
   EXPECT_THAT(complaint(), Names("battery \"192.168.1.20"));
 }
 
-TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
-  config_.state.folder.assign(folder_.file("elsewhere"));
-  EXPECT_THAT(complaint(), Names("bess-edge commission --config --yes"));
-}
-
 TEST_F(CommissionFile, AFolderThatCannotBeWrittenIsNamed) {
   config_.state.folder.assign("/proc/bess");
   EXPECT_FALSE(write_commission_file(config_, {}, 0, error_));
