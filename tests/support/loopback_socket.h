@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
+#include <thread>
 
 namespace bess {
 
@@ -30,6 +32,26 @@ inline int bind_socket(sockaddr_in& address) {
   }
   getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
   return fd;
+}
+
+/// A port that nothing uses now.
+inline std::uint16_t free_port() {
+  sockaddr_in address = loopback_address();
+  close(bind_socket(address));
+  return ntohs(address.sin_port);
+}
+
+/// Returns when a program listens on the port, which takes seconds on a busy machine.
+inline void await_listener(std::uint16_t port) {
+  const sockaddr_in address = loopback_address(port);
+  for (int tries = 0; tries < 500; ++tries) {
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const bool is_open =
+        connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    close(fd);
+    if (is_open) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
 }
 
 }  // namespace bess

@@ -9,7 +9,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -33,17 +32,10 @@ class Broker {
                            "user root\nlistener " + std::to_string(port) + " 127.0.0.1\n" + keys);
     start();
   }
-  static std::uint16_t free_port() {
-    sockaddr_in address = loopback_address();
-    close(bind_socket(address));
-    return ntohs(address.sin_port);
-  }
   /// Returns when it listens, which takes seconds on a busy machine.
   void start() {
     process_ = std::make_unique<ChildProcess>(std::vector<std::string>{kProgram, "-c", config_});
-    for (int tries = 0; tries < 500 && !listens(); ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
+    await_listener(port_);
   }
   void stop() { process_.reset(); }
   /// Accepts connections without answering until resumed.
@@ -52,15 +44,6 @@ class Broker {
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
  private:
-  [[nodiscard]] bool listens() const {
-    const sockaddr_in address = loopback_address(port_);
-    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const bool is_open =
-        connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    close(fd);
-    return is_open;
-  }
-
   std::uint16_t port_;
   std::string config_;
   std::unique_ptr<ChildProcess> process_;

@@ -88,7 +88,7 @@ TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
   if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
   start_site(3'000);
   use_mail();
-  Broker broker(site_.folder, Broker::free_port());
+  Broker broker(site_.folder, free_port());
   std::ofstream(config_, std::ios::app)
       << "mqtt_host = \"127.0.0.1\"\nmqtt_port = " << broker.port() << "\n";
   Listener all(broker.port(), "bess/#");

@@ -46,7 +46,7 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   const DatedCertificate other("IP:127.0.0.1", -kDayS, kDayS, "another CA");
   const DatedCertificate renewed("IP:127.0.0.1", -kDayS, kDayS);  // of the same name, another key
-  Broker broker(folder_, Broker::free_port(), tls_keys(good));
+  Broker broker(folder_, free_port(), tls_keys(good));
   EXPECT_EQ(send(broker.port(), good.ca()), "");
   std::set<std::string> reported = {send(broker.port(), other.ca()),
                                     send(broker.port(), renewed.ca())};
@@ -56,7 +56,7 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
   const DatedCertificate foreign("IP:127.0.0.2", -kDayS, kDayS);
   const DatedCertificate named("DNS:localhost", -kDayS, kDayS);
   for (const DatedCertificate* bad : {&expired, &early, &foreign, &named}) {
-    Broker badly(folder_, Broker::free_port(), tls_keys(*bad));
+    Broker badly(folder_, free_port(), tls_keys(*bad));
     const std::string trouble = send(badly.port(), bad->ca());
     EXPECT_NE(has_code(trouble, "timedatectl"), bad == &foreign || bad == &named) << trouble;
     reported.insert(trouble);
@@ -65,11 +65,11 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
 }
 
 TEST_F(MqttTrouble, ServersThatAreNoBrokers) {
-  const std::string nobody = send(Broker::free_port(), "");
+  const std::string nobody = send(free_port(), "");
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
-  Broker plain(folder_, Broker::free_port());
+  Broker plain(folder_, free_port());
   EXPECT_THAT(send(plain.port(), good.ca()), Names("TLS"));
-  Broker closed(folder_, Broker::free_port(), "allow_anonymous false\n");
+  Broker closed(folder_, free_port(), "allow_anonymous false\n");
   EXPECT_THAT(send(closed.port(), "", "somebody"), Names("mqtt_user mqtt_password_file"));
   TestServer silent([&silent](TestConnection&, const std::string&) {
     silent.wait_for_end();

@@ -88,11 +88,8 @@ class Mqtt : public Rounds {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(Broker::kProgram)) GTEST_SKIP() << "mosquitto is not installed";
-    settings_.mqtt = {.host = "127.0.0.1",
-                      .port = Broker::free_port(),
-                      .ca_file = "",
-                      .user = "",
-                      .password = ""};
+    settings_.mqtt = {
+        .host = "127.0.0.1", .port = free_port(), .ca_file = "", .user = "", .password = ""};
     settings_.after_s = 0;
   }
   [[nodiscard]] std::uint16_t port() const {

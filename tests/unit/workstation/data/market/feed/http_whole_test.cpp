@@ -4,10 +4,8 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <random>
-#include <thread>
 
 #include "shared/host/child_process.h"
 #include "tests/support/dated_certificate.h"
@@ -31,9 +29,7 @@ class Http2Front {
                   "--backend=127.0.0.1," + std::to_string(backend), certificate_.key(),
                   certificate_.certificate()}) {
     setenv("SSL_CERT_FILE", certificate_.ca().c_str(), 1);
-    for (int tries = 0; tries < 500 && !listens(); ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
+    await_listener(port_);
   }
   Http2Front(const Http2Front&) = delete;
   Http2Front& operator=(const Http2Front&) = delete;
@@ -41,19 +37,6 @@ class Http2Front {
   [[nodiscard]] std::string url() const { return "https://127.0.0.1:" + std::to_string(port_); }
 
  private:
-  static std::uint16_t free_port() {
-    sockaddr_in place = loopback_address();
-    close(bind_socket(place));
-    return ntohs(place.sin_port);
-  }
-  [[nodiscard]] bool listens() const {
-    const sockaddr_in place = loopback_address(port_);
-    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const bool is_open = connect(fd, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
-    close(fd);
-    return is_open;
-  }
-
   DatedCertificate certificate_{"IP:127.0.0.1", -DatedCertificate::kDayS, DatedCertificate::kDayS};
   std::uint16_t port_;
   ChildProcess process_;
