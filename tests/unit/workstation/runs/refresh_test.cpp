@@ -165,7 +165,7 @@ TEST_F(RefreshedByOutlook, FetchesWhatWasPublishedSince) {
   const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
   const MinuteSeries prices = read_minute_file(path("site.proposal/market.csv.gz"));
   EXPECT_EQ(local_date_of(prices.utc_s(prices.size() - 1)), yesterday);
-  EXPECT_GT(charts.requests, 0);
+  EXPECT_GT(charts.requests(), 0);
 }
 
 // The benchmark's months, trained in full: minutes of two cores.

@@ -219,7 +219,7 @@ TEST(DayAheadFetch, AsksYearByYearAndTriesAgain) {
   const auto fetched =
       fetch_day_ahead(request_of(server, {{2024, 1, 1}, {2025, 6, 30}}), interrupted);
   ASSERT_TRUE(fetched);
-  EXPECT_EQ(server.requests, 4);
+  EXPECT_EQ(server.requests(), 4);
   EXPECT_EQ(fetched->series.size(), (366u + 181u) * 96 - 4);  // clock changes: -4 +4 -4
   EXPECT_TRUE(incomplete_days(fetched->series).empty());
 }
