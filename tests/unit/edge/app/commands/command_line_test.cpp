@@ -15,21 +15,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-struct ProgramOutput {
-  int exit_code;
-  std::string text;  ///< stdout, then stderr
-};
-
-ProgramOutput said_to(const std::vector<std::string>& words) {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  const int exit_code = run_edge_words(words);
-  std::string text = testing::internal::GetCapturedStdout();
-  return {exit_code, text + testing::internal::GetCapturedStderr()};
-}
-
 TEST(EdgeCommandLine, EveryCommandHasHelpWithExitCodes) {
-  const std::string general = said_to({"--help"}).text;
+  const std::string general = run_edge_words({"--help"}).text();
   std::istringstream commands(general.substr(general.find("Subcommands:\n")));
   std::string line;
   int count = 0;
@@ -37,13 +24,13 @@ TEST(EdgeCommandLine, EveryCommandHasHelpWithExitCodes) {
     std::vector<std::string> words = {line.substr(2, line.find(' ', 2) - 2)};
     if (words.front() == "map") words.emplace_back("check");
     words.emplace_back("--help");
-    const ProgramOutput said = said_to(words);
+    const EdgeOutput said = run_edge_words(words);
     EXPECT_EQ(said.exit_code, 0) << line;
-    EXPECT_THAT(said.text, ::testing::ContainsRegex("Exit codes:\n  0 ")) << line;
+    EXPECT_THAT(said.text(), ::testing::ContainsRegex("Exit codes:\n  0 ")) << line;
   }
   EXPECT_EQ(count, 12);
-  EXPECT_EQ(said_to({"--version"}).exit_code, 0);
-  EXPECT_THAT(said_to({"--version"}).text, StartsWith("bess-edge "));
+  EXPECT_EQ(run_edge_words({"--version"}).exit_code, 0);
+  EXPECT_THAT(run_edge_words({"--version"}).text(), StartsWith("bess-edge "));
 }
 
 TEST(EdgeCommandLine, ATypingErrorIsReportedWithASuggestion) {
@@ -68,10 +55,10 @@ TEST(EdgeCommandLine, ATypingErrorIsReportedWithASuggestion) {
       {{"--config"}, "--config --help bess-edge"},
   };
   for (const auto& [words, complaint] : slips) {
-    const ProgramOutput said = said_to(words);
+    const EdgeOutput said = run_edge_words(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), Names(complaint)));
-    EXPECT_EQ(said.text.find('\n'), said.text.size() - 1) << said.text;
+    EXPECT_THAT(said.text(), AllOf(StartsWith("bess-edge: "), Names(complaint)));
+    EXPECT_EQ(said.text().find('\n'), said.text().size() - 1) << said.text();
   }
 }
 
@@ -99,9 +86,9 @@ TEST(EdgeCommandLine, MissingArgumentsAreReportedBeforeAFileIsRead) {
       {{"signature", "--config", "x"}, "--config"},
   };
   for (const auto& [words, complaint] : incomplete) {
-    const ProgramOutput said = said_to(words);
+    const EdgeOutput said = run_edge_words(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text.substr(said.text.find("bess-edge: ")), Names(complaint));
+    EXPECT_THAT(said.text().substr(said.text().find("bess-edge: ")), Names(complaint));
   }
 }
 

@@ -77,18 +77,9 @@ url = "http://127.0.0.1:1/prices"
       ASSERT_TRUE(ring_.append(r));
     }
   }
-  struct ProgramOutput {
-    int exit_code;
-    std::string out;
-    std::string error;
-  };
-  ProgramOutput ask(std::vector<std::string> words) {
+  [[nodiscard]] EdgeOutput ask(std::vector<std::string> words) const {
     words.insert(words.end(), {"--config", config_});
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int exit_code = run_edge_words(words);
-    std::string out = testing::internal::GetCapturedStdout();
-    return {exit_code, out, testing::internal::GetCapturedStderr()};
+    return run_edge_words(words);
   }
 
   const TemporaryFolder folder_;
@@ -100,7 +91,7 @@ url = "http://127.0.0.1:1/prices"
 
 TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
   log_until_now(30);
-  const ProgramOutput newest = ask({"why"});
+  const EdgeOutput newest = ask({"why"});
   EXPECT_EQ(newest.exit_code, 0) << newest.error;
   EXPECT_THAT(newest.out, StartsWith(local_text(newest_utc_s_).c_str()));
   EXPECT_THAT(newest.out, Names("student 30"));
@@ -108,7 +99,7 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
   for (const std::string& at :
        {std::string(local_clock_text(before_s + 90).view()),
         std::string(local_text(before_s).view()), std::string(utc_text(before_s + 119).view())}) {
-    const ProgramOutput then = ask({"why", "--json", "--at", at});
+    const EdgeOutput then = ask({"why", "--json", "--at", at});
     ASSERT_EQ(then.exit_code, 0) << at << ": " << then.error;
     const Json json = Json::parse(then.out);
     EXPECT_EQ(json.value()["utc"].text(), std::string(utc_text(before_s).view())) << at;
@@ -119,13 +110,13 @@ TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
 TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
   EXPECT_EQ(ask({"why"}).exit_code, 1);
   log_until_now(5);
-  const ProgramOutput early = ask({"why", "--at", "2020-01-01 12:00"});
+  const EdgeOutput early = ask({"why", "--at", "2020-01-01 12:00"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.error,
               Names("2020-01-01 12:00 " +
                     std::string(local_text(newest_utc_s_ - 4 * kSecondsPerStep).view())));
   for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", "x"}) {
-    const ProgramOutput said = ask({"why", "--at", at});
+    const EdgeOutput said = ask({"why", "--at", at});
     EXPECT_EQ(said.exit_code, 2) << at;
     EXPECT_THAT(said.error, Names("--at 14:32"));
   }
@@ -181,11 +172,11 @@ TEST_F(Questions, StatusShowsTheTrainingDays) {
   };
   const std::string today{local_date_text(std::time(nullptr)).view()};
   published("2023-01-01", today.c_str());
-  const ProgramOutput fresh = ask({"status"});
+  const EdgeOutput fresh = ask({"status"});
   EXPECT_THAT(fresh.out, Names("2023-01-01 " + today));
   EXPECT_STREQ(Json::parse(ask({"status", "--json"}).out).value()["retrain"].text(), "");
   published("2023-01-01", "2023-05-22");
-  const ProgramOutput old = ask({"status"});
+  const EdgeOutput old = ask({"status"});
   EXPECT_THAT(old.out, Names("2023-05-22 note:"));
   EXPECT_EQ(old.exit_code, fresh.exit_code);
   const Json json = Json::parse(ask({"status", "--json"}).out);
@@ -201,7 +192,7 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   log_until_now(60);
   const std::string span = std::string(local_text(newest_utc_s_ - 7'200).view()).substr(0, 10) +
                            ".." + std::string(local_text(newest_utc_s_).view()).substr(0, 10);
-  const ProgramOutput said = ask({"earned", span, "--json"});
+  const EdgeOutput said = ask({"earned", span, "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.error;
   const Json json = Json::parse(said.out);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value(), 3.0 * 2, 1e-9);
@@ -229,7 +220,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
   EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), -0.240 - 0.750 * 0.1, 1e-9);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
   ASSERT_NE(folder_.write("state/settled.csv", "damaged"), "");
-  const ProgramOutput damaged = ask({"earned", span});
+  const EdgeOutput damaged = ask({"earned", span});
   EXPECT_EQ(damaged.exit_code, 0);
   EXPECT_THAT(damaged.error, Names("settled.csv"));
 }
@@ -237,7 +228,7 @@ TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
 TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
   log_until_now(1);
   const std::string today = std::string(local_text(newest_utc_s_).view()).substr(0, 10);
-  const ProgramOutput early = ask({"earned", "2020-01-01..2020-01-31"});
+  const EdgeOutput early = ask({"earned", "2020-01-01..2020-01-31"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.error, Names("2020-01-01 2020-01-31 " + today));
   EXPECT_EQ(ask({"earned", "tomorrow"}).exit_code, 2);
