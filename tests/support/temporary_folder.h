@@ -36,6 +36,12 @@ class TemporaryFolder {
     std::ofstream(path_ / name) << text;
     return file(name);
   }
+  /// Writes a shell script that can be run, and returns its path.
+  std::string write_script(const std::string& name, const std::string& body) const {
+    std::string path = write(name, "#!/bin/sh\n" + body + "\n");
+    std::filesystem::permissions(path, std::filesystem::perms{0755});
+    return path;
+  }
 
  private:
   std::filesystem::path path_;

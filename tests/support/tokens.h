@@ -24,6 +24,12 @@ inline bool has_code(std::string_view text, std::string_view code) {
   return false;
 }
 
+inline std::size_t count_of(std::string_view text, std::string_view piece) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(piece); at != text.npos; at = text.find(piece, at + 1)) ++count;
+  return count;
+}
+
 /// Whether each of these codes, split at spaces, occurs: Names("edge.toml:3 power_w 4000").
 MATCHER_P(Names, codes, "names " + ::testing::PrintToString(std::string(codes))) {
   std::istringstream words{std::string(codes)};

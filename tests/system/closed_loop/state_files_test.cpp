@@ -52,12 +52,6 @@ constexpr Damage kDamages[] = {Damage::kFlip,  Damage::kCut,    Damage::kEmpty,
 constexpr const char* kDamageNames[] = {"flipped bit", "cut",      "empty",
                                         "zeros",       "a folder", "a stranger's"};
 
-std::size_t count_of(const std::string& text, const std::string& piece) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(piece); at != text.npos; at = text.find(piece, at + 1)) ++count;
-  return count;
-}
-
 /// An operator holds the battery at 0 W: the prices alone would discharge it.
 class StateFiles : public SiteTest {
  protected:

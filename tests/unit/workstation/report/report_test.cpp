@@ -7,6 +7,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 #include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/report/headline.h"
 
@@ -102,12 +103,12 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
   const std::string markup = markup_of(html);
   EXPECT_EQ(first_unbalanced_tag(markup), "");
   for (const char* outside : {"src=", "url(", "http:", "https:", "@import", "<link"}) {
-    EXPECT_EQ(count_of(markup, outside), 0) << outside;
+    EXPECT_EQ(count_of(markup, outside), 0U) << outside;
   }
-  EXPECT_EQ(count_of(html, "Content-Security-Policy"), 1);
-  EXPECT_EQ(count_of(markup, "{{"), 0);
+  EXPECT_EQ(count_of(html, "Content-Security-Policy"), 1U);
+  EXPECT_EQ(count_of(markup, "{{"), 0U);
   EXPECT_THAT(markup, testing::HasSubstr("seed 1 &lt;untrained&gt; &amp; small"));
-  EXPECT_EQ(count_of(html, "\"marks\":[]"), 1) << "no price regime begins in these days";
+  EXPECT_EQ(count_of(html, "\"marks\":[]"), 1U) << "no price regime begins in these days";
   EXPECT_LT(html.size(), 5'000'000u);
 }
 
@@ -127,19 +128,19 @@ TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   const std::string markup = markup_of(html);
   EXPECT_EQ(first_unbalanced_tag(markup), "");
   for (const char* untrue : {"orrected student", "price-of-correction"}) {
-    EXPECT_EQ(count_of(markup, untrue), 0) << untrue;
+    EXPECT_EQ(count_of(markup, untrue), 0U) << untrue;
   }
   for (const char* said : {"href=\"#failure\"", "unproved student</th>", "data-broken=\"1\""}) {
-    EXPECT_GT(count_of(markup, said), 0) << said;
+    EXPECT_GT(count_of(markup, said), 0U) << said;
   }
-  EXPECT_EQ(count_of(markup, "data-broken=\"0\""), 0) << "no state of it is known";
+  EXPECT_EQ(count_of(markup, "data-broken=\"0\""), 0U) << "no state of it is known";
   EXPECT_THAT(html, testing::HasSubstr("\"broken\":[null,[1,2,3,4,5]]"));
   EXPECT_THAT(html, testing::HasSubstr("\"exported\":\"unproved student\""));
   EXPECT_THAT(html, testing::HasSubstr("\"counterexamples_of\":\"unproved student\""));
   in.broken.clear();
   run.student.certificate.set_violations_of(3, 0);
   run.student.certificate.counterexamples.clear();
-  EXPECT_EQ(count_of(html_of(in, folder.file("proved")), "href=\"#failure\""), 0);
+  EXPECT_EQ(count_of(html_of(in, folder.file("proved")), "href=\"#failure\""), 0U);
 }
 
 TEST(Report, NoTestDaysAreRefused) {
@@ -161,7 +162,7 @@ TEST(Report, TitleAndHeadingNameRunPricesBatteryAndDate) {
   ReportInputs in = run.inputs();
   in.facts = {{"date", "2026-11-23T12:00Z"}, {"run", "<first>"}, {"prices", "a.csv: crc32 1"}};
   const std::string html = html_of(in, folder.file("run"));
-  EXPECT_EQ(count_of(html, ">&lt;first&gt;, a.csv, 4 MW, 8 MWh, 2026-11-23</"), 2);
+  EXPECT_EQ(count_of(html, ">&lt;first&gt;, a.csv, 4 MW, 8 MWh, 2026-11-23</"), 2U);
   EXPECT_THAT(html, testing::HasSubstr("\"training\":[[0,100,0,0],[500,140,1,3],[750,160,0,2.9]]"));
 }
 

@@ -52,12 +52,6 @@ inline NamedEvaluation named_evaluation(const std::string& name, Policy& policy)
   return named;
 }
 
-inline int count_of(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
-
 /// Empty if every tag is closed in order, otherwise the first that is not.
 inline std::string first_unbalanced_tag(const std::string& html) {
   std::vector<std::string> open;

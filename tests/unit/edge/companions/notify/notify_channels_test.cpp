@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/child_process.h"
-#include "tests/support/program_output.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/edge/companions/notify/notify_site.h"
 
@@ -149,23 +148,17 @@ TEST_F(Channels, AKillLosesNothing) {
   EXPECT_EQ(count_of(text_of_file(folder_.file("notify/told.json")), "\"version\""), 1U);
 }
 
-/// Output of one run.
-ProgramOutput run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
-  return answer_of(std::move(arguments));
-}
-
 TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
   const std::string file = config();
   {
     Running first(*this);
-    const ProgramOutput second = run({"--config", file, "--once"});
+    const ProgramOutput second = notify_output({"--config", file, "--once"});
     EXPECT_EQ(second.exit_code, 1);
     EXPECT_THAT(second.text, Names("[notify] folder " + std::to_string(first.notify.pid()) + " " +
                                    folder_.file("notify/lock")));
     // These may run, and leave the first one's publication.
-    EXPECT_EQ(run({"--config", file, "--check"}).exit_code, 0);
-    EXPECT_EQ(run({"--config", file, "--test"}).exit_code, 0);
+    EXPECT_EQ(notify_output({"--config", file, "--check"}).exit_code, 0);
+    EXPECT_EQ(notify_output({"--config", file, "--test"}).exit_code, 0);
     EXPECT_NE(first.all->await("/event", "\"key\":\"test\""), "");
     Listener later(port(), "bess/v1/garage/status");
     EXPECT_EQ(later.await("/status", "o"), "online");
@@ -174,7 +167,8 @@ TEST_F(Channels, ASecondNotifierOfOneMemoryIsRefused) {
     first.notify.wait();
     EXPECT_EQ(first.all->await("/status", "offline"), "offline") << "by the broker";
   }
-  EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed process owns no lock
+  EXPECT_EQ(notify_output({"--config", file, "--once"}).exit_code,
+            0);  // a killed process owns no lock
 }
 
 /// Without storage, alerts are still reported, and so is the storage fault.
@@ -183,7 +177,7 @@ TEST_F(Channels, ANotifierThatCannotLockStillReports) {
       folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
                                      settings_.program + "\"\n");
   set_status("degraded", {"trouble"});
-  const ProgramOutput said = run({"--config", file, "--once"});
+  const ProgramOutput said = notify_output({"--config", file, "--once"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.text, AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
                                HasSubstr("ALERT: WARN trouble")));

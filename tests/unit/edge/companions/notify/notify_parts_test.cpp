@@ -177,13 +177,6 @@ TEST(ChildProgram, IsReadWithItsErrors) {
   EXPECT_NE(run_and_capture({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 1).trouble, "");
 }
 
-/// Replacement script for bess-edge.
-std::string write_program(const TemporaryFolder& folder, const std::string& body) {
-  const std::string path = folder.write("program", "#!/bin/sh\n" + body + "\n");
-  EXPECT_EQ(chmod(path.c_str(), 0755), 0);
-  return path;
-}
-
 ControllerStatus ask(const std::string& program) {
   ControllerPlaces controller;
   controller.program = program;
@@ -198,9 +191,9 @@ std::vector<std::string> keys_of(const ControllerStatus& status) {
 
 TEST(ControllerStatus, EachAlertIsATroubleWithItsCode) {
   const TemporaryFolder folder;
-  const std::string program = write_program(
-      folder, R"(echo '{"health": "degraded", "alerts": [{"code": "overdue", "line": "601 s"}, )"
-              R"({"code": "of_next_year", "line": "new"}]}'; exit 1)");
+  const std::string program = folder.write_script(
+      "program", R"(echo '{"health": "degraded", "alerts": [{"code": "overdue", "line": "601 s"}, )"
+                 R"({"code": "of_next_year", "line": "new"}]}'; exit 1)");
   const ControllerStatus status = ask(program);
   EXPECT_EQ(status.trouble, "");
   EXPECT_THAT(keys_of(status), ElementsAre("overdue", "of_next_year"));
@@ -234,7 +227,8 @@ TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
   const TemporaryFolder folder;
   EXPECT_THAT(keys_of(ask("/no/such")), ElementsAre("no_status"));
   for (const char* body : {"exit 1", "echo nonsense", "echo '{}'", "echo '[1]'"}) {
-    EXPECT_THAT(keys_of(ask(write_program(folder, body))), ElementsAre("no_status")) << body;
+    EXPECT_THAT(keys_of(ask(folder.write_script("program", body))), ElementsAre("no_status"))
+        << body;
   }
   ControllerStatus well;
   well.json.set("health", "ok");

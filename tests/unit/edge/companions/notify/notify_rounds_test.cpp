@@ -93,9 +93,9 @@ TEST_F(Rounds, TheQueueForTheCommandIsBounded) {
 
 TEST_F(Rounds, TheDayIsReportedWhenTheNextBegins) {
   use_command();
-  settings_.program = write_script("bess-edge", R"(case "$*" in
+  settings_.program = folder_.write_script("bess-edge", R"(case "$*" in
 "earned today --json --config edge.toml") cat )" + folder_.file("today") +
-                                                    R"(;;
+                                                            R"(;;
 "earned yesterday --json --config edge.toml")
   echo '{"days": [{"date": "2023-03-27", "line": "2023-03-27: +0.77 EUR"}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
@@ -193,7 +193,7 @@ TEST_F(Mqtt, ComesBackWithItsRetainedValues) {
 /// Earnings of today and yesterday come from the program's own output.
 TEST_F(Mqtt, TheDaysComeAsBessEdgeCountsThem) {
   Broker broker(folder_, port());
-  settings_.program = write_script("bess-edge", R"(case "$1 $2" in
+  settings_.program = folder_.write_script("bess-edge", R"(case "$1 $2" in
 "earned today") cat )" + folder_.file("today") + R"(;;
 "earned yesterday") echo '{"days": [{"date": "2023-03-27", "earned_eur": 0.125, "cycles": 9}]}';;
 *) cat )" + folder_.file("status.json") + ";;\nesac");
@@ -223,9 +223,9 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
   all.publish("bess/v1/garage/hold/set", "ON", true);  // retained, before the notifier connects
   ASSERT_EQ(all.await("/hold/set", "ON"), "ON");
   const std::string calls = folder_.file("calls");
-  const std::string program =
-      write_script("ordered", "[ $1 = hold ] && { echo \"$@\" >>" + calls +
-                                  "; [ $2 != 9999 ]; exit; }; cat " + folder_.file("status.json"));
+  const std::string program = folder_.write_script(
+      "ordered", "[ $1 = hold ] && { echo \"$@\" >>" + calls + "; [ $2 != 9999 ]; exit; }; cat " +
+                     folder_.file("status.json"));
   const std::string config = folder_.write(
       "edge.toml", "[battery]\nname = \"garage\"\npower_w = 5000\n[notify]\nprogram = \"" +
                        program + "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " +
@@ -275,36 +275,31 @@ class Program : public Rounds {};
 
 TEST_F(Program, CommandLine) {
   const std::string config = folder_.write("edge.toml", "[battery]\nname = \"garage\"\n[notify]\n");
-  const auto run = [](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
-    ChildProcess child(arguments);
-    const std::string text = child.read_all();
-    return std::pair(child.wait(), text);
-  };
-  EXPECT_EQ(run({"--nonsense"}).first, 2);
-  EXPECT_EQ(run({"--config"}).first, 2);
-  EXPECT_EQ(run({"--help"}).first, 0);
-  EXPECT_EQ(run({"--config", "/no/such"}).first, 1);
-  const std::pair<int, std::string> check = run({"--config", config, "--check"});
-  EXPECT_EQ(check.first, 0);
+  EXPECT_EQ(notify_output({"--nonsense"}).exit_code, 2);
+  EXPECT_EQ(notify_output({"--config"}).exit_code, 2);
+  EXPECT_EQ(notify_output({"--help"}).exit_code, 0);
+  EXPECT_EQ(notify_output({"--config", "/no/such"}).exit_code, 1);
+  const ProgramOutput check = notify_output({"--config", config, "--check"});
+  EXPECT_EQ(check.exit_code, 0);
   const std::string beside = std::filesystem::path(BESS_NOTIFY_PROGRAM).parent_path().string();
-  EXPECT_THAT(check.second, Names("garage 30 300 command mqtt " + beside +
-                                  "/bess-edge status --config " + config));
-  EXPECT_THAT(run({"--config", config, "--once"}).second, Names("[notify] command mqtt_host"));
+  EXPECT_THAT(check.text, Names("garage 30 300 command mqtt " + beside +
+                                "/bess-edge status --config " + config));
+  EXPECT_THAT(notify_output({"--config", config, "--once"}).text,
+              Names("[notify] command mqtt_host"));
 }
 
 TEST_F(Program, ATestMessageGoesToEveryChannelAndSaysWhichFails) {
   use_command();
   const std::string keys = "[notify]\ncommand = '";
   const std::string good = folder_.write("good.toml", keys + settings_.command + "'\n");
-  ChildProcess sent({BESS_NOTIFY_PROGRAM, "--config", good, "--test"});
-  EXPECT_THAT(sent.read_all(), Names("command:"));
-  EXPECT_EQ(sent.wait(), 0);
+  const ProgramOutput sent = notify_output({"--config", good, "--test"});
+  EXPECT_THAT(sent.text, Names("command:"));
+  EXPECT_EQ(sent.exit_code, 0);
   EXPECT_THAT(told(), Names("test: command"));
   const std::string bad = folder_.write("bad.toml", keys + "/bin/false'\n");
-  ChildProcess refused({BESS_NOTIFY_PROGRAM, "--config", bad, "--test"});
-  EXPECT_THAT(refused.read_all(), Names("command: 1"));
-  EXPECT_EQ(refused.wait(), 1);
+  const ProgramOutput refused = notify_output({"--config", bad, "--test"});
+  EXPECT_THAT(refused.text, Names("command: 1"));
+  EXPECT_EQ(refused.exit_code, 1);
 }
 
 }  // namespace

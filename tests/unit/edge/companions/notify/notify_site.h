@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -12,24 +11,20 @@
 #include "edge/companions/notify/notifier.h"
 #include "shared/utc_text.h"
 #include "tests/support/mqtt_broker.h"
+#include "tests/support/program_output.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tokens.h"
 
 namespace bess {
 
 inline constexpr std::int64_t kNow = 1'679'875'320;  // 2023-03-27T00:02:00Z, 02:02 in Brussels
-
-inline std::size_t count_of(const std::string& text, const std::string& piece) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(piece); at != text.npos; at = text.find(piece, at + 1)) ++count;
-  return count;
-}
 
 class Rounds : public ::testing::Test {
  protected:
   Rounds() {
     signal(SIGPIPE, SIG_IGN);  // as the program does: a command need not read its input
     settings_.config_path = "edge.toml";
-    settings_.program = write_script("bess-edge", "cat " + folder_.file("status.json"));
+    settings_.program = folder_.write_script("bess-edge", "cat " + folder_.file("status.json"));
     settings_.memories = {folder_.file("notify/told.json")};
     settings_.name = "garage";
     settings_.id = "garage";
@@ -37,11 +32,6 @@ class Rounds : public ::testing::Test {
     set_status("ok");
   }
 
-  std::string write_script(const char* name, const std::string& body) {
-    const std::string path = folder_.write(name, "#!/bin/sh\n" + body + "\n");
-    EXPECT_EQ(chmod(path.c_str(), 0755), 0);
-    return path;
-  }
   void use_command() {
     settings_.command = "{ echo \"Subject: $BESS_TITLE\"; cat; } >>" + folder_.file("told");
   }
@@ -71,6 +61,12 @@ class Rounds : public ::testing::Test {
   const TemporaryFolder folder_;
   NotifySettings settings_;
 };
+
+/// Output of one run of the program.
+inline ProgramOutput notify_output(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
+  return answer_of(std::move(arguments));
+}
 
 /// A round, and the result of the channels.
 inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {

@@ -70,8 +70,7 @@ class PageServerTest : public ::testing::Test {
   /// Settings whose controller is this shell script.
   [[nodiscard]] PageSettings with_program(const std::string& script) const {
     PageSettings settings = site_.settings();
-    settings.program = site_.folder.write("program", "#!/bin/sh\n" + script);
-    EXPECT_EQ(chmod(settings.program.c_str(), 0755), 0);
+    settings.program = site_.folder.write_script("program", script);
     return settings;
   }
   static std::string header(const Got& got, const char* name) {
