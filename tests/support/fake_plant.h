@@ -146,7 +146,6 @@ inline SiteSettings metered(const ConnectionSettings& connection = {}) {
 }
 
 inline constexpr std::int32_t kCheapCenti = -60'000;  ///< below every threshold: charge
-inline constexpr std::int32_t kDearCenti = 160'000;   ///< above every threshold: discharge
 
 template <typename Loop>
 CycleRecord run_cycle(Loop& loop) {

@@ -46,16 +46,22 @@ inline std::string port_in(const std::string& ready) {
   return ready.substr(ready.find_last_of(':') + 1);
 }
 
+/// Options of a peer: the site's simulated time.
+template <typename Site>
+std::vector<std::string> simulated_time_of(const Site& site) {
+  return {"--scale",     std::to_string(site.clock.time_scale),
+          "--start-s",   std::to_string(site.clock.start_utc_s),
+          "--anchor-ns", std::to_string(site.anchor_ns())};
+}
+
 /// master_peer.py, at the simulated battery of a site.
 template <typename Site, typename Map>
 std::vector<std::string> master_peer(const Site& site, const Map& m,
                                      const std::vector<std::string>& more = {}) {
-  return joined(
-      {kPython, BESS_SOURCE_DIR "/tests/system/peers/master_peer.py", "--map", m.map, "--variant",
-       m.variant, "--port", std::to_string(site.battery_port), "--scale",
-       std::to_string(site.clock.time_scale), "--start-s", std::to_string(site.clock.start_utc_s),
-       "--anchor-ns", std::to_string(site.anchor_ns())},
-      more);
+  return joined(joined({kPython, BESS_SOURCE_DIR "/tests/system/peers/master_peer.py", "--map",
+                        m.map, "--variant", m.variant, "--port", std::to_string(site.battery_port)},
+                       simulated_time_of(site)),
+                more);
 }
 
 }  // namespace bess

@@ -72,29 +72,11 @@ class Field : public PeerTest, public ::testing::WithParamInterface<Draw> {
 
   void start(const Device& device) {
     site_.start_clock();
-    const std::vector<std::string> arguments = {kPython,
-                                                "-B",
-                                                BESS_SOURCE_DIR
-                                                "/tests/system/peers/field_device.py",
-                                                "--device",
-                                                device.kind,
-                                                "--firmware",
-                                                device.firmware,
-                                                "--gateway",
-                                                device.gateway,
-                                                "--trouble",
-                                                device.trouble,
-                                                "--soc",
-                                                std::to_string(device.soc),
-                                                "--record",
-                                                record_path(),
-                                                "--scale",
-                                                std::to_string(kScale),
-                                                "--anchor-ns",
-                                                std::to_string(site_.anchor_ns()),
-                                                "--start-s",
-                                                std::to_string(SimulatedSite::kStartS)};
-    site_.battery = std::make_unique<ChildProcess>(arguments);
+    site_.battery = std::make_unique<ChildProcess>(joined(
+        {kPython, "-B", BESS_SOURCE_DIR "/tests/system/peers/field_device.py", "--device",
+         device.kind, "--firmware", device.firmware, "--gateway", device.gateway, "--trouble",
+         device.trouble, "--soc", std::to_string(device.soc), "--record", record_path()},
+        simulated_time_of(site_)));
     ASSERT_EQ(std::sscanf(site_.battery->read_line().c_str(), "port %d", &site_.battery_port), 1);
     ASSERT_TRUE(catches(site_.battery->pid(), SIGUSR2));
     site_.start_market({}, SimulatedSite::flat_prices(600, device.price));

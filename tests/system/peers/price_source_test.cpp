@@ -118,11 +118,10 @@ class PriceSources : public PeerTest, public ::testing::WithParamInterface<Behav
     const Behaviour& behaviour = GetParam();
     site_.start_battery(
         {"--map", BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml", "--soc", "0.5"});
-    source_ = std::make_unique<ChildProcess>(std::vector<std::string>{
-        kPython, "-B", BESS_SOURCE_DIR "/tests/system/peers/price_source.py", "--behaviour",
-        behaviour.json, "--prices", behaviour.prices, "--seed", "53", "--scale",
-        std::to_string(kScale), "--anchor-ns", std::to_string(site_.anchor_ns()), "--start-s",
-        std::to_string(SimulatedSite::kStartS)});
+    source_ = std::make_unique<ChildProcess>(
+        joined({kPython, "-B", BESS_SOURCE_DIR "/tests/system/peers/price_source.py", "--behaviour",
+                behaviour.json, "--prices", behaviour.prices, "--seed", "53"},
+               simulated_time_of(site_)));
     ASSERT_EQ(std::sscanf(source_->read_line().c_str(), "port %d", &site_.market_port), 1);
     config_ = site_.commission({.price_server = behaviour.host, .price_keys = behaviour.keys});
     setenv("LD_PRELOAD", BESS_TWO_ADDRESSES, 1);
