@@ -60,29 +60,6 @@ std::string golden_text() {
 
 TEST(StudentNet, GoldenVectors) { expect_golden(kGoldenPath, golden_text()); }
 
-TEST(StudentNet, HandMadeNetsDecideAsTheirFormulaSays) {
-  // price_map = 8 (price + 500): low 2400 is price -200, high 4000 is price 0.
-  const StudentNet cheap_discharge = hand_made_net(NetInput::kPrice, 1, 2'400, 4'000);
-  const StudentNet cheap_charge = hand_made_net(NetInput::kPrice, -1, 2'400, 4'000);
-  const struct {
-    int price;
-    Action rising, falling;
-  } cases[] = {
-      {-500, Action::kDischarge, Action::kCharge}, {-201, Action::kDischarge, Action::kCharge},
-      {-200, Action::kDischarge, Action::kIdle},  // ties at 0: the lowest action
-      {-199, Action::kIdle, Action::kIdle},        {0, Action::kIdle, Action::kDischarge},
-      {1, Action::kCharge, Action::kDischarge},    {1'500, Action::kCharge, Action::kDischarge}};
-  for (const auto& c : cases) {
-    const LatticeState state{.minute_of_quarter_hour = 3,
-                             .quarter_hour = 40,
-                             .context_class = 5,
-                             .soc_index = 100,
-                             .price_eur_per_mwh = static_cast<std::int16_t>(c.price)};
-    EXPECT_EQ(cheap_discharge.decide(state), c.rising) << c.price;
-    EXPECT_EQ(cheap_charge.decide(state), c.falling) << c.price;
-  }
-}
-
 TEST(StudentNet, HashesSeeEveryNumber) {
   const StudentNet net = random_integer_net(1);
   const std::uint32_t hash = student_weights_hash(net);

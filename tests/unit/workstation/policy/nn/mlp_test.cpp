@@ -70,14 +70,6 @@ TEST_P(Mlp, BackwardIsTheReferenceAndAdds) {
   EXPECT_LT(relative_l2(gradient, expected), 4e-6);
 }
 
-TEST_P(Mlp, TheLayersFillTheFlatVector) {
-  const ConstMlp mlp(shape, parameters.data());
-  EXPECT_EQ(mlp.w1.data(), parameters.data());
-  EXPECT_EQ(mlp.b3.data() + mlp.b3.size(), parameters.data() + parameters.size());
-  EXPECT_EQ(parameters.size(), shape.parameter_count());
-  EXPECT_EQ(static_cast<std::size_t>(parameters.size()), reference.head.end());
-}
-
 INSTANTIATE_TEST_SUITE_P(Shapes, Mlp,
                          testing::Values(MlpCase{"tiny", {5, 7, 6, 4}},
                                          MlpCase{"one_of_each", {1, 1, 1, 1}},

@@ -51,21 +51,5 @@ TEST(BenchmarkFigures, RuleTabularAndForesightOnTestDays) {
   }
 }
 
-TEST(BenchmarkFigures, OtherSplits) {
-  const MarketSteps market = make_market_steps(yardstick(), {});
-  const struct {
-    Split split;
-    double rule, foresight;
-  } cases[] = {{Split::kValidation, 318.8, 983.7}, {Split::kTrain, 354.3, 969.6}};
-  for (const auto& c : cases) {
-    RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-    ForesightPolicy foresight({});
-    const std::vector<MarketDay> days = market.days_of(c.split);
-    EXPECT_NEAR(evaluate(market, days, rule, {}).profit_eur_per_day_per_mwh(), c.rule, 1.0);
-    EXPECT_NEAR(evaluate(market, days, foresight, {}).profit_eur_per_day_per_mwh(), c.foresight,
-                1.0);
-  }
-}
-
 }  // namespace
 }  // namespace bess

@@ -61,23 +61,5 @@ TEST(Costs, WhereNoSpreadPaysPlannersSellWhatIsThereAndRest) {
   }
 }
 
-TEST(Costs, TheReferenceWearTakesThePlaceOfTheConfiguredOne) {
-  const auto rule = make_baseline("rbc:60:140", small_steps(), {});
-  const auto days = small_steps().days_of(Split::kTest);
-  const auto run = [&](double wear) {
-    BatteryParameters battery;
-    battery.wear_eur_per_mwh = wear;
-    return evaluate(small_steps(), days, *rule, {battery, 0.5, false});
-  };
-  const Evaluation at_10 = run(10);
-  for (const double configured : {0.0, 4.0, 10.0, 25.0}) {
-    EXPECT_NEAR(run(configured).profit_at_wear_eur_per_day_per_mwh(10),
-                at_10.profit_eur_per_day_per_mwh(), 1e-9)
-        << configured;
-  }
-  // A full cycle is twice the capacity through the battery.
-  EXPECT_NEAR(at_10.days[0].throughput_mwh, at_10.days[0].cycles * 2 * 8, 1e-9);
-}
-
 }  // namespace
 }  // namespace bess

@@ -44,15 +44,6 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   EXPECT_EQ(again.distil.correction.thresholds, (PriceThresholds{-120, 640}));
 }
 
-TEST(RunConfig, KeysOverlayTheDefaults) {
-  const RunConfig config = parse_run_config(
-      "[train]\nmethod = 'dqn'\nlearning_rate = 1\n[battery]\npower_w = 5000000\n", "some.toml");
-  EXPECT_EQ(config.train.method, Method::kDqn);
-  EXPECT_EQ(config.train.learning_rate, 1);
-  EXPECT_EQ(config.battery.power_w_max, 5e6);
-  EXPECT_EQ(config.battery.capacity_wh, RunConfig{}.battery.capacity_wh);
-}
-
 TEST(RunConfig, TheQuickStartsFileIsAHouseBatteryWithWear) {
   const RunConfig config = load_run_config(BESS_SOURCE_DIR "/workstation/house.toml");
   EXPECT_EQ(config.battery.power_w_max, 4'000);

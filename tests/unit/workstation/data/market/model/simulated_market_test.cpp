@@ -9,8 +9,6 @@
 #include <cmath>
 
 #include "shared/local_time.h"
-#include "tests/support/market_test_support.h"
-#include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
@@ -172,23 +170,6 @@ TEST(Reconstruct, WithoutMarginalPricesThePathStillEndsOnTheSettledPrice) {
   const MinuteSeries series = minutes_on_quarter_hours(rows, 1);
   EXPECT_EQ(series.indicative[29], 203.75);
   for (std::size_t m = 0; m < 30; ++m) EXPECT_TRUE(std::isfinite(series.indicative[m]));
-}
-
-TEST(Reconstruct, RealQuarterHoursConvergeLikeTheRealMinuteDays) {
-  const std::string sample = "elia_quarter_hour_2023-01_2023-05.csv.gz";
-  const auto rows = read_quarter_hour_files({real_sample(sample).string()}).quarter_hours;
-  const MinuteSeries series = minutes_on_quarter_hours(rows, 7);
-  const ConvergenceByMinute convergence = convergence_by_minute(series);
-  // 0.7 of the smaller to 1.3 of the larger median of the two ods161 days
-  EXPECT_GE(convergence[0].median_error, 0.7 * 32.0);
-  EXPECT_LE(convergence[0].median_error, 1.3 * 80.8);
-  EXPECT_GE(convergence[4].median_error, 0.7 * 9.4);
-  EXPECT_LE(convergence[4].median_error, 1.3 * 21.7);
-  EXPECT_GE(convergence[7].median_error, 0.7 * 7.5);
-  EXPECT_LE(convergence[7].median_error, 1.3 * 17.0);
-  EXPECT_LE(convergence[12].median_error, 2.5);
-  EXPECT_EQ(convergence[14].mean_error, 0);
-  EXPECT_NEAR(price_statistics(settled_by_quarter_hour(series)).median, 137.45, 0.01);
 }
 
 }  // namespace
