@@ -98,20 +98,6 @@ TEST(Codec, EncodeInvertsDecodeForEveryTypeAndWordOrder) {
   }
 }
 
-TEST(Codec, LowFirstSwapsTheWords) {
-  RegisterPoint point;
-  point.type = RegisterType::kU32;
-  point.registers = 2;
-  point.value_max = UINT32_MAX;
-  for (const bool is_low_first : {false, true}) {
-    if (is_low_first) point.word_order = WordOrder::kLowFirst;
-    RegisterBlock block;
-    ASSERT_EQ(encode(point, 0x0001'0002, Rounding::kNearest, block), Status::kOk);
-    EXPECT_THAT(std::vector<int>(block.begin(), block.end()),
-                is_low_first ? ElementsAre(2, 1) : ElementsAre(1, 2));
-  }
-}
-
 TEST(MapFile, UnknownVariantNamesTheKnownOnes) {
   RegisterMap map;
   std::string error;

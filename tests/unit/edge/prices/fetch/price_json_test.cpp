@@ -47,11 +47,6 @@ TEST(PriceJson, SkipsNullsAndKeepsThePreviousOne) {
   EXPECT_EQ(row.price_centi_eur_per_mwh, 700);
 }
 
-TEST(PriceJson, UnderstandsABareList) {
-  const PriceRow row = newest_of(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":1.005}])");
-  EXPECT_EQ(row.price_centi_eur_per_mwh, 100);
-}
-
 TEST(PriceJson, AMinuteCountsFromItsEndButForTheClocksTolerance) {
   constexpr std::int64_t kToleranceS = 5;
   const std::int64_t minute_utc_s = utc("2025-08-17T00:37:00Z");

@@ -6,7 +6,6 @@
 #include "edge/records/account/day_accounts.h"
 
 #include "shared/local_time.h"
-#include "shared/utc_text.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
@@ -112,21 +111,6 @@ TEST(DayAccount, TheThroughputOfAnotherDayIsNotThisDays) {
   EXPECT_EQ(day.full_cycles(), 0);
   EXPECT_FALSE(day.is_empty());
   EXPECT_TRUE(DayAccount(kDay).is_empty());
-}
-
-/// In summer, in winter, and on the two days of the clock changes.
-TEST(DayAccount, BeginsAtLocalMidnight) {
-  set_market_time_zone();
-  const auto starts = [](std::int32_t day) {
-    return std::string(utc_text(DayAccount(day).start_utc_s()).view());
-  };
-  EXPECT_EQ(starts(20'230'115), "2023-01-14T23:00:00Z");
-  EXPECT_EQ(starts(20'230'326), "2023-03-25T23:00:00Z");
-  EXPECT_EQ(starts(20'230'327), "2023-03-26T22:00:00Z");
-  EXPECT_EQ(starts(20'230'701), "2023-06-30T22:00:00Z");
-  EXPECT_EQ(starts(20'231'029), "2023-10-28T22:00:00Z");
-  EXPECT_EQ(starts(20'231'030), "2023-10-29T23:00:00Z");
-  EXPECT_EQ(starts(20'240'101), "2023-12-31T23:00:00Z");
 }
 
 }  // namespace
