@@ -46,10 +46,7 @@ class PriceProcesses : public ::testing::Test {
     std::ofstream(record_ + ".new", std::ios::binary) << bytes;
     std::filesystem::rename(record_ + ".new", record_);
   }
-  std::string record() const {
-    std::ifstream file(record_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string record() const { return text_of_file(record_); }
 
   static constexpr int kScale = 150;  // a control cycle is 0.8 s
   SimulatedSite site_{kScale};

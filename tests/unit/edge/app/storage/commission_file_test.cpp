@@ -3,9 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "tests/support/as_nobody.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
@@ -80,9 +77,7 @@ TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
   result.meter_percent = 98;
   ASSERT_TRUE(write_commission_file(config_, result, 1'679'788'800, error_)) << error_;
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
-  std::ostringstream bytes;
-  bytes << std::ifstream(folder_.file("state/commissioned.toml")).rdbuf();
-  const std::string text = bytes.str();
+  const std::string text = text_of_file(folder_.file("state/commissioned.toml"));
   for (const char* const line :
        {"charge_measured_w = 493\n", "charge_lag_ms = 1200\n", "charge_time_constant_ms = 3100\n",
         "charge_ramp_w_per_s = 40\n", "meter_percent = 98\n"}) {

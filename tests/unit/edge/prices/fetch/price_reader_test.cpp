@@ -89,11 +89,7 @@ TEST_F(PriceReaderTest, ATimeOfReceiptInTheFutureIsNow) {
 
 TEST_F(PriceReaderTest, AnotherVersionAndDamageAreNoPrices) {
   publish({.minute_utc_s = minute_now(), .price_centi_eur_per_mwh = 4'200});
-  std::string good;
-  {
-    std::ifstream file(path_, std::ios::binary);
-    good.assign(std::istreambuf_iterator<char>(file), {});
-  }
+  const std::string good = text_of_file(path_);
   const auto status_of = [&](const std::string& bytes) {
     std::filesystem::remove(path_);
     std::ofstream(path_, std::ios::binary) << bytes;

@@ -3,13 +3,12 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 
 #include "edge/records/log/alerts.h"
 #include "shared/local_time.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 
 namespace bess {
@@ -117,8 +116,7 @@ TEST(Health, EveryTroubleHasItsReason) {
 }
 
 TEST(Health, TheManualHasTheTableOfAlerts) {
-  std::ifstream file(BESS_SOURCE_DIR "/shared/manual/guides/troubleshooting.md");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string text = text_of_file(BESS_SOURCE_DIR "/shared/manual/guides/troubleshooting.md");
   std::string table = "|code|meaning|remedy|\n|---|---|---|\n";
   for (const AlertInfo& alert : kAlerts) {
     table.append("|`").append(alert.code).append("`|").append(alert.meaning);

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "shared/crc32.h"
@@ -64,10 +63,6 @@ std::string older_ring(std::int64_t capacity, std::int64_t records) {
   file.resize(static_cast<std::size_t>(kHeaderBytes) +
               static_cast<std::size_t>(capacity) * kOlderRecordBytes);
   return file;
-}
-
-void write_file(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
 using Cycles = std::vector<std::int64_t>;
@@ -130,7 +125,7 @@ TEST_F(Ring, NewestSurvivesReopeningAndTheRingWraps) {
 }
 
 TEST_F(Ring, OneOfAnOlderProgramIsReadAndContinuedInANewFile) {
-  write_file(path_, older_ring(5, 3));
+  folder_.write("decisions.ring", older_ring(5, 3));
   EXPECT_EQ(cycles(), (Cycles{1, 2, 3}));
   RingLog ring;
   const CycleRecord newest = newest_in(ring, 5);
@@ -154,7 +149,7 @@ TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
     std::string torn = before;
     torn.replace(begin, length, after, begin, length);
     if (torn == before || torn == after) continue;
-    write_file(path_, torn);
+    folder_.write("decisions.ring", torn);
     ASSERT_EQ(cycles(), (Cycles{2, 3})) << length << " bytes written";
   }
 }
@@ -163,7 +158,7 @@ TEST_F(Ring, AFileCutAtEveryByteOfItsLastRecordStillOpens) {
   append(3, 1, 2);  // slots 1 and 2: the newest is last in the file
   const std::string whole = text_of_file(path_);
   for (std::size_t missing = 1; missing <= kRecordBytes; ++missing) {
-    write_file(path_, whole.substr(0, whole.size() - missing));
+    folder_.write("decisions.ring", whole.substr(0, whole.size() - missing));
     ASSERT_EQ(cycles(), (Cycles{1})) << missing << " bytes missing";
     append(3, 3, 1);
     ASSERT_EQ(cycles(), (Cycles{1, 3})) << missing << " bytes missing";
@@ -189,7 +184,7 @@ TEST_F(Ring, TheNewestIsInTheNewFileFromItsBeginning) {
 }
 
 TEST_F(Ring, AFileThatIsNoLogIsSetAsideAndReported) {
-  write_file(path_, std::string(kHeaderBytes + 5 * kRecordBytes, 'x'));
+  folder_.write("decisions.ring", std::string(kHeaderBytes + 5 * kRecordBytes, 'x'));
   RingLog reader;
   EXPECT_FALSE(reader.open_to_read(path_.c_str(), error_));
   EXPECT_THAT(error_.c_str(), Names(path_));
@@ -234,7 +229,7 @@ TEST_F(Ring, EveryBrokenByteOfTheHeaderCostsNothingAndIsRepaired) {
   const std::string whole = text_of_file(path_);
   for (const std::size_t begin : {std::size_t{0}, std::size_t{2'048}}) {
     for (std::size_t i = begin; i < begin + 28; ++i) {
-      write_file(path_, flipped(whole, i, 0x10));
+      folder_.write("decisions.ring", flipped(whole, i, 0x10));
       ASSERT_EQ(cycles(), (Cycles{3, 4, 5, 6, 7})) << "byte " << i;
       ASSERT_EQ(has_code(damage_line(path_, 5), "decisions.ring"), begin == 0) << "byte " << i;
       ASSERT_EQ(text_of_file(path_), whole) << "byte " << i;
@@ -247,7 +242,7 @@ TEST_F(Ring, WithoutAHeaderTheRecordsShowTheirLayout) {
   std::string headless = text_of_file(path_);
   headless.replace(0, kHeaderBytes, kHeaderBytes, '\xff');
   for (const std::int64_t configured : {std::int64_t{5}, std::int64_t{9}}) {
-    write_file(path_, headless);
+    folder_.write("decisions.ring", headless);
     ASSERT_EQ(cycles(), (Cycles{3, 4, 5, 6, 7}));
     EXPECT_THAT(damage_line(path_, configured), Names("decisions.ring"));
   }
@@ -260,7 +255,7 @@ TEST_F(Ring, WithoutHeaderAndEndTheConfiguredSizeIsTried) {
   std::string cut = text_of_file(path_);
   cut.replace(0, kHeaderBytes, kHeaderBytes, '\0');
   cut.resize(cut.size() - kRecordBytes);
-  write_file(path_, cut);
+  folder_.write("decisions.ring", cut);
   EXPECT_THAT(damage_line(path_, 9), Names("decisions.ring 1"));
   EXPECT_EQ(cycles(), (Cycles{9, 10, 11, 12, 13, 14, 15, 16}));
   EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 9 * kRecordBytes);
@@ -279,7 +274,7 @@ TEST_F(Ring, OneFlippedByteAnywhereCostsAtMostOneRecordAndIsReported) {
     for (int draw = 0; draw < 1'500; ++draw) {
       const std::size_t at = random() % whole.size();
       const auto mask = static_cast<unsigned char>(1 + random() % 255);
-      write_file(path_, flipped(whole, at, mask));
+      folder_.write("decisions.ring", flipped(whole, at, mask));
       const std::string line = damage_line(path_, kCapacity);
       const Cycles after = cycles();
       ASSERT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
